@@ -1,0 +1,143 @@
+"""The functions that models are written in: each works on floats, NumPy arrays and torch tensors.
+
+Python floats take the first branch, so that a model in an FMU costs what `math` costs. torch is never imported here;
+it can only be needed where somebody already passed a tensor.
+"""
+
+import math
+import sys
+from bisect import bisect_right
+
+import numpy as np
+
+pi = math.pi
+
+
+def _library(*values):
+    """NumPy, or torch when one of the values is a tensor."""
+    torch = sys.modules.get("torch")
+    if torch is not None and any(isinstance(value, torch.Tensor) for value in values):
+        return torch
+    return np
+
+
+def sin(x):
+    """Sine of an angle in rad."""
+    return math.sin(x) if isinstance(x, float) else _library(x).sin(x)
+
+
+def cos(x):
+    """Cosine of an angle in rad."""
+    return math.cos(x) if isinstance(x, float) else _library(x).cos(x)
+
+
+def exp(x):
+    """e to the x."""
+    return math.exp(x) if isinstance(x, float) else _library(x).exp(x)
+
+
+def sqrt(x):
+    """Square root; the derivative at 0 is infinite, so give a tensor a floor first."""
+    return math.sqrt(x) if isinstance(x, float) else _library(x).sqrt(x)
+
+
+def tanh(x):
+    """Hyperbolic tangent."""
+    return math.tanh(x) if isinstance(x, float) else _library(x).tanh(x)
+
+
+def floor(x):
+    """Largest whole number not above x, as float."""
+    return float(math.floor(x)) if isinstance(x, float) else _library(x).floor(x)
+
+
+def atan2(y, x):
+    """Angle of the vector (x, y) in (-π, π]."""
+    if isinstance(y, float) and isinstance(x, float):
+        return math.atan2(y, x)
+    library = _library(y, x)
+    if library is np:
+        return np.arctan2(y, x)
+    return library.atan2(*_tensors(library, y, x))
+
+
+def hypot(x, y):
+    """Length of the vector (x, y)."""
+    if isinstance(y, float) and isinstance(x, float):
+        return math.sqrt(x * x + y * y)
+    return sqrt(x * x + y * y)
+
+
+def where(condition, a, b):
+    """`a` where the condition holds, `b` elsewhere. Both are evaluated."""
+    if condition is True:
+        return a
+    if condition is False:
+        return b
+    library = _library(condition, a, b)
+    if library is np:
+        return np.where(condition, a, b)
+    return library.where(library.as_tensor(condition), *_tensors(library, a, b))
+
+
+def minimum(a, b):
+    """The smaller of the two, element by element."""
+    return where(a < b, a, b)
+
+
+def maximum(a, b):
+    """The larger of the two, element by element."""
+    return where(a > b, a, b)
+
+
+def clip(x, low, high):
+    """`x` within [low, high]."""
+    return minimum(maximum(x, low), high)
+
+
+def sign(x):
+    """-1.0, 0.0 or 1.0."""
+    return where(x > 0, 1.0, where(x < 0, -1.0, 0.0))
+
+
+def wrap(angle):
+    """The same angle in [-π, π)."""
+    return angle - 2.0 * pi * floor((angle + pi) / (2.0 * pi))
+
+
+def interp(x, xs, ys):
+    """Piecewise linear interpolation, constant beyond the ends.
+
+    Parameters
+    ----------
+    x : float or (...) array or tensor
+        Where.
+    xs : tuple of float, increasing
+        Abscissae of the table.
+    ys : tuple of float
+        Ordinates of the table.
+
+    Returns
+    -------
+    like x
+    """
+    if isinstance(x, float):
+        if x <= xs[0]:
+            return ys[0]
+        if x >= xs[-1]:
+            return ys[-1]
+        i = bisect_right(xs, x) - 1
+        return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
+    library = _library(x)
+    if library is np:
+        return np.interp(x, xs, ys)
+    xs, ys = (library.as_tensor(s, dtype=x.dtype, device=x.device) for s in (xs, ys))
+    x = x.clamp(xs[0], xs[-1])
+    i = (library.searchsorted(xs, x.detach().contiguous(), right=True) - 1).clamp(0, len(xs) - 2)
+    return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
+
+
+def _tensors(torch, *values):
+    """All values as tensors of the kind of the first tensor among them."""
+    like = next(value for value in values if isinstance(value, torch.Tensor))
+    return [torch.as_tensor(value, dtype=like.dtype, device=like.device) for value in values]
