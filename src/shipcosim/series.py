@@ -1,0 +1,237 @@
+"""Tables: every run and every measurement is one `xarray.Dataset` over `time` in seconds, signals with unit and name.
+
+The only door to pint and pyarrow. xarray, pint and pyarrow are imported where they are used: together they take a
+second, which a command that only prints its help should not pay.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import re
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["conversion", "make_table", "read_table", "write_file", "write_table"]
+
+_HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
+
+
+def make_table(
+    time: np.ndarray, columns: Iterable[tuple[str, np.ndarray, str, str]], attributes: dict | None = None
+) -> xarray.Dataset:
+    """One table from its columns.
+
+    Parameters
+    ----------
+    time : (n,) array
+        Times of the rows. [s]
+    columns : iterable of (name, (n,) array, unit, long name)
+        The signals.
+    attributes : dict, optional
+        What holds for the table as a whole: versions, parameters, seeds.
+    """
+    import xarray
+
+    variables = {
+        name: ("time", values, {"units": unit, "long_name": long_name}) for name, values, unit, long_name in columns
+    }
+    clock = ("time", time, {"units": "s", "long_name": "time"})
+    return xarray.Dataset(variables, {"time": clock}, attributes or {})
+
+
+def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
+    """Write a table as NetCDF (.nc) or CSV (.csv), at full precision.
+
+    Equal tables give equal bytes. Either the whole file is there afterwards or none under this name.
+
+    Raises
+    ------
+    ShipcosimError
+        If the suffix is another one, or the file cannot be written (a full disk, no such folder).
+    """
+    writers = {".nc": _netcdf, ".csv": _csv}
+    path = Path(path)
+    if path.suffix not in writers:
+        raise ShipcosimError(Problem(str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv."))
+    write_file(path, writers[path.suffix](table))
+
+
+def read_table(path: str | os.PathLike) -> xarray.Dataset:
+    """Read a table from NetCDF (.nc) or CSV (.csv, .csv.gz; header `name [unit]`).
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be read, has no `time`, or a column is not numeric.
+    """
+    readers = {".nc": _read_netcdf, ".csv": _read_csv, ".csv.gz": _read_csv}
+    path = Path(path)
+    suffix = next((s for s in readers if path.name.endswith(s)), None)
+    if suffix is None:
+        raise ShipcosimError(Problem(str(path), f"'{path.suffix}' is no table.", "Tables are .nc, .csv or .csv.gz."))
+    if not path.is_file():
+        raise ShipcosimError(Problem(str(path), "there is no such file."))
+    return readers[suffix](path)
+
+
+def write_file(path: str | os.PathLike, content: bytes) -> None:
+    """Write a file so that it is there completely or not at all.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
+    path = Path(path)
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with part.open("wb") as file:
+            file.write(content)
+        os.replace(part, path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        size = f"{len(content) / 1e6:.1f} MB"
+        raise ShipcosimError(
+            Problem(str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed.")
+        ) from error
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+
+
+@cache
+def conversion(unit_from: str | None, unit_to: str | None) -> tuple[float, float]:
+    """Factor and offset that turn a value in one unit into another: ``factor * value + offset``.
+
+    Knows the spellings of FMI ("N.m", "kg.m2", "rad/s") and "rpm", "deg", "kn", "1". A unit that is not stated
+    (None or empty) is taken to be right.
+
+    Raises
+    ------
+    ShipcosimError
+        If a unit is unknown or the two do not measure the same thing.
+
+    Examples
+    --------
+    >>> conversion("kn", "m/s")
+    (0.5144444444444445, 0.0)
+    >>> conversion("degC", "K")
+    (1.0, 273.15)
+    """
+    if not unit_from or not unit_to or unit_from == unit_to:
+        return 1.0, 0.0
+    import pint
+
+    try:
+        units = _units()
+        source, target = units(_pint_spelling(unit_from)).units, units(_pint_spelling(unit_to)).units
+        offset, one = (float(units.Quantity(value, source).to(target).magnitude) for value in (0.0, 1.0))
+    except pint.UndefinedUnitError as error:
+        raise ShipcosimError(Problem("", f"cannot convert '{unit_from}' into '{unit_to}': {error}.")) from error
+    except pint.DimensionalityError as error:
+        raise ShipcosimError(
+            Problem("", f"cannot convert '{unit_from}' into '{unit_to}': they measure different things.")
+        ) from error
+    return one - offset, offset
+
+
+@cache
+def _units():
+    import pint
+
+    return pint.UnitRegistry()
+
+
+_UNIT_TOKEN = re.compile(r"(?P<name>[A-Za-z_%°µΩ]+)(?:\^|\*\*)?(?P<power>-?\d)?|(?P<sign>[.*/()]|1(?!\d))|\s+")
+
+
+def _pint_spelling(unit):
+    """FMI's "kg.m2/s" as pint wants it. Only names, powers and signs get through: pint evaluates what it reads."""
+    spelling, position = "", 0
+    while position < len(unit):
+        token = _UNIT_TOKEN.match(unit, position)
+        if token is None:
+            raise ShipcosimError(Problem("", f"'{unit}' is no unit.", "Units are written like N.m, kg.m2/s or deg."))
+        power = f"**{token['power']}" if token["power"] else ""
+        spelling += (token["name"] or (token["sign"] or "").replace(".", "*")) + power
+        position = token.end()
+    return spelling
+
+
+def _netcdf(table):
+    return bytes(table.to_netcdf(engine="h5netcdf"))
+
+
+def _csv(table):
+    import pyarrow
+    from pyarrow.csv import WriteOptions, write_csv
+
+    columns = {"time": table["time"], **table.data_vars}
+    header = io.StringIO()
+    csv.writer(header, lineterminator="\n").writerow(
+        f"{name} [{column.attrs.get('units') or '1'}]" for name, column in columns.items()
+    )
+    arrays = [
+        pyarrow.array(c.values.astype("int8") if c.dtype == bool else np.ascontiguousarray(c.values))
+        for c in columns.values()
+    ]
+    rows = pyarrow.BufferOutputStream()
+    rows.write(header.getvalue().encode())
+    write_csv(pyarrow.table(arrays, names=[str(name) for name in columns]), rows, WriteOptions(include_header=False))
+    return rows.getvalue().to_pybytes()
+
+
+def _read_netcdf(path):
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
+            table.load()
+    except (OSError, ValueError) as error:
+        raise ShipcosimError(Problem(str(path), f"is no NetCDF 4 file: {error}.")) from error
+    if "time" not in table.coords:
+        raise ShipcosimError(_no_time(path, list(table.variables)))
+    return table
+
+
+def _read_csv(path):
+    import pyarrow
+    from pyarrow.csv import read_csv
+
+    try:
+        content = read_csv(path)
+    except (OSError, pyarrow.ArrowInvalid) as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be read as CSV: {error}")) from error
+    headers = [_HEADER.match(header) for header in content.column_names]
+    names = [header["name"] for header in headers]
+    problems = [
+        Problem(f"{path}, column '{name}'", f"holds {column.type}, not numbers.")
+        for name, column in zip(names, content.columns, strict=True)
+        if not (pyarrow.types.is_floating(column.type) or pyarrow.types.is_integer(column.type))
+    ]
+    problems += [Problem(f"{path}, column '{name}'", "is there twice.") for name in set(names) if names.count(name) > 1]
+    if "time" not in names:
+        problems.append(_no_time(path, names))
+    if problems:
+        raise ShipcosimError(problems)
+    columns = {
+        header["name"]: (header["name"], column.to_numpy(), header["unit"] or "", "")
+        for header, column in zip(headers, content.columns, strict=True)
+    }
+    _, time, unit, _ = columns.pop("time")
+    return make_table(time * conversion(unit, "s")[0], columns.values())
+
+
+def _no_time(path, names):
+    return Problem(str(path), f"has no column 'time', only {', '.join(names[:8])}.", "It should have 'time [s]'.")

@@ -1,0 +1,158 @@
+"""Tables: written and read again they are the same; bad files and full disks are said, not half-written."""
+
+import gzip
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.series import conversion, make_table, read_table, write_file, write_table
+
+
+@pytest.fixture
+def table():
+    columns = [
+        ("vessel.x", np.array([0.0, 0.1, -1 / 3]), "m", "north"),
+        ("port.failed", np.array([False, True, True]), "1", "port has failed"),
+        ("weather.seed", np.array([3, 3, 3], dtype=np.int32), "1", "seed"),
+    ]
+    return make_table(np.arange(3) * 0.05, columns, {"scenario": "a test", "step_size": 0.05})
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".csv"])
+def test_what_is_written_is_read_to_the_last_digit(table, tmp_path, suffix):
+    write_table(table, tmp_path / f"t{suffix}")
+    again = read_table(tmp_path / f"t{suffix}")
+    assert list(again.data_vars) == list(table.data_vars)
+    for name, column in table.variables.items():
+        assert np.array_equal(again[name].values, column.values), name
+        assert again[name].attrs["units"] == column.attrs["units"]
+
+
+def test_netcdf_keeps_attributes_types_and_long_names(table, tmp_path):
+    write_table(table, tmp_path / "t.nc")
+    again = read_table(tmp_path / "t.nc")
+    assert again.attrs == {"scenario": "a test", "step_size": 0.05}
+    assert again["port.failed"].dtype == bool and again["weather.seed"].dtype == np.int32
+    assert again["vessel.x"].attrs["long_name"] == "north"
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".csv"])
+def test_equal_tables_give_equal_bytes(table, tmp_path, suffix):
+    for name in ("a", "b"):
+        write_table(table.copy(deep=True), tmp_path / f"{name}{suffix}")
+    assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()
+
+
+def test_csv_has_one_header_of_names_and_units(table, tmp_path):
+    write_table(table, tmp_path / "t.csv")
+    first, second, *_ = (tmp_path / "t.csv").read_text().splitlines()
+    assert first == "time [s],vessel.x [m],port.failed [1],weather.seed [1]"
+    assert second == "0,0,0,3"
+
+
+def test_gzipped_csv_is_read(table, tmp_path):
+    write_table(table, tmp_path / "t.csv")
+    (tmp_path / "t.csv.gz").write_bytes(gzip.compress((tmp_path / "t.csv").read_bytes()))
+    assert read_table(tmp_path / "t.csv.gz").sizes["time"] == 3
+
+
+def test_time_in_another_unit_is_converted_to_seconds(tmp_path):
+    (tmp_path / "t.csv").write_text("time [min],x [m]\n0,1\n2,3\n")
+    assert list(read_table(tmp_path / "t.csv").time.values) == [0.0, 120.0]
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("x [m]\n1.0\n", "no column 'time'"),
+        ("time [s],x [m]\n0,left\n", "column 'x'.*not numbers"),
+        ("time [s],x [m],x [m]\n0,1,2\n", "'x'.*twice"),
+        ("time [s],x [m]\n0,1,2\n", "cannot be read"),
+    ],
+)
+def test_unusable_csv_is_refused_with_the_reason(tmp_path, content, said):
+    (tmp_path / "t.csv").write_text(content)
+    with pytest.raises(ShipcosimError, match=f"t.csv.*{said}"):
+        read_table(tmp_path / "t.csv")
+
+
+def test_other_formats_and_missing_files_are_refused(table, tmp_path):
+    with pytest.raises(ShipcosimError, match=r"Use .nc or .csv"):
+        write_table(table, tmp_path / "t.xlsx")
+    with pytest.raises(ShipcosimError, match="no table"):
+        read_table(tmp_path / "t.xlsx")
+    with pytest.raises(ShipcosimError, match="no such file"):
+        read_table(tmp_path / "t.nc")
+    (tmp_path / "t.nc").write_text("not HDF5")
+    with pytest.raises(ShipcosimError, match="no NetCDF"):
+        read_table(tmp_path / "t.nc")
+
+
+FULL_DISK = """
+import resource, sys
+import numpy as np
+from shipcosim.errors import ShipcosimError
+from shipcosim.series import make_table, write_table
+table = make_table(np.arange(5000.0), [("x", np.random.default_rng(1).normal(size=5000), "m", "")])
+resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+try:
+    write_table(table, sys.argv[1])
+except ShipcosimError as error:
+    print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files by POSIX's setrlimit")
+@pytest.mark.parametrize("suffix", [".nc", ".csv"])
+def test_full_disk_leaves_no_file(tmp_path, suffix):
+    path = tmp_path / f"t{suffix}"
+    run = subprocess.run([sys.executable, "-c", FULL_DISK, str(path)], capture_output=True, text=True, check=True)
+    assert "cannot be written: File too large" in run.stdout and path.name in run.stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failed_write_keeps_the_old_file(tmp_path):
+    (tmp_path / "page.html").write_text("old")
+    with pytest.raises(TypeError):
+        write_file(tmp_path / "page.html", "not bytes")
+    assert (tmp_path / "page.html").read_text() == "old" and len(list(tmp_path.iterdir())) == 1
+    with pytest.raises(ShipcosimError, match="cannot be written: No such file or directory"):
+        write_file(tmp_path / "nowhere" / "page.html", b"new")
+
+
+@pytest.mark.parametrize(
+    ("unit_from", "unit_to", "factor"),
+    [
+        ("deg", "rad", math.pi / 180),
+        ("rpm", "rad/s", 2 * math.pi / 60),
+        ("kn", "m/s", 1852 / 3600),
+        ("kN.m", "N.m", 1000.0),
+        ("kg.m2", "g.m2", 1000.0),
+        ("kg.m/s2", "N", 1.0),
+        ("m/s2", "m.s-2", 1.0),
+        ("N*m", "N.m", 1.0),
+        ("%", "1", 0.01),
+        ("", "m", 1.0),
+        ("m", None, 1.0),
+    ],
+)
+def test_units_convert_by_the_textbooks_factor(unit_from, unit_to, factor):
+    assert conversion(unit_from, unit_to) == (pytest.approx(factor, rel=1e-15), 0.0)
+
+
+def test_temperatures_convert_with_an_offset():
+    factor, offset = conversion("degF", "degC")
+    assert factor * 212.0 + offset == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize(
+    ("unit_from", "unit_to", "said"),
+    [("m", "s", "different things"), ("furlongz", "m", "furlongz"), ("m", "9**9**9**9", "is no unit")],
+)
+def test_units_that_do_not_convert_are_an_error(unit_from, unit_to, said):
+    with pytest.raises(ShipcosimError, match=said):
+        conversion(unit_from, unit_to)
