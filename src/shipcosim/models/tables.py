@@ -4,15 +4,46 @@ from functools import lru_cache
 
 
 @lru_cache(maxsize=64)
+def parse(text):
+    """Rows of a table, parsed once per text.
+
+    Parameters
+    ----------
+    text : str
+        Rows by ";", columns by blanks.
+
+    Returns
+    -------
+    tuple of tuples of float
+        One tuple per row, all of the same length.
+
+    Raises
+    ------
+    ValueError
+        A row holds what is not a number, or another number of columns than the first; the row is named.
+
+    Examples
+    --------
+    >>> parse("0 -0.53; 10 -0.59")
+    ((0.0, -0.53), (10.0, -0.59))
+    """
+    rows = tuple(_row(number, row) for number, row in enumerate(text.strip(" ;\n").split(";"), 1))
+    for number, row in enumerate(rows, 1):
+        if len(row) != len(rows[0]):
+            raise ValueError(f"table, row {number}: {len(row)} columns. The first row has {len(rows[0])}.")
+    return rows
+
+
+@lru_cache(maxsize=64)
 def columns(text, width):
-    """Columns of a table, parsed once per text.
+    """Columns of a table whose first column increases, parsed once per text.
 
     Parameters
     ----------
     text : str
         Rows by ";", columns by blanks.
     width : int
-        Number of columns that every row must have.
+        Number of columns there must be.
 
     Returns
     -------
@@ -22,19 +53,24 @@ def columns(text, width):
     Raises
     ------
     ValueError
-        A row has another number of columns, or what is not a number; the row is named.
+        No such table; it says what was found.
 
     Examples
     --------
     >>> columns("0 -0.53; 10 -0.59", 2)
     ((0.0, 10.0), (-0.53, -0.59))
     """
-    rows = [_row(number, row, width) for number, row in enumerate(text.strip(" ;\n").split(";"), 1)]
+    rows = parse(text)
+    if len(rows[0]) != width or len(rows) < 2:
+        raise ValueError(f"table of {len(rows)} rows and {len(rows[0])} columns. It needs rows of {width} numbers.")
+    for number, (before, row) in enumerate(zip(rows, rows[1:], strict=False), 2):
+        if row[0] <= before[0]:
+            raise ValueError(f"table, row {number}: {row[0]:g} after {before[0]:g}. The first column must increase.")
     return tuple(zip(*rows, strict=True))
 
 
 def text(rows):
-    """The table as text, the inverse of `columns` for rows of numbers.
+    """The table as text, the inverse of `parse` to five digits.
 
     Parameters
     ----------
@@ -52,11 +88,8 @@ def text(rows):
     return "; ".join(" ".join(f"{value:.5g}" for value in row) for row in rows)
 
 
-def _row(number, row, width):
+def _row(number, row):
     try:
-        values = tuple(float(value) for value in row.split())
+        return tuple(float(value) for value in row.split())
     except ValueError as error:
         raise ValueError(f"table, row {number}: '{row.strip()}' is not numbers separated by blanks.") from error
-    if len(values) != width:
-        raise ValueError(f"table, row {number}: {len(values)} columns in '{row.strip()}'. There must be {width}.")
-    return values
