@@ -1,0 +1,82 @@
+"""Own clocks and own noise: what a component samples and draws depends on time and seed, never on the step size."""
+
+from functools import lru_cache
+from math import floor
+from zlib import crc32
+
+import numpy as np
+
+_BLOCK = 256
+_TOLERANCE = 1e-9  # of a period: times are products of step counts, so they may fall short by rounding
+
+
+def samples_due(t, period):
+    """How many samples are due at time t: sample k is due from k * period on, the first at 0.
+
+    Parameters
+    ----------
+    t : float
+        Time. [s]
+    period : float
+        Sample period, above 0. [s]
+
+    Returns
+    -------
+    int
+        Number of samples due in [0, t].
+
+    Examples
+    --------
+    >>> [samples_due(t, 0.1) for t in (0.0, 0.05, 0.3, 3 * 0.1)]
+    [1, 1, 4, 4]
+    """
+    return floor(t / period + _TOLERANCE) + 1
+
+
+def generator(purpose, seed, block=0):
+    """Random generator of its own for a purpose and a seed.
+
+    Parameters
+    ----------
+    purpose : str
+        What the numbers are for; components that share a seed draw different numbers.
+    seed : int
+        Seed, not negative.
+    block : int
+        Number of the block of draws.
+
+    Returns
+    -------
+    numpy.random.Generator
+    """
+    if seed < 0:
+        raise ValueError(f"seed of the {purpose} is {seed}; it must be 0 or above")
+    return np.random.default_rng((crc32(purpose.encode()), int(seed), int(block)))
+
+
+def normals(purpose, seed, k, width):
+    """Standard normal numbers of sample k: the same for the same arguments, independent between samples.
+
+    Parameters
+    ----------
+    purpose : str
+        What the numbers are for.
+    seed : int or (m,) array of int
+        Seed; an array gives every variation its own numbers.
+    k : int
+        Number of the sample, from 0.
+    width : int
+        How many numbers the sample needs.
+
+    Returns
+    -------
+    sequence of `width` floats or (m,) arrays
+    """
+    if isinstance(seed, int):
+        return _block(purpose, seed, k // _BLOCK, width)[k % _BLOCK]
+    return np.array([normals(purpose, int(one), k, width) for one in np.ravel(seed)]).T
+
+
+@lru_cache(maxsize=64)
+def _block(purpose, seed, block, width):
+    return generator(purpose, seed, block).standard_normal((_BLOCK, width)).tolist()

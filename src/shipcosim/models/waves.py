@@ -1,0 +1,487 @@
+"""A long-crested irregular sea: its elevation, and what it does to a ship (mean and slow drift, first-order motion).
+
+The sea is a sum of components that travel towards `direction`. With the phase angle
+
+    theta_i = omega_i t - k_i (x cos(direction) + y sin(direction)) + phase_i
+
+the elevation, positive upwards, is sum a_i cos(theta_i); the water's horizontal displacement at the surface, positive
+towards `direction`, is sum a_i sin(theta_i): below a crest the water moves with the wave. All functions here share this
+angle, so that drift and motion of a ship are in phase with the elevation where she is.
+
+beta = direction - psi is the heading relative to the ship: 0 following, 90 deg towards starboard, 180 deg head waves.
+
+Components have the last axis. States of m variations at once have shape (m,); the components are then common to all,
+(n,), or each variation has its own, (m, n).
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from .clock import generator
+from .maths import _library, cos, exp, floor, interp, minimum, pi, sin, where, wrap
+from .tables import parse
+
+GRAVITY = 9.81  # m/s2
+COMPONENTS = 40
+OMEGA_DRIFT_MAX = 2.6  # rad/s; above it the drift coefficients of the panel code have not converged (nominal model)
+
+_RATIO = np.linspace(0.4, 5.0, 4601)  # omega over omega_peak; 0.2 % of the energy lies above, none below
+_ALMOST_ZERO = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """Components of a long-crested sea.
+
+    Parameters
+    ----------
+    amplitude : (n,) or (m, n) array
+        Amplitudes a. [m]
+    omega : like amplitude
+        Circular frequencies seen from a fixed point. [rad/s]
+    wavenumber : like amplitude
+        k = omega^2 / g (deep water). [rad/m]
+    phase : like amplitude
+        Phase angle at the origin at t = 0. [rad]
+    direction : float or (m,) array
+        Where the waves travel to, clockwise from north. [rad]
+    calm : bool
+        Known to have no height: nothing needs to be computed.
+    """
+
+    amplitude: Any
+    omega: Any
+    wavenumber: Any
+    phase: Any
+    direction: Any
+    calm: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class DriftTable:
+    """Mean drift load per amplitude squared on a grid of heading and frequency.
+
+    Parameters
+    ----------
+    omega : tuple of float, increasing
+        Frequencies. [rad/s]
+    heading : tuple of float, increasing from -pi to pi
+        Heading beta of the waves relative to the ship. [rad]
+    loads : (headings, 3, frequencies) nested tuples
+        X, Y, N per amplitude squared. [N/m2, N/m2, N.m/m2]
+    """
+
+    omega: tuple
+    heading: tuple
+    loads: tuple
+
+
+def jonswap(omega, height, period, peak_enhancement):
+    """JONSWAP spectrum of the elevation.
+
+    Parameters
+    ----------
+    omega : (...) array
+        Circular frequency, above 0. [rad/s]
+    height : float
+        Significant wave height Hs. [m]
+    period : float
+        Peak period Tp. [s]
+    peak_enhancement : float
+        gamma; 1 gives the Pierson-Moskowitz (ITTC) spectrum. [1]
+
+    Returns
+    -------
+    like omega
+        S(omega), whose integral is Hs^2/16. [m2.s/rad]
+
+    References
+    ----------
+    DNV-RP-C205, Environmental conditions and environmental loads, sec. 3.5.5; alpha written with Hs.
+    """
+    peak = 2.0 * pi / period
+    width = np.where(omega <= peak, 0.07, 0.09)
+    enhancement = peak_enhancement ** np.exp(-0.5 * ((omega / peak - 1.0) / width) ** 2)
+    scale = 5.0 / 16.0 * height**2 * peak**4 * (1.0 - 0.287 * np.log(peak_enhancement))
+    return scale * omega**-5.0 * np.exp(-1.25 * (peak / omega) ** 4) * enhancement
+
+
+def components(height, period, wave_from, peak_enhancement, seed):
+    """Components of a JONSWAP sea, the same for the same arguments.
+
+    All have the same energy: the spectrum is cut into `COMPONENTS` bins of equal energy, each component's frequency is
+    drawn inside its bin, so that the record does not repeat and 4 sqrt(m0) equals the height exactly. Up to 5 times
+    the peak frequency.
+
+    Parameters
+    ----------
+    height : float or (m,) array or tensor
+        Significant wave height Hs, not negative. [m]
+    period : float or (m,) array or tensor
+        Peak period Tp, above 0 where there is height. [s]
+    wave_from : float or (m,) array or tensor
+        Where the waves come from, clockwise from north. [rad]
+    peak_enhancement : float or (m,) array
+        JONSWAP's gamma, 1 to 7. [1]
+    seed : int or (m,) array
+        Seed of frequencies and phases.
+
+    Returns
+    -------
+    Waves
+        With scalar arguments the arrays are (n,), and the very same object is returned each time.
+
+    Raises
+    ------
+    ValueError
+        For arguments out of their ranges.
+
+    Examples
+    --------
+    >>> sea = components(0.5, 6.0, 0.0, 3.3, 1)
+    >>> round(float(4.0 * np.sqrt(np.sum(sea.amplitude**2 / 2.0))), 12)
+    0.5
+    """
+    arguments = height, period, wave_from, peak_enhancement, seed
+    if all(isinstance(argument, (float, int)) for argument in arguments):
+        return _scalar_components(*arguments)
+    return _components(*arguments)
+
+
+def elevation(t, x, y, waves):
+    """Elevation of the surface, positive upwards.
+
+    Parameters
+    ----------
+    t : float
+        Time. [s]
+    x, y : float or (m,) array or tensor
+        North and east. [m]
+    waves : Waves
+        The sea.
+
+    Returns
+    -------
+    like x
+        Elevation. [m]
+    """
+    if waves.calm:
+        return x - x
+    waves = _like(waves, x, y)
+    return _sum(waves.amplitude, cos(_angle(t, x, y, waves)))
+
+
+def wave_response(t, x, y, psi, u, v, waves, table, *, length, breadth, draught):
+    """Drift load and first-order motion together, as `drift` and `motion` give them, at the price of one.
+
+    Parameters
+    ----------
+    t : float
+        Time. [s]
+    x, y, psi : float or (m,) array or tensor
+        Position and heading of the (low-frequency) ship. [m, m, rad]
+    u, v : like x
+        Her velocity over ground in body axes; it sets the frequency of encounter. [m/s]
+    waves : Waves
+        The sea.
+    table : DriftTable
+        Drift coefficients.
+    length, breadth, draught : float
+        Waterline length and breadth, draught. [m]
+
+    Returns
+    -------
+    tuple of tuples
+        ``(X, Y, N), (x_wave, y_wave, psi_wave, u_wave, v_wave, r_wave)``.
+    """
+    if waves.calm:
+        zero = x - x
+        return (zero,) * 3, (zero,) * 6
+    waves = _like(waves, x, y, psi)
+    angle = _angle(t, x, y, waves)
+    c, s = cos(angle), sin(angle)
+    return (
+        _drift(c, s, psi, waves, table),
+        _motion(c, s, psi, u, v, waves, length, breadth, draught),
+    )
+
+
+def drift(t, x, y, psi, waves, table):
+    """Mean and slowly varying drift load on a ship.
+
+    Newman's approximation with D_ij = (D_ii + D_jj)/2, whose double sum over components splits into products of
+    single ones: with c = cos(theta), s = sin(theta)
+
+        X = (sum a_i D_i c_i)(sum a_j c_j) + (sum a_i D_i s_i)(sum a_j s_j)
+
+    The arithmetic mean is used because the geometric one fails where a coefficient changes sign with frequency.
+
+    Parameters
+    ----------
+    t : float
+        Time. [s]
+    x, y, psi : float or (m,) array or tensor
+        Position and heading of the ship. [m, m, rad]
+    waves : Waves
+        The sea.
+    table : DriftTable
+        Coefficients, interpolated linearly over frequency and heading.
+
+    Returns
+    -------
+    tuple of three, like x
+        X, Y, N. [N, N, N.m]
+
+    References
+    ----------
+    Newman, Second order, slowly varying forces on vessels in irregular waves, 1974; Faltinsen, Sea Loads on Ships and
+    Offshore Structures, Cambridge, 1990, ch. 5.
+    """
+    if waves.calm:
+        return (x - x,) * 3
+    waves = _like(waves, x, y, psi)
+    angle = _angle(t, x, y, waves)
+    return _drift(cos(angle), sin(angle), psi, waves, table)
+
+
+def mean_drift(psi, waves, table):
+    """Mean over time of `drift` on a ship at rest: 2 int S D d(omega), which is sum a_i^2 D_i.
+
+    Parameters
+    ----------
+    psi : float or (m,) array or tensor
+        Heading of the ship. [rad]
+    waves : Waves
+        The sea.
+    table : DriftTable
+        Coefficients.
+
+    Returns
+    -------
+    tuple of three, like psi
+        X, Y, N. [N, N, N.m]
+    """
+    waves = _like(waves, psi)
+    weighted = _drift_amplitudes(psi, waves, table)
+    return _parts((weighted @ waves.amplitude[..., None])[..., 0])
+
+
+def motion(t, x, y, psi, waves, *, length, breadth, draught, u=0.0, v=0.0):
+    """First-order motion of a ship: the water's horizontal motion averaged over her waterplane and half her draught.
+
+    With q = k L cos(beta)/2, p = k B sin(beta)/2, A = a exp(-k T/2) sin(q)/q sin(p)/p she is displaced along the
+    waves' direction by sum A sin(theta), and turned by
+
+        psi_wave = -sum a exp(-k T/2) sin(beta) (6/L) (sin q - q cos q)/q^2 cos(theta)
+
+    which is the line that fits the water's sideways displacement along her length best (least squares). Assumed, grade
+    D: no motion transfer functions are at hand. Rates use the frequency of encounter; the ship's rate of turn adds
+    nothing to them.
+
+    Parameters
+    ----------
+    t : float
+        Time. [s]
+    x, y, psi : float or (m,) array or tensor
+        Position and heading of the low-frequency ship. [m, m, rad]
+    waves : Waves
+        The sea.
+    length, breadth, draught : float
+        Waterline length L and breadth B, draught T. [m]
+    u, v : like x
+        Velocity of the low-frequency ship over ground in body axes. [m/s]
+
+    Returns
+    -------
+    tuple of six, like x
+        x_wave, y_wave (north, east), psi_wave, and their rates in body axes u_wave, v_wave, r_wave.
+        [m, m, rad, m/s, m/s, rad/s]
+    """
+    if waves.calm:
+        return (x - x,) * 6
+    waves = _like(waves, x, y, psi)
+    angle = _angle(t, x, y, waves)
+    return _motion(cos(angle), sin(angle), psi, u, v, waves, length, breadth, draught)
+
+
+@lru_cache(maxsize=8)
+def drift_table(text):
+    """Drift coefficients from their string form.
+
+    Parameters
+    ----------
+    text : str
+        Rows "omega heading X Y N" separated by ";": rad/s; degrees from 0 (following) by 90 (towards starboard) to 180
+        (head); force per amplitude squared. A complete grid, in any order. Beyond 180 deg the ship's symmetry rules:
+        sway and yaw change sign. Frequencies above `OMEGA_DRIFT_MAX` are discarded.
+
+    Returns
+    -------
+    DriftTable
+        The very same object for the same text.
+
+    Raises
+    ------
+    ValueError
+        Where the table is no complete grid from 0 to 180 deg.
+    """
+    rows = {(row[0], row[1]): row[2:] for row in parse(text) if row[0] <= OMEGA_DRIFT_MAX}
+    omegas = tuple(sorted({omega for omega, _ in rows}))
+    headings = tuple(sorted({heading for _, heading in rows}))
+    if not rows or len(rows) != len(omegas) * len(headings) or {len(row) for row in rows.values()} != {3}:
+        raise ValueError("drift table: rows 'omega heading X Y N' must hold every heading at every frequency")
+    if (headings[0], headings[-1]) != (0.0, 180.0):
+        raise ValueError(f"drift table: headings from {headings[0]} to {headings[-1]}; must go from 0 to 180 deg")
+    starboard = [tuple(zip(*(rows[omega, heading] for omega in omegas), strict=True)) for heading in headings]
+    port = [(X, tuple(-Yi for Yi in Y), tuple(-Ni for Ni in N)) for X, Y, N in starboard[:0:-1]]
+    circle = [-heading for heading in headings[:0:-1]] + list(headings)
+    return DriftTable(omegas, tuple(heading * pi / 180.0 for heading in circle), tuple(port + starboard))
+
+
+def _components(height, period, wave_from, peak_enhancement, seed):
+    _refuse_impossible(height, period, peak_enhancement)
+    peak_enhancement, seed = np.broadcast_arrays(np.asarray(peak_enhancement, float), np.asarray(seed))
+    pairs = [
+        _ratio_and_phase(*pair) for pair in zip(peak_enhancement.ravel().tolist(), seed.ravel().tolist(), strict=True)
+    ]
+    ratio, phase = (np.array(part).reshape(*seed.shape, COMPONENTS) for part in zip(*pairs, strict=True))
+    ratio, phase = _tensors_if_any((ratio, phase), height, period, wave_from)
+    omega = _column(2.0 * pi / period) * ratio
+    amplitude = _column(height) * ((2.0 / COMPONENTS) ** 0.5 / 4.0) + 0.0 * ratio
+    return Waves(amplitude, omega, omega**2 / GRAVITY, phase, wave_from + pi)
+
+
+@lru_cache(maxsize=32)
+def _scalar_components(height, period, wave_from, peak_enhancement, seed):
+    if height == 0.0:
+        none = np.zeros(COMPONENTS)
+        return Waves(none, none, none, none, wave_from + pi, calm=True)
+    return _components(float(height), float(period), float(wave_from), peak_enhancement, seed)
+
+
+def _refuse_impossible(height, period, peak_enhancement):
+    for name, value, low, high in (
+        ("significant wave height", height, 0.0, None),
+        ("peak period of the waves", period, 1e-3, None),
+        ("peak enhancement of the waves", peak_enhancement, 1.0, 7.0),
+    ):
+        value = np.asarray(value.detach() if hasattr(value, "detach") else value)
+        if not (np.all(value >= low) and (high is None or np.all(value <= high))):
+            raise ValueError(f"{name} is {value}; must be from {low}" + ("" if high is None else f" to {high}"))
+
+
+@lru_cache(maxsize=1024)
+def _ratio_and_phase(peak_enhancement, seed):
+    """Frequencies over the peak frequency, and phases: (n,) each."""
+    random = generator("waves", seed)
+    share = (np.arange(COMPONENTS) + random.random(COMPONENTS)) / COMPONENTS
+    return np.interp(share, _cumulative_energy(peak_enhancement), _RATIO), random.uniform(0.0, 2.0 * pi, COMPONENTS)
+
+
+@lru_cache(maxsize=32)
+def _cumulative_energy(peak_enhancement):
+    """Share of the energy below each of `_RATIO`, from 0 to 1."""
+    density = jonswap(_RATIO, 1.0, 2.0 * pi, peak_enhancement)
+    energy = np.concatenate(([0.0], np.cumsum(density[1:] + density[:-1])))
+    return energy / energy[-1]
+
+
+def _angle(t, x, y, waves):
+    """Phase angle theta of each component, (..., n)."""
+    travelled = x * cos(waves.direction) + y * sin(waves.direction)
+    return waves.phase + waves.omega * t - waves.wavenumber * _column(travelled)
+
+
+def _drift(c, s, psi, waves, table):
+    weighted = _drift_amplitudes(psi, waves, table)
+    in_phase = (weighted @ c[..., None])[..., 0] * _column(_sum(waves.amplitude, c))
+    in_quadrature = (weighted @ s[..., None])[..., 0] * _column(_sum(waves.amplitude, s))
+    return _parts(in_phase + in_quadrature)
+
+
+def _motion(c, s, psi, u, v, waves, length, breadth, draught):
+    ahead, across = cos(waves.direction - psi), sin(waves.direction - psi)
+    q = waves.wavenumber * _column(0.5 * length * _not_zero(ahead))
+    p = waves.wavenumber * _column(0.5 * breadth * _not_zero(across))
+    amplitude = waves.amplitude * exp(waves.wavenumber * (-0.5 * draught))
+    mean = sin(q) / q
+    shift = amplitude * mean * sin(p) / p
+    turn = amplitude * (mean - cos(q)) / q * _column(6.0 / length * across)
+    encounter = waves.omega - waves.wavenumber * _column(u * ahead + v * across)
+    along, along_dot = _sum(shift, s), _sum(shift * encounter, c)
+    psi_wave, r_wave = -_sum(turn, c), _sum(turn * encounter, s)
+    north, east = cos(waves.direction), sin(waves.direction)
+    return along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave
+
+
+def _drift_amplitudes(psi, waves, table):
+    """a_i D_i at this heading, (..., 3, n)."""
+    grid = _cached_grid(waves, table) if isinstance(waves.omega, np.ndarray) else _grid(waves, table)
+    position = interp(wrap(waves.direction - psi), table.heading, tuple(map(float, range(len(table.heading)))))
+    below = minimum(floor(position), len(table.heading) - 2.0)
+    row = _whole(below)
+    lower, upper = _row(grid, row), _row(grid, row + 1)
+    return lower + _column(_column(position - below)) * (upper - lower)
+
+
+def _grid(waves, table):
+    """a_i D_i at each heading of the table, (headings, ..., 3, n)."""
+    stack = _library(waves.omega).stack
+    amplitude = where(waves.omega > OMEGA_DRIFT_MAX, 0.0, waves.amplitude)
+    return stack([stack([amplitude * interp(waves.omega, table.omega, D) for D in XYN], -2) for XYN in table.loads], 0)
+
+
+_cached_grid = lru_cache(maxsize=8)(_grid)
+
+
+def _row(grid, row):
+    if grid.ndim == 3 or isinstance(row, int):
+        return grid[row]
+    return grid[row, np.arange(grid.shape[1])]
+
+
+def _whole(x):
+    if isinstance(x, float):
+        return int(x)
+    return x.astype(int) if isinstance(x, np.ndarray) else x.long()
+
+
+def _not_zero(x):
+    """x kept away from 0, where sin(x)/x has its limit; wrong by 1e-12."""
+    return where(abs(x) < _ALMOST_ZERO, _ALMOST_ZERO, x)
+
+
+def _column(x):
+    """x with a last axis for the components."""
+    return x if isinstance(x, float) else x[..., None]
+
+
+def _sum(a, b):
+    """Sum over components of a b; a float where there is but one sea and one ship."""
+    if isinstance(a, np.ndarray) and a.ndim == b.ndim == 1:
+        return float(a @ b)
+    return (a * b).sum(-1)
+
+
+def _parts(loads):
+    """Last axis taken apart."""
+    if isinstance(loads, np.ndarray) and loads.ndim == 1:
+        return tuple(loads.tolist())
+    return loads[..., 0], loads[..., 1], loads[..., 2]
+
+
+def _like(waves, *values):
+    """The same waves as tensors, where one of the values is a tensor."""
+    if not isinstance(waves.omega, np.ndarray) or not any(hasattr(value, "new_tensor") for value in values):
+        return waves
+    arrays = (waves.amplitude, waves.omega, waves.wavenumber, waves.phase, np.asarray(waves.direction))
+    return Waves(*_tensors_if_any(arrays, *values))
+
+
+def _tensors_if_any(arrays, *values):
+    """The arrays as tensors of the kind of the first tensor among the values."""
+    tensor = next((value for value in values if hasattr(value, "new_tensor")), None)
+    return arrays if tensor is None else tuple(tensor.new_tensor(array) for array in arrays)
