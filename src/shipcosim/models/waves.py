@@ -212,10 +212,10 @@ def wave_response(t, x, y, psi, u, v, waves, table, *, length, breadth, draught)
 def drift(t, x, y, psi, waves, table):
     """Mean and slowly varying drift load on a ship.
 
-    Newman's approximation with D_ij = (D_ii + D_jj)/2, whose double sum over components splits into products of
-    single ones: with c = cos(theta), s = sin(theta)
+    Newman's approximation with D_ij = (D_ii + D_jj)/2. Then the double sum over components splits into single ones:
 
-        X = (sum a_i D_i c_i)(sum a_j c_j) + (sum a_i D_i s_i)(sum a_j s_j)
+        X = sum_ij a_i a_j D_ij cos(theta_i - theta_j) = sum_i a_i D_i (cos(theta_i) C + sin(theta_i) S)
+        C = sum_j a_j cos(theta_j),  S = sum_j a_j sin(theta_j)
 
     The arithmetic mean is used because the geometric one fails where a coefficient changes sign with frequency.
 
@@ -265,8 +265,7 @@ def mean_drift(psi, waves, table):
         X, Y, N. [N, N, N.m]
     """
     waves = _like(waves, psi)
-    weighted = _drift_amplitudes(psi, waves, table)
-    return _parts((weighted @ waves.amplitude[..., None])[..., 0])
+    return _weighted_drift(waves.amplitude, psi, waves, table)
 
 
 def motion(t, x, y, psi, waves, *, length, breadth, draught, u=0.0, v=0.0):
@@ -396,10 +395,8 @@ def _angle(t, x, y, waves):
 
 
 def _drift(c, s, psi, waves, table):
-    weighted = _drift_amplitudes(psi, waves, table)
-    in_phase = (weighted @ c[..., None])[..., 0] * _column(_sum(waves.amplitude, c))
-    in_quadrature = (weighted @ s[..., None])[..., 0] * _column(_sum(waves.amplitude, s))
-    return _parts(in_phase + in_quadrature)
+    beating = c * _column(_sum(waves.amplitude, c)) + s * _column(_sum(waves.amplitude, s))
+    return _weighted_drift(beating, psi, waves, table)
 
 
 def _motion(c, s, psi, u, v, waves, length, breadth, draught):
@@ -417,14 +414,15 @@ def _motion(c, s, psi, u, v, waves, length, breadth, draught):
     return along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave
 
 
-def _drift_amplitudes(psi, waves, table):
-    """a_i D_i at this heading, (..., 3, n)."""
+def _weighted_drift(weights, psi, waves, table):
+    """X, Y, N = sum a_i D_i weights_i at this heading."""
     grid = _cached_grid(waves, table) if isinstance(waves.omega, np.ndarray) else _grid(waves, table)
-    position = interp(wrap(waves.direction - psi), table.heading, tuple(map(float, range(len(table.heading)))))
+    position = interp(wrap(waves.direction - psi), table.heading, _counted(len(table.heading)))
     below = minimum(floor(position), len(table.heading) - 2.0)
     row = _whole(below)
     lower, upper = _row(grid, row), _row(grid, row + 1)
-    return lower + _column(_column(position - below)) * (upper - lower)
+    coefficients = lower + _column(_column(position - below)) * (upper - lower)
+    return _parts((coefficients @ weights[..., None])[..., 0])
 
 
 def _grid(waves, table):
@@ -435,6 +433,11 @@ def _grid(waves, table):
 
 
 _cached_grid = lru_cache(maxsize=8)(_grid)
+
+
+@lru_cache(maxsize=8)
+def _counted(number):
+    return tuple(map(float, range(number)))
 
 
 def _row(grid, row):
