@@ -85,7 +85,7 @@ def text(rows):
     >>> text([(0.0, -0.53), (10.0, -0.59)])
     '0 -0.53; 10 -0.59'
     """
-    return "; ".join(" ".join(f"{value:.5g}" for value in row) for row in rows)
+    return "; ".join(" ".join(f"{value + 0.0:.5g}" for value in row) for row in rows)
 
 
 def _row(number, row):
