@@ -1,0 +1,168 @@
+"""What an FMU declares on its class: inputs, outputs and parameters."""
+
+import dataclasses
+import math
+
+TYPES = {bool: "Boolean", int: "Integer", float: "Real", str: "String"}
+
+
+class Variable:
+    """One scalar variable of an FMU; use `Input`, `Output`, `Parameter`.
+
+    Attributes
+    ----------
+    name : str
+        As declared on the class.
+    causality : str
+        "input", "output" or "parameter".
+    type : str
+        "Real", "Integer", "Boolean" or "String", from the start value.
+    start : float, int, bool or str
+        Value before anything is set.
+    unit, description : str
+        Unit in FMI's spelling ("N.s2/m2", "rad", "1"), one line of text.
+    minimum, maximum : float or int or None
+        Bounds; those of parameters are enforced.
+    tunable : bool
+        A parameter that may change during the run.
+    origin : str
+    tolerance : float
+        Of a parameter, see `shipcosim.models.quantity`.
+    """
+
+    causality = ""
+
+    def __init__(
+        self, start, unit, description, *, minimum=None, maximum=None, tunable=False, origin="", tolerance=0.0
+    ):
+        if type(start) not in TYPES:
+            raise TypeError(f"start value {start!r} of '{description}': give a float, an int, a bool or a str")
+        if type(start) is int and unit != "1":
+            raise TypeError(f"'{description}' in {unit} starts at the whole number {start}: write {float(start)}")
+        self.name = ""
+        self.type = TYPES[type(start)]
+        self.start, self.unit, self.description = start, unit, description
+        self.minimum, self.maximum, self.tunable = minimum, maximum, tunable
+        self.origin, self.tolerance = origin, tolerance
+        if outside := self.outside(start):
+            raise ValueError(f"start value of '{description}' is {outside}")
+
+    def __set_name__(self, owner, name):
+        self.name = name
+
+    def __repr__(self):
+        return f"<{self.causality} {self.name}: {self.type}, {self.start!r} {self.unit}>"
+
+    def outside(self, value):
+        """Why a value cannot be one of this variable, as text; empty if it can."""
+        if self.type not in ("Real", "Integer"):
+            return ""
+        if not math.isfinite(value):
+            return f"{value}, not a finite number"
+        if self.minimum is not None and value < self.minimum:
+            return f"{value:.9g}, below its minimum {self.minimum:.9g} [{self.unit}]"
+        if self.maximum is not None and value > self.maximum:
+            return f"{value:.9g}, above its maximum {self.maximum:.9g} [{self.unit}]"
+        return ""
+
+
+class Input(Variable):
+    """What the FMU is given at every step: ``thrust_cmd = Input("N", "commanded thrust")``."""
+
+    causality = "input"
+
+    def __init__(self, unit, description, *, start=0.0, minimum=None, maximum=None):
+        super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
+
+
+class Output(Variable):
+    """What the FMU computes: ``thrust = Output("N", "delivered thrust")``. `start` gives the type, and the value until set."""
+
+    causality = "output"
+
+    def __init__(self, unit, description, *, start=0.0, minimum=None, maximum=None):
+        super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
+
+
+class Parameter(Variable):
+    """What is set before the run: ``thrust_max = Parameter(40e3, "N", "largest thrust")``."""
+
+    causality = "parameter"
+
+
+class Parameters:
+    """A frozen dataclass of parameters, each field an FMU parameter: ``model = Parameters(HullParameters)``.
+
+    In `start` and `step` the attribute is the dataclass made of the values that were set.
+
+    Parameters
+    ----------
+    kind : type
+        Frozen dataclass with fields made by `shipcosim.models.quantity.quantity`.
+    prefix : str
+        Put before the fields' names, where two groups would clash.
+    """
+
+    def __init__(self, kind, *, prefix=""):
+        if not (dataclasses.is_dataclass(kind) and kind.__dataclass_params__.frozen):
+            raise TypeError(f"Parameters({kind.__name__}): give a frozen dataclass")
+        self.kind, self.prefix, self.name = kind, prefix, ""
+        self.variables = [self._variable(field) for field in dataclasses.fields(kind) if field.init]
+
+    def __set_name__(self, owner, name):
+        self.name = name
+
+    def __get__(self, instance, owner=None):
+        """The dataclass; the first access after a change makes it and leaves it on the instance, where it is found faster."""
+        if instance is None:
+            return self
+        values = instance.__dict__
+        start = len(self.prefix)
+        group = self.kind(**{variable.name[start:]: values[variable.name] for variable in self.variables})
+        values[self.name] = group
+        return group
+
+    def _variable(self, field):
+        about = field.metadata
+        if "unit" not in about:
+            raise TypeError(
+                f"{self.kind.__name__}.{field.name}: make it with quantity(default, unit, description, origin)"
+            )
+        default = float(field.default) if field.type in (float, "float") else field.default
+        bounds = {key: about[key] for key in ("minimum", "maximum", "origin", "tolerance") if key in about}
+        try:
+            variable = Parameter(default, about["unit"], about["description"], **bounds)
+        except (TypeError, ValueError) as error:
+            raise type(error)(f"{self.kind.__name__}.{field.name}: {error}") from None
+        variable.name = self.prefix + field.name
+        return variable
+
+
+def variables_of(cls):
+    """Variables and parameter groups of a class and its bases.
+
+    Returns
+    -------
+    variables : tuple of Variable
+        Inputs, outputs, parameters, each in the order of declaration.
+    groups : tuple of Parameters
+
+    Raises
+    ------
+    TypeError
+        Two variables have one name.
+    """
+    declared = {}
+    for base in reversed(cls.__mro__):
+        declared.update((key, item) for key, item in vars(base).items() if isinstance(item, (Variable, Parameters)))
+    groups = tuple(item for item in declared.values() if isinstance(item, Parameters))
+    found = [item for item in declared.values() if isinstance(item, Variable)]
+    found += [variable for group in groups for variable in group.variables]
+    names = [variable.name for variable in found] + [group.name for group in groups]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise TypeError(
+            f"{cls.__name__} declares {', '.join(twice)} twice; Parameters(..., prefix=...) keeps groups apart"
+        )
+    order = ("input", "output", "parameter")
+    return tuple(sorted(found, key=lambda variable: order.index(variable.causality))), groups
