@@ -22,6 +22,7 @@ import numpy as np
 
 from .clock import generator
 from .maths import _library, cos, exp, floor, interp, minimum, pi, sin, where, wrap
+from .sinusoids import column, tensors_if_any, total
 from .tables import parse
 
 GRAVITY = 9.81  # m/s2
@@ -171,7 +172,7 @@ def elevation(t, x, y, waves):
     if waves.calm:
         return x - x
     waves = _like(waves, x, y)
-    return _sum(waves.amplitude, cos(_angle(t, x, y, waves)))
+    return total(waves.amplitude, cos(_angle(t, x, y, waves)))
 
 
 def wave_response(t, x, y, psi, u, v, waves, table, *, length, breadth, draught):
@@ -347,9 +348,9 @@ def _components(height, period, wave_from, peak_enhancement, seed):
         _ratio_and_phase(*pair) for pair in zip(peak_enhancement.ravel().tolist(), seed.ravel().tolist(), strict=True)
     ]
     ratio, phase = (np.array(part).reshape(*seed.shape, COMPONENTS) for part in zip(*pairs, strict=True))
-    ratio, phase = _tensors_if_any((ratio, phase), height, period, wave_from)
-    omega = _column(2.0 * pi / period) * ratio
-    amplitude = _column(height) * ((2.0 / COMPONENTS) ** 0.5 / 4.0) + 0.0 * ratio
+    ratio, phase = tensors_if_any((ratio, phase), height, period, wave_from)
+    omega = column(2.0 * pi / period) * ratio
+    amplitude = column(height) * ((2.0 / COMPONENTS) ** 0.5 / 4.0) + 0.0 * ratio
     return Waves(amplitude, omega, omega**2 / GRAVITY, phase, wave_from + pi)
 
 
@@ -391,25 +392,25 @@ def _cumulative_energy(peak_enhancement):
 def _angle(t, x, y, waves):
     """Phase angle theta of each component, (..., n)."""
     travelled = x * cos(waves.direction) + y * sin(waves.direction)
-    return waves.phase + waves.omega * t - waves.wavenumber * _column(travelled)
+    return waves.phase + waves.omega * t - waves.wavenumber * column(travelled)
 
 
 def _drift(c, s, psi, waves, table):
-    beating = c * _column(_sum(waves.amplitude, c)) + s * _column(_sum(waves.amplitude, s))
+    beating = c * column(total(waves.amplitude, c)) + s * column(total(waves.amplitude, s))
     return _weighted_drift(beating, psi, waves, table)
 
 
 def _motion(c, s, psi, u, v, waves, length, breadth, draught):
     ahead, across = cos(waves.direction - psi), sin(waves.direction - psi)
-    q = waves.wavenumber * _column(0.5 * length * _not_zero(ahead))
-    p = waves.wavenumber * _column(0.5 * breadth * _not_zero(across))
+    q = waves.wavenumber * column(0.5 * length * _not_zero(ahead))
+    p = waves.wavenumber * column(0.5 * breadth * _not_zero(across))
     amplitude = waves.amplitude * exp(waves.wavenumber * (-0.5 * draught))
     mean = sin(q) / q
     shift = amplitude * mean * sin(p) / p
-    turn = amplitude * (mean - cos(q)) / q * _column(6.0 / length * across)
-    encounter = waves.omega - waves.wavenumber * _column(u * ahead + v * across)
-    along, along_dot = _sum(shift, s), _sum(shift * encounter, c)
-    psi_wave, r_wave = -_sum(turn, c), _sum(turn * encounter, s)
+    turn = amplitude * (mean - cos(q)) / q * column(6.0 / length * across)
+    encounter = waves.omega - waves.wavenumber * column(u * ahead + v * across)
+    along, along_dot = total(shift, s), total(shift * encounter, c)
+    psi_wave, r_wave = -total(turn, c), total(turn * encounter, s)
     north, east = cos(waves.direction), sin(waves.direction)
     return along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave
 
@@ -421,7 +422,7 @@ def _weighted_drift(weights, psi, waves, table):
     below = minimum(floor(position), len(table.heading) - 2.0)
     row = _whole(below)
     lower, upper = _row(grid, row), _row(grid, row + 1)
-    coefficients = lower + _column(_column(position - below)) * (upper - lower)
+    coefficients = lower + column(column(position - below)) * (upper - lower)
     return _parts((coefficients @ weights[..., None])[..., 0])
 
 
@@ -457,18 +458,6 @@ def _not_zero(x):
     return where(abs(x) < _ALMOST_ZERO, _ALMOST_ZERO, x)
 
 
-def _column(x):
-    """x with a last axis for the components."""
-    return x if isinstance(x, float) else x[..., None]
-
-
-def _sum(a, b):
-    """Sum over components of a b; a float where there is but one sea and one ship."""
-    if isinstance(a, np.ndarray) and a.ndim == b.ndim == 1:
-        return float(a @ b)
-    return (a * b).sum(-1)
-
-
 def _parts(loads):
     """Last axis taken apart."""
     if isinstance(loads, np.ndarray) and loads.ndim == 1:
@@ -481,10 +470,4 @@ def _like(waves, *values):
     if not isinstance(waves.omega, np.ndarray) or not any(hasattr(value, "new_tensor") for value in values):
         return waves
     arrays = (waves.amplitude, waves.omega, waves.wavenumber, waves.phase, np.asarray(waves.direction))
-    return Waves(*_tensors_if_any(arrays, *values))
-
-
-def _tensors_if_any(arrays, *values):
-    """The arrays as tensors of the kind of the first tensor among the values."""
-    tensor = next((value for value in values if hasattr(value, "new_tensor")), None)
-    return arrays if tensor is None else tuple(tensor.new_tensor(array) for array in arrays)
+    return Waves(*tensors_if_any(arrays, *values))

@@ -1,0 +1,32 @@
+"""What waves and gusts share: arrays whose last axis is the component of a sum of sinusoids.
+
+One sea or one wind has arrays (n,); m variations at once have values (m,) and arrays (n,) or (m, n).
+"""
+
+import numpy as np
+
+
+def column(x):
+    """x with a last axis for the components; a float stays as it is."""
+    return x if isinstance(x, float) else x[..., None]
+
+
+def total(a, b):
+    """Sum of a b over the components; a float where both are (n,) arrays."""
+    if isinstance(a, np.ndarray) and a.ndim == b.ndim == 1:
+        return float(a @ b)
+    return (a * b).sum(-1)
+
+
+def tensors_if_any(arrays, *values):
+    """The arrays as tensors of the kind of the first tensor among the values; as they are where there is none."""
+    tensor = next((value for value in values if hasattr(value, "new_tensor")), None)
+    return arrays if tensor is None else tuple(tensor.new_tensor(array) for array in arrays)
+
+
+def per_seed(draw, seed):
+    """What `draw(seed)` gives, a tuple of (n,) arrays; stacked to (m, n) for an (m,) array of seeds."""
+    if isinstance(seed, int):
+        return draw(seed)
+    draws = [draw(int(one)) for one in np.ravel(seed)]
+    return tuple(np.reshape(part, (*np.shape(seed), -1)) for part in zip(*draws, strict=True))
