@@ -32,7 +32,7 @@ def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
     """The ship a step later.
 
     M_RB ν̇ + C_RB(ν) ν + M_A ν̇_r + C_A(ν_r) ν_r + D(ν_r) = τ. Seen from the water, which moves uniformly,
-    this is the same law with ν_r in place of ν: it is integrated there (Runge-Kutta) and the drift with the water is added.
+    this is the same law with ν_r in place of ν: it is integrated there (Runge-Kutta), the way of the water is added.
 
     Parameters
     ----------
