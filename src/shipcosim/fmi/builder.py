@@ -1,5 +1,6 @@
-"""Packs FMUs: `build_fmu` one, `build_all` those of a folder. The only door to pythonfmu, of which the binaries are used."""
+"""Packs FMUs: `build_fmu` one, `build_all` those of a folder. The only door to pythonfmu, whose binaries are used."""
 
+import ast
 import contextlib
 import hashlib
 import html
@@ -20,7 +21,10 @@ from .bundle import bundle, entry_module
 from .description import model_description
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
-PAGE = "<!DOCTYPE html>\n<html><head><meta charset='utf-8'><title>{title}</title></head>\n<body><pre>{text}</pre></body></html>\n"
+PAGE = """<!DOCTYPE html>
+<html><head><meta charset="utf-8"><title>{title}</title></head>
+<body><pre>{text}</pre></body></html>
+"""
 
 
 def build_fmu(source, out):
@@ -29,7 +33,7 @@ def build_fmu(source, out):
     Parameters
     ----------
     source : Path or str
-        Folder ``<name>`` that holds ``<name>.py``, or the script itself. Its README.md and reference.csv are packed too.
+        Folder ``<name>`` that holds ``<name>.py``, or the script itself. README.md and reference.csv come along.
     out : Path or str
         Folder for ``<name>.fmu``, made if needed.
 
@@ -169,6 +173,7 @@ def _check_class(cls, script):
         problems.append("has no output: name = Output(unit, description).")
     if not any("step" in vars(base) for base in cls.__mro__ if base.__name__ not in ("Fmu", "Fmi2Slave")):
         problems.append("has no step(self, t, h).")
+    problems += _never_read(cls, script)
     if problems:
         raise ShipcosimError([Problem(f"{script}, class {cls.__name__}", problem) for problem in problems])
     try:
@@ -178,6 +183,21 @@ def _check_class(cls, script):
     except Exception as error:
         found = f"its start values are refused: {type(error).__name__}: {error}"
         raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", found)) from error
+
+
+def _never_read(cls, script):
+    """Attributes that the script sets but neither declares nor reads: outputs that were forgotten or misspelt."""
+    nodes = [node for node in ast.walk(ast.parse(script.read_bytes())) if isinstance(node, ast.Attribute)]
+    nodes = [node for node in nodes if isinstance(node.value, ast.Name) and node.value.id == "self"]
+    read = {node.attr for node in nodes if isinstance(node.ctx, ast.Load)} | set(dir(cls))
+    read |= {variable.name for variable in cls.variables}
+    outputs = [variable.name for variable in cls.variables if variable.causality == "output"]
+    lines = {node.attr: node.lineno for node in reversed(nodes)}
+    return [
+        f"line {lines[name]} sets self.{name}, which is no output and read nowhere. {suggestion(name, outputs)}"
+        for name in sorted(lines)
+        if name not in read and not name.startswith("_")
+    ]
 
 
 def _description(cls, script, files):

@@ -85,7 +85,7 @@ for path in map(str, Path(__file__).parent.rglob("*.py")):
     linecache.cache[path] = len(text), None, text.splitlines(True), path
 '''
 
-ENTRY = '''"""Where the binary enters. It has put this folder on the host's sys.path: that is undone, `{package}` needs none."""
+ENTRY = '''"""Where the binary enters. The folder that it has put on the host's sys.path is taken off again."""
 
 import sys
 from os.path import isfile, join

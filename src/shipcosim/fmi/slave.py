@@ -1,10 +1,12 @@
 """The side of the shell that pythonfmu's binary calls. Writers of FMUs need `Fmu` only.
 
 The binary looks for a class that has a base class named `Fmi2Slave`, makes an instance per component and calls the
-methods below. It reports the `repr` of what they raise, and the queue of messages after every call that succeeds.
+methods below. It logs the `repr` of what they raise with status fatal, and the queue of messages after other calls.
 """
 
 import copy
+import ctypes
+import functools
 import math
 import operator
 import os
@@ -16,7 +18,7 @@ from . import state
 
 CODE = Path(__file__).parents[2]
 SHELL = str(Path(__file__).parent)
-STATUSES = ("ok", "warning", "discard", "error", "fatal")
+STATUSES = ("ok", "warning", "discard", "error")
 
 
 class FmuError(Exception):
@@ -35,8 +37,15 @@ class Message(NamedTuple):
     debug: bool = False
 
 
+class State(NamedTuple):
+    """What the host holds as FMU state. The owner is not part of it."""
+
+    owner: object
+    content: tuple
+
+
 class _Access(dict):
-    """Names behind a call's value references, found once per combination: references -> (names, fixed parameter or "")."""
+    """Variables behind a call's value references: references -> (names, a fixed parameter among them or "")."""
 
     def __init__(self, variables, kind):
         super().__init__()
@@ -53,6 +62,19 @@ class _Access(dict):
         return self[references]
 
 
+def _guarded(method):
+    """Whatever a method raises reaches the binary as an `FmuError` that names component and time."""
+
+    @functools.wraps(method)
+    def call(self, *arguments):
+        try:
+            return method(self, *arguments)
+        except BaseException as error:
+            raise self._failure(error) from None
+
+    return call
+
+
 class Fmi2Slave:
     """FMI 2.0 co-simulation on an object that keeps its variables and its state as plain attributes.
 
@@ -60,7 +82,17 @@ class Fmi2Slave:
     the component in its host.
     """
 
-    __slots__ = ("__dict__", "instance_name", "start_time", "messages", "_initialising", "_initialised", "_stale")
+    __slots__ = (
+        "__dict__",
+        "instance_name",
+        "start_time",
+        "messages",
+        "_in_binary",
+        "_initialised",
+        "_initialising",
+        "_stale",
+        "_time",
+    )
 
     variables = ()
     groups = ()
@@ -73,32 +105,34 @@ class Fmi2Slave:
         cls._real_outputs = tuple(v.name for v in cls.variables if v.causality == "output" and v.type == "Real")
         cls._starts = {variable.name: variable.start for variable in cls.variables}
 
-    def __init__(self, instance_name="", **_):
+    def __init__(self, instance_name="", *, logger=None, **_):
         self.instance_name = instance_name or type(self).__name__
-        self.start_time = 0.0
+        self.start_time = self._time = 0.0
         self.messages = []
+        self._in_binary = logger is not None
         self._initialising = self._initialised = self._stale = False
         self.__dict__.update(self._starts)
 
     # life
 
     def setup_experiment(self, start_time, stop_time=None, tolerance=None):
-        self.start_time = start_time
+        self.start_time = self._time = start_time
 
     def enter_initialization_mode(self):
         self._initialising = self._stale = True
 
+    @_guarded
     def exit_initialization_mode(self):
         if self._stale:
             self._start()
         self._initialising, self._initialised = False, True
 
+    @_guarded
     def do_step(self, time, step_size):
-        try:
-            self.step(time, step_size)
-        except Exception as error:
-            raise self._failure(error, f"in the step from t = {time:.9g} s to {time + step_size:.9g} s") from None
-        self._check_outputs(time + step_size)
+        self._time = time
+        self.step(time, step_size)
+        self._time = time + step_size
+        self._check_outputs()
         return True
 
     def terminate(self):
@@ -106,38 +140,46 @@ class Fmi2Slave:
 
     # values
 
+    @_guarded
     def set_real(self, references, values):
         names, fixed = self._real[tuple(references)]
         if not math.isfinite(sum(values)):
             self._check_finite(names, values)
         self._set(names, fixed, values)
 
+    @_guarded
     def set_integer(self, references, values):
         self._set(*self._integer[tuple(references)], values)
 
+    @_guarded
     def set_boolean(self, references, values):
         self._set(*self._boolean[tuple(references)], values)
 
+    @_guarded
     def set_string(self, references, values):
         self._set(*self._string[tuple(references)], values)
 
+    @_guarded
     def get_real(self, references):
         return self._get(self._real[tuple(references)][0])
 
+    @_guarded
     def get_integer(self, references):
         names = self._integer[tuple(references)][0]
-        return [self._integer_value(name, value) for name, value in zip(names, self._get(names), strict=True)]
+        return [_integer(name, value) for name, value in zip(names, self._get(names), strict=True)]
 
+    @_guarded
     def get_boolean(self, references):
         return [bool(value) for value in self._get(self._boolean[tuple(references)][0])]
 
+    @_guarded
     def get_string(self, references):
         return [str(value) for value in self._get(self._string[tuple(references)][0])]
 
     def _set(self, names, fixed, values):
         if fixed and self._initialised:
-            raise FmuError(f"{self.instance_name}: parameter '{fixed}' is fixed, it can only be set before the run")
-        self.__dict__.update(zip(names, values))  # noqa: B905, both come from one call
+            raise FmuError(f"parameter '{fixed}' is fixed, it can only be set before the run")
+        self.__dict__.update(zip(names, values, strict=True))
         self._stale = self._initialising
 
     def _get(self, names):
@@ -148,21 +190,34 @@ class Fmi2Slave:
 
     # state
 
+    @_guarded
     def _get_fmu_state(self):
-        return self._initialising, self._initialised, self._stale, copy.deepcopy(self.__dict__)
+        phase = self._time, self._initialising, self._initialised, self._stale
+        return State(self, (phase, copy.deepcopy(self.__dict__)))
 
+    @_guarded
     def _set_fmu_state(self, stored):
-        self._initialising, self._initialised, self._stale, values = stored
+        if isinstance(stored, FmuError):
+            raise stored
+        phase, values = stored.content
+        self._time, self._initialising, self._initialised, self._stale = phase
         self.__dict__.clear()
         self.__dict__.update(copy.deepcopy(values))
 
     @classmethod
     def _fmu_state_to_bytes(cls, stored):
-        return state.to_bytes(stored, cls.__module__, cls._packages())
+        try:
+            return state.to_bytes(stored.content, cls.__module__, cls._packages())
+        except Exception as error:
+            raise stored.owner._failure(FmuError(f"the state cannot be stored: {error}")) from None
 
     @classmethod
     def _fmu_state_from_bytes(cls, data):
-        return state.from_bytes(data, cls.__module__, cls._packages())
+        """The state, or why there is none: an exception here, where no instance is known, would crash the binary."""
+        try:
+            return State(None, state.from_bytes(data, cls.__module__, cls._packages()))
+        except Exception as error:
+            return FmuError(f"the state cannot be restored: {error}")
 
     @classmethod
     def _packages(cls):
@@ -183,27 +238,37 @@ class Fmi2Slave:
         status : str
             "ok", "warning" or "error"; none of them stops the run, an exception does.
         """
-        text = f"{self.instance_name}: {message}".replace("%", "%%")
+        text = f"{self.instance_name} at t = {self._time:.9g} s: {message}".replace("%", "%%")
         self.messages.append(Message(STATUSES.index(status), f"logStatus{status.capitalize()}", text))
+
+    def _failure(self, error):
+        """The error to raise for any other: whose and when, what was logged before, and the traceback below the shell."""
+        text = str(error) if isinstance(error, FmuError) else f"exception\n{_traceback(error)}"
+        text = f"{self.instance_name} at t = {self._time:.9g} s: {text}"
+        if self._in_binary:
+            text = "\n".join([*(message.msg.replace("%%", "%") for message in self.messages), text])
+            self.messages.clear()
+            self._keep()
+        return FmuError(text)
+
+    def _keep(self):
+        """Outlive the exception: the binary gives up its references when one arrives and goes on using them."""
+        for kept in (type(self), self, self.messages):
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
 
     # checks
 
     def _start(self):
-        problems = [
-            f"parameter '{v.name}' is {problem}"
-            for v in self.variables
-            if v.causality == "parameter" and (problem := v.outside(self.__dict__[v.name]))
-        ]
-        if problems:
-            raise FmuError(f"{self.instance_name}: {'; '.join(problems)}")
-        try:
-            self.start()
-        except Exception as error:
-            raise self._failure(error, f"at the start, t = {self.start_time:.9g} s") from None
+        values = self.__dict__
+        parameters = [variable for variable in self.variables if variable.causality == "parameter"]
+        problems = [(variable.name, variable.outside(values[variable.name])) for variable in parameters]
+        if any(problem for _, problem in problems):
+            raise FmuError("; ".join(f"parameter '{name}' is {problem}" for name, problem in problems if problem))
+        self.start()
         self._stale = False
-        self._check_outputs(self.start_time)
+        self._check_outputs()
 
-    def _check_outputs(self, time):
+    def _check_outputs(self):
         values = self.__dict__
         try:
             if math.isfinite(sum([values[name] for name in self._real_outputs])):
@@ -217,28 +282,30 @@ class Fmi2Slave:
             except (TypeError, ValueError):
                 right = False
             if not right:
-                text = f"output '{name}' is {value!r} at t = {time:.9g} s, not a finite number"
-                raise FmuError(f"{self.instance_name}: {text}")
+                raise FmuError(f"output '{name}' is {value!r}, not a finite number")
 
     def _check_finite(self, names, values):
         kinds = {variable.name: variable.causality for variable in self.variables}
         for name, value in zip(names, values, strict=True):
             if not math.isfinite(value):
-                raise FmuError(f"{self.instance_name}: {kinds[name]} '{name}' was set to {value}, not a finite number")
+                raise FmuError(f"{kinds[name]} '{name}' was set to {value}, not a finite number")
 
-    def _integer_value(self, name, value):
-        try:
-            value = operator.index(value)
-        except TypeError:
-            raise FmuError(f"{self.instance_name}: '{name}' is {value!r}, not a whole number") from None
-        if not -(2**31) <= value < 2**31:
-            raise FmuError(f"{self.instance_name}: '{name}' is {value}, which FMI's 32-bit integers cannot hold")
-        return value
 
-    def _failure(self, error, when):
-        """The error to raise for an exception in the writer's code: whose, when, and its traceback below the shell."""
-        trace = error.__traceback__
-        while trace.tb_next and trace.tb_frame.f_code.co_filename.startswith(SHELL):
-            trace = trace.tb_next
-        lines = "".join(traceback.format_exception(type(error), error, trace)).rstrip()
-        return FmuError(f"{self.instance_name}: exception {when}\n{lines.replace(str(CODE) + os.sep, '')}")
+def _integer(name, value):
+    """A value as FMI's 32-bit integer."""
+    try:
+        whole = operator.index(value)
+    except TypeError:
+        raise FmuError(f"'{name}' is {value!r}, not a whole number") from None
+    if not -(2**31) <= whole < 2**31:
+        raise FmuError(f"'{name}' is {whole}, which FMI's 32-bit integers cannot hold")
+    return whole
+
+
+def _traceback(error):
+    """Traceback as Python prints it, without the shell's frames, files named from the FMU's own folder."""
+    trace = error.__traceback__
+    while trace.tb_next and trace.tb_frame.f_code.co_filename.startswith(SHELL):
+        trace = trace.tb_next
+    lines = "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    return lines.replace(str(CODE) + os.sep, "")

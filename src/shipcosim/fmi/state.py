@@ -37,7 +37,7 @@ class _Unpickler(pickle.Unpickler):
             if isinstance(found, type) and found.__module__.partition(".")[0] in self.packages:
                 return found
         raise pickle.UnpicklingError(
-            f"{module}.{name} is refused: a state holds plain data, NumPy arrays and generators, and the FMU's own classes"
+            f"{module}.{name} is refused: a state holds plain data, NumPy arrays and generators, and the FMU's classes"
         )
 
 

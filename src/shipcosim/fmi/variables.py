@@ -76,7 +76,7 @@ class Input(Variable):
 
 
 class Output(Variable):
-    """What the FMU computes: ``thrust = Output("N", "delivered thrust")``. `start` gives the type, and the value until set."""
+    """What the FMU computes: ``thrust = Output("N", "delivered thrust")``."""
 
     causality = "output"
 
@@ -113,7 +113,7 @@ class Parameters:
         self.name = name
 
     def __get__(self, instance, owner=None):
-        """The dataclass; the first access after a change makes it and leaves it on the instance, where it is found faster."""
+        """The dataclass; the first access makes it and leaves it on the instance, where it is found faster."""
         if instance is None:
             return self
         values = instance.__dict__
