@@ -104,7 +104,7 @@ def propeller_loads(u_a, n, *, propeller):
 
     >>> thrust, torque = propeller_loads(0.0, 200.0 / 60.0, propeller=PropellerParameters())
     >>> round(thrust)
-    121827
+    121824
     """
     D = propeller.diameter
     tip, u_a = _TIP * D * n, propeller.inflow * u_a

@@ -1,0 +1,386 @@
+"""Thrusters: from a thrust command over drive, motor and shaft to the loads on the ship.
+
+The drive limits the command and its rate, and turns it into motor torque by a PI law on shaft speeds. With g(T) the
+shaft speed that gives T at bollard and Q_b(n) the torque there,
+
+    Q_cmd = Q_b(n_d) + k_p 2π (n_d - n) + z,  n_d = g(T_cmd),  ż = k_i 2π (n_d - g(T)),
+
+T the delivered thrust: its estimate is assumed to be exact. At bollard g(T) = n, an ordinary PI speed loop, as linear
+through zero thrust as elsewhere; with inflow the integral brings the thrust, not the speed, to what was asked. Where
+the motor's limits cut the torque, z follows back at k_i/k_p. The speed limit lets the shaft near n_max at rate k_p/I.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from .kinematics import load_at, velocity_at
+from .maths import clip, cos, exp, hypot, maximum, minimum, pi, rk4, sin, sqrt, substeps, where, wrap
+from .propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
+from .quantity import quantity
+
+_LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
+_TURN = 2.0 * pi
+_LIMITS = "Skulstad 2021, paper V, Table I, grade A"
+_THRUST_TOLERANCE = 1.0  # N, nearer than this the command counts as reached
+
+
+@dataclass(frozen=True)
+class AzimuthParameters(PropellerParameters):
+    """An azimuth thruster with its drive; the defaults are one unit of gunnerus-33m9, on the centreline."""
+
+    x: float = quantity(-14.02, "m", "position forward", "allocator of the thesis, grade B", tolerance=0.02)
+    y: float = quantity(0.0, "m", "position to starboard", "one unit on the centreline", tolerance=0.02)
+    side_force: float = quantity(
+        0.80,
+        "1",
+        "side force coefficient: momentum drag and strut",
+        "fitted to 1260 points of the unit's FMU (0.796, leaves 3.7 kN rms of 36 kN), grade B",
+        tolerance=0.08,
+        minimum=0.0,
+    )
+    thrust_min: float = quantity(-30e3, "N", "largest thrust astern, negative", _LIMITS, maximum=0.0)
+    thrust_max: float = quantity(60e3, "N", "largest thrust ahead", _LIMITS, minimum=0.0)
+    thrust_rate: float = quantity(1e3, "N/s", "largest rate of the thrust command", _LIMITS, minimum=0.0)
+    azimuth_rate: float = quantity(10.0 * pi / 180.0, "rad/s", "largest rate of turning", _LIMITS, minimum=0.0)
+    rpm_max: float = quantity(203.0, "rpm", "largest shaft speed", "Vico, 100 %, grade A", minimum=1.0)
+    torque_max: float = quantity(23.5e3, "N.m", "largest motor torque", "500 kW at 203 rpm", minimum=0.0)
+    power_max: float = quantity(500e3, "W", "largest motor power", "thesis, grade A", minimum=0.0)
+    inertia: float = quantity(
+        600.0,
+        "kg.m2",
+        "motor, shaft, propeller and its water",
+        "Smogeli's 4 m unit scaled with D^5, grade D",
+        minimum=1e-6,
+    )
+    friction: float = quantity(
+        10.0, "N.m.s/rad", "friction torque over shaft speed", "1 % at 203 rpm, assumed", minimum=0.0
+    )
+    proportional_gain: float = quantity(
+        3e3, "N.m.s/rad", "k_p of the drive", "5 1/s times the inertia, tuned", minimum=0.0
+    )
+    integral_gain: float = quantity(6e3, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
+
+
+@dataclass(frozen=True)
+class TunnelParameters:
+    """A tunnel thruster with its drive, speeds and torques on the motor's side; the defaults are gunnerus-33m9."""
+
+    x: float = quantity(14.48, "m", "position forward", "allocator of the thesis, grade B", tolerance=0.02)
+    thrust_coefficient: float = quantity(
+        6.83e-3,
+        "N/rpm2",
+        "thrust over squared motor speed",
+        "nominal curve of the thesis, grade B",
+        tolerance=1.4e-4,
+        minimum=1e-9,
+    )
+    torque_coefficient: float = quantity(
+        1073.0 / 1780.0**2, "N.m/rpm2", "torque over squared motor speed", "200 kW at 1780 rpm, assumed", minimum=0.0
+    )
+    speed_loss: float = quantity(
+        0.0, "s2/m2", "thrust falls with exp(-speed_loss u_r^2) under way; (1/2.2)^2 is typical", "neutral", minimum=0.0
+    )
+    thrust_min: float = quantity(-21.6e3, "N", "largest thrust to port, negative", "at 1780 rpm", maximum=0.0)
+    thrust_max: float = quantity(21.6e3, "N", "largest thrust to starboard", "at 1780 rpm", minimum=0.0)
+    thrust_rate: float = quantity(1e3, "N/s", "largest rate of the thrust command", _LIMITS, minimum=0.0)
+    rpm_max: float = quantity(1780.0, "rpm", "largest motor speed", "nominal curve of the thesis, grade B", minimum=1.0)
+    torque_max: float = quantity(1180.0, "N.m", "largest motor torque", "10 % above rated, assumed", minimum=0.0)
+    power_max: float = quantity(200e3, "W", "largest motor power", "thesis, grade A", minimum=0.0)
+    inertia: float = quantity(12.0, "kg.m2", "motor with what it drives", "assumed", minimum=1e-6)
+    friction: float = quantity(0.0, "N.m.s/rad", "friction torque over motor speed", "in the torque", minimum=0.0)
+    proportional_gain: float = quantity(
+        60.0, "N.m.s/rad", "k_p of the drive", "5 1/s times the inertia, tuned", minimum=0.0
+    )
+    integral_gain: float = quantity(120.0, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
+
+
+class Thruster(NamedTuple):
+    """State of a thruster.
+
+    Parameters
+    ----------
+    n : float or (...) array or tensor
+        Shaft speed, of a tunnel thruster its motor's. [rev/s]
+    integral : like n
+        Integral part z of the drive. [N.m]
+    thrust_cmd : like n
+        Command within its limits and rate. [N]
+    azimuth : like n
+        Direction of positive thrust, clockwise from the bow; π/2 for a tunnel. [rad]
+    torque : like n
+        Torque of the motor. [N.m]
+    saturated : bool or array
+        Running at a limit of force, of its rate, or of the motor.
+    """
+
+    n: Any
+    integral: Any
+    thrust_cmd: Any
+    azimuth: Any
+    torque: Any
+    saturated: Any
+
+
+class Loads(NamedTuple):
+    """What a thruster does to the ship.
+
+    Parameters
+    ----------
+    thrust, side_force : float or (...) array or tensor
+        Force along the axis, and across it, 90 deg clockwise of the thrust. [N]
+    tau_X, tau_Y, tau_N : like thrust
+        Load about the origin. [N, N, N.m]
+    """
+
+    thrust: Any
+    side_force: Any
+    tau_X: Any
+    tau_Y: Any
+    tau_N: Any
+
+
+def at_rest(azimuth):
+    """A thruster that stands still.
+
+    Parameters
+    ----------
+    azimuth : float or (...) array or tensor
+        Direction of positive thrust. [rad]
+
+    Returns
+    -------
+    Thruster
+    """
+    zero = 0.0 * azimuth
+    return Thruster(zero, zero, zero, azimuth, zero, False)
+
+
+def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, unit):
+    """The azimuth thruster a step later.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State at the start.
+    thrust_cmd, azimuth_cmd : like the state
+        Commanded thrust and direction; the direction is taken the shortest way. [N, rad]
+    u_r, v_r, r : like the state
+        Velocity of the ship through the water. [m/s, m/s, rad/s]
+    failed : bool or array
+        Without power: no motor torque, the shaft runs free, the unit keeps its direction.
+    h : float
+        Step. [s]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        State at the end.
+    """
+    azimuth = turned(thruster.azimuth, azimuth_cmd, where(failed, 0.0, unit.azimuth_rate * h))
+    u_a, _ = _inflow(azimuth, u_r, v_r, r, unit)
+    return _driven(
+        thruster._replace(azimuth=azimuth),
+        thrust_cmd,
+        failed,
+        h,
+        unit,
+        lambda n: propeller_loads(u_a, n, propeller=unit),
+        lambda thrust: bollard_speed(thrust, propeller=unit),
+        lambda n: bollard_torque(n, propeller=unit),
+    )
+
+
+def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
+    """An azimuth thruster at a given shaft speed and direction, for replays; friction and propeller set its torque.
+
+    Parameters
+    ----------
+    n, azimuth : float or (...) array or tensor
+        Shaft speed and direction of positive thrust. [rev/s, rad]
+    u_r, v_r, r : like n
+        Velocity of the ship through the water. [m/s, m/s, rad/s]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+    """
+    u_a, _ = _inflow(azimuth, u_r, v_r, r, unit)
+    thrust, torque = propeller_loads(u_a, n, propeller=unit)
+    return Thruster(n, 0.0 * n, thrust, azimuth, torque + unit.friction * _TURN * n, False)
+
+
+def azimuth_loads(thruster, u_r, v_r, r, *, unit):
+    """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, on the ship.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State.
+    u_r, v_r, r : like the state
+        Velocity of the ship through the water. [m/s, m/s, rad/s]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Loads
+    """
+    n, azimuth = thruster.n, thruster.azimuth
+    u_a, u_s = _inflow(azimuth, u_r, v_r, r, unit)
+    thrust, _ = propeller_loads(u_a, n, propeller=unit)
+    D = unit.diameter
+    side = -unit.side_force * unit.water_density * D * D * (hypot(u_a, u_s) + abs(n) * D) * u_s
+    c, s = cos(azimuth), sin(azimuth)
+    return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
+
+
+def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
+    """The tunnel thruster a step later.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State at the start.
+    thrust_cmd : like the state
+        Commanded thrust, positive to starboard. [N]
+    u_r : like the state
+        Forward speed of the ship through the water. [m/s]
+    failed : bool or array
+        Without power: no motor torque, the shaft runs free.
+    h : float
+        Step. [s]
+    tunnel : TunnelParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        State at the end.
+    """
+    loss = exp(-tunnel.speed_loss * u_r * u_r)
+    k_T, k_Q = 3600.0 * tunnel.thrust_coefficient, 3600.0 * tunnel.torque_coefficient
+
+    def speed(thrust):
+        return where(thrust < 0.0, -1.0, 1.0) * sqrt((abs(thrust) + 1e-12) / k_T)
+
+    def loads(n):
+        square = n * abs(n)
+        return loss * k_T * square, k_Q * square
+
+    return _driven(thruster, thrust_cmd, failed, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
+
+
+def tunnel_replay(n, *, tunnel):
+    """A tunnel thruster at a given motor speed, for replays.
+
+    Parameters
+    ----------
+    n : float or (...) array or tensor
+        Motor speed. [rev/s]
+    tunnel : TunnelParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+    """
+    square = 3600.0 * n * abs(n)
+    torque = tunnel.torque_coefficient * square + tunnel.friction * _TURN * n
+    return at_rest(0.5 * pi + 0.0 * n)._replace(n=n, thrust_cmd=tunnel.thrust_coefficient * square, torque=torque)
+
+
+def tunnel_loads(thruster, u_r, *, tunnel):
+    """Thrust of a tunnel thruster and its load on the ship.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State.
+    u_r : like the state
+        Forward speed of the ship through the water. [m/s]
+    tunnel : TunnelParameters
+        The thruster.
+
+    Returns
+    -------
+    Loads
+    """
+    n = 60.0 * thruster.n
+    thrust = tunnel.thrust_coefficient * n * abs(n) * exp(-tunnel.speed_loss * u_r * u_r)
+    return Loads(thrust, 0.0 * n, 0.0 * n, thrust, tunnel.x * thrust)
+
+
+def turned(azimuth, azimuth_cmd, most):
+    """A direction after turning towards the commanded one, the shortest way round.
+
+    Parameters
+    ----------
+    azimuth, azimuth_cmd : float or (...) array or tensor
+        Where it points, and where it shall. [rad]
+    most : like azimuth
+        Largest turn. [rad]
+
+    Returns
+    -------
+    like azimuth
+        In [-π, π). [rad]
+
+    Examples
+    --------
+    From 170 deg to -170 deg the way is 20 deg, not 340:
+
+    >>> import math
+    >>> round(math.degrees(turned(math.radians(170.0), math.radians(-170.0), math.radians(5.0))), 6)
+    175.0
+    """
+    return wrap(azimuth + clip(wrap(azimuth_cmd - azimuth), -most, most))
+
+
+def _inflow(azimuth, u_r, v_r, r, unit):
+    """Velocity of the unit through the water, along and across its axis. [m/s]"""
+    u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
+    c, s = cos(azimuth), sin(azimuth)
+    return c * u + s * v, c * v - s * u
+
+
+def _driven(thruster, thrust_cmd, failed, h, drive, loads, speed, torque):
+    """Drive, motor and shaft over a step.
+
+    `loads(n)` gives the propeller's thrust and torque, `speed(thrust)` and `torque(n)` its bollard curves.
+    """
+    running = where(failed, 0.0, 1.0)
+    start = running * thruster.thrust_cmd
+    wanted = running * clip(thrust_cmd, drive.thrust_min, drive.thrust_max)
+    reached = start + clip(wanted - start, -drive.thrust_rate * h, drive.thrust_rate * h)
+    slope = (reached - start) / h
+
+    def rates(n, integral, command):
+        n_d, (thrust, load) = speed(command), loads(n)
+        asked, given = motor(n, integral, n_d, load)
+        n_dot = (given - load - drive.friction * _TURN * n) / (_TURN * drive.inertia)
+        follow = drive.integral_gain / drive.proportional_gain * (given - asked)
+        return n_dot, drive.integral_gain * _TURN * (n_d - speed(thrust)) + follow, slope
+
+    def motor(n, integral, n_d, load):
+        asked = torque(n_d) + drive.proportional_gain * _TURN * (n_d - n) + integral
+        return asked, running * _limited(asked, n, load, drive)
+
+    state = thruster.n, running * thruster.integral, start
+    parts = substeps(h, _LONGEST_SUBSTEP)
+    for _ in range(parts):
+        state = rk4(rates, state, h / parts)
+    n, integral, _ = state
+    asked, given = motor(n, integral, speed(reached), loads(n)[1])
+    at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (running > 0.0)
+    return Thruster(n, running * integral, reached, thruster.azimuth, given, at_limit)
+
+
+def _limited(torque, n, load, drive):
+    """Torque within the motor's limits of torque, power and speed."""
+    most = minimum(drive.torque_max, drive.power_max / maximum(_TURN * abs(n), 0.1))
+    gain, n_max = drive.proportional_gain * _TURN, drive.rpm_max / 60.0
+    return clip(torque, maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n)))
