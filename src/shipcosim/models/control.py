@@ -1,0 +1,187 @@
+"""Control law of dynamic positioning: nonlinear PID with feedforward of reference and wind, and anti-windup."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from .kinematics import to_body, to_ned
+from .maths import clip, exp, hypot, maximum, wrap
+from .quantity import quantity
+
+
+@dataclass(frozen=True)
+class ControlParameters:
+    """Where the poles are and what is limited. Gains follow from the ship's mass."""
+
+    surge_frequency: float = quantity(0.10, "rad/s", "natural frequency of the loop in surge", "tuned", minimum=0.0)
+    sway_frequency: float = quantity(0.10, "rad/s", "natural frequency of the loop in sway", "tuned", minimum=0.0)
+    yaw_frequency: float = quantity(0.14, "rad/s", "natural frequency of the loop in yaw", "tuned", minimum=0.0)
+    damping_ratio: float = quantity(1.0, "1", "relative damping of the loops", "tuned", minimum=0.0)
+    integral_ratio: float = quantity(
+        0.25, "1", "rate of the integral action over the loop's natural frequency", "tuned", minimum=0.0
+    )
+    position_error_max: float = quantity(
+        8.0, "m", "position error beyond which the restoring force grows no more", "assumed", minimum=1e-3
+    )
+    heading_error_max: float = quantity(
+        20.0 * math.pi / 180.0,
+        "rad",
+        "heading error beyond which the restoring moment grows no more",
+        "assumed",
+        minimum=1e-3,
+    )
+    windup_time: float = quantity(
+        10.0, "s", "time in which the integral gives way to what the thrusters can do", "tuned", minimum=1e-3
+    )
+    wind_time: float = quantity(3.0, "s", "time constant of the filter of the wind's load", "tuned", minimum=1e-3)
+    wind_share: float = quantity(1.0, "1", "share of the wind's load that is fed forward", "choice", minimum=0.0)
+
+
+class Desired(NamedTuple):
+    """Desired motion: position and heading, rates and accelerations in north-east, as a `ReferenceState` holds them."""
+
+    x: float
+    y: float
+    psi: float
+    x_dot: float
+    y_dot: float
+    r: float
+    x_ddot: float
+    y_ddot: float
+    r_dot: float
+
+
+class ControlState(NamedTuple):
+    """Integral load (north, east, yaw), filtered wind load (body) and the load last asked for (body). [N, N, N.m]"""
+
+    integral_north: float
+    integral_east: float
+    integral_N: float
+    wind_X: float
+    wind_Y: float
+    wind_N: float
+    tau_X: float
+    tau_Y: float
+    tau_N: float
+
+
+def at_rest(wind_load):
+    """State at the start: nothing integrated or asked for yet, the wind's load as measured. [N, N, N.m]"""
+    zero = 0.0 * wind_load[0]
+    return ControlState(zero, zero, zero, *wind_load, zero, zero, zero)
+
+
+def known_load(state, allocated):
+    """Load that the observer may count on: allocated thrust and filtered wind, body frame. [N, N, N.m]"""
+    return allocated[0] + state.wind_X, allocated[1] + state.wind_Y, allocated[2] + state.wind_N
+
+
+def step(state, estimate, desired, allocated, wind_load, h, *, ship, parameters):
+    """Load to ask for, one sample later.
+
+    Parameters
+    ----------
+    state : ControlState
+    estimate : observer.Estimate
+        Low-frequency ship.
+    desired : Desired or reference.ReferenceState
+        Desired motion.
+    allocated : tuple of three
+        What the thrusters were told to give of the last request, body frame. [N, N, N.m]
+    wind_load : tuple of three
+        Load of the measured wind, body frame. [N, N, N.m]
+    h : float
+        Time since the last sample. [s]
+    ship : observer.DpShip
+    parameters : ControlParameters
+
+    Returns
+    -------
+    ControlState
+        Its `tau_X`, `tau_Y`, `tau_N` is the load to ask for.
+
+    Notes
+    -----
+    With the limited error e = Rᵀ(η_d - η) in body axes and ν_d = Rᵀ η̇_d,
+
+        τ = M (Rᵀ η̈_d + 2 ζ ω (ν_d - ν) + ω² e) + D ν_d + Rᵀ i - τ_wind.
+
+    The integral i grows with κ ω³ M e and gives way to what the last request missed, so it stands still where the
+    thrusters are at their limits.
+
+    References
+    ----------
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 15.3.
+    """
+    psi = estimate.psi
+    error = _limited_error(estimate, desired, parameters=parameters)
+    nu_d = (*to_body(psi, desired.x_dot, desired.y_dot), desired.r)
+    integral = _integral(state, psi, error, allocated, h, ship=ship, parameters=parameters)
+    wind = _filtered(state, wind_load, h, parameters=parameters)
+    X, Y, N = _acceleration_load(estimate, desired, error, nu_d, ship=ship, parameters=parameters)
+    i_X, i_Y = to_body(psi, integral[0], integral[1])
+    share = parameters.wind_share
+    return ControlState(
+        *integral,
+        *wind,
+        X + ship.damping_surge * nu_d[0] + i_X - share * wind[0],
+        Y + ship.damping_sway * nu_d[1] + i_Y - share * wind[1],
+        N + ship.damping_yaw * nu_d[2] + integral[2] - share * wind[2],
+    )
+
+
+def errors(estimate, desired):
+    """Distance and turn from the desired to the estimated ship. [m, rad]"""
+    return hypot(estimate.x - desired.x, estimate.y - desired.y), wrap(estimate.psi - desired.psi)
+
+
+def _limited_error(estimate, desired, *, parameters):
+    """Way to the desired position and heading in body axes, shortened to the limits."""
+    surge, sway = to_body(estimate.psi, desired.x - estimate.x, desired.y - estimate.y)
+    scale = parameters.position_error_max / maximum(hypot(surge, sway), parameters.position_error_max)
+    yaw = clip(wrap(desired.psi - estimate.psi), -parameters.heading_error_max, parameters.heading_error_max)
+    return scale * surge, scale * sway, yaw
+
+
+def _acceleration_load(estimate, desired, error, nu_d, *, ship, parameters):
+    """Load for the desired acceleration and for the correction of errors of position and velocity."""
+    p, damping = parameters, 2.0 * parameters.damping_ratio
+    u_dot, v_dot = to_body(estimate.psi, desired.x_ddot, desired.y_ddot)
+    return _load(
+        u_dot + p.surge_frequency * (damping * (nu_d[0] - estimate.u) + p.surge_frequency * error[0]),
+        v_dot + p.sway_frequency * (damping * (nu_d[1] - estimate.v) + p.sway_frequency * error[1]),
+        desired.r_dot + p.yaw_frequency * (damping * (nu_d[2] - estimate.r) + p.yaw_frequency * error[2]),
+        ship=ship,
+    )
+
+
+def _integral(state, psi, error, allocated, h, *, ship, parameters):
+    """Integral load a sample later."""
+    p, k = parameters, parameters.integral_ratio
+    X, Y, N = _load(
+        k * p.surge_frequency**3 * error[0],
+        k * p.sway_frequency**3 * error[1],
+        k * p.yaw_frequency**3 * error[2],
+        ship=ship,
+    )
+    north, east = to_ned(
+        psi, X + (allocated[0] - state.tau_X) / p.windup_time, Y + (allocated[1] - state.tau_Y) / p.windup_time
+    )
+    moment = N + (allocated[2] - state.tau_N) / p.windup_time
+    return state.integral_north + h * north, state.integral_east + h * east, state.integral_N + h * moment
+
+
+def _filtered(state, wind_load, h, *, parameters):
+    """Wind load behind its low-pass filter a sample later."""
+    keep = exp(-h / parameters.wind_time)
+    X, Y, N = wind_load
+    return X + keep * (state.wind_X - X), Y + keep * (state.wind_Y - Y), N + keep * (state.wind_N - N)
+
+
+def _load(u_dot, v_dot, r_dot, *, ship):
+    """Load that gives the ship an acceleration."""
+    return (
+        ship.mass_surge * u_dot,
+        ship.mass_sway * v_dot + ship.mass_sway_yaw * r_dot,
+        ship.mass_sway_yaw * v_dot + ship.mass_yaw * r_dot,
+    )

@@ -1,0 +1,70 @@
+"""Dead reckoning: where the ship will be if thrust, wind, current and waves stay as they are."""
+
+from math import ceil
+
+from .kinematics import to_body, to_ned
+from .maths import wrap
+from .vessel import Vessel, accelerations, through_water
+from .wind import apparent_wind, wind_loads
+
+
+def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, hull, wind):
+    """Positions and headings of the ship ahead in time.
+
+    Parameters
+    ----------
+    vessel : Vessel
+        State now.
+    thrusters : tuple of three
+        Load of the thrusters, held in body axes. [N, N, N.m]
+    drift : tuple of three
+        Mean wave drift load, held in body axes. [N, N, N.m]
+    air, current : tuple of two
+        Velocity of air and water, north and east, held; the wind's load follows the ship's heading. [m/s]
+    horizons : tuple of float, increasing
+        How far ahead. [s]
+    longest_step : float
+        Longest step of the integration; each stretch up to a horizon is divided into equal steps. [s]
+    hull : HullParameters
+    wind : WindParameters
+
+    Returns
+    -------
+    tuple of Vessel
+        One per horizon.
+
+    Notes
+    -----
+    Midpoint rule, with the wind's load at the middle heading of each step.
+    """
+    predictions, before = [], 0.0
+    for horizon in horizons:
+        steps = ceil((horizon - before) / longest_step)
+        for _ in range(steps):
+            vessel = _advance(vessel, thrusters, drift, air, current, (horizon - before) / steps, hull=hull, wind=wind)
+        predictions.append(vessel)
+        before = horizon
+    return tuple(predictions)
+
+
+def _advance(vessel, thrusters, drift, air, current, h, *, hull, wind):
+    """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`."""
+    x, y, psi, u, v, r = vessel
+    psi_mid = psi + 0.5 * h * r
+    weather = wind_loads(*apparent_wind(psi_mid, u, v, *air), wind=wind)
+    tau = [a + b + c for a, b, c in zip(thrusters, drift, weather, strict=True)]
+    u_r, v_r = through_water(psi, u, v, *current)
+    u_dot, v_dot, r_dot = accelerations(u_r, v_r, r, *tau, hull=hull)
+    u_mid, v_mid, r_mid = u_r + 0.5 * h * u_dot, v_r + 0.5 * h * v_dot, r + 0.5 * h * r_dot
+    u_dot, v_dot, r_dot = accelerations(u_mid, v_mid, r_mid, *tau, hull=hull)
+    north, east = to_ned(psi_mid, u_mid, v_mid)
+    psi = wrap(psi + h * r_mid)
+    u_c, v_c = to_body(psi, *current)
+    return Vessel(
+        x + h * (north + current[0]),
+        y + h * (east + current[1]),
+        psi,
+        u_r + h * u_dot + u_c,
+        v_r + h * v_dot + v_c,
+        r + h * r_dot,
+    )
