@@ -1,0 +1,152 @@
+"""Archives (.ssp, .fmu) unpacked within limits and packed to the same bytes every time."""
+
+import os
+import stat
+import struct
+import zipfile
+import zlib
+from collections import Counter
+from pathlib import Path, PurePosixPath
+
+from shipcosim.errors import Problem, ShipcosimError
+
+MOST_ENTRIES = 20_000
+LARGEST_TOTAL = 2**30  # bytes, unpacked
+LARGEST_RATIO = 200  # unpacked to packed; text reaches some 20
+SMALL = 64 * 2**20  # bytes; below this size any ratio is harmless
+BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, struct.error, NotImplementedError, RuntimeError, ValueError)
+
+
+def unpack(path, folder, shown=None):
+    """Unpack an archive into a folder, nothing outside it and nothing beyond the limits.
+
+    Parameters
+    ----------
+    path : path
+        The archive.
+    folder : path
+        Where to; made if it does not exist.
+    shown : str, optional
+        Name of the archive in messages, where it is not `path`.
+
+    Raises
+    ------
+    ShipcosimError
+        If the archive is damaged, too large, or has an entry that would land outside the folder.
+    """
+    shown = shown or str(path)
+    with _opened(path, shown) as archive:
+        _check(archive, shown)
+        try:
+            for entry in archive.infolist():
+                archive.extract(entry, folder)
+        except BROKEN as error:
+            raise _damaged(shown, error) from None
+
+
+def entries(path, shown=None):
+    """Names of an archive's files, checked like those of `unpack`."""
+    shown = shown or str(path)
+    with _opened(path, shown) as archive:
+        _check(archive, shown)
+        return [entry.filename for entry in archive.infolist() if not entry.is_dir()]
+
+
+def read_entry(path, name, limit, shown=None):
+    """Bytes of one file of an archive, or None where the archive has no such file.
+
+    Parameters
+    ----------
+    path : path
+        The archive.
+    name : str
+        Name within it.
+    limit : int
+        Largest size. [bytes]
+    shown : str, optional
+        Name of the archive in messages.
+    """
+    shown = shown or str(path)
+    with _opened(path, shown) as archive:
+        if name not in archive.namelist():
+            return None
+        if archive.getinfo(name).file_size > limit:
+            raise ShipcosimError(Problem(shown, f"{name} is larger than {limit >> 20} MiB."))
+        try:
+            return archive.read(name)
+        except BROKEN as error:
+            raise _damaged(shown, error) from None
+
+
+def _opened(path, shown):
+    try:
+        return zipfile.ZipFile(path)
+    except BROKEN as error:
+        raise _damaged(shown, error) from None
+    except OSError as error:
+        raise ShipcosimError(Problem(shown, f"Cannot be read: {error.strerror}.")) from None
+
+
+def _damaged(shown, error):
+    return ShipcosimError(Problem(shown, f"Damaged or incomplete archive: {error}.", "Copy or export it again."))
+
+
+def _check(archive, shown):
+    listed = archive.infolist()
+    problems = [Problem(shown, found) for entry in listed if (found := _unsafe(entry))]
+    total, packed = sum(e.file_size for e in listed), sum(e.compress_size for e in listed)
+    if len(listed) > MOST_ENTRIES:
+        problems.append(Problem(shown, f"The archive has {len(listed)} entries.", f"At most {MOST_ENTRIES} are taken."))
+    if total > LARGEST_TOTAL:
+        problems.append(
+            Problem(shown, f"Unpacked it has {total >> 20} MiB.", f"At most {LARGEST_TOTAL >> 20} are taken.")
+        )
+    if total > SMALL and total > LARGEST_RATIO * packed:
+        problems.append(Problem(shown, f"It unpacks to {total // max(packed, 1)} times its size; this is no model."))
+    counts = Counter(entry.filename for entry in listed)
+    problems += [Problem(shown, f"{n} entries are named '{name}'.") for name, n in counts.items() if n > 1]
+    if problems:
+        raise ShipcosimError(problems[:20])
+
+
+def _unsafe(entry):
+    """Sentence on what makes an entry unsafe, or None."""
+    name = PurePosixPath(entry.orig_filename.replace("\\", "/"))
+    if name.is_absolute() or ".." in name.parts or ":" in name.as_posix() or "\0" in entry.orig_filename:
+        return f"Entry '{entry.orig_filename}' would land outside the folder that it is unpacked into."
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return f"Entry '{entry.filename}' is a symbolic link."
+    if entry.flag_bits & 1:
+        return f"Entry '{entry.filename}' is encrypted."
+    return None
+
+
+def write_archive(path, files):
+    """Write an archive whose bytes depend on names and contents alone; complete or not at all.
+
+    Parameters
+    ----------
+    path : path
+        The archive; its folder is made if needed.
+    files : mapping of str to bytes
+        Contents by name in the archive.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
+    path = Path(path)
+    partial = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with zipfile.ZipFile(partial, "w") as archive:
+            for name in sorted(files):
+                entry = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+                entry.create_system, entry.external_attr = 3, 0o644 << 16
+                entry.compress_type = zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
+                archive.writestr(entry, files[name], compresslevel=9)
+        os.replace(partial, path)
+    except OSError as error:
+        partial.unlink(missing_ok=True)
+        raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None

@@ -1,0 +1,309 @@
+"""FMUs by their modelDescription.xml; no binary is ever loaded here.
+
+Reference: FMI 2.0.4 and FMI 3.0.1, section 2 of each.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp.archive import entries, read_entry
+from shipcosim.ssp.units import Unit, read_units
+from shipcosim.ssp.values import KINDS, read_value
+from shipcosim.ssp.xml import LARGEST_FILE, Document, Findings, is_true, local, parse, validate
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of an FMU.
+
+    Parameters
+    ----------
+    name : str
+        Unique within the FMU.
+    value_reference : int
+        Handle for getting and setting.
+    type : str
+        As in the model description: ``"Real"``, ``"Float32"``, ``"Enumeration"``, ...
+    causality, variability : str
+        As in FMI, defaults filled in.
+    initial : str or None
+        As in FMI where it is given.
+    unit : str or None
+        Name of the unit.
+    start : float, int, bool, str, bytes, tuple of them (arrays) or None
+        Start value.
+    minimum, maximum : float, int or None
+        Bounds.
+    description : str
+        One line.
+    items : mapping of str to int
+        Items of an enumeration.
+    dimensions : tuple of int
+        Size of an array, by the start values of the structural parameters that set it; empty for a scalar.
+    """
+
+    name: str
+    value_reference: int
+    type: str
+    causality: str = "local"
+    variability: str = "continuous"
+    initial: str | None = None
+    unit: str | None = None
+    start: object = None
+    minimum: float | None = None
+    maximum: float | None = None
+    description: str = ""
+    items: Mapping = field(default_factory=dict)
+    dimensions: tuple[int, ...] = ()
+
+    @property
+    def kind(self):
+        """Kind of the type: Real, Integer, Boolean, String, Enumeration, Binary or Clock."""
+        return KINDS[self.type]
+
+    @property
+    def settable(self):
+        """Whether a start value may be set from outside before initialisation."""
+        given = self.causality in ("input", "parameter", "structuralParameter") or self.initial in ("exact", "approx")
+        return given and self.variability != "constant"
+
+
+@dataclass(frozen=True)
+class FmuDescription:
+    """What an FMU says about itself.
+
+    Parameters
+    ----------
+    path : Path
+        Its archive on disk.
+    fmi_version : str
+        ``"2.0"`` or ``"3.0"``.
+    model_name, token, description, generation_tool : str
+        `token` is the GUID or, in FMI 3.0, the instantiation token.
+    interfaces : mapping of str to mapping
+        By ``"CoSimulation"`` and ``"ModelExchange"``: the attributes given there, as texts.
+    variables : mapping of str to Variable
+        By name, in the file's order; aliases of FMI 3.0 included.
+    units : mapping of str to Unit
+        Those with a definition.
+    platforms : tuple of str
+        Folders with binaries, e.g. ``"linux64"`` or ``"x86_64-linux"``.
+    experiment : mapping of str to float
+        ``startTime``, ``stopTime``, ``stepSize``, ``tolerance``, where given.
+    """
+
+    path: Path
+    fmi_version: str
+    model_name: str
+    token: str
+    variables: Mapping
+    description: str = ""
+    generation_tool: str = ""
+    interfaces: Mapping = field(default_factory=dict)
+    units: Mapping = field(default_factory=dict)
+    platforms: tuple[str, ...] = ()
+    experiment: Mapping = field(default_factory=dict)
+
+    def capability(self, name, interface="CoSimulation"):
+        """Truth of a capability flag, e.g. ``"canGetAndSetFMUstate"``; false where it is not given."""
+        return is_true(self.interfaces.get(interface, {}).get(name))
+
+    @property
+    def model_identifier(self):
+        """Name of the co-simulation binary without its ending; empty where there is none."""
+        return self.interfaces.get("CoSimulation", {}).get("modelIdentifier", "")
+
+    def named(self, *causalities):
+        """Names of the variables of these causalities."""
+        return [variable.name for variable in self.variables.values() if variable.causality in causalities]
+
+
+def read_fmu(path, shown=None):
+    """Read the description of an FMU without running any of it.
+
+    Parameters
+    ----------
+    path : path
+        The .fmu.
+    shown : str, optional
+        Its name in messages, where it is not `path`.
+
+    Returns
+    -------
+    FmuDescription
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is wrong with it.
+    """
+    findings = Findings()
+    fmu = describe_fmu(path, findings, shown)
+    if findings.errors:
+        raise ShipcosimError(findings.errors)
+    return fmu
+
+
+def describe_fmu(path, findings, shown=None):
+    """Like `read_fmu`, but collecting what is wrong in `findings`; None where nothing can be read."""
+    shown = shown or str(path)
+    try:
+        data = read_entry(path, "modelDescription.xml", LARGEST_FILE, shown)
+        names = entries(path, shown)
+    except ShipcosimError as error:
+        findings.problems += error.problems
+        return None
+    if data is None:
+        findings.error(shown, "The archive has no modelDescription.xml.", "It is no FMU; export it again.")
+        return None
+    file = f"{shown}/modelDescription.xml"
+    root = parse(data, file, findings, utf8=False)
+    if root is None or not _is_fmi(root, file, findings):
+        return None
+    version = root.get("fmiVersion")[:1]
+    before = len(findings.problems)
+    validate(root, f"fmi{version}", file, findings)
+    if len(findings.problems) > before:
+        return None  # a description that breaks its schema is not worth guessing at
+    return _description(Document(file, root), Path(path), names, findings)
+
+
+def _is_fmi(root, file, findings):
+    version = root.get("fmiVersion", "")
+    if local(root) != "fmiModelDescription":
+        findings.error(file, f"Its outermost element is <{local(root)}>.", "Right would be <fmiModelDescription>.")
+        return False
+    if not version.startswith(("2.", "3.")):
+        findings.error(
+            file, f"FMI version '{version}'.", "Versions 2.0 and 3.0 are read: export the FMU in one of them."
+        )
+        return False
+    return True
+
+
+def _description(document, path, names, findings):
+    root = document.root
+    variables = _read_variables(document, findings)
+    interfaces = {
+        local(part): dict(part.attrib)
+        for part in root
+        if local(part) in ("CoSimulation", "ModelExchange", "ScheduledExecution")
+    }
+    platforms = {parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"}
+    return FmuDescription(
+        path=path,
+        fmi_version="3.0" if root.get("fmiVersion").startswith("3") else "2.0",
+        model_name=root.get("modelName", ""),
+        token=root.get("guid") or root.get("instantiationToken", ""),
+        variables=variables,
+        description=root.get("description", ""),
+        generation_tool=root.get("generationTool", ""),
+        interfaces=interfaces,
+        units=read_units(_parts(root, "UnitDefinitions")),
+        platforms=tuple(sorted(platforms)),
+        experiment=_experiment(root),
+    )
+
+
+def _parts(root, name):
+    return [part for group in root if local(group) == name for part in group if local(part)]
+
+
+def _experiment(root):
+    given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
+    return {name: float(text) for name, text in given.items()}
+
+
+def _read_variables(document, findings):
+    """Variables by name; FMI 2.0 puts the type into a child element, FMI 3.0 makes it the element itself."""
+    types = {part.get("name"): part for part in _parts(document.root, "TypeDefinitions")}
+    elements = [part for part in _parts(document.root, "ModelVariables") if _type_element(part) is not None]
+    sizes = {part.get("valueReference"): part.get("start") for part in elements}
+    variables = {}
+    for element in elements:
+        for name, description in _names(element):
+            if name in variables:
+                findings.error(document.place(element, name), "A second variable has this name.", "Names must differ.")
+            try:
+                variables[name] = _variable(element, name, description, types, sizes)
+            except ValueError as error:
+                findings.error(document.place(element, name), str(error))
+    return variables
+
+
+def _names(element):
+    yield element.get("name"), element.get("description", "")
+    for alias in (part for part in element if local(part) == "Alias"):
+        yield alias.get("name"), alias.get("description", "")
+
+
+def _type_element(element):
+    """The element that carries type, unit, start and bounds."""
+    if local(element) != "ScalarVariable":
+        return element if local(element) in KINDS else None
+    return next((part for part in element if local(part) in KINDS), None)
+
+
+def _variable(element, name, description, types, sizes):
+    typed = _type_element(element)
+    declared = types.get(typed.get("declaredType"))
+    kind = KINDS[local(typed)]
+    dimensions = tuple(
+        int(part.get("start") or sizes[part.get("valueReference")]) for part in element if local(part) == "Dimension"
+    )
+    return Variable(
+        name=name,
+        value_reference=int(element.get("valueReference")),
+        type=local(typed),
+        causality=element.get("causality", "local"),
+        variability=element.get("variability", "continuous" if kind == "Real" else "discrete"),
+        initial=element.get("initial"),
+        unit=_attribute(typed, declared, "unit"),
+        start=_start(typed, kind, dimensions),
+        minimum=_bound(typed, declared, kind, "min"),
+        maximum=_bound(typed, declared, kind, "max"),
+        description=description,
+        items=_items(declared) if kind == "Enumeration" else {},
+        dimensions=dimensions,
+    )
+
+
+def _declaration(declared):
+    """The element of a declared type that carries the attributes: FMI 2.0 nests it in a SimpleType."""
+    if declared is None or local(declared) != "SimpleType":
+        return declared
+    return next((part for part in declared if local(part) in KINDS), None)
+
+
+def _attribute(typed, declared, name):
+    declaration = _declaration(declared)
+    return typed.get(name) or (declaration.get(name) if declaration is not None else None)
+
+
+def _bound(typed, declared, kind, name):
+    text = _attribute(typed, declared, name)
+    return None if text is None or kind not in ("Real", "Integer", "Enumeration") else float(text)
+
+
+def _items(declared):
+    declaration = _declaration(declared)
+    found = [] if declaration is None else [part for part in declaration if local(part) == "Item"]
+    return {item.get("name"): int(item.get("value")) for item in found}
+
+
+def _start(typed, kind, dimensions):
+    kind = "Integer" if kind == "Enumeration" else kind
+    nested = [part.get("value") for part in typed if local(part) == "Start"]
+    if nested:
+        values = tuple(read_value(kind, text) for text in nested)
+        return values if dimensions else values[0]
+    if typed.get("start") is None:
+        return None
+    if dimensions:
+        return tuple(read_value(kind, text) for text in typed.get("start").split())
+    return read_value(kind, typed.get("start"))
+
+
+__all__ = ["FmuDescription", "Unit", "Variable", "describe_fmu", "read_fmu"]

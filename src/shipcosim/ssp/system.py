@@ -1,0 +1,355 @@
+"""A system ready to run: flat, checked, every value in the unit of the FMU that gets it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ssp.fmu import FmuDescription
+from shipcosim.ssp.package import open_package
+from shipcosim.ssp.parameters import ParameterSet, read_parameter_set
+from shipcosim.ssp.setting import Settings, check_bounds
+from shipcosim.ssp.structure import Experiment, read_structure
+from shipcosim.ssp.tree import Key, Tree
+from shipcosim.ssp.values import has
+from shipcosim.ssp.wiring import Connection, connect
+from shipcosim.ssp.xml import Findings, read_document
+
+
+@dataclass(frozen=True)
+class Component:
+    """An FMU in the system.
+
+    Parameters
+    ----------
+    name : str
+        With the names of the systems around it before it: ``"ship.vessel"``.
+    fmu : FmuDescription
+        Its FMU; several components can share one.
+    start : mapping of str to value
+        Start values that the system sets, in the FMU's unit and type; the others stay as the FMU has them.
+    step_size : float or None
+        The step that an annotation asks for; None: the base step. [s]
+    implementation : str
+        ``"any"``, ``"CoSimulation"`` or ``"ModelExchange"``.
+    """
+
+    name: str
+    fmu: FmuDescription
+    start: Mapping = field(default_factory=dict)
+    step_size: float | None = None
+    implementation: str = "any"
+
+    def start_value(self, variable):
+        """Start value of a variable: the system's, else the FMU's own, else None."""
+        return self.start.get(variable, self.fmu.variables[variable].start)
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A connector of the outermost system.
+
+    Parameters
+    ----------
+    name, type, unit, description : str
+        Type and unit are those of the variables behind it where the SSD leaves them open; unit may be None.
+    start : value or None
+        In `unit`. None: no value is set or derived, and the components' own start values hold until something feeds it.
+    items : mapping of str to int
+        Of an enumeration.
+    """
+
+    name: str
+    type: str | None
+    unit: str | None = None
+    description: str = ""
+    start: object = None
+    items: Mapping = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class System:
+    """A system that a master can execute without looking at any file but the FMUs.
+
+    Parameters
+    ----------
+    name : str
+        Of the system structure.
+    file : str
+        Where it was read from.
+    components : mapping of str to Component
+        By full name, in the order of the file.
+    connections : tuple of Connection
+        From variable to variable.
+    inputs, outputs, parameters : mapping of str to Signal
+        Connectors of the outermost system.
+    experiment : Experiment
+        Default start, stop and step.
+    remarks : tuple of Problem
+        What a user should know although it stops nothing.
+    """
+
+    name: str
+    file: str
+    components: Mapping
+    connections: tuple[Connection, ...] = ()
+    inputs: Mapping = field(default_factory=dict)
+    outputs: Mapping = field(default_factory=dict)
+    parameters: Mapping = field(default_factory=dict)
+    experiment: Experiment = Experiment()
+    remarks: tuple[Problem, ...] = ()
+    _packages: tuple = field(default=(), repr=False, compare=False)  # keeps what was unpacked on disk
+
+    def split(self, signal, where=""):
+        """Component and variable that a signal's name means.
+
+        Parameters
+        ----------
+        signal : str
+            ``component.variable``, or a connector of the outermost system alone.
+        where : str
+            Where the name stands, for messages.
+
+        Returns
+        -------
+        tuple of (str or None, str)
+            None for a connector of the outermost system.
+
+        Raises
+        ------
+        ShipcosimError
+            If there is no such signal.
+        """
+        if any(signal in group for group in (self.inputs, self.outputs, self.parameters)):
+            return None, signal
+        owners = [name for name in self.components if signal.startswith(f"{name}.")]
+        for name in sorted(owners, key=len, reverse=True):
+            if signal[len(name) + 1 :] in self.components[name].fmu.variables:
+                return name, signal[len(name) + 1 :]
+        raise ShipcosimError(self._no_signal(signal, owners, where))
+
+    def _no_signal(self, signal, owners, where):
+        if owners:
+            owner = max(owners, key=len)
+            variable = signal[len(owner) + 1 :]
+            known = self.components[owner].fmu.variables
+            return Problem(where, f"{owner} has no variable '{variable}'.", has(variable, known))
+        element = signal.split(".")[0]
+        known = [*self.components, *self.inputs, *self.outputs, *self.parameters]
+        return Problem(where, f"There is no component or connector '{element}'.", suggestion(element, known))
+
+
+def read_system(path, parameters=(), *, fmus=()):
+    """Read a system structure and everything it refers to, checked completely.
+
+    Parameters
+    ----------
+    path : path
+        A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, or a .ssd.
+    parameters : path or ParameterSet, or iterable of them
+        Parameter sets (.ssv) applied over those of the system, the last one last.
+    fmus : iterable of path
+        Folders searched for FMUs that are not beside the SSD.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is wrong.
+    """
+    system, findings = assemble(path, parameters, fmus)
+    if findings.errors:
+        raise ShipcosimError(list(dict.fromkeys(findings.errors)))
+    return system
+
+
+def assemble(path, parameters=(), fmus=()):
+    """System and findings; the system is None or incomplete where there are errors."""
+    findings = Findings()
+    package = open_package(path, findings, fmus)
+    document = None if package is None else package.document(findings)
+    structure = None if document is None else read_structure(document, findings)
+    if structure is None:
+        return None, findings
+    tree = Tree(findings)
+    tree.grow(structure, package)
+    for values in _parameter_sets(parameters, findings):
+        tree.bind(values)
+    return _system(tree, structure, str(path), findings), findings
+
+
+def _parameter_sets(parameters, findings):
+    """Sets given for this run, read where they are paths."""
+    if isinstance(parameters, (str, Path, ParameterSet)):
+        parameters = (parameters,)
+    for given in parameters:
+        if isinstance(given, ParameterSet):
+            yield given
+        elif (document := read_document(given, str(given), findings)) is not None:
+            yield read_parameter_set(document, findings)
+
+
+def _system(tree, structure, file, findings):
+    connections = connect(tree, findings)
+    settings = Settings(tree, findings)
+    settings.apply()
+    components = {
+        ".".join(path): Component(
+            ".".join(path), fmu, dict(settings.start[path]), element.step_size, element.implementation
+        )
+        for path, (element, fmu) in tree.components.items()
+        if fmu is not None
+    }
+    _check_names(tree, findings)
+    _remark_unconnected(components, connections, findings)
+    signals = _Signals(tree, components, connections, settings.system_start)
+    return System(
+        name=structure.name or structure.system.name,
+        file=file,
+        components=components,
+        connections=connections,
+        inputs=signals.of("input"),
+        outputs=signals.of("output", "local"),
+        parameters=signals.of("parameter", "structuralParameter"),
+        experiment=_experiment(structure),
+        remarks=tuple(dict.fromkeys(findings.remarks)),
+        _packages=tuple(tree.packages),
+    )
+
+
+def _experiment(structure):
+    experiment = structure.experiment
+    return replace(experiment, step_size=experiment.step_size or structure.system.annotated_step_size)
+
+
+def _check_names(tree, findings):
+    """Two components can end up with one full name where names have dots; results could not tell them apart."""
+    seen = {}
+    for path, (element, _) in tree.components.items():
+        name = ".".join(path)
+        if name in seen:
+            findings.error(element.place, f"Two components have the full name '{name}'.", "Rename one of them.")
+        seen[name] = element
+
+
+def _remark_unconnected(components, connections, findings):
+    connected = {connection.target for connection in connections}
+    for component in components.values():
+        free = [name for name in component.fmu.named("input") if (component.name, name) not in connected]
+        if free:
+            findings.remark(component.name, f"Unconnected inputs keep their start value: {', '.join(free)}.")
+
+
+class _Signals:
+    """Connectors of the outermost system, with what follows from what they are connected to."""
+
+    def __init__(self, tree, components, connections, start):
+        self.tree, self.components, self.start = tree, components, start
+        self.connections = connections
+
+    def of(self, *kinds):
+        """Signals of these kinds of connector, by name."""
+        keys = [key for key, port in self.tree.ports.items() if key.path == () and port.owner == "system"]
+        return {key.name: self._signal(key) for key in keys if self.tree.ports[key].kind in kinds}
+
+    def _signal(self, key):
+        port = self.tree.ports[key]
+        ends = self._ends(key)
+        unit = port.unit.name if port.unit else next((end.unit for end, _ in ends if end.unit), None)
+        start = self.start.get(key.name)
+        if start is None and port.kind == "input":
+            start = self._derived(ends, key)
+        kind = port.type or next((end.kind for end, _ in ends), None)
+        return Signal(key.name, kind, unit, port.description, start, port.items)
+
+    def _ends(self, key):
+        """Variables at the other ends of a connector's connections, with the connections."""
+        near = (None, key.name)
+        pairs = [(c.target, c) for c in self.connections if c.source == near]
+        pairs += [(c.source, c) for c in self.connections if c.target == near]
+        return [(self.components[name].fmu.variables[variable], c) for (name, variable), c in pairs if name]
+
+    def _derived(self, ends, key):
+        """Start of an input that none is set for: what the variables behind it start with, where they agree."""
+        starts = set()
+        for _, connection in ends:
+            name, variable = connection.target
+            value = self.components[name].start_value(variable)
+            if value is None or connection.mapping is not None or connection.factor == 0.0:
+                return None
+            linear = (connection.factor, connection.offset) != (1.0, 0.0)
+            starts.add((value - connection.offset) / connection.factor if linear else value)
+        return starts.pop() if len(starts) == 1 else None
+
+
+def with_values(system, values, where=""):
+    """System with other start values, e.g. from a scenario or the command line.
+
+    Parameters
+    ----------
+    system : System
+        As read.
+    values : mapping of str to value
+        By signal (``"vessel.mass"``), in the FMU's unit; items of enumerations by name or number.
+    where : str
+        Where the values come from, for messages.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ShipcosimError
+        With every name that does not exist and every value that does not fit.
+    """
+    findings = Findings()
+    starts = {name: dict(component.start) for name, component in system.components.items()}
+    inputs = dict(system.inputs)
+    for signal, value in values.items():
+        place = f"{where}: {signal}" if where else signal
+        try:
+            component, name = system.split(signal, place)
+        except ShipcosimError as error:
+            findings.problems += error.problems
+            continue
+        if component is not None:
+            _set(starts[component], system.components[component].fmu.variables[name], value, place, findings)
+        elif name in inputs:
+            inputs[name] = replace(inputs[name], start=value)
+        else:
+            findings.error(place, "It is no input of the system.", f"Inputs: {', '.join(inputs) or 'none'}.")
+    if findings.errors:
+        raise ShipcosimError(findings.errors)
+    components = {name: replace(component, start=starts[name]) for name, component in system.components.items()}
+    return replace(system, components=components, inputs=inputs)
+
+
+PYTHON = {"Real": (int, float), "Integer": (int,), "Boolean": (bool,), "String": (str,), "Enumeration": (int,)}
+
+
+def _set(start, variable, value, place, findings):
+    """Put a value for a variable into `start`, checked and in the variable's type."""
+    if variable.items and isinstance(value, str):
+        value = variable.items.get(value, value)
+    fits = isinstance(value, PYTHON.get(variable.kind, (bytes,)))
+    if not fits or (isinstance(value, bool) and variable.kind != "Boolean"):
+        findings.error(
+            place, f"{value!r} is no {variable.kind}.", f"Items: {', '.join(variable.items)}." * bool(variable.items)
+        )
+    elif not variable.settable:
+        findings.error(
+            place,
+            f"It is of causality {variable.causality}, a value that the FMU calculates.",
+            "Set parameters and inputs.",
+        )
+    elif isinstance(value, float) and value != value:
+        findings.error(place, "The value is not a number (NaN).")
+    elif check_bounds(value, variable, place, variable.name, findings):
+        start[variable.name] = float(value) if variable.kind == "Real" else value
+
+
+__all__ = ["Component", "Key", "Signal", "System", "read_system", "with_values"]

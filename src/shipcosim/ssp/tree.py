@@ -1,0 +1,449 @@
+"""From the SSD's nested elements to flat lists: components with their FMUs, ports, wires between ports, and values set.
+
+A port is a connector at its place in the hierarchy. Nested systems, systems in other files and signal dictionaries all
+become ports with wires between them, so that what follows knows no hierarchy.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ssp.fmu import FmuDescription, Variable, describe_fmu
+from shipcosim.ssp.package import open_package, read_in_component
+from shipcosim.ssp.parameters import (
+    ParameterValue,
+    Transformation,
+    read_dictionary,
+    read_mapping,
+    read_parameter_set,
+)
+from shipcosim.ssp.structure import (
+    FMU,
+    KIND_NAMES,
+    SSD,
+    SSP,
+    ComponentElement,
+    DictionaryReference,
+    SystemElement,
+    read_structure,
+    signal,
+)
+from shipcosim.ssp.units import Unit, find_unit, relation
+from shipcosim.ssp.values import has
+
+MOST_SYSTEMS = 10_000  # a few files that include each other can describe more than any memory holds
+
+SOURCES_OUTSIDE = ("output", "calculatedParameter", "local", "constant")
+SOURCES_INSIDE = ("input", "parameter", "structuralParameter")
+FREE = ("inout", "unspecified")
+FEEDS = {
+    "parameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
+    "structuralParameter": ("structuralParameter", "constant"),
+    "calculatedParameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
+    "constant": ("constant",),
+}
+"""Kinds that may feed a kind, where not all may. SSP 2.0, table of allowed connections."""
+
+
+class Key(NamedTuple):
+    """Which port: names of the elements around it from the outermost system's inside, and its own."""
+
+    path: tuple[str, ...]
+    name: str
+
+    def __str__(self):
+        return ".".join((*filter(None, self.path), self.name))
+
+
+@dataclass(frozen=True)
+class Port:
+    """A connector at its place.
+
+    Parameters
+    ----------
+    kind, type, unit, items
+        As in Connector, with what the FMU says filled in.
+    owner : str
+        ``"component"``, ``"system"``, ``"reference"`` or ``"dictionary"``.
+    variable : Variable or None
+        The FMU's, on a component.
+    variable_unit : Unit or None
+        The FMU's unit, which can be another than the connector's.
+    description, place : str
+        One line; where it stands.
+    """
+
+    kind: str
+    type: str | None
+    owner: str
+    unit: Unit | None = None
+    items: Mapping = field(default_factory=dict)
+    variable: Variable | None = None
+    variable_unit: Unit | None = None
+    description: str = ""
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A connection in the direction that values go."""
+
+    source: Key
+    target: Key
+    transformation: Transformation | None = None
+    suppress_unit_conversion: bool = False
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A value for a name within a system or component; settings come in the order in which they are applied.
+
+    `near` says whether the set was bound to a component itself, so that all its names should be known.
+    """
+
+    path: tuple[str, ...]
+    name: str
+    value: ParameterValue
+    transformation: Transformation | None = None
+    suppress_unit_conversion: bool = False
+    near: bool = False
+
+
+class Tree:
+    """Everything found on the way through the nested elements.
+
+    Parameters
+    ----------
+    findings : Findings
+        Takes what is wrong.
+    """
+
+    def __init__(self, findings):
+        self.findings = findings
+        self.components: dict[tuple[str, ...], tuple[ComponentElement, FmuDescription | None]] = {}
+        self.systems: dict[tuple[str, ...], SystemElement] = {}
+        self.ports: dict[Key, Port] = {}
+        self.wires: list[Wire] = []
+        self.settings: list[Setting] = []
+        self.references: dict[Key, Key] = {}
+        self.packages = []
+        self._fmus = {}
+
+    def grow(self, structure, package):
+        """Take in the outermost system."""
+        self.packages.append(package)
+        self._system(structure.system, (), _Place(structure, package, (), (structure.system.place,)), ())
+        self._join_dictionaries()
+
+    def _system(self, element, path, place, more_bindings):
+        self.systems[path] = element
+        if len(self.systems) > MOST_SYSTEMS:
+            raise ShipcosimError(Problem(element.place, f"There are more than {MOST_SYSTEMS} systems."))
+        place = replace(place, dictionaries=(self._dictionaries(element, path, place), *place.dictionaries))
+        for connector in element.connectors:
+            fields = (connector.kind, connector.type, "system", connector.unit, connector.items)
+            self.ports[Key(path, connector.name)] = Port(
+                *fields, description=connector.description, place=connector.place
+            )
+        for part in element.elements:
+            inner = (*path, part.name)
+            if isinstance(part, SystemElement):
+                self._system(part, inner, place, ())
+            elif isinstance(part, DictionaryReference):
+                self._reference(part, inner, place)
+            else:
+                self._component(part, inner, place)
+        for link in element.links:
+            self._link(link, element, path)
+        self._bindings(element.bindings, path, place)
+        for bindings, outer in more_bindings:
+            self._bindings(bindings, path, outer)
+
+    def _component(self, element, path, place):
+        if element.type in (SSD, SSP):
+            self._other_file(element, path, place)
+        elif element.type == FMU:
+            self._fmu(element, path, place)
+        else:
+            remedy = f"Known are {FMU}, {SSD}, {SSP}."
+            self.findings.error(element.place, f"Components of type '{element.type}' are not known.", remedy)
+            self.components[path] = element, None
+
+    def _other_file(self, element, path, place):
+        """A component that is a system in another file or elsewhere in this one counts as if it stood here."""
+        found = self._structure(element, place)
+        if found is not None and found[1].place in place.around:
+            self.findings.error(element.place, f"'{element.source}' contains itself.", "Break the circle.")
+            found = None
+        if found is None:
+            self.components[path] = element, None
+            return
+        structure, system, package = found
+        inner = _Place(structure, package, place.dictionaries, (*place.around, system.place))
+        self._system(system, path, inner, ((element.bindings, place),))
+
+    def _structure(self, element, place):
+        uri, _, fragment = element.source.partition("#")
+        if not uri:
+            system = _with_id(place.structure.system, fragment)
+            if system is None:
+                self.findings.error(element.place, f"No system in this file has the id '{fragment}'.", "Give it one.")
+            return system and (place.structure, system, place.package)
+        file = place.package.locate(uri, place.folder, element.place, self.findings)
+        if file is None:
+            return None
+        package, name = place.package, file
+        if element.type == SSP:
+            shown = place.package.show(file)
+            address = f"{file}#{fragment}" if fragment else file
+            package = open_package(address, self.findings, place.package.fmus, shown)
+            if package is None:
+                return None
+            self.packages.append(package)
+            name = package.folder / package.ssd
+        document = package.read(name, self.findings)
+        structure = None if document is None else read_structure(document, self.findings)
+        return structure and (structure, structure.system, package)
+
+    def _fmu(self, element, path, place):
+        file = place.package.locate(element.source, place.folder, element.place, self.findings)
+        fmu = None if file is None else self._described(file, place.package)
+        self.components[path] = element, fmu
+        for connector in element.connectors:
+            self.ports[Key(path, connector.name)] = self._component_port(connector, element, fmu)
+        if fmu is not None:
+            self._check_implementation(element, fmu)
+        self._bindings(element.bindings, path, place, near=True, fmu=fmu)
+
+    def _described(self, file, package):
+        if file not in self._fmus:
+            inside = file.is_relative_to(package.folder.resolve())
+            shown = f"{package.shown}/{file.relative_to(package.folder.resolve()).as_posix()}" if inside else str(file)
+            self._fmus[file] = describe_fmu(file, self.findings, shown)
+        return self._fmus[file]
+
+    def _check_implementation(self, element, fmu):
+        wanted = element.implementation
+        if wanted != "any" and wanted not in fmu.interfaces:
+            remedy = f"It offers {', '.join(fmu.interfaces)}."
+            self.findings.error(element.place, f"{fmu.path.name} offers no {wanted}.", remedy)
+
+    def _component_port(self, connector, element, fmu):
+        """Port of a component's connector, checked against the FMU."""
+        variable = None if fmu is None else fmu.variables.get(connector.name)
+        if variable is None:
+            if fmu is not None:
+                found = f"{fmu.path.name} has no {_causality(connector.kind)} '{connector.name}'."
+                known = fmu.named(connector.kind) or list(fmu.variables)
+                self.findings.error(connector.place, found, has(connector.name, known))
+            fields = (connector.kind, connector.type, "component", connector.unit, connector.items)
+            return Port(*fields, place=connector.place)
+        self._compare(connector, variable, fmu)
+        port = variable_port(variable, fmu, connector.place)
+        description = connector.description or variable.description
+        return replace(
+            port, unit=connector.unit or port.unit, items=connector.items or port.items, description=description
+        )
+
+    def _compare(self, connector, variable, fmu):
+        name = fmu.path.name
+        if connector.kind in KIND_NAMES and connector.kind != variable.causality:
+            found = (
+                f"The connector is of kind {connector.kind}, the variable in {name} of causality {variable.causality}."
+            )
+            self.findings.error(connector.place, found, f'Write kind="{variable.causality}".')
+        if connector.type not in (None, variable.kind):
+            found = f"The connector is of type {connector.type}, but in {name} the variable is {variable.type}."
+            self.findings.error(connector.place, found, f"Write <{variable.type}>, or leave the type out.")
+        own = find_unit(variable.unit, fmu.units)
+        if own is None or connector.unit is None:
+            return
+        related = relation(connector.unit, own)
+        found = f"The connector is in {connector.unit.name}, the variable in {name} in {own.name}"
+        if related == "incompatible":
+            self.findings.error(connector.place, f"{found}; these cannot be converted.", f'Write unit="{own.name}".')
+        elif related != "same":
+            how = "not converted, a definition is missing" if related == "unknown" else "values are converted"
+            self.findings.remark(connector.place, f"{found}: {how}.")
+
+    def _reference(self, element, path, place):
+        """Ports of a dictionary reference, each joined later with the dictionary's."""
+        lookup = (known[element.dictionary] for known in place.dictionaries if element.dictionary in known)
+        owner, entries = next(lookup, (None, None))
+        if entries is None:
+            known = {name for names in place.dictionaries for name in names}
+            found = f"There is no signal dictionary '{element.dictionary}' here or in a system around."
+            self.findings.error(element.place, found, suggestion(element.dictionary, known))
+        for connector in element.connectors:
+            key = Key(path, connector.name)
+            fields = (connector.kind, connector.type, "reference", connector.unit, connector.items)
+            self.ports[key] = Port(*fields, place=connector.place)
+            if entries is None:
+                continue
+            if connector.name not in entries:
+                found = f"The dictionary '{element.dictionary}' has no '{connector.name}'."
+                self.findings.error(connector.place, found, has(connector.name, entries))
+                continue
+            entry = entries[connector.name]
+            self.references[key] = Key(owner, connector.name)
+            self.ports[self.references[key]] = Port("inout", entry.kind, "dictionary", entry.unit, entry.items)
+
+    def _dictionaries(self, element, path, place):
+        """Dictionaries defined on a system: where they live among the ports, and their entries, by name."""
+        found = {}
+        for name, source in element.dictionaries.items():
+            document = self._content(source, place)
+            entries = {} if document is None else read_dictionary(document, self.findings)
+            found[name] = (*path, "", name), entries
+        return found
+
+    def _join_dictionaries(self):
+        """A reference that something flows into feeds the dictionary; from any other one the dictionary is read."""
+        fed = {wire.target for wire in self.wires}
+        for reference, entry in self.references.items():
+            ends = (reference, entry) if reference in fed else (entry, reference)
+            self.wires.append(Wire(*ends, place=self.ports[reference].place))
+
+    def _content(self, source, place, fmu=None):
+        """Document that a source means, inline or in a file, or None."""
+        if source.inline is not None or source.uri is None:
+            return source.inline
+        if source.in_component:
+            return None if fmu is None else read_in_component(fmu, source.uri, source.place, self.findings)
+        file = place.package.locate(source.uri, place.folder, source.place, self.findings)
+        return None if file is None else place.package.read(file, self.findings)
+
+    def _bindings(self, bindings, path, place, near=False, fmu=None):
+        for binding in bindings:
+            document = self._content(binding.values, place, fmu)
+            if document is None:
+                continue
+            values = read_parameter_set(document, self.findings)
+            mapping = None
+            if binding.mapping is not None:
+                content = self._content(binding.mapping, place, fmu)
+                mapping = () if content is None else read_mapping(content, self.findings)
+            self.settings += self._settings(values, path, binding.prefix, mapping, near)
+
+    def bind(self, values, path=()):
+        """Set a parameter set's values, over everything set before."""
+        self.settings += self._settings(values, path, "", None, False)
+
+    def _settings(self, values, path, prefix, mapping, near):
+        if mapping is None:
+            return [Setting(path, prefix + value.name, value, near=near) for value in values.values]
+        by_name = {prefix + value.name: value for value in values.values}
+        settings = []
+        for entry in mapping:
+            if entry.source not in by_name:
+                found = f"The parameter set '{values.name}' has no '{entry.source}'."
+                self.findings.error(entry.place, found, has(entry.source, by_name))
+                continue
+            how = (entry.transformation, entry.suppress_unit_conversion)
+            settings.append(Setting(path, entry.target, by_name[entry.source], *how, near=True))
+        return settings
+
+    def _link(self, link, system, path):
+        ends = [(link.start_element, link.start_connector), (link.end_element, link.end_connector)]
+        keys = [self._end(ends, i, link, system, path) for i in (0, 1)]
+        if None in keys:
+            return
+        kinds = [self.ports[key].kind for key in keys]
+        if any(kind not in KIND_NAMES for kind in kinds):
+            return  # the schema has said so
+        feeds = [kinds[i] in FREE or (kinds[i] in SOURCES_OUTSIDE) == (ends[i][0] is not None) for i in (0, 1)]
+        takes = [kinds[i] in FREE or not feeds[i] for i in (0, 1)]
+        source, target = (0, 1) if feeds[0] and takes[1] else (1, 0)
+        if not (feeds[source] and takes[target]):
+            which = (
+                "both give a value, and neither takes one" if all(feeds) else "both take a value, and neither gives one"
+            )
+            found = f"{signal(*ends[0])} ({kinds[0]}) and {signal(*ends[1])} ({kinds[1]}): {which}."
+            self.findings.error(link.place, found, "Connect an output to an input.")
+            return
+        feeding = FEEDS.get(kinds[target], KIND_NAMES)
+        if kinds[source] not in (*FREE, *feeding):
+            found = f"{signal(*ends[source])} ({kinds[source]}) cannot feed {signal(*ends[target])} ({kinds[target]})."
+            self.findings.error(link.place, found, f"Feed it from one of: {', '.join(feeding)}.")
+            return
+        how = (link.transformation, link.suppress_unit_conversion, link.place)
+        self.wires.append(Wire(keys[source], keys[target], *how))
+
+    def _end(self, ends, index, link, system, path):
+        """Key of one end of a connection, or None with an error (or without, where its FMU is missing anyway)."""
+        element, name = ends[index]
+        key = Key(path if element is None else (*path, element), name)
+        if key in self.ports:
+            return key
+        names = [part.name for part in system.elements]
+        if element is not None and element not in names:
+            found = f"There is no element '{element}' in {system.name}."
+            self.findings.error(link.place, found, suggestion(element, names))
+            return None
+        if key.path in self.components:
+            _, fmu = self.components[key.path]
+            if fmu is None:
+                return None
+            if name in fmu.variables:
+                return self._undeclared(key, fmu, link)
+        wanted, known = self._wanted(ends, index, key.path, path)
+        self.findings.error(link.place, f"{element or system.name} has no {wanted} '{name}'.", has(name, known))
+        return None
+
+    def _undeclared(self, key, fmu, link):
+        self.ports[key] = variable_port(fmu.variables[key.name], fmu, link.place)
+        found = f"{key} is not declared as a connector; it is taken from {fmu.path.name}."
+        self.findings.remark(link.place, found, f'Add <Connector name="{key.name}" kind="{self.ports[key].kind}"/>.')
+        return key
+
+    def _wanted(self, ends, index, owner, path):
+        """What kind of connector a connection seeks here, by its other end, and those that there are."""
+        other_element, other_name = ends[1 - index]
+        other = self.ports.get(Key(path if other_element is None else (*path, other_element), other_name))
+        seeks_source = index == 0
+        if other is not None:
+            seeks_source = (other.kind in SOURCES_OUTSIDE) == (other_element is None)
+        outside = ends[index][0] is not None
+        kinds = SOURCES_OUTSIDE if seeks_source == outside else SOURCES_INSIDE
+        _, fmu = self.components.get(owner, (None, None))
+        have = {key.name: port.kind for key, port in self.ports.items() if key.path == owner}
+        have |= {} if fmu is None else {name: variable.causality for name, variable in fmu.variables.items()}
+        wanted = "output" if kinds is SOURCES_OUTSIDE else "input"
+        known = [name for name, kind in have.items() if kind == wanted] or [n for n, k in have.items() if k in kinds]
+        return (wanted, known) if known else ("connector", list(have))
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where the walk is: in which file, with which dictionaries in sight, within which systems of whole files."""
+
+    structure: object
+    package: object
+    dictionaries: tuple
+    around: tuple
+
+    @property
+    def folder(self):
+        return self.structure.document.folder
+
+
+def variable_port(variable, fmu, place):
+    """Port of an FMU's variable as the FMU describes it."""
+    unit = find_unit(variable.unit, fmu.units)
+    fields = (variable.causality, variable.kind, "component", unit, variable.items, variable, unit)
+    return Port(*fields, variable.description, place)
+
+
+def _with_id(system, wanted):
+    if system.id == wanted:
+        return system
+    inner = (_with_id(part, wanted) for part in system.elements if isinstance(part, SystemElement))
+    return next((found for found in inner if found is not None), None)
+
+
+def _causality(kind):
+    return {"calculatedParameter": "calculated parameter", "structuralParameter": "structural parameter"}.get(
+        kind, kind
+    )

@@ -1,0 +1,79 @@
+"""Types and values of variables as SSP and FMI write them."""
+
+import math
+
+from shipcosim.errors import suggestion
+
+KINDS = {
+    "Real": "Real",
+    "Float64": "Real",
+    "Float32": "Real",
+    "Integer": "Integer",
+    **{f"{sign}Int{bits}": "Integer" for sign in ("", "U") for bits in (8, 16, 32, 64)},
+    "Boolean": "Boolean",
+    "String": "String",
+    "Enumeration": "Enumeration",
+    "Binary": "Binary",
+    "Clock": "Clock",
+}
+"""Kind of each type name of FMI 2.0, FMI 3.0 and SSP: what can be connected and converted alike."""
+
+BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+
+
+def read_value(kind, text):
+    """Value from the text of an attribute.
+
+    Parameters
+    ----------
+    kind : str
+        A value of KINDS. An enumeration's item stays a text.
+    text : str
+        As in the file.
+
+    Returns
+    -------
+    float, int, bool, str or bytes
+
+    Raises
+    ------
+    ValueError
+        With a sentence on what is wrong.
+
+    Examples
+    --------
+    >>> read_value("Boolean", "1"), read_value("Real", " 2.5 ")
+    (True, 2.5)
+    """
+    if kind == "Real":
+        return _number(float, text, "number")
+    if kind == "Integer":
+        return _number(int, text, "whole number")
+    if kind == "Boolean":
+        if text.strip() not in BOOLEANS:
+            raise ValueError(f"'{text}' is not a Boolean (true, false, 1, 0).")
+        return BOOLEANS[text.strip()]
+    if kind == "Binary":
+        return bytes.fromhex(text)
+    return text
+
+
+def _number(convert, text, name):
+    try:
+        value = convert(text.replace("_", "x"))  # Python would take "1_000" for a number, XML does not
+    except ValueError:
+        raise ValueError(f"'{text}' is not a {name}.") from None
+    if not math.isfinite(value):
+        raise ValueError(f"'{text}' is not a finite number.")
+    return value
+
+
+def has(name, known):
+    """Remedy for a name that something does not have, in the words of the conventions.
+
+    Examples
+    --------
+    >>> has("thrust_comand", ["thrust_cmd"])
+    "It has: thrust_cmd. Did you mean 'thrust_cmd'?"
+    """
+    return "It has" + suggestion(name, known).removeprefix("There is")

@@ -1,0 +1,208 @@
+"""XML read safely and checked against its schema: no entities, no network, every finding with file and line."""
+
+import re
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+from lxml import etree
+
+from shipcosim.errors import Problem
+
+NAMESPACES = {
+    prefix: f"http://ssp-standard.org/SSP1/SystemStructure{name}"
+    for prefix, name in {
+        "ssd": "Description",
+        "ssc": "Common",
+        "ssv": "ParameterValues",
+        "ssm": "ParameterMapping",
+        "ssb": "SignalDictionary",
+    }.items()
+}
+SCHEMAS = {
+    "ssd": "ssp/schema/SystemStructureDescription.xsd",
+    "ssv": "ssp/schema/SystemStructureParameterValues.xsd",
+    "ssm": "ssp/schema/SystemStructureParameterMapping.xsd",
+    "ssb": "ssp/schema/SystemStructureSignalDictionary.xsd",
+    "fmi2": "schema/fmi2/fmi2ModelDescription.xsd",
+    "fmi3": "schema/fmi3/fmi3ModelDescription.xsd",
+}
+LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
+
+
+class Findings:
+    """What has been found so far, collected so that a user sees all of it at once."""
+
+    def __init__(self):
+        self.problems = []
+
+    def error(self, where, found, remedy=""):
+        """Note what makes the input unusable."""
+        self.problems.append(Problem(where, found, remedy))
+
+    def remark(self, where, found, remedy=""):
+        """Note what a user should know although it stops nothing."""
+        self.problems.append(Problem(where, found, remedy, severity="remark"))
+
+    @property
+    def errors(self):
+        """Those of the problems that make the input unusable."""
+        return [problem for problem in self.problems if problem.severity == "error"]
+
+    @property
+    def remarks(self):
+        """The other ones."""
+        return [problem for problem in self.problems if problem.severity != "error"]
+
+
+@dataclass(frozen=True)
+class Document:
+    """An XML file or the inline part of one.
+
+    Parameters
+    ----------
+    file : str
+        Name as the user knows it, also for what lies inside an archive.
+    root : lxml element
+        Its outermost element.
+    folder : Path or None
+        Folder that relative addresses in it start from.
+    """
+
+    file: str
+    root: etree._Element
+    folder: Path | None = None
+
+    def place(self, element, what=""):
+        """Where an element stands, for the user to look it up."""
+        return f"{self.file}, line {element.sourceline}" + (f": {what}" if what else "")
+
+
+@contextmanager
+def reporting(document, element, findings, what=""):
+    """Turn a ValueError of reading an attribute into a finding about this element."""
+    try:
+        yield
+    except ValueError as error:
+        findings.error(document.place(element, what), str(error))
+
+
+def qualified(tag):
+    """Tag in lxml's notation from one with our prefix: ``ssd:System``."""
+    prefix, name = tag.split(":")
+    return f"{{{NAMESPACES[prefix]}}}{name}"
+
+
+def child(element, tag):
+    """First child of this tag, whatever prefix the file uses, or None."""
+    return element.find(qualified(tag))
+
+
+def children(element, *path):
+    """Children of the last tag of a path, ``"ssd:Connectors", "ssd:Connector"``; none where the path ends early."""
+    return element.findall("/".join(qualified(tag) for tag in path))
+
+
+def local(element):
+    """Name of an element without its namespace; empty for comments and the like."""
+    return etree.QName(element).localname if isinstance(element.tag, str) else ""
+
+
+def is_true(text):
+    """Truth of an xs:boolean attribute; a missing one is false."""
+    return (text or "").strip() in ("true", "1")
+
+
+def parse(data, file, findings, *, utf8=True):
+    """Root element of an XML text.
+
+    Parameters
+    ----------
+    data : bytes
+        The text.
+    file : str
+        Name for messages.
+    findings : Findings
+        Takes what is wrong.
+    utf8 : bool
+        Insist on UTF-8, as the SSP standard does.
+
+    Returns
+    -------
+    lxml element, or None where there is no usable one.
+    """
+    if len(data) > LARGEST_FILE:
+        findings.error(file, "The file is too large.", f"At most {LARGEST_FILE >> 20} MiB are read.")
+        return None
+    if utf8 and not _is_utf8(data):
+        findings.error(file, "The file is not UTF-8.", "SSP files must be: save it with this encoding.")
+        return None
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+    try:
+        root = etree.fromstring(data, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None)
+        text = re.sub(r", line \d+, column \d+.*", "", str(error), flags=re.DOTALL)
+        findings.error(
+            f"{file}, line {line}" if line else file, f"Not well-formed XML: {text}.", "Correct or export anew."
+        )
+        return None
+    if root.getroottree().docinfo.internalDTD is not None:
+        findings.error(file, "The file has a document type declaration.", "Remove <!DOCTYPE ...> and its entities.")
+        return None
+    return root
+
+
+def read_document(path, shown, findings):
+    """Document of a file on disk, relative addresses from its folder; None where there is no usable one."""
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        findings.error(shown, f"Cannot be read: {error.strerror}.")
+        return None
+    root = parse(data, shown, findings)
+    return None if root is None else Document(shown, root, path.parent)
+
+
+def _is_utf8(data):
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return not re.match(rb"""<\?xml[^>]*encoding\s*=\s*["'](?!utf-?8)""", data, re.IGNORECASE)
+
+
+def validate(root, schema, file, findings):
+    """Check an element against a schema that FMPy brings; SSP 2.0 has none there and is checked by its meaning alone.
+
+    Parameters
+    ----------
+    root : lxml element
+        Outermost element, also one inside another file.
+    schema : str
+        A key of SCHEMAS.
+    file : str
+        Name for messages.
+    findings : Findings
+        Takes what is wrong.
+    """
+    if schema.startswith("ss") and root.get("version", "").startswith("2."):
+        return
+    checker = _schema(schema)
+    if checker.validate(root):
+        return
+    for entry in checker.error_log:
+        text = re.sub(r"\{[^}]*\}", "", entry.message)
+        found, _, expected = text.partition(" Expected is ")
+        findings.error(f"{file}, line {entry.line}", found, f"Expected is {expected}" if expected else "")
+
+
+@cache
+def _schema(name):
+    folder = Path(find_spec("fmpy").submodule_search_locations[0])  # finds FMPy without running its slow import
+    parser = etree.XMLParser(no_network=True)
+    return etree.XMLSchema(etree.parse(str(folder / SCHEMAS[name]), parser))
