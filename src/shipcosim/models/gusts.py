@@ -54,7 +54,7 @@ def gust(t, mean_speed, seed):
 
     Parameters
     ----------
-    t : float
+    t : float or (m,) array
         Time. [s]
     mean_speed : float or (m,) array or tensor
         Present mean at 10 m, not negative. [m/s]
@@ -67,7 +67,7 @@ def gust(t, mean_speed, seed):
         Gust along the mean wind. [m/s]
     """
     omega, phase = per_seed(_frequencies_and_phases, seed)
-    (wave,) = tensors_if_any((np.cos(omega * t + phase),), mean_speed)
+    (wave,) = tensors_if_any((np.cos(omega * column(t) + phase),), mean_speed)
     return total(_amplitudes(mean_speed), wave)
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 
 def column(x):
-    """x with a last axis for the components; a float stays as it is."""
-    return x if isinstance(x, float) else x[..., None]
+    """x with a last axis for the components; a single number stays as it is."""
+    return x if isinstance(x, (float, int)) else x[..., None]
 
 
 def total(a, b):

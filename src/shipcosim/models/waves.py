@@ -157,7 +157,7 @@ def elevation(t, x, y, waves):
 
     Parameters
     ----------
-    t : float
+    t : float or (m,) array
         Time. [s]
     x, y : float or (m,) array or tensor
         North and east. [m]
@@ -180,7 +180,7 @@ def wave_response(t, x, y, psi, u, v, waves, table, *, length, breadth, draught)
 
     Parameters
     ----------
-    t : float
+    t : float or (m,) array
         Time. [s]
     x, y, psi : float or (m,) array or tensor
         Position and heading of the (low-frequency) ship. [m, m, rad]
@@ -222,7 +222,7 @@ def drift(t, x, y, psi, waves, table):
 
     Parameters
     ----------
-    t : float
+    t : float or (m,) array
         Time. [s]
     x, y, psi : float or (m,) array or tensor
         Position and heading of the ship. [m, m, rad]
@@ -283,7 +283,7 @@ def motion(t, x, y, psi, waves, *, length, breadth, draught, u=0.0, v=0.0):
 
     Parameters
     ----------
-    t : float
+    t : float or (m,) array
         Time. [s]
     x, y, psi : float or (m,) array or tensor
         Position and heading of the low-frequency ship. [m, m, rad]
@@ -392,7 +392,7 @@ def _cumulative_energy(peak_enhancement):
 def _angle(t, x, y, waves):
     """Phase angle theta of each component, (..., n)."""
     travelled = x * cos(waves.direction) + y * sin(waves.direction)
-    return waves.phase + waves.omega * t - waves.wavenumber * column(travelled)
+    return waves.phase + waves.omega * column(t) - waves.wavenumber * column(travelled)
 
 
 def _drift(c, s, psi, waves, table):
@@ -454,7 +454,7 @@ def _whole(x):
 
 
 def _not_zero(x):
-    """x kept away from 0, where sin(x)/x has its limit; wrong by 1e-12."""
+    """x kept away from 0, where sin(x)/x and its like have limits; small enough for them, large enough to divide by."""
     return where(abs(x) < _ALMOST_ZERO, _ALMOST_ZERO, x)
 
 
