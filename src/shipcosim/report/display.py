@@ -1,0 +1,142 @@
+"""A table as people read it: degrees and kN, angles without jumps, few enough rows to draw."""
+
+import numpy as np
+import xarray as xr
+
+READ_AS = {  # unit in the table: unit people read, factor, least size for which it pays
+    "rad": ("deg", 180 / np.pi, 0.0),
+    "rad/s": ("deg/s", 180 / np.pi, 0.0),
+    "rad/s2": ("deg/s²", 180 / np.pi, 0.0),
+    "N": ("kN", 1e-3, 1000.0),
+    "N.m": ("kN·m", 1e-3, 1000.0),
+    "W": ("kW", 1e-3, 1000.0),
+    "m/s2": ("m/s²", 1.0, 0.0),
+    "1": ("", 1.0, 0.0),
+    None: ("", 1.0, 0.0),
+}
+BYTES_FOR_SIGNALS = 2_700_000  # with plotly.js the page stays below 8 MB
+
+
+def display_table(table, roles):
+    """The table in the units of the page.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        Signals over `time`. [SI]
+    roles : Roles
+        What they stand for.
+
+    Returns
+    -------
+    xarray.Dataset
+        Same rows; text signals are left out. What is drawn is the attribute `factor` times what the table holds, plus
+        whole turns where it is an angle.
+    """
+    units = units_to_read(table)
+    numeric = {name: v for name, v in table.data_vars.items() if v.dtype.kind in "fiub" and v.dims == ("time",)}
+    shown = xr.Dataset(coords={"time": ("time", np.asarray(table["time"].values, float))})
+    for name, variable in numeric.items():
+        unit, factor = units.get(variable.attrs.get("units"), (variable.attrs.get("units"), 1.0))
+        values = unturned(name, variable.values) if unit == "deg" else variable.values
+        shown[name] = as_variable(factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor)
+        shown[name].attrs["logical"] = variable.dtype.kind == "b"
+    _align_headings(shown, roles)
+    return shown
+
+
+def units_to_read(table):
+    """For each unit of the table: the unit to show and the factor; one choice for the whole page.
+
+    Returns
+    -------
+    dict of str to (str, float)
+    """
+    chosen = {}
+    for unit in {v.attrs.get("units") for v in table.data_vars.values()}:
+        shown, factor, least = READ_AS.get(unit, (unit, 1.0, 0.0))
+        numeric = [v.values for v in table.data_vars.values() if v.attrs.get("units") == unit and v.dtype.kind in "fiu"]
+        largest = max((np.nanmax(np.abs(v)) for v in numeric if v.size and not np.isnan(v).all()), default=0.0)
+        chosen[unit] = (shown, factor) if largest >= least else (unit or "", 1.0)
+    return chosen
+
+
+def wrapped(degrees):
+    """Angle in [-180, 180). [deg]"""
+    return (np.asarray(degrees) + 180.0) % 360.0 - 180.0
+
+
+def thinned(shown, budget=BYTES_FOR_SIGNALS):
+    """The table with few enough rows for the page: the extremes of each interval, so that no peak is lost.
+
+    Parameters
+    ----------
+    shown : xarray.Dataset
+        Table to draw.
+    budget : int
+        Bytes that its signals may take in the page.
+
+    Returns
+    -------
+    (xarray.Dataset, int)
+        The table, and how many rows each interval spans; 1 if nothing was thinned.
+    """
+    rows, varying = shown.sizes["time"], sum(not is_constant(v.values) for v in shown.data_vars.values())
+    allowed = max(int(budget / (varying * 4 * 4 / 3 + 16)), 500)
+    if rows <= allowed:
+        return shown, 1
+    span = int(np.ceil(2 * rows / allowed))
+    starts = np.arange(0, rows, span)
+    drawn = np.unique(np.concatenate([starts, np.minimum(starts + span // 2, rows - 1), [rows - 1]]))
+    thin = shown.isel(time=drawn)
+    for name, variable in shown.data_vars.items():
+        thin[name] = ("time", _extremes(variable.values, drawn, starts, span), variable.attrs)
+    return thin, span
+
+
+def is_constant(values):
+    """True if all values are the same; NaN differ from everything."""
+    return len(values) > 0 and bool(np.all(values == values[0]))
+
+
+def _extremes(values, drawn, starts, span):
+    """Values for the rows `drawn`: least and largest of each interval, in the order they occur."""
+    answer = values[drawn].copy()
+    position = {row: k for k, row in enumerate(drawn)}
+    for start in starts:
+        part = values[start : start + span]
+        if np.isnan(part).any() or start + span // 2 >= len(values):
+            continue
+        rows = sorted((int(np.argmin(part)), int(np.argmax(part))))
+        answer[position[start]], answer[position[start + span // 2]] = part[rows[0]], part[rows[1]]
+    answer[0], answer[-1] = values[0], values[-1]
+    return answer
+
+
+def as_variable(values, unit, long_name, factor=1.0):
+    """A signal of the page."""
+    return xr.Variable("time", values, {"units": unit or "", "long_name": long_name, "factor": factor})
+
+
+def unturned(name, radians):
+    """Angle without jumps at half turns; directions from north start in [0, 2 pi). [rad]"""
+    values = np.array(radians, float)
+    finite = np.isfinite(values)
+    if not finite.any():
+        return values
+    values[finite] = np.unwrap(values[finite])
+    if name.rpartition(".")[2].split("_")[-1] in ("from", "to", "mean"):
+        values -= 2 * np.pi * np.floor(values[finite][0] / (2 * np.pi))
+    return values
+
+
+def _align_headings(shown, roles):
+    """Move other headings by whole turns to lie beside the ship's."""
+    psi = roles.signal(roles.ship, "psi")
+    if psi is None:
+        return
+    for name in shown.data_vars:
+        if name != psi and "psi" in str(name).rpartition(".")[2].split("_") and shown[name].attrs["units"] == "deg":
+            gap = np.nanmedian(shown[name].values - shown[psi].values)
+            if np.isfinite(gap):
+                shown[name].values[:] -= 360.0 * np.round(gap / 360.0)

@@ -1,0 +1,231 @@
+"use strict";
+// Draws the page from the data beside it. Panels are drawn as they come into view, the rest when the browser is idle;
+// all share one time window.
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+  const time = new Float64Array(bytes(data.time));
+  const decoded = {};
+  const values = (name) => {
+    const packed = data.signals[name].values;
+    return (decoded[name] ??= typeof packed === "number" ? new Float32Array(time.length).fill(packed) : new Float32Array(bytes(packed)));
+  };
+  const font = { family: getComputedStyle(document.body).fontFamily, size: 12, color: data.colours.ink };
+  const axis = { gridcolor: "#e4e7eb", zerolinecolor: "#cbd2d9", linecolor: "#9aa5b1", ticks: "outside", tickcolor: "#9aa5b1", ticklen: 4 };
+  const config = { responsive: true, displaylogo: false, scrollZoom: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+  const whole = [time[0], time[time.length - 1]];
+  let shownWindow = whole;
+
+  // ---- panels over time
+
+  function bandTraces(panel) {
+    return panel.bands.map((band) => {
+      const colour = band.passed ? data.colours.passed : data.colours.failed;
+      return {
+        type: "scatter", mode: "lines", name: band.passed ? "limit, held" : "limit, missed",
+        x: [...band.time, ...band.time.slice().reverse()], y: [...band.upper, ...band.lower.slice().reverse()],
+        fill: "toself", fillcolor: colour + "38", line: { color: colour, width: 1 }, hoverinfo: "skip", showlegend: false,
+      };
+    });
+  }
+
+  function lineTraces(panel) {
+    const unit = panel.unit ? " " + panel.unit : "";
+    return panel.lines.map((line) => ({
+      type: "scatter", mode: "lines", name: line.label, x: time, y: values(line.signal),
+      line: { color: line.colour, dash: line.dash, width: line.width }, hovertemplate: `%{y:.4~g}${unit}`,
+    }));
+  }
+
+  function stateTraces(panel) {
+    const rank = (k) => panel.lines.length - 1 - k;
+    return panel.lines.flatMap((line, k) => [
+      { type: "scatter", mode: "lines", x: whole, y: [rank(k), rank(k)], line: { width: 0 }, hoverinfo: "skip", showlegend: false },
+      {
+        type: "scatter", mode: "lines", name: line.label, x: time, y: values(line.signal).map((v) => rank(k) + 0.8 * v), line: { color: line.colour, width: 1, shape: "hv" },
+        fill: "tonexty", fillcolor: line.colour + "66", text: Array.from(values(line.signal), (v) => (v ? "yes" : "no")), hovertemplate: "%{text}", showlegend: false,
+      },
+    ]);
+  }
+
+  function layoutOf(panel) {
+    const title = { text: `<b>${panel.title}</b>` + (panel.unit ? ` [${panel.unit}]` : ""), x: 0, xanchor: "left", y: 0.98, yanchor: "top", font: { size: 13 } };
+    const yaxis = panel.states
+      ? { ...axis, tickvals: panel.lines.map((_, k) => panel.lines.length - 0.6 - k), ticktext: panel.lines.map((l) => l.label), range: [-0.1, panel.lines.length], showgrid: false, zeroline: false, automargin: true }
+      : { ...axis, automargin: true };
+    const event = (t) => ({ type: "line", x0: t, x1: t, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: "#9aa5b1", width: 1, dash: "dot" } });
+    return {
+      title, font, yaxis, margin: { l: 56, r: 12, t: 46, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
+      legend: { orientation: "h", x: 1, xanchor: "right", y: 1.02, yanchor: "bottom", font: { size: 11 } }, hoverlabel: { bgcolor: "rgba(255,255,255,0.92)", font: { size: 12 } },
+      xaxis: { ...axis, range: shownWindow.slice(), ticksuffix: " s", showticksuffix: "last", hoverformat: ".6~g", unifiedhovertitle: { text: "%{x} s" } },
+      shapes: data.events.filter((t) => t > whole[0]).map(event), paper_bgcolor: "#fff", plot_bgcolor: "#fff",
+    };
+  }
+
+  const waiting = new Map();  // place -> what to do with it
+
+  function draw(place, panel) {
+    const traces = panel.states ? stateTraces(panel) : [...bandTraces(panel), ...lineTraces(panel)];
+    Plotly.newPlot(place, traces, layoutOf(panel), config);
+    place.on("plotly_relayout", (change) => follow(place, change));
+    place.on("plotly_hover", (event) => pointAt(event.xvals ? event.xvals[0] : event.points[0].x));
+    place.on("plotly_unhover", () => pointAt(null));
+    place.drawn = shownWindow;
+  }
+
+  function zoom(place) {
+    if (place.drawn === shownWindow) return;
+    place.drawn = shownWindow;
+    Plotly.relayout(place, { "xaxis.range": shownWindow.slice() });
+  }
+
+  function inView(place) {
+    const box = place.getBoundingClientRect();
+    return box.bottom > -200 && box.top < innerHeight + 200;
+  }
+
+  function work(all) {
+    const next = all || [...waiting.keys()].filter(inView);
+    for (const place of next.length ? next : [...waiting.keys()].slice(0, 1)) {
+      const task = waiting.get(place);
+      waiting.delete(place);
+      if (task) task();
+    }
+    if (waiting.size) schedule();
+    else document.body.dataset.drawn = "all";
+  }
+
+  let scheduled = false;
+  function schedule() {
+    if (scheduled) return;
+    scheduled = true;
+    delete document.body.dataset.drawn;
+    setTimeout(() => { scheduled = false; work(); }, 0);
+  }
+
+  function later(place, task) {
+    waiting.set(place, task);
+    schedule();
+  }
+
+  // ---- one time window for all panels
+
+  function follow(source, change) {
+    let window;
+    if (change["xaxis.autorange"]) window = whole;
+    else if (change["xaxis.range"]) window = change["xaxis.range"];
+    else if ("xaxis.range[0]" in change) window = [change["xaxis.range[0]"], change["xaxis.range[1]"]];
+    else return;
+    if (window[0] === shownWindow[0] && window[1] === shownWindow[1]) return;
+    show(window);
+  }
+
+  function show(window) {
+    shownWindow = window;
+    document.getElementById("reset").hidden = window === whole;
+    for (const place of document.querySelectorAll(".js-plotly-plot.panel")) later(place, () => zoom(place));
+  }
+
+  document.getElementById("reset").addEventListener("click", () => show(whole));
+
+  // ---- the chart
+
+  const track = data.track && document.getElementById("track");
+
+  function drawTrack() {
+    const chart = { ...axis, zeroline: false, ticksuffix: " m", constrain: "domain" };
+    const ghost = { type: "scatter", mode: "lines", name: "at the cursor", x: [], y: [], line: { color: "#d55e00", width: 2 }, fill: "toself", fillcolor: "rgba(213,94,0,0.15)", hoverinfo: "skip", showlegend: false };
+    Plotly.newPlot(track, [...data.track.traces, ghost], {
+      font, margin: { l: 60, r: 12, t: 36, b: 46 }, hovermode: "closest", dragmode: "pan", paper_bgcolor: "#fff", plot_bgcolor: "#fff",
+      legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom" },
+      xaxis: { ...chart, title: { text: "East" }, range: data.track.x }, yaxis: { ...chart, title: { text: "North" }, range: data.track.y, scaleanchor: "x", scaleratio: 1 },
+    }, { ...config, scrollZoom: true });
+  }
+
+  function rowAt(t) {
+    let low = 0, high = time.length - 1;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (time[middle] < t) low = middle + 1; else high = middle;
+    }
+    return low > 0 && t - time[low - 1] < time[low] - t ? low - 1 : low;
+  }
+
+  function pointAt(t) {
+    const cursor = document.getElementById("cursor");
+    cursor.textContent = t === null ? "" : `t = ${(+t).toPrecision(6) / 1} s`;
+    if (!track || !track.data) return;
+    let corners = { x: [[]], y: [[]] };
+    if (t !== null) {
+      const row = rowAt(t), [x, y, psi] = data.track.pose.map((name) => values(name)[row]);
+      const c = Math.cos(psi * Math.PI / 180), s = Math.sin(psi * Math.PI / 180), [forward, starboard] = data.track.outline;
+      corners = { x: [forward.map((f, k) => y + s * f + c * starboard[k])], y: [forward.map((f, k) => x + c * f - s * starboard[k])] };
+    }
+    Plotly.restyle(track, corners, [track.data.length - 1]);
+  }
+
+  // ---- signals to choose from
+
+  const chosen = new Set();
+
+  function choices() {
+    const groups = {};
+    for (const name of data.choice) (groups[name.includes(".") ? name.slice(0, name.lastIndexOf(".")) : ""] ??= []).push(name);
+    for (const [component, names] of Object.entries(groups)) {
+      const group = document.createElement("fieldset"), legend = document.createElement("legend");
+      legend.textContent = component || "outermost system";
+      group.append(legend, ...names.map(choice));
+      document.getElementById("choices").append(group);
+    }
+  }
+
+  function choice(name) {
+    const { unit, label } = data.signals[name];
+    const row = document.createElement("label"), box = document.createElement("input"), small = document.createElement("small");
+    Object.assign(box, { type: "checkbox", value: name });
+    box.addEventListener("change", () => { chosen[box.checked ? "add" : "delete"](name); drawChosen(); });
+    small.textContent = unit ? ` ${unit}` : "";
+    row.title = label;
+    row.append(box, " ", name.slice(name.lastIndexOf(".") + 1), small);
+    return row;
+  }
+
+  function drawChosen() {
+    const area = document.getElementById("chosen"), units = {};
+    for (const place of area.children) { waiting.delete(place); Plotly.purge(place); }
+    area.replaceChildren();
+    for (const name of chosen) (units[data.signals[name].unit] ??= []).push(name);
+    for (const [unit, names] of Object.entries(units)) {
+      const place = document.createElement("div");
+      place.className = "panel";
+      area.append(place);
+      const cycle = data.colours.cycle;
+      const lines = names.map((signal, k) => ({ signal, label: signal, colour: cycle[k % cycle.length], dash: "solid", width: 1.5 }));
+      draw(place, { title: names.length > 1 ? "Chosen signals" : names[0], unit, lines, bands: [], states: false });
+    }
+  }
+
+  document.getElementById("filter").addEventListener("input", (event) => {
+    const words = event.target.value.toLowerCase().split(/\s+/);
+    for (const group of document.querySelectorAll("#choices fieldset")) {
+      for (const row of group.querySelectorAll("label")) {
+        const text = row.querySelector("input").value.toLowerCase() + " " + row.title.toLowerCase();
+        row.hidden = !words.every((word) => text.includes(word));
+        row.style.display = row.hidden ? "none" : "";
+      }
+      group.style.display = group.querySelector("label:not([hidden])") ? "" : "none";
+    }
+  });
+
+  // ---- go
+
+  if (track) drawTrack();
+  data.panels.forEach((panel, k) => {
+    const place = document.getElementById(`panel-${k}`);
+    later(place, () => draw(place, panel));
+  });
+  choices();
+  if (!data.panels.length) for (const box of [...document.querySelectorAll("#choices input")].slice(0, 6)) box.click();
+  addEventListener("scroll", schedule, { passive: true });
+  addEventListener("beforeprint", () => { work([...waiting.keys()]); for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.Plots.resize(place); });
+})();

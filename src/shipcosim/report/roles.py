@@ -1,0 +1,94 @@
+"""What the signals of a table stand for, found by their names alone, so that any system's table makes a page."""
+
+import re
+from dataclasses import dataclass, field
+
+LOAD = re.compile(r"tau_([A-Za-z]\w*)_([XYN])")
+NOT_A_SOURCE = ("cmd", "allocated", "bias", "max", "min")
+
+
+@dataclass(frozen=True)
+class Roles:
+    """Components of a table that the page treats in their own way; names are '' or None where there is none.
+
+    Parameters
+    ----------
+    ship : str or None
+        Component with x, y and psi.
+    reference : str or None
+        Component with x_d, y_d and psi_d.
+    thrusters : tuple of str
+        Components with a thrust and a shaft.
+    environment : str or None
+        Component with the wind over ground.
+    connectors : dict of str to list of str
+        Connector names of every component.
+    """
+
+    ship: str | None
+    reference: str | None
+    thrusters: tuple
+    environment: str | None
+    connectors: dict = field(repr=False)
+
+    def signal(self, component, *connectors):
+        """Name of the first of these connectors that the component has, or None."""
+        for connector in connectors:
+            if component is not None and connector in self.connectors.get(component, ()):
+                return join(component, connector)
+        return None
+
+    def anywhere(self, *connectors):
+        """Names of all signals whose connector is one of these, in the order asked for."""
+        return [join(component, c) for c in connectors for component, has in self.connectors.items() if c in has]
+
+    def sources(self):
+        """Names of what puts load on the ship: wind, drift, hull, thrusters, in the table's order."""
+        found = [LOAD.fullmatch(connector) for connector in self.connectors.get(self.ship, ())]
+        return list(dict.fromkeys(m[1] for m in found if m and m[1] not in NOT_A_SOURCE))
+
+
+def join(component, connector):
+    """Signal name; a connector of the outermost system is its name alone."""
+    return f"{component}.{connector}" if component else connector
+
+
+def find_roles(names):
+    """Roles of the signals in a table.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Signals.
+
+    Returns
+    -------
+    Roles
+
+    Examples
+    --------
+    >>> find_roles(["boat.x", "boat.y", "boat.psi", "boat.tau_wind_X", "bow.thrust", "bow.rpm"]).thrusters
+    ('bow',)
+    """
+    connectors = {}
+    for name in names:
+        component, _, connector = str(name).rpartition(".")
+        connectors.setdefault(component, []).append(connector)
+
+    def having(*wanted):
+        return [c for c, has in connectors.items() if set(wanted) <= set(has)]
+
+    ships = sorted(having("x", "y", "psi"), key=lambda c: _likeness(c, connectors[c]), reverse=True)
+    winds = having("wind_speed_mean") or having("wind_north", "wind_east")
+    return Roles(
+        ship=next(iter(ships), None),
+        reference=next(iter(having("x_d", "y_d", "psi_d")), None),
+        thrusters=tuple(c for c in having("thrust") if {"rpm", "power", "torque"} & set(connectors[c])),
+        environment=next(iter([c for c in winds if c not in ships] or winds), None),
+        connectors=connectors,
+    )
+
+
+def _likeness(component, connectors):
+    """How much like a ship: sensors and predictors have x, y and psi among their inputs too."""
+    return component.endswith(("vessel", "ship", "hull")), sum(1 for c in connectors if LOAD.fullmatch(c))

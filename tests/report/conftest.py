@@ -1,0 +1,120 @@
+"""A made-up four-corner run with the signals of gunnerus_dp: the page's tests need no FMU."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+SET_POINTS = [  # time [s], x [m], y [m], psi [rad]
+    (0.0, 20.0, 0.0, 0.0),
+    (250.0, 20.0, -20.0, 0.0),
+    (450.0, 20.0, -20.0, -np.pi / 4),
+    (650.0, 0.0, -20.0, -np.pi / 4),
+    (850.0, 0.0, 0.0, 0.0),
+]
+
+
+def staircase(time, column):
+    """Set point over time, (n,)."""
+    steps = np.searchsorted([row[0] for row in SET_POINTS], time, side="right") - 1
+    return np.array([row[column] for row in SET_POINTS])[steps]
+
+
+def follow(values, start, period, spacing):
+    """Critically damped second-order answer to a staircase, (n,); `period` is the natural period over 2 pi. [s]"""
+    answer, position, rate = np.empty(len(values)), start, 0.0
+    for k, target in enumerate(values):
+        answer[k] = position
+        acceleration = (target - position) / period**2 - 2.0 * rate / period
+        rate += spacing * acceleration
+        position += spacing * rate
+    return answer
+
+
+def smooth_noise(generator, n, memory):
+    """First-order noise of unit standard deviation, (n,); `memory` in samples."""
+    a = np.exp(-1.0 / memory)
+    draws, values, value = generator.standard_normal(n), np.empty(n), 0.0
+    for k in range(n):
+        value = a * value + np.sqrt(1 - a * a) * draws[k]
+        values[k] = value
+    return values
+
+
+def poses(time, generator):
+    """Set point, reference, ship, measurement and estimate: signals of the pose."""
+    noise = lambda size, memory=60: size * smooth_noise(generator, len(time), memory)  # noqa: E731
+    signals = {}
+    for column, (name, unit, error) in enumerate([("x", "m", 0.12), ("y", "m", 0.1), ("psi", "rad", 0.004)], start=1):
+        signals[f"reference.{name}_set"] = (staircase(time, column), unit)
+        desired = follow(signals[f"reference.{name}_set"][0], 0.0, 15.0, time[1])
+        ship = follow(desired, 0.0, 3.0, time[1]) + noise(error) * np.minimum(time / 30, 1)
+        signals[f"reference.{name}_d"] = (desired, unit)
+        signals[f"vessel.{name}"] = (ship, unit)
+        signals[f"sensors.{name}_meas"] = (ship + noise(error, 2), unit)
+        signals[f"controller.{name}_hat"] = (ship + noise(error / 5, 20), unit)
+    return signals
+
+
+def loads(time, generator):
+    """Forces by source and the thrusters' command and answer."""
+    n = len(time)
+    noise = lambda mean, size, memory=20: mean + size * smooth_noise(generator, n, memory)  # noqa: E731
+    signals = {}
+    for axis, unit, scale in [("X", "N", 1.0), ("Y", "N", 2.0), ("N", "N.m", 8.0)]:
+        outside = np.zeros(n)
+        for source, mean, size in [("wind", -2600, 700), ("drift", -300, 60), ("hull", -900, 500)]:
+            values = scale * noise(mean, size)
+            outside += values
+            signals[f"vessel.tau_{source}_{axis}"] = (values, unit)
+        signals[f"controller.tau_{axis}_cmd"] = (scale * noise(3700, 900), unit)
+        signals[f"vessel.tau_thrusters_{axis}"] = (-outside, unit)
+    for name, mean in [("port", 4000.0), ("starboard", 5200.0), ("tunnel", -2500.0)]:
+        command = noise(mean, 1200)
+        thrust = np.clip(follow(command, mean, 1.0, time[1]), -6500, 6500)
+        signals[f"allocator.{name}_thrust_cmd"] = (command, "N")
+        signals[f"{name}.thrust"] = (thrust, "N")
+        signals[f"{name}.rpm"] = (np.sign(thrust) * np.sqrt(abs(thrust)) * 1.3, "rpm")
+        signals[f"{name}.torque"] = (thrust * 0.2, "N.m")
+        signals[f"{name}.power"] = (abs(thrust) ** 1.5 / 12, "W")
+        signals[f"{name}.saturated"] = (abs(thrust) >= 6500, "1")
+    for name, angle in [("port", -0.8), ("starboard", 0.8)]:
+        signals[f"allocator.{name}_azimuth_cmd"] = (np.full(n, angle), "rad")
+        signals[f"{name}.azimuth"] = (follow(np.full(n, angle), 0.0, 4.0, time[1]), "rad")
+    return signals
+
+
+def weather(time, generator):
+    """Wind with gusts, current, waves."""
+    n = len(time)
+    speed, direction = 8 + 1.2 * smooth_noise(generator, n, 15), np.pi / 4 + 0.06 * smooth_noise(generator, n, 30)
+    return {
+        "environment.wind_north": (-speed * np.cos(direction), "m/s"),
+        "environment.wind_east": (-speed * np.sin(direction), "m/s"),
+        "environment.wind_speed_mean": (np.full(n, 8.0), "m/s"),
+        "environment.wind_from_mean": (np.full(n, np.pi / 4), "rad"),
+        "environment.current_north": (np.full(n, -0.3), "m/s"),
+        "environment.current_east": (np.zeros(n), "m/s"),
+        "environment.wave_height": (np.full(n, 0.3), "m"),
+        "environment.wave_period": (np.full(n, 5.0), "s"),
+        "environment.wave_from": (np.full(n, np.pi / 4), "rad"),
+        "environment.elevation": (0.075 * smooth_noise(generator, n, 3), "m"),
+        "environment.wave_seed": (np.full(n, 7), "1"),
+    }
+
+
+@pytest.fixture(scope="session")
+def four_corner():
+    """Function from the output interval to a table of 1100 s. [s]"""
+
+    def table(interval=0.5):
+        time = np.arange(int(round(1100 / interval)) + 1) * interval
+        generator = np.random.default_rng(3)
+        signals = {**poses(time, generator), **loads(time, generator), **weather(time, generator)}
+        for name in "uvr":
+            signals[f"vessel.{name}"] = (0.05 * smooth_noise(generator, len(time), 40), "rad/s" if name == "r" else "m/s")
+        return xr.Dataset(
+            {k: ("time", v, {"units": unit, "long_name": f"made-up {k}"}) for k, (v, unit) in signals.items()},
+            coords={"time": ("time", time, {"units": "s"})},
+        )
+
+    return table
