@@ -328,14 +328,14 @@ def drift_table(text):
     ValueError
         Where the table is no complete grid from 0 to 180 deg.
     """
-    rows = {(row[0], row[1]): row[2:] for row in parse(text) if row[0] <= OMEGA_DRIFT_MAX}
-    omegas = tuple(sorted({omega for omega, _ in rows}))
-    headings = tuple(sorted({heading for _, heading in rows}))
-    if not rows or len(rows) != len(omegas) * len(headings) or {len(row) for row in rows.values()} != {3}:
-        raise ValueError("drift table: rows 'omega heading X Y N' must hold every heading at every frequency")
+    rows = [row for row in parse(text) if row[0] <= OMEGA_DRIFT_MAX]
+    loads = {row[:2]: row[2:] for row in rows if len(row) == 5}
+    omegas, headings = (tuple(sorted({key[i] for key in loads})) for i in (0, 1))
+    if not rows or not len(rows) == len(loads) == len(omegas) * len(headings):
+        raise ValueError("drift table: rows 'omega heading X Y N' must hold every heading at every frequency once")
     if (headings[0], headings[-1]) != (0.0, 180.0):
         raise ValueError(f"drift table: headings from {headings[0]} to {headings[-1]}; must go from 0 to 180 deg")
-    starboard = [tuple(zip(*(rows[omega, heading] for omega in omegas), strict=True)) for heading in headings]
+    starboard = [tuple(zip(*(loads[omega, heading] for omega in omegas), strict=True)) for heading in headings]
     port = [(X, tuple(-Yi for Yi in Y), tuple(-Ni for Ni in N)) for X, Y, N in starboard[:0:-1]]
     circle = [-heading for heading in headings[:0:-1]] + list(headings)
     return DriftTable(omegas, tuple(heading * pi / 180.0 for heading in circle), tuple(port + starboard))
