@@ -105,8 +105,8 @@ class HullParameters:
 
     @cached_property
     def contributions(self):
-        """The contributions that this hull has coefficients for, by name."""
-        return {name: load for name, (load, names) in CONTRIBUTIONS.items() if any(map(self._used, names))}
+        """Names of the contributions that this hull has coefficients for."""
+        return tuple(name for name, (_, names) in CONTRIBUTIONS.items() if any(map(self._used, names)))
 
     @cached_property
     def inverse_mass(self):
@@ -144,8 +144,8 @@ def hull_loads(u_r, v_r, r, *, hull):
         X, Y, N. [N, N, N.m]
     """
     X = Y = N = 0.0 * u_r
-    for contribution in hull.contributions.values():
-        dX, dY, dN = contribution(u_r, v_r, r, hull=hull)
+    for name in hull.contributions:
+        dX, dY, dN = CONTRIBUTIONS[name][0](u_r, v_r, r, hull=hull)
         X, Y, N = X + dX, Y + dY, N + dN
     return X, Y, N
 

@@ -1,27 +1,19 @@
 """Thrusters: from a thrust command over drive, motor and shaft to the loads on the ship.
 
-The drive limits the command and its rate, and turns it into motor torque by a PI law on shaft speeds. With g(T) the
-shaft speed that gives T at bollard and Q_b(n) the torque there,
-
-    Q_cmd = Q_b(n_d) + k_p 2π (n_d - n) + z,  n_d = g(T_cmd),  ż = k_i 2π (n_d - g(T)),
-
-T the delivered thrust: its estimate is assumed to be exact. At bollard g(T) = n, an ordinary PI speed loop, as linear
-through zero thrust as elsewhere; with inflow the integral brings the thrust, not the speed, to what was asked. Where
-the motor's limits cut the torque, z follows back at k_i/k_p. The speed limit lets the shaft near n_max at rate k_p/I.
+Limits, drive and motor are in `drive`, the propeller in `propeller`; here is what each kind of thruster adds to them.
 """
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from .drive import Thruster, at_rest, drive_step
 from .kinematics import load_at, velocity_at
-from .maths import clip, cos, exp, hypot, maximum, minimum, pi, rk4, sin, sqrt, substeps, where, wrap
+from .maths import clip, cos, exp, hypot, pi, sin, sqrt, where, wrap
 from .propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
 from .quantity import quantity
 
-_LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
 _TURN = 2.0 * pi
 _LIMITS = "Skulstad 2021, paper V, Table I, grade A"
-_THRUST_TOLERANCE = 1.0  # N, nearer than this the command counts as reached
 
 
 @dataclass(frozen=True)
@@ -30,7 +22,7 @@ class AzimuthParameters(PropellerParameters):
 
     x: float = quantity(-14.02, "m", "position forward", "allocator of the thesis, grade B", tolerance=0.02)
     y: float = quantity(0.0, "m", "position to starboard", "one unit on the centreline", tolerance=0.02)
-    side_force: float = quantity(
+    side_force_coefficient: float = quantity(
         0.80,
         "1",
         "side force coefficient: momentum drag and strut",
@@ -94,33 +86,6 @@ class TunnelParameters:
     integral_gain: float = quantity(120.0, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
 
 
-class Thruster(NamedTuple):
-    """State of a thruster.
-
-    Parameters
-    ----------
-    n : float or (...) array or tensor
-        Shaft speed, of a tunnel thruster its motor's. [rev/s]
-    integral : like n
-        Integral part z of the drive. [N.m]
-    thrust_cmd : like n
-        Command within its limits and rate. [N]
-    azimuth : like n
-        Direction of positive thrust, clockwise from the bow; π/2 for a tunnel. [rad]
-    torque : like n
-        Torque of the motor. [N.m]
-    saturated : bool or array
-        Running at a limit of force, of its rate, or of the motor.
-    """
-
-    n: Any
-    integral: Any
-    thrust_cmd: Any
-    azimuth: Any
-    torque: Any
-    saturated: Any
-
-
 class Loads(NamedTuple):
     """What a thruster does to the ship.
 
@@ -137,22 +102,6 @@ class Loads(NamedTuple):
     tau_X: Any
     tau_Y: Any
     tau_N: Any
-
-
-def at_rest(azimuth):
-    """A thruster that stands still.
-
-    Parameters
-    ----------
-    azimuth : float or (...) array or tensor
-        Direction of positive thrust. [rad]
-
-    Returns
-    -------
-    Thruster
-    """
-    zero = 0.0 * azimuth
-    return Thruster(zero, zero, zero, azimuth, zero, False)
 
 
 def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, unit):
@@ -180,7 +129,7 @@ def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, u
     """
     azimuth = turned(thruster.azimuth, azimuth_cmd, where(failed, 0.0, unit.azimuth_rate * h))
     u_a, _ = _inflow(azimuth, u_r, v_r, r, unit)
-    return _driven(
+    return drive_step(
         thruster._replace(azimuth=azimuth),
         thrust_cmd,
         failed,
@@ -233,7 +182,7 @@ def azimuth_loads(thruster, u_r, v_r, r, *, unit):
     u_a, u_s = _inflow(azimuth, u_r, v_r, r, unit)
     thrust, _ = propeller_loads(u_a, n, propeller=unit)
     D = unit.diameter
-    side = -unit.side_force * unit.water_density * D * D * (hypot(u_a, u_s) + abs(n) * D) * u_s
+    side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + abs(n) * D) * u_s
     c, s = cos(azimuth), sin(azimuth)
     return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
 
@@ -271,7 +220,7 @@ def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
         square = n * abs(n)
         return loss * k_T * square, k_Q * square
 
-    return _driven(thruster, thrust_cmd, failed, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
+    return drive_step(thruster, thrust_cmd, failed, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
 
 
 def tunnel_replay(n, *, tunnel):
@@ -345,42 +294,3 @@ def _inflow(azimuth, u_r, v_r, r, unit):
     u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
     c, s = cos(azimuth), sin(azimuth)
     return c * u + s * v, c * v - s * u
-
-
-def _driven(thruster, thrust_cmd, failed, h, drive, loads, speed, torque):
-    """Drive, motor and shaft over a step.
-
-    `loads(n)` gives the propeller's thrust and torque, `speed(thrust)` and `torque(n)` its bollard curves.
-    """
-    running = where(failed, 0.0, 1.0)
-    start = running * thruster.thrust_cmd
-    wanted = running * clip(thrust_cmd, drive.thrust_min, drive.thrust_max)
-    reached = start + clip(wanted - start, -drive.thrust_rate * h, drive.thrust_rate * h)
-    slope = (reached - start) / h
-
-    def rates(n, integral, command):
-        n_d, (thrust, load) = speed(command), loads(n)
-        asked, given = motor(n, integral, n_d, load)
-        n_dot = (given - load - drive.friction * _TURN * n) / (_TURN * drive.inertia)
-        follow = drive.integral_gain / drive.proportional_gain * (given - asked)
-        return n_dot, drive.integral_gain * _TURN * (n_d - speed(thrust)) + follow, slope
-
-    def motor(n, integral, n_d, load):
-        asked = torque(n_d) + drive.proportional_gain * _TURN * (n_d - n) + integral
-        return asked, running * _limited(asked, n, load, drive)
-
-    state = thruster.n, running * thruster.integral, start
-    parts = substeps(h, _LONGEST_SUBSTEP)
-    for _ in range(parts):
-        state = rk4(rates, state, h / parts)
-    n, integral, _ = state
-    asked, given = motor(n, integral, speed(reached), loads(n)[1])
-    at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (running > 0.0)
-    return Thruster(n, running * integral, reached, thruster.azimuth, given, at_limit)
-
-
-def _limited(torque, n, load, drive):
-    """Torque within the motor's limits of torque, power and speed."""
-    most = minimum(drive.torque_max, drive.power_max / maximum(_TURN * abs(n), 0.1))
-    gain, n_max = drive.proportional_gain * _TURN, drive.rpm_max / 60.0
-    return clip(torque, maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n)))

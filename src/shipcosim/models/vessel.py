@@ -1,10 +1,13 @@
 """Motion of a ship in surge, sway and yaw, in a current that is uniform and holds over a step."""
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from .hull import hull_loads
-from .kinematics import to_body
-from .maths import cos, rk4, sin, substeps, wrap
+from .kinematics import eta_dot, to_body
+from .load_tables import DRIFT_33M9
+from .maths import rk4, substeps, wrap
+from .quantity import quantity
 
 _LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
 
@@ -26,6 +29,19 @@ class Vessel(NamedTuple):
     u: Any
     v: Any
     r: Any
+
+
+@dataclass(frozen=True)
+class DriftParameters:
+    """What the waves' mean drift finds to act on."""
+
+    drift_table: str = quantity(
+        DRIFT_33M9,
+        "1",
+        "rows 'omega heading X Y N': mean wave drift loads per squared amplitude, N/m2, N.m/m2, by frequency in rad/s "
+        "and heading in deg, 0 following, 90 towards starboard, 180 head",
+        "VERES at zero speed, lengthened hull, grade B",
+    )
 
 
 def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
@@ -54,9 +70,7 @@ def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
     """
 
     def rates(x, y, psi, u_r, v_r, r):
-        c, s = cos(psi), sin(psi)
-        u_r_dot, v_r_dot, r_dot = accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, hull=hull)
-        return c * u_r - s * v_r, s * u_r + c * v_r, r, u_r_dot, v_r_dot, r_dot
+        return *eta_dot(psi, u_r, v_r, r), *accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, hull=hull)
 
     u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
     state = vessel.x, vessel.y, vessel.psi, u_r, v_r, vessel.r

@@ -1,0 +1,59 @@
+"""FMU of an azimuth thruster with its drive."""
+
+from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models.drive import at_rest
+from shipcosim.models.maths import pi, wrap
+from shipcosim.models.thruster import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
+
+
+class AzimuthThruster(Fmu):
+    """Azimuth thruster: drive, motor, ducted propeller in four quadrants, side force."""
+
+    thrust_cmd = Input("N", "commanded thrust")
+    azimuth_cmd = Input("rad", "commanded direction of positive thrust, clockwise from the bow")
+    u_r = Input("m/s", "ship's velocity forward through the water")
+    v_r = Input("m/s", "ship's velocity to starboard through the water")
+    r = Input("rad/s", "ship's yaw rate")
+    failed = Input("1", "without power: no motor torque, direction kept", start=False)
+    rpm_in = Input("rpm", "shaft speed of a replay")
+    azimuth_in = Input("rad", "direction of positive thrust of a replay, clockwise from the bow")
+
+    thrust = Output("N", "delivered thrust along the axis")
+    side_force = Output("N", "force across the axis, 90 deg clockwise of the thrust")
+    azimuth = Output("rad", "direction of positive thrust, clockwise from the bow")
+    rpm = Output("rpm", "shaft speed, negative astern")
+    torque = Output("N.m", "torque of the motor")
+    power = Output("W", "power of the motor")
+    tau_X = Output("N", "force on the ship, forward")
+    tau_Y = Output("N", "force on the ship, to starboard")
+    tau_N = Output("N.m", "yaw moment on the ship")
+    saturated = Output("1", "at a limit of thrust, its rate, or the motor", start=False)
+    available = Output("1", "has not failed", start=True)
+
+    replay = Parameter(False, "1", "shaft speed and direction follow rpm_in and azimuth_in; nothing else acts on them")
+    azimuth_start = Parameter(0.0, "rad", "direction of positive thrust at the start, clockwise from the bow")
+    unit = Parameters(AzimuthParameters)
+
+    def start(self):
+        self.state = self._replayed() if self.replay else at_rest(wrap(self.azimuth_start))
+        self._write()
+
+    def step(self, t, h):
+        if self.replay:
+            self.state = self._replayed()
+        else:
+            command = self.thrust_cmd, self.azimuth_cmd, self.u_r, self.v_r, self.r, self.failed
+            self.state = azimuth_step(self.state, *command, h, unit=self.unit)
+        self._write()
+
+    def _replayed(self):
+        water = self.u_r, self.v_r, self.r
+        return azimuth_replay(self.rpm_in / 60.0, wrap(self.azimuth_in), *water, unit=self.unit)
+
+    def _write(self):
+        state = self.state
+        loads = azimuth_loads(state, self.u_r, self.v_r, self.r, unit=self.unit)
+        self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
+        self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
+        self.power = 2.0 * pi * state.n * state.torque
+        self.saturated, self.available = state.saturated, not self.failed

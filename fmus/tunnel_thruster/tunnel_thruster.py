@@ -1,0 +1,49 @@
+"""FMU of a tunnel thruster with its drive."""
+
+from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models.drive import at_rest
+from shipcosim.models.maths import pi
+from shipcosim.models.thruster import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
+
+
+class TunnelThruster(Fmu):
+    """Tunnel thruster: drive, motor, propeller, loss of thrust under way."""
+
+    thrust_cmd = Input("N", "commanded thrust, positive to starboard")
+    u_r = Input("m/s", "ship's velocity forward through the water")
+    failed = Input("1", "without power: no motor torque", start=False)
+    rpm_in = Input("rpm", "motor speed of a replay")
+
+    thrust = Output("N", "delivered thrust, positive to starboard")
+    rpm = Output("rpm", "motor speed, positive pushes to starboard")
+    torque = Output("N.m", "torque of the motor")
+    power = Output("W", "power of the motor")
+    tau_X = Output("N", "force on the ship, forward")
+    tau_Y = Output("N", "force on the ship, to starboard")
+    tau_N = Output("N.m", "yaw moment on the ship")
+    saturated = Output("1", "at a limit of thrust, its rate, or the motor", start=False)
+    available = Output("1", "has not failed", start=True)
+
+    replay = Parameter(False, "1", "motor speed follows rpm_in; nothing else acts on it")
+    tunnel = Parameters(TunnelParameters)
+
+    def start(self):
+        self.state = self._replayed() if self.replay else at_rest(0.5 * pi)
+        self._write()
+
+    def step(self, t, h):
+        if self.replay:
+            self.state = self._replayed()
+        else:
+            self.state = tunnel_step(self.state, self.thrust_cmd, self.u_r, self.failed, h, tunnel=self.tunnel)
+        self._write()
+
+    def _replayed(self):
+        return tunnel_replay(self.rpm_in / 60.0, tunnel=self.tunnel)
+
+    def _write(self):
+        state = self.state
+        loads = tunnel_loads(state, self.u_r, tunnel=self.tunnel)
+        self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads
+        self.rpm, self.torque, self.power = 60.0 * state.n, state.torque, 2.0 * pi * state.n * state.torque
+        self.saturated, self.available = state.saturated, not self.failed

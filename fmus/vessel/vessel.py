@@ -1,0 +1,136 @@
+"""FMU of the ship: hull, wind and waves under the loads of whatever is connected."""
+
+from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models import waves
+from shipcosim.models.hull import HullParameters, hull_loads
+from shipcosim.models.vessel import DriftParameters, nu_dot, step, through_water
+from shipcosim.models.vessel import Vessel as State
+from shipcosim.models.wind import WindParameters, apparent_wind, wind_loads
+
+
+class Vessel(Fmu):
+    """Ship in surge, sway and yaw, in current, wind and waves."""
+
+    tau_X_1 = Input("N", "force forward, of a thruster, a line, anything")
+    tau_Y_1 = Input("N", "force to starboard, as tau_X_1")
+    tau_N_1 = Input("N.m", "yaw moment, as tau_X_1")
+    tau_X_2 = Input("N", "force forward, second load")
+    tau_Y_2 = Input("N", "force to starboard, second load")
+    tau_N_2 = Input("N.m", "yaw moment, second load")
+    tau_X_3 = Input("N", "force forward, third load")
+    tau_Y_3 = Input("N", "force to starboard, third load")
+    tau_N_3 = Input("N.m", "yaw moment, third load")
+    tau_X_4 = Input("N", "force forward, fourth load")
+    tau_Y_4 = Input("N", "force to starboard, fourth load")
+    tau_N_4 = Input("N.m", "yaw moment, fourth load")
+    tau_X_5 = Input("N", "force forward, fifth load")
+    tau_Y_5 = Input("N", "force to starboard, fifth load")
+    tau_N_5 = Input("N.m", "yaw moment, fifth load")
+    tau_X_6 = Input("N", "force forward, sixth load")
+    tau_Y_6 = Input("N", "force to starboard, sixth load")
+    tau_N_6 = Input("N.m", "yaw moment, sixth load")
+    wind_north = Input("m/s", "velocity of the air towards north")
+    wind_east = Input("m/s", "velocity of the air towards east")
+    current_north = Input("m/s", "velocity of the water towards north")
+    current_east = Input("m/s", "velocity of the water towards east")
+    wave_height = Input("m", "significant wave height Hs", minimum=0.0)
+    wave_period = Input("s", "peak period Tp of the waves", start=6.0)
+    wave_from = Input("rad", "direction the waves come from, clockwise from north")
+    wave_peak_enhancement = Input("1", "gamma of the JONSWAP spectrum", start=3.3)
+    wave_seed = Input("1", "seed of the waves", start=1)
+
+    x = Output("m", "position north, low-frequency")
+    y = Output("m", "position east, low-frequency")
+    psi = Output("rad", "heading, clockwise from north, low-frequency")
+    u = Output("m/s", "velocity forward over ground, low-frequency")
+    v = Output("m/s", "velocity to starboard over ground, low-frequency")
+    r = Output("rad/s", "yaw rate, low-frequency")
+    u_r = Output("m/s", "velocity forward through the water")
+    v_r = Output("m/s", "velocity to starboard through the water")
+    u_dot = Output("m/s2", "rate of u")
+    v_dot = Output("m/s2", "rate of v")
+    r_dot = Output("rad/s2", "rate of r")
+    x_wave = Output("m", "first-order motion north")
+    y_wave = Output("m", "first-order motion east")
+    psi_wave = Output("rad", "first-order yaw")
+    u_wave = Output("m/s", "rate of the first-order motion, forward")
+    v_wave = Output("m/s", "rate of the first-order motion, to starboard")
+    r_wave = Output("rad/s", "rate of the first-order yaw")
+    apparent_wind_speed = Output("m/s", "wind speed relative to the ship")
+    apparent_wind_from = Output("rad", "direction the apparent wind comes from, clockwise from the bow")
+    tau_thrusters_X = Output("N", "sum of the connected loads, forward")
+    tau_thrusters_Y = Output("N", "sum of the connected loads, to starboard")
+    tau_thrusters_N = Output("N.m", "sum of the connected loads, yaw")
+    tau_wind_X = Output("N", "wind load forward")
+    tau_wind_Y = Output("N", "wind load to starboard")
+    tau_wind_N = Output("N.m", "wind load, yaw")
+    tau_drift_X = Output("N", "wave drift load forward")
+    tau_drift_Y = Output("N", "wave drift load to starboard")
+    tau_drift_N = Output("N.m", "wave drift load, yaw")
+    tau_hull_X = Output("N", "load of the water on the moving hull, forward")
+    tau_hull_Y = Output("N", "load of the water on the moving hull, to starboard")
+    tau_hull_N = Output("N.m", "load of the water on the moving hull, yaw")
+
+    x_start = Parameter(0.0, "m", "position north at the start")
+    y_start = Parameter(0.0, "m", "position east at the start")
+    psi_start = Parameter(0.0, "rad", "heading at the start")
+    u_start = Parameter(0.0, "m/s", "velocity forward over ground at the start")
+    v_start = Parameter(0.0, "m/s", "velocity to starboard over ground at the start")
+    r_start = Parameter(0.0, "rad/s", "yaw rate at the start")
+    hull = Parameters(HullParameters)
+    wind = Parameters(WindParameters)
+    drift = Parameters(DriftParameters)
+
+    def start(self):
+        self.state = State(self.x_start, self.y_start, self.psi_start, self.u_start, self.v_start, self.r_start)
+        self._meet_waves(self.start_time)
+        self._write()
+
+    def step(self, t, h):
+        tau = self._loads()
+        self.state = step(self.state, *tau, self.current_north, self.current_east, h, hull=self.hull)
+        self._meet_waves(t + h)
+        self._write()
+
+    def _loads(self):
+        """Sum of all loads from outside, at the present state."""
+        ship = self.state
+        self.apparent_wind_speed, self.apparent_wind_from = apparent_wind(
+            ship.psi, ship.u, ship.v, self.wind_north, self.wind_east
+        )
+        self.tau_wind_X, self.tau_wind_Y, self.tau_wind_N = wind_loads(
+            self.apparent_wind_speed, self.apparent_wind_from, wind=self.wind
+        )
+        X = self.tau_X_1 + self.tau_X_2 + self.tau_X_3 + self.tau_X_4 + self.tau_X_5 + self.tau_X_6
+        Y = self.tau_Y_1 + self.tau_Y_2 + self.tau_Y_3 + self.tau_Y_4 + self.tau_Y_5 + self.tau_Y_6
+        N = self.tau_N_1 + self.tau_N_2 + self.tau_N_3 + self.tau_N_4 + self.tau_N_5 + self.tau_N_6
+        self.tau_thrusters_X, self.tau_thrusters_Y, self.tau_thrusters_N = X, Y, N
+        return (
+            X + self.tau_wind_X + self.tau_drift_X,
+            Y + self.tau_wind_Y + self.tau_drift_Y,
+            N + self.tau_wind_N + self.tau_drift_N,
+        )
+
+    def _meet_waves(self, t):
+        ship, hull = self.state, self.hull
+        load, motion = waves.wave_response(
+            t,
+            *ship[:5],
+            waves.components(
+                self.wave_height, self.wave_period, self.wave_from, self.wave_peak_enhancement, self.wave_seed
+            ),
+            waves.drift_table(self.drift.drift_table),
+            length=hull.length,
+            breadth=hull.breadth,
+            draught=hull.draught,
+        )
+        self.tau_drift_X, self.tau_drift_Y, self.tau_drift_N = load
+        self.x_wave, self.y_wave, self.psi_wave, self.u_wave, self.v_wave, self.r_wave = motion
+
+    def _write(self):
+        tau, hull = self._loads(), self.hull
+        self.x, self.y, self.psi, self.u, self.v, self.r = ship = self.state
+        current = self.current_north, self.current_east
+        self.u_r, self.v_r = through_water(ship.psi, ship.u, ship.v, *current)
+        self.u_dot, self.v_dot, self.r_dot = nu_dot(ship, *tau, *current, hull=hull)
+        self.tau_hull_X, self.tau_hull_Y, self.tau_hull_N = hull_loads(self.u_r, self.v_r, ship.r, hull=hull)
