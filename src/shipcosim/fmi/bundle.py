@@ -85,15 +85,19 @@ for path in map(str, Path(__file__).parent.rglob("*.py")):
     linecache.cache[path] = len(text), None, text.splitlines(True), path
 '''
 
-ENTRY = '''"""Where the binary enters. The folder that it has put on the host's sys.path is taken off again."""
+ENTRY = '''"""Where the binary enters: it runs this file for every instance, and once more when it is imported."""
 
+import ctypes
 import sys
 from os.path import isfile, join
 
+# the binary gives up a reference to this namespace that it does not own
+ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
 try:
     import {modules}
     from {package}.{script} import {cls}
 finally:
+    # the binary has put this folder on the host's path
     if sys.path and isfile(join(sys.path[0], "{entry}.py")):
         del sys.path[0]
 '''

@@ -242,7 +242,7 @@ class Fmi2Slave:
         self.messages.append(Message(STATUSES.index(status), f"logStatus{status.capitalize()}", text))
 
     def _failure(self, error):
-        """The error to raise for any other: whose and when, what was logged before, and the traceback below the shell."""
+        """The error to raise instead: whose and when, what was logged before, the traceback below the shell."""
         text = str(error) if isinstance(error, FmuError) else f"exception\n{_traceback(error)}"
         text = f"{self.instance_name} at t = {self._time:.9g} s: {text}"
         if self._in_binary:
