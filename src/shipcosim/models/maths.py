@@ -156,9 +156,13 @@ def interp_columns(x, xs, *columns):
     """
     if not isinstance(x, float):
         return [interp(x, xs, ys) for ys in columns]
-    i = min(max(bisect_right(xs, x) - 1, 0), len(xs) - 2)
-    share = min(max((x - xs[i]) / (xs[i + 1] - xs[i]), 0.0), 1.0)
-    return [ys[i] + (ys[i + 1] - ys[i]) * share for ys in columns]
+    if x <= xs[0]:
+        return [ys[0] for ys in columns]
+    if x >= xs[-1]:
+        return [ys[-1] for ys in columns]
+    i = bisect_right(xs, x)
+    share = (x - xs[i - 1]) / (xs[i] - xs[i - 1])
+    return [ys[i - 1] + (ys[i] - ys[i - 1]) * share for ys in columns]
 
 
 def rk4(rates, state, h):

@@ -10,7 +10,7 @@ propeller B4-70, P/D 1.4, scaled so that both bollard points are met (assumed; g
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -57,6 +57,7 @@ _OUTSIDE = ((-180.0, -30.0, 0.0, _END, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1
 _STEP = 0.1  # deg; linear interpolation then errs by at most 2e-5 in CT and 5e-6 in CQ, 1e-4 of their bollard values
 _AREA = pi / 4.0  # of the disc, in D^2
 _TIP = 0.7 * pi  # speed of the reference section in n D
+_ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,15 @@ class PropellerParameters:
         1.0, "1", "further factor on the thrust outside the first quadrant", "neutral", tolerance=0.05, minimum=0.0
     )
     torque_scale: float = quantity(1.0, "1", "factor on the torque", "neutral", minimum=0.0)
+
+    @cached_property
+    def bollard(self):
+        """Thrust, then torque, over squared shaft speed at no speed, each ahead and astern. [N.s2, N.m.s2]"""
+        D, (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.diameter, _bollard()
+        K = self.water_density * D**4
+        thrust, torque = K * self.thrust_scale, K * D * self.torque_scale
+        astern = thrust * self.thrust_scale_outside * KT_astern
+        return thrust * KT_ahead, astern, torque * KQ_ahead, torque * KQ_astern
 
 
 def propeller_loads(u_a, n, *, propeller):
@@ -129,9 +139,8 @@ def bollard_torque(n, *, propeller):
     like n
         Torque. [N.m]
     """
-    ahead, astern = _bollard()[1]
-    square = propeller.torque_scale * propeller.water_density * propeller.diameter**5 * n * abs(n)
-    return square * where(n < 0.0, astern, ahead)
+    _, _, ahead, astern = propeller.bollard
+    return n * abs(n) * where(n < 0.0, astern, ahead)
 
 
 def bollard_speed(thrust, *, propeller):
@@ -149,9 +158,8 @@ def bollard_speed(thrust, *, propeller):
     like thrust
         Shaft speed. [rev/s]
     """
-    ahead, astern = _bollard()[0]
-    K = propeller.thrust_scale * propeller.water_density * propeller.diameter**4
-    speed = sqrt((abs(thrust) + 1e-12) / (K * where(thrust < 0.0, astern * propeller.thrust_scale_outside, ahead)))
+    ahead, astern, _, _ = propeller.bollard
+    speed = sqrt((abs(thrust) + _ALMOST_NONE) / where(thrust < 0.0, astern, ahead))
     return where(thrust < 0.0, -speed, speed)
 
 
@@ -199,8 +207,8 @@ def _arrays():
 
 @lru_cache(maxsize=1)
 def _bollard():
-    """KT ahead and astern, KQ ahead and astern (negative n gives negative torque)."""
+    """KT ahead and astern, KQ ahead and astern, over n abs(n)."""
     _, ct, cq, _ = _tables()
     factor = 0.5 * _AREA * _TIP**2
     middle = len(ct) // 2
-    return (factor * ct[middle], -factor * ct[0]), (factor * cq[middle], -factor * cq[0])
+    return factor * ct[middle], -factor * ct[0], factor * cq[middle], -factor * cq[0]

@@ -13,6 +13,7 @@ from .propeller import PropellerParameters, bollard_speed, bollard_torque, prope
 from .quantity import quantity
 
 _TURN = 2.0 * pi
+_ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
 _LIMITS = "Skulstad 2021, paper V, Table I, grade A"
 
 
@@ -214,7 +215,8 @@ def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
     k_T, k_Q = 3600.0 * tunnel.thrust_coefficient, 3600.0 * tunnel.torque_coefficient
 
     def speed(thrust):
-        return where(thrust < 0.0, -1.0, 1.0) * sqrt((abs(thrust) + 1e-12) / k_T)
+        n = sqrt((abs(thrust) + _ALMOST_NONE) / k_T)
+        return where(thrust < 0.0, -n, n)
 
     def loads(n):
         square = n * abs(n)
