@@ -1,0 +1,32 @@
+"""Ctrl-C while FMUs run."""
+
+import signal
+import threading
+from contextlib import contextmanager
+
+
+@contextmanager
+def held_back():
+    """Hold Ctrl-C back until the callable that this yields is called, which then raises KeyboardInterrupt.
+
+    Raised at any moment it would end up in the Python code of an FMU, whose host reports it as an error of the FMU. A
+    second Ctrl-C is not held back: for an FMU that never returns.
+    """
+    noted = []
+
+    def check():
+        if noted:
+            raise KeyboardInterrupt
+
+    def note(number, frame):
+        check()
+        noted.append(number)
+
+    if threading.current_thread() is not threading.main_thread():
+        yield check
+        return
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, before)

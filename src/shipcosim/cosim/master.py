@@ -1,0 +1,201 @@
+"""The master: brings the components to a consistent start, then steps them and passes their values on.
+
+Steps are counted in integers. Time is the quotient of two integers, k p / q for a step size of p / q seconds, so that
+it is the double nearest to the true time at every step; libcosim, which counts nanoseconds, gets the same numbers.
+"""
+
+from contextlib import contextmanager
+from fractions import Fraction
+from time import perf_counter
+
+import numpy as np
+
+from shipcosim.cosim.slave import SlaveError
+from shipcosim.errors import Problem
+
+SWEEPS = 200
+"""Sweeps over the components, beyond one for each of them, in which the start has to become consistent."""
+BETWEEN_REPORTS = 0.1  # s
+
+
+class Failure(Exception):
+    """A run cannot go on; `problem` says why."""
+
+    def __init__(self, problem):
+        super().__init__(str(problem))
+        self.problem = problem
+
+
+def step_times(step_size, first, last):
+    """Times of the steps from one number to another, both included.
+
+    Examples
+    --------
+    >>> step_times(0.05, 0, 3).tolist()
+    [0.0, 0.05, 0.1, 0.15]
+    """
+    step = Fraction(step_size).limit_denominator(10**9)
+    return np.arange(first, last + 1) * float(step.numerator) / float(step.denominator)
+
+
+class Master:
+    """A system on its way through time.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+        In the order in which they step.
+    exchanges : mapping of str to Exchange
+        By kind.
+    texts : sequence of Text
+        Connections between String variables.
+    handovers : sequence of Handover
+        Connections into parameters, made during initialisation.
+    names : mapping of str to (sources, inputs)
+        Names of the rows of each exchange, for messages.
+    check_interrupt : callable
+        Raises KeyboardInterrupt where the user wants to stop.
+    sequential : bool
+        Gauss-Seidel: a component sees what those before it have just put out. Otherwise Jacobi: what all put out
+        at the start of the step.
+    """
+
+    def __init__(self, parts, exchanges, texts, handovers, names, check_interrupt, sequential=False):
+        self._parts, self._exchanges, self._texts, self._names = parts, exchanges, texts, names
+        self._handovers = handovers
+        self._check_interrupt, self._sequential = check_interrupt, sequential
+        self._all = list(exchanges.values())
+
+    def initialise(self, stop_time):
+        """Bring all components to a start at which every input equals what feeds it."""
+        for part in self._parts:
+            self._check_interrupt()
+            with _blame(part, "at the start"):
+                part.slave.enter_initialisation(stop_time)
+                part.read()
+        self._settle()
+        for part in self._parts:
+            with _blame(part, "at the end of the initialisation"):
+                part.write()
+                part.slave.exit_initialisation()
+                part.read()
+        self._transfer(0)
+        self._check_finite(0.0)
+
+    def _settle(self):
+        """Sweep over the components until no input changes any more."""
+        self._transfer(0)
+        before = None
+        for _ in range(len(self._parts) + SWEEPS):
+            last, before = before, self._inputs()
+            changed = [handover.transfer() for handover in self._handovers]
+            if last == before and not any(changed):
+                return
+            self._check_interrupt()
+            for part in self._parts:
+                with _blame(part, "at the start"):
+                    part.write()
+                    part.read()
+            self._transfer(0)
+        moving = {name: (last[name], value) for name, value in before.items() if last[name] != value}
+        if any(abs(b - a) > 1e-12 * max(abs(a), abs(b)) for a, b in moving.values()):
+            raise Failure(
+                Problem(
+                    "initialisation",
+                    f"the start does not settle: after {SWEEPS} sweeps {', '.join(moving)} still change.",
+                    "These inputs lie on a loop of direct feedthrough that does not converge. Let one of its "
+                    "components hold its output over a step.",
+                )
+            )
+
+    def _inputs(self):
+        """Values of all inputs by name."""
+        return {
+            name: value
+            for kind, exchange in self._exchanges.items()
+            for name, value in zip(self._names[kind][1], exchange.inputs.tolist(), strict=True)
+        }
+
+    def run(self, times, actions, settings, record, every, progress=None):
+        """Step to the end, recording rows.
+
+        Parameters
+        ----------
+        times : (n + 1,) array
+            Times of the steps. [s]
+        actions : mapping of int to sequence of callables
+            What events do before the step of this number.
+        settings : sequence of (array, (n + 1, m) array)
+            Settings of an exchange and the values that they take at each step.
+        record : callable
+            Called with a row's number when the values are those of this row.
+        every : int
+            Steps from one row to the next.
+        progress : callable, optional
+            Called with (steps done, steps in all) some ten times a second.
+
+        Raises
+        ------
+        Failure, KeyboardInterrupt
+        """
+        last, report_at = len(times) - 1, perf_counter()
+        for k in range(last):
+            if k in actions:
+                self._act(actions[k])
+            if k % every == 0:
+                record(k // every)
+            self._check_interrupt()
+            if progress is not None and perf_counter() >= report_at:
+                progress(k, last)
+                report_at = perf_counter() + BETWEEN_REPORTS
+            self._step(k, float(times[k]))
+            for target, values in settings:
+                target[:] = values[k + 1]
+            self._transfer(k + 1)
+            self._check_finite(times[k + 1])
+        if last % every == 0:
+            record(last // every)
+        if progress is not None:
+            progress(last, last)
+
+    def _act(self, actions):
+        for action in actions:
+            action()
+        for exchange in self._all:
+            exchange.refresh()
+
+    def _step(self, k, time):
+        for part in self._parts:
+            if self._sequential:
+                self._transfer(k + 1)
+            try:
+                if k % part.multiple == 0:
+                    part.write()
+                    part.step(time)
+                if (k + 1) % part.multiple == 0:
+                    part.read()
+            except SlaveError as error:
+                raise Failure(Problem(part.name, f"failed in the step from t = {time:.9g} s. {error}")) from error
+
+    def _transfer(self, count):
+        for exchange in self._all:
+            exchange.transfer(count)
+        for text in self._texts:
+            text.transfer(count)
+
+    def _check_finite(self, time):
+        reals = self._exchanges.get("Real")
+        if reals is None or np.isfinite(reals.seen).all():
+            return
+        row = int(np.flatnonzero(~np.isfinite(reals.seen))[0])
+        found = f"is {reals.seen[row]} at t = {time:.9g} s."
+        raise Failure(Problem(self._names["Real"][0][row], found, "Every value has to be a finite number."))
+
+
+@contextmanager
+def _blame(part, when):
+    """Turn what a slave says into a Failure of its component."""
+    try:
+        yield
+    except SlaveError as error:
+        raise Failure(Problem(part.name, f"failed {when}. {error}")) from error

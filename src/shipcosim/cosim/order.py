@@ -1,0 +1,27 @@
+"""In which order components step."""
+
+from shipcosim.cosim.plan import Plan
+
+ORDERS = ("jacobi", "gauss-seidel")
+
+
+def stepping_order(plan: Plan, order: str) -> list[str]:
+    """Names of the components in the order in which they step.
+
+    Jacobi has no order: the system's. Gauss-Seidel puts every component behind those that feed it; where these form a
+    loop, the first of it in the system goes first.
+    """
+    names = list(plan.system.components)
+    if order == "jacobi":
+        return names
+    feeds = {name: set() for name in names}
+    for connection in plan.system.connections:
+        source, target = connection.source[0], connection.target[0]
+        if source and target and source != target:
+            feeds[target].add(source)
+    ordered = []
+    while names:
+        ready = (name for name in names if feeds[name].issubset(ordered))
+        ordered.append(next(ready, names[0]))
+        names.remove(ordered[-1])
+    return ordered

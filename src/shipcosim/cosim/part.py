@@ -1,0 +1,103 @@
+"""A component in a run: its slave and the calls that exchange its values, prepared once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from shipcosim.cosim.exchange import Exchange
+from shipcosim.cosim.slave import FAILED, Slave
+
+
+@dataclass
+class Discrete:
+    """Prepared call that sets inputs of a type other than Real, which is made only when a value has changed."""
+
+    exchange: Exchange
+    call: Callable[[], int]
+    version: int = -1
+
+
+@dataclass
+class Part:
+    """A component in a run.
+
+    Parameters
+    ----------
+    name : str
+        Of the component.
+    slave : Slave
+        Its FMU.
+    multiple : int
+        Its step, in base steps.
+    step_size : float
+        The same. [s]
+    """
+
+    name: str
+    slave: Slave
+    multiple: int
+    step_size: float
+    _set_reals: Callable[[], int] | None = None
+    _discrete: list[Discrete] = field(default_factory=list)
+    _gets: list[tuple[str, Callable[[], int]]] = field(default_factory=list)
+
+    def __post_init__(self):
+        self._do_step = self.slave.stepper()
+
+    def bind(self, kind: str, exchange: Exchange, outputs: tuple, inputs: tuple) -> None:
+        """Prepare the calls for the variables of one kind.
+
+        Parameters
+        ----------
+        kind : str
+            Real, Integer or Boolean.
+        exchange : Exchange
+            Holds their values.
+        outputs, inputs : (first row, variables)
+            Rows and variables of this component.
+        """
+        (first, variables), (first_input, driven) = outputs, inputs
+        if variables:
+            buffer = exchange.raw[first : first + len(variables)]
+            self._gets.append((f"Get{kind}", self.slave.getter(kind, variables, buffer)))
+        if driven:
+            call = self.slave.setter(kind, driven, exchange.inputs[first_input : first_input + len(driven)])
+            if kind == "Real":
+                self._set_reals = call
+            else:
+                self._discrete.append(Discrete(exchange, call))
+
+    def write(self) -> None:
+        """Hand the inputs over to the FMU."""
+        if self._set_reals is not None and (status := self._set_reals()) >= FAILED:
+            self.slave.check("SetReal", status)
+        for discrete in self._discrete:
+            if discrete.version != discrete.exchange.version:
+                self.slave.check("SetInteger or SetBoolean", discrete.call())
+                discrete.version = discrete.exchange.version
+
+    def step(self, time: float) -> None:
+        """Advance the FMU by its step from a time."""
+        if (status := self._do_step(time, self.step_size)) >= FAILED:
+            self.slave.check("DoStep", status)
+
+    def read(self) -> None:
+        """Take the outputs over from the FMU."""
+        for function, call in self._gets:
+            if (status := call()) >= FAILED:
+                self.slave.check(function, status)
+
+
+def set_start_values(slave: Slave, values: list[tuple]) -> None:
+    """Set (variable, value) pairs on an FMU that is not initialised yet."""
+    by_kind = {}
+    for variable, value in values:
+        by_kind.setdefault("Integer" if variable.kind == "Enumeration" else variable.kind, []).append((variable, value))
+    for kind, pairs in by_kind.items():
+        variables, numbers = zip(*pairs, strict=True)
+        if kind == "String":
+            slave.set_strings(variables, numbers)
+        else:
+            buffer = np.array(numbers, dtype=np.float64 if kind == "Real" else np.int32)
+            slave.check(f"Set{kind}", slave.setter(kind, variables, buffer)())

@@ -1,0 +1,199 @@
+"""Before anything is instantiated: which values travel where, in rows of a few arrays, and what happens when."""
+
+from dataclasses import dataclass, field
+from math import lcm
+
+from shipcosim.cosim.exchange import Wire
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario, whole_steps
+from shipcosim.ssp import Connection, System, Variable
+
+KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "Real": "Real"}
+"""Arrays that values of a type travel in. Real comes last, since it may follow an Integer."""
+
+End = tuple[str | None, str]
+"""Component (None: the outermost system) and variable."""
+
+
+@dataclass
+class Layout:
+    """Rows of one kind.
+
+    Parameters
+    ----------
+    outputs : list of End
+        Outputs of all components, component by component.
+    settings : dict of End to start value
+        Values from outside: inputs of the system, inputs that hang on no connection but change, and sources of
+        another kind.
+    inputs : list of End
+        Inputs that are set in every step, component by component.
+    wires : list of Wire
+        What feeds each of the inputs.
+    crossings : list of (setting, kind, source)
+        Settings that follow a row of another kind.
+    """
+
+    outputs: list[End] = field(default_factory=list)
+    settings: dict[End, object] = field(default_factory=dict)
+    inputs: list[End] = field(default_factory=list)
+    wires: list[Wire] = field(default_factory=list)
+    crossings: list[tuple[int, str, int]] = field(default_factory=list)
+
+    @property
+    def names(self):
+        """Names of the sources and of the inputs, for messages."""
+        return [label(end) for end in (*self.outputs, *self.settings)], [label(end) for end in self.inputs]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run will do.
+
+    Parameters
+    ----------
+    system : System
+        With the scenario's start values.
+    multiples : dict of str to int
+        Step of each component, in base steps.
+    layouts : dict of str to Layout
+        By kind.
+    texts, handovers : list of Connection
+        Between String variables; from component to component into a parameter, once at the start.
+    touched : set of End
+        What events change.
+    """
+
+    system: System
+    multiples: dict[str, int]
+    layouts: dict[str, Layout]
+    texts: list[Connection]
+    handovers: list[Connection]
+    touched: set[End]
+
+    def variable(self, end: End) -> Variable:
+        """The FMU's variable."""
+        return self.system.components[end[0]].fmu.variables[end[1]]
+
+    def rows(self, kind: str, name: str) -> tuple[tuple, tuple]:
+        """First row and variables of a component's outputs and inputs."""
+        layout = self.layouts[kind]
+        return tuple(
+            (
+                next((i for i, end in enumerate(ends) if end[0] == name), 0),
+                [self.variable(e) for e in ends if e[0] == name],
+            )
+            for ends in (layout.outputs, layout.inputs)
+        )
+
+
+def label(end: End) -> str:
+    """Name of a signal as users write it."""
+    return end[1] if end[0] is None else f"{end[0]}.{end[1]}"
+
+
+def make_plan(system: System, scenario: Scenario, fed=()) -> Plan:
+    """Plan of a run.
+
+    Parameters
+    ----------
+    system : System
+        With the scenario's start values.
+    scenario : Scenario
+        Checked against the system.
+    fed : collection of str
+        Inputs of the system that a table feeds.
+
+    Raises
+    ------
+    ShipcosimError
+        If the master cannot run this: arrays, no co-simulation, steps that do not fit.
+    """
+    if problems := [p for component in system.components.values() for p in _component_problems(component, scenario)]:
+        raise ShipcosimError(problems)
+    touched = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
+    multiples = {
+        c.name: whole_steps(c.step_size or scenario.step_size, scenario.step_size) for c in system.components.values()
+    }
+    plan = Plan(system, multiples, {kind: Layout() for kind in KINDS.values()}, [], [], touched)
+    into = {}
+    for connection in system.connections:
+        if connection.target[0] is None or not _is_fed(connection.source, plan, fed):
+            continue
+        if connection.initial:  # from a parameter of the system it has got its value as a start value
+            plan.handovers += [connection] if connection.source[0] is not None else []
+        elif plan.variable(connection.target).kind == "String":
+            plan.texts.append(connection)
+        else:
+            into[connection.target] = connection
+    _lay_out(plan, into)
+    return plan
+
+
+def _component_problems(component, scenario):
+    step, base = component.step_size, scenario.step_size
+    if "CoSimulation" not in component.fmu.interfaces or component.implementation == "ModelExchange":
+        yield Problem(
+            component.name, f"{component.fmu.path.name} is run as model exchange.", "Co-simulation is needed."
+        )
+    if step is not None and not whole_steps(step, base):
+        yield Problem(component.name, f"its step of {step:g} s is no multiple of the step size {base:g} s.")
+    elif step is not None and whole_steps(scenario.stop_time, step) is None:
+        yield Problem(
+            component.name, f"its step of {step:g} s does not fit into the {scenario.stop_time:g} s of the run."
+        )
+    arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
+    if arrays:
+        yield Problem(component.name, f"has arrays, which the master does not handle: {', '.join(arrays[:5])}.")
+
+
+def _is_fed(source, plan, fed):
+    """Whether something comes from a source: inputs of the system may have neither start value nor table nor event."""
+    component, name = source
+    if component is not None:
+        return True
+    signal = plan.system.inputs.get(name)
+    return signal is not None and (signal.start is not None or name in fed or source in plan.touched)
+
+
+def _lay_out(plan, into):
+    sources = {connection.source for connection in into.values()}
+    for component in plan.system.components.values():
+        for variable in component.fmu.variables.values():
+            end, kind = (component.name, variable.name), KINDS.get(variable.kind)
+            if kind is not None and (variable.causality == "output" or end in sources):
+                plan.layouts[kind].outputs.append(end)
+    for component in plan.system.components.values():
+        for variable in component.fmu.variables.values():
+            end = component.name, variable.name
+            if end in into or (end in plan.touched and variable.causality != "output"):
+                layout = plan.layouts[KINDS[variable.kind]]
+                layout.inputs.append(end)
+                layout.wires.append(_wire(plan, layout, end, into.get(end)))
+
+
+def _wire(plan, layout, end, connection):
+    """What feeds an input: a connection, or where there is none a setting of its own."""
+    own = plan.multiples[end[0]]
+    if connection is None:
+        start = plan.system.components[end[0]].start_value(end[1])
+        return Wire(_setting(layout, end, start or 0), period=own)
+    how = connection.factor, connection.offset, connection.mapping
+    component, name = connection.source
+    if component is None:
+        return Wire(_setting(layout, connection.source, plan.system.inputs[name].start or 0), *how, own)
+    period = lcm(own, plan.multiples[component])
+    kind = KINDS[plan.variable(connection.source).kind]
+    outputs = plan.layouts[kind].outputs
+    row = outputs.index(connection.source)
+    if plan.layouts[kind] is layout:
+        return Wire(row, *how, period)
+    setting = _setting(layout, connection.source, 0)
+    layout.crossings.append((setting - len(layout.outputs), kind, row))
+    return Wire(setting, *how, period)
+
+
+def _setting(layout, end, start):
+    """Row of a setting among the sources; made if there is none of this name."""
+    layout.settings.setdefault(end, start)
+    return len(layout.outputs) + list(layout.settings).index(end)

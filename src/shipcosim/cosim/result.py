@@ -1,0 +1,108 @@
+"""The table of a run, and what has to be known to repeat it."""
+
+import hashlib
+import json
+import platform
+from importlib.metadata import version
+
+import numpy as np
+
+from shipcosim import __version__
+from shipcosim.cosim.plan import KINDS, Plan, label
+from shipcosim.scenario import Scenario
+from shipcosim.series import make_table
+
+
+def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
+    """Settings and inputs of a kind that the table shows: those of the system, and inputs that no output determines."""
+    layout = plan.layouts[kind]
+    settings = [i for i, end in enumerate(layout.settings) if end[0] is None]
+    fed = {connection.target for connection in plan.system.connections}
+    inputs = [i for i, end in enumerate(layout.inputs) if end not in fed or end in plan.touched]
+    return settings, inputs
+
+
+def table_of(plan: Plan, scenario: Scenario, times: np.ndarray, columns: dict, attributes: dict):
+    """Table of a run.
+
+    Parameters
+    ----------
+    plan, scenario
+        Of the run.
+    times : (n,) array
+        Of the rows. [s]
+    columns : dict of str to list of (n,) array
+        By kind: outputs, settings and inputs as the recorder has them.
+    attributes : dict
+        What is known beyond the plan and the scenario.
+    """
+    values = {}
+    for kind, arrays in columns.items():
+        layout = plan.layouts[kind]
+        settings, inputs = recorded_rows(plan, kind)
+        names = list(layout.settings)
+        ends = [*layout.outputs, *(names[i] for i in settings), *(layout.inputs[i] for i in inputs)]
+        values |= zip(ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True)
+    shown = [*_connectors(plan, values, len(times)), *_variables(plan, values, len(times))]
+    return make_table(times, shown, _attributes(plan, scenario) | attributes)
+
+
+def _connectors(plan, values, n):
+    """Columns of the outermost system's inputs and outputs."""
+    for name, signal in plan.system.inputs.items():
+        if (None, name) in values:
+            yield name, values[None, name], signal.unit or "", signal.description
+    for connection in plan.system.connections:
+        if connection.target[0] is None and (source := values.get(connection.source)) is not None:
+            signal = plan.system.outputs.get(connection.target[1])
+            if signal is not None:
+                yield signal.name, _passed_on(source, connection), signal.unit or "", signal.description
+
+
+def _passed_on(values, connection):
+    if connection.mapping is not None:
+        values = np.array([connection.mapping.get(v, v) for v in values.tolist()], dtype=values.dtype)
+    if (connection.factor, connection.offset) != (1.0, 0.0):
+        values = connection.factor * values + connection.offset
+    return values
+
+
+def _variables(plan, values, n):
+    """Columns of the components' outputs and settings, in the order of the system and of the FMUs."""
+    fed = {connection.target for connection in plan.system.connections}
+    for component in plan.system.components.values():
+        for variable in component.fmu.variables.values():
+            end, kind = (component.name, variable.name), KINDS.get(variable.kind)
+            column = values.get(end)
+            if column is None and kind and variable.causality == "input" and end not in fed:
+                start = component.start_value(variable.name) or 0
+                column = np.full(n, start, dtype={"Real": float, "Integer": np.int32, "Boolean": bool}[kind])
+            if column is not None and variable.causality in ("input", "output", "parameter"):
+                yield label(end), column, variable.unit or "", variable.description
+
+
+def _attributes(plan, scenario):
+    components = plan.system.components.values()
+    starts = {
+        label((c.name, v.name)): c.start_value(v.name)
+        for c in components
+        for v in c.fmu.variables.values()
+        if v.causality == "parameter" or v.name in c.start
+    }
+    starts |= {name: signal.start for name, signal in plan.system.inputs.items() if signal.start is not None}
+    hashes = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in {c.fmu.path for c in components}}
+    return {
+        "scenario": scenario.name,
+        "description": scenario.description,
+        "system": plan.system.name,
+        "step_size": scenario.step_size,
+        "stop_time": scenario.stop_time,
+        "shipcosim_version": __version__,
+        "fmpy_version": version("fmpy"),
+        "numpy_version": version("numpy"),
+        "python_version": platform.python_version(),
+        "start_values": json.dumps(starts, default=str),
+        "seeds": json.dumps({name: value for name, value in starts.items() if name.endswith("seed")}),
+        "events": json.dumps([event.model_dump() for event in scenario.events]),
+        "fmus": json.dumps({c.name: {"file": c.fmu.path.name, "sha256": hashes[c.fmu.path]} for c in components}),
+    }

@@ -1,0 +1,266 @@
+"""One running instance of an FMU, FMI 2.0 or 3.0, behind the same few calls. The only door to FMPy.
+
+Exchanging values is prepared once: `setter` and `getter` bind value references and a NumPy buffer to the function of
+the FMU's library, and what they return is called in every step. Buffers hold Real as float64, Integer (and
+Enumeration) and Boolean as int32, whatever the FMU's own types are.
+"""
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint, cast
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+BUFFER_TYPES = {"Integer": np.int32, "Boolean": np.int32, "Real": np.float64}
+STATUS = ["ok", "warning", "discard", "error", "fatal", "pending"]
+OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
+FAILED = DISCARD
+"""Status from which on a call has not done its work."""
+
+
+class SlaveError(Exception):
+    """A call to an FMU failed. The text is what the FMU said about it."""
+
+
+class Slave:
+    """One instance of an FMU.
+
+    Parameters
+    ----------
+    name : str
+        Name of the component.
+    folder : path
+        Where the FMU is unpacked.
+    identifier : str
+        modelIdentifier of its co-simulation.
+    token : str
+        GUID, or instantiation token in FMI 3.0.
+
+    Raises
+    ------
+    SlaveError
+        If its library cannot be loaded, or it refuses to be instantiated.
+    """
+
+    def __init__(self, name: str, folder: Path, identifier: str, token: str):
+        self.name = name
+        self.messages: list[tuple[int, str]] = []
+        self._is_lost = False
+        self._is_python = (Path(folder) / "resources" / "slavemodule.txt").is_file()
+        here = os.getcwd()
+        try:
+            self._fmu = self._load(
+                guid=token, modelIdentifier=identifier, unzipDirectory=str(folder), instanceName=name
+            )
+            self._instantiate()
+        except Exception as error:
+            raise SlaveError(self.last_words() or f"{error} {_platform_hint(folder)}".strip()) from error
+        finally:
+            os.chdir(here)  # FMPy stays in the library's folder where loading fails
+        self.component = self._fmu.component
+
+    def call(self, function: str, *arguments) -> None:
+        """Call a function of the FMU by its name without prefix, e.g. ``"Terminate"``."""
+        self.check(function, self._function(function)(self.component, *arguments))
+
+    def check(self, function: str, status: int) -> None:
+        """Raise SlaveError if the status says that the function failed."""
+        if status >= FAILED:
+            self._is_lost = status == FATAL
+            label = STATUS[status] if status < len(STATUS) else str(status)
+            raise SlaveError(f"{self._prefix}{function} returned '{label}'. {self.last_words()}".strip())
+
+    def last_words(self) -> str:
+        """What the FMU logged as errors, or else what it logged last."""
+        errors = [text for status, text in self.messages if status >= ERROR]
+        return "\n".join(errors[-3:] or [text for _, text in self.messages[-3:]])
+
+    def remarks(self) -> list[str]:
+        """Warnings that the FMU logged."""
+        return [text for status, text in self.messages if status == WARNING]
+
+    def free(self) -> None:
+        """Free the instance and its library. FMI forbids even this after a fatal error; PythonFMU stands it."""
+        if self._is_python or not self._is_lost:
+            self._fmu.freeInstance()
+
+    def exit_initialisation(self) -> None:
+        """Leave the initialisation mode."""
+        self.call("ExitInitializationMode")
+
+    def terminate(self) -> None:
+        """End the simulation; an FMU that fails to is left alone."""
+        self._function("Terminate")(self.component)
+
+    def _function(self, name):
+        return self._fmu._functions[self._prefix + name]
+
+    def _log(self, status, message):
+        text = (message or b"").decode("utf-8", errors="replace")
+        if status != OK and len(self.messages) < 1000:
+            self.messages.append((status, text.replace("%%", "%") if self._is_python else text))
+
+
+class Slave2(Slave):
+    """An instance of an FMU of FMI 2.0."""
+
+    _prefix = "fmi2"
+
+    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        return self._exchange("Set", kind, variables, buffer)
+
+    def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        return self._exchange("Get", kind, variables, buffer)
+
+    def stepper(self) -> Callable[[float, float], int]:
+        """Prepared call that advances from a time by a step size and returns the status."""
+        do_step, component = self._function("DoStep"), self.component
+        return lambda time, step_size: do_step(component, time, step_size, 1)
+
+    def get_strings(self, variables: Sequence) -> list[str]:
+        """Values of String variables."""
+        texts = (c_char_p * len(variables))()
+        self.call("GetString", _references(variables), len(variables), texts)
+        return [(text or b"").decode() for text in texts]
+
+    def set_strings(self, variables: Sequence, values: Sequence[str]) -> None:
+        """Set String variables."""
+        texts = (c_char_p * len(variables))(*(value.encode() for value in values))
+        self.call("SetString", _references(variables), len(variables), texts)
+
+    def enter_initialisation(self, stop_time: float) -> None:
+        """Enter the initialisation mode at time 0."""
+        self.call("SetupExperiment", 0, 0.0, 0.0, 1, stop_time)
+        self.call("EnterInitializationMode")
+
+    def _exchange(self, verb, kind, variables, buffer):
+        pointer = (c_double if kind == "Real" else c_int) * len(variables)
+        return partial(
+            self._function(verb + kind),
+            self.component,
+            _references(variables),
+            c_size_t(len(variables)),
+            pointer.from_buffer(buffer),
+        )
+
+    @staticmethod
+    def _load(**arguments):
+        from fmpy.fmi2 import FMU2Slave
+
+        return FMU2Slave(**arguments)
+
+    def _instantiate(self):
+        from fmpy import calloc, fmi2, free
+        from fmpy.logging import addLoggerProxy
+
+        callbacks = fmi2.fmi2CallbackFunctions()
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(lambda env, name, status, kind, text: self._log(status, text))
+        callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
+        if not self._is_python:  # PythonFMU logs Python's text as a format: a % in it makes formatting read wild memory
+            addLoggerProxy(byref(callbacks))
+        self._fmu.instantiate(callbacks=callbacks)
+
+
+class Slave3(Slave):
+    """An instance of an FMU of FMI 3.0: scalar variables, no event mode, no early return."""
+
+    _prefix = "fmi3"
+
+    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        groups = self._groups("Set", variables)
+
+        def set_all():
+            for rows, own, call in groups:
+                own[:] = buffer[rows]
+                if (status := call()) >= FAILED:
+                    return status
+            return OK
+
+        return set_all
+
+    def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        groups = self._groups("Get", variables)
+
+        def get_all():
+            for rows, own, call in groups:
+                if (status := call()) >= FAILED:
+                    return status
+                buffer[rows] = own
+            return OK
+
+        return get_all
+
+    def stepper(self) -> Callable[[float, float], int]:
+        """Prepared call that advances from a time by a step size and returns the status."""
+        from ctypes import c_bool
+
+        do_step, event, terminate, early, reached = self._function("DoStep"), c_bool(), c_bool(), c_bool(), c_double()
+        results = byref(event), byref(terminate), byref(early), byref(reached)
+
+        def step(time, step_size):
+            status = do_step(self.component, time, step_size, True, *results)
+            return DISCARD if status < FAILED and (terminate.value or early.value) else status
+
+        return step
+
+    def get_strings(self, variables: Sequence) -> list[str]:
+        """Values of String variables."""
+        texts = (c_char_p * len(variables))()
+        self.call("GetString", _references(variables), len(variables), texts, len(variables))
+        return [(text or b"").decode() for text in texts]
+
+    def set_strings(self, variables: Sequence, values: Sequence[str]) -> None:
+        """Set String variables."""
+        texts = (c_char_p * len(variables))(*(value.encode() for value in values))
+        self.call("SetString", _references(variables), len(variables), texts, len(variables))
+
+    def enter_initialisation(self, stop_time: float) -> None:
+        """Enter the initialisation mode at time 0."""
+        self.call("EnterInitializationMode", False, 0.0, 0.0, True, stop_time)
+
+    def _groups(self, verb, variables):
+        """For each of the FMU's types among the variables: their rows, a buffer of this type and the prepared call."""
+        for name in dict.fromkeys(variable.type for variable in variables):
+            rows = np.array([i for i, variable in enumerate(variables) if variable.type == name])
+            own = np.zeros(len(rows), dtype=_FMI3_TYPES[name])
+            function = self._function(f"{verb}{'Int64' if name == 'Enumeration' else name}")
+            values = cast(own.ctypes.data, function.argtypes[3])
+            references = _references([variables[row] for row in rows])
+            yield rows, own, partial(function, self.component, references, len(rows), values, len(rows))
+
+    @staticmethod
+    def _load(**arguments):
+        from fmpy.fmi3 import FMU3Slave
+
+        return FMU3Slave(**arguments)
+
+    def _instantiate(self):
+        self._fmu.instantiate(logMessage=lambda environment, status, category, text: self._log(status, text))
+
+
+_FMI3_TYPES = {
+    "Float64": np.float64,
+    "Float32": np.float32,
+    "Boolean": np.bool_,
+    "Enumeration": np.int64,
+    **{f"Int{bits}": np.dtype(f"int{bits}") for bits in (8, 16, 32, 64)},
+    **{f"UInt{bits}": np.dtype(f"uint{bits}") for bits in (8, 16, 32, 64)},
+}
+
+
+def _references(variables):
+    return (c_uint * len(variables))(*(variable.value_reference for variable in variables))
+
+
+def _platform_hint(folder):
+    binaries = Path(folder) / "binaries"
+    there = sorted(path.name for path in binaries.iterdir()) if binaries.is_dir() else []
+    return f"The FMU brings binaries for: {', '.join(there) or 'no platform'}; this is {sys.platform}."
