@@ -1,0 +1,157 @@
+"""Every public model function gives the same in floats, NumPy arrays and torch tensors.
+
+To add a function, add a case: the function, some rows of its scalar arguments, and what it takes besides. A function
+whose docstring speaks of an "array or tensor" and that is in no case fails the last test.
+"""
+
+import importlib
+import inspect
+import pkgutil
+from dataclasses import dataclass, field
+from math import pi
+
+import numpy as np
+import pytest
+
+import shipcosim.models
+from shipcosim.models import drive, gusts, hull, kinematics, maths, propeller, thruster, vessel, waves, wind
+from shipcosim.models.ships import parameters
+
+SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
+LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
+PORT = parameters(thruster.AzimuthParameters, "gunnerus-33m9", "port")
+TUNNEL = thruster.TunnelParameters()
+SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
+DRIFT = waves.drift_table(vessel.DriftParameters().drift_table)
+BOX = dict(length=33.9, breadth=9.6, draught=2.7)
+XS, YS = (-1.0, 0.0, 0.5, 2.0), (3.0, -1.0, 4.0, 4.0)
+
+ANGLES = [(-3.0,), (-pi / 2,), (0.0,), (0.4,), (3.1,)]
+PAIRS = [(0.3, -0.2), (-1.0, 1.0), (2.0, 2.5), (0.4, 0.4)]
+WATER = [(0.5, 0.1, 0.01), (-0.4, 0.3, -0.05), (3.0, -0.2, 0.03), (0.0, 0.0, 0.0), (1.0, 0.1, 0.0), (0.0, 0.01, 0.1)]
+SHIP = [(1.0, -2.0, 3.1, 2.0, 0.3, 0.05), (0.0, 0.0, -1.0, -0.2, -0.1, -0.01)]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A function, rows of scalar arguments, how they are put together, and what stays the same."""
+
+    function: object
+    rows: list
+    arrange: object = lambda *row: row
+    constants: dict = field(default_factory=dict)
+
+    def __call__(self, *row):
+        return flat(self.function(*self.arrange(*row), **self.constants))
+
+    def __str__(self):
+        return f"{self.function.__module__.rpartition('.')[2]}.{self.function.__name__}"
+
+
+def of_vessel(*row):
+    return vessel.Vessel(*row[:6]), *row[6:]
+
+
+def of_thruster(*row):
+    return drive.Thruster(*row[:5], False), *row[5:]
+
+
+CASES = [
+    *(Case(getattr(maths, name), ANGLES) for name in ("sin", "cos", "exp", "tanh", "floor", "sign", "wrap")),
+    *(Case(getattr(maths, name), PAIRS) for name in ("atan2", "hypot", "minimum", "maximum")),
+    Case(maths.sqrt, [(0.3,), (4.0,)]),
+    Case(maths.clip, [(0.3, -1.0, 0.2), (0.1, -1.0, 0.2), (-3.0, -1.0, 0.2)]),
+    Case(maths.where, [(True, 0.3, 0.7), (False, 0.3, 0.7)]),
+    Case(maths.interp, [(-2.0,), (-1.0,), (0.3,), (0.5,), (5.0,)], constants=dict(xs=XS, ys=YS)),
+    Case(maths.interp_columns, [(-2.0,), (0.3,), (5.0,)], arrange=lambda x: (x, XS, YS, XS)),
+    Case(maths.rk4, PAIRS, arrange=lambda x, y: (lambda x, y: (y, -maths.sin(x)), (x, y), 0.1)),
+    Case(kinematics.to_ned, [(0.4, 1.0, -2.0), (-2.0, 0.3, 0.1)]),
+    Case(kinematics.to_body, [(0.4, 1.0, -2.0), (-2.0, 0.3, 0.1)]),
+    Case(kinematics.eta_dot, [(0.4, 1.0, -2.0, 0.1), (-2.0, 0.3, 0.1, 0.0)]),
+    Case(kinematics.velocity_at, [(-14.0, 2.0, 1.0, 0.2, 0.1), (13.0, 0.0, 1.0, 0.2, -0.1)]),
+    Case(kinematics.load_at, [(-14.0, 2.0, 1e3, 2e3), (13.0, 0.0, 1e3, -2e3)]),
+    *(Case(hull.hull_loads, WATER, constants=dict(hull=ship)) for ship in (LONG, SHORT)),
+    *(Case(load, WATER, constants=dict(hull=SHORT)) for load, _ in hull.CONTRIBUTIONS.values()),
+    Case(vessel.accelerations, [(*w, 1e3, -2e3, 3e4) for w in WATER], constants=dict(hull=LONG)),
+    Case(vessel.through_water, [(0.4, 1.0, -0.2, 0.3, 0.1), (-3.0, 0.0, 0.2, -0.3, 0.1)]),
+    Case(vessel.nu_dot, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(hull=SHORT)),
+    Case(vessel.step, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(h=0.5, hull=SHORT)),
+    Case(wind.apparent_wind, [(0.4, 1.0, -0.2, -8.0, 3.0), (-3.0, 0.0, 0.2, 5.0, 6.0)]),
+    Case(wind.wind_loads, [(8.0, -2.0), (5.0, 0.0), (3.0, 3.14)], constants=dict(wind=wind.WindParameters())),
+    Case(propeller.propeller_loads, [(*p,) for p in PAIRS] + [(0.0, 0.0), (1.0, 0.0)], constants=dict(propeller=PORT)),
+    Case(propeller.bollard_speed, [(5e3,), (-5e3,), (0.0,)], constants=dict(propeller=PORT)),
+    Case(propeller.bollard_torque, [(2.0,), (-2.0,), (0.0,)], constants=dict(propeller=PORT)),
+    Case(drive.at_rest, ANGLES),
+    Case(
+        thruster.azimuth_step,
+        [(0.5, 100.0, 900.0, 3.0, 500.0, 2e4, -3.0, *w, failed) for w in WATER for failed in (False, True)],
+        of_thruster,
+        dict(h=0.05, unit=PORT),
+    ),
+    Case(thruster.azimuth_replay, [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER], constants=dict(unit=PORT)),
+    Case(
+        thruster.azimuth_loads,
+        [(n, 0.0, 0.0, 0.4, 0.0, *w) for n in (2.0, -1.0) for w in WATER],
+        of_thruster,
+        dict(unit=PORT),
+    ),
+    Case(
+        thruster.tunnel_step,
+        [(9.0, 10.0, 900.0, 1.6, 50.0, 2e4, 1.0, failed) for failed in (False, True)],
+        of_thruster,
+        dict(h=0.05, tunnel=TUNNEL),
+    ),
+    Case(thruster.tunnel_replay, [(9.0,), (-20.0,)], constants=dict(tunnel=TUNNEL)),
+    Case(thruster.tunnel_loads, [(9.0, 0.0, 0.0, 1.6, 0.0, 0.5)], of_thruster, dict(tunnel=TUNNEL)),
+    Case(gusts.gust, [(8.0,), (12.0,)], lambda mean: (7.0, mean, 3)),
+    Case(gusts.gust_std, [(8.0,), (12.0,)]),
+    Case(waves.elevation, PAIRS, lambda x, y: (7.0, x, y, SEA)),
+    Case(waves.drift, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT)),
+    Case(waves.mean_drift, ANGLES, lambda psi: (psi, SEA, DRIFT)),
+    Case(waves.motion, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA), BOX),
+    Case(waves.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
+    Case(thruster.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
+]
+
+
+def flat(values):
+    """Nested tuples and lists as one list."""
+    if isinstance(values, (tuple, list)):
+        return [item for value in values for item in flat(value)]
+    return [values]
+
+
+def by_floats(case):
+    return np.array([[float(value) for value in case(*row)] for row in case.rows])
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_arrays_give_what_floats_give(case):
+    found = case(*(np.array(column) for column in zip(*case.rows, strict=True)))
+    found = np.stack([np.broadcast_to(value, len(case.rows)) for value in found], axis=-1)
+    np.testing.assert_allclose(found.astype(float), by_floats(case), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_tensors_give_what_floats_give(case):
+    torch = pytest.importorskip("torch")
+    columns = (np.array(column) for column in zip(*case.rows, strict=True))
+    found = case(*(torch.as_tensor(column) for column in columns))
+    found = np.stack([np.broadcast_to(np.asarray(value), len(case.rows)) for value in found], axis=-1)
+    np.testing.assert_allclose(found.astype(float), by_floats(case), rtol=1e-9, atol=1e-9)
+
+
+def test_every_function_that_promises_tensors_is_among_the_cases():
+    covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
+    missing = [f"{name}.{function.__name__}" for name, function in promising() if function not in covered]
+    assert not missing
+
+
+def promising():
+    """Public functions of the models that speak of tensors, with their module."""
+    for module in pkgutil.iter_modules(shipcosim.models.__path__):
+        module = importlib.import_module(f"shipcosim.models.{module.name}")
+        for name, function in inspect.getmembers(module, inspect.isfunction):
+            own = function.__module__ == module.__name__ and not name.startswith("_")
+            if own and "array or tensor" in (function.__doc__ or ""):
+                yield module.__name__.rpartition(".")[2], function
