@@ -1,0 +1,349 @@
+"""The closed DP loop over many variations at once: the components of the co-simulation as array functions.
+
+Components exchange as in the co-simulation: each goes from t to t + h with what the others showed at t. So a variation
+follows the run of the FMUs with the same parameters and seeds.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import allocation, control, drive, environment, observer, reference, sensors, thruster, vessel, waves
+from .allocation import AllocationParameters
+from .clock import samples_due
+from .control import ControlParameters
+from .environment import EnvironmentParameters
+from .hull import HullParameters
+from .load_tables import DRIFT_33M9
+from .maths import wrap
+from .observer import DpShip, ObserverParameters
+from .reference import ReferenceParameters
+from .sensors import SensorParameters
+from .thruster import AzimuthParameters, TunnelParameters
+from .wind import WindParameters, apparent_wind, wind_loads
+
+
+@dataclass(frozen=True)
+class DpSystem:
+    """Parameter sets of the components. Any number in them may be an (m,) array, one value per variation."""
+
+    hull: HullParameters = HullParameters()
+    wind: WindParameters = WindParameters()
+    drift_table: str = DRIFT_33M9
+    port: AzimuthParameters = AzimuthParameters(y=-2.0)
+    starboard: AzimuthParameters = AzimuthParameters(y=2.0)
+    tunnel: TunnelParameters = TunnelParameters()
+    environment: EnvironmentParameters = EnvironmentParameters()
+    sensors: SensorParameters = SensorParameters()
+    reference: ReferenceParameters = ReferenceParameters()
+    ship: DpShip = DpShip()
+    observer: ObserverParameters = ObserverParameters()
+    control: ControlParameters = ControlParameters()
+    known_wind: WindParameters = WindParameters()
+    allocation: AllocationParameters = AllocationParameters()
+
+
+class Inputs(NamedTuple):
+    """What comes from outside: setpoints of reference and weather, and failures."""
+
+    x_set: Any = 0.0
+    y_set: Any = 0.0
+    psi_set: Any = 0.0
+    wind_speed: Any = 0.0
+    wind_from: Any = 0.0
+    current_speed: Any = 0.0
+    current_to: Any = 0.0
+    port_failed: Any = False
+    starboard_failed: Any = False
+    tunnel_failed: Any = False
+
+
+class Show(NamedTuple):
+    """What the ship shows the others at one time, beside her state."""
+
+    drift: tuple
+    motion: tuple
+    apparent_wind: tuple
+    through_water: tuple
+
+
+class LoopState(NamedTuple):
+    """All components at one time."""
+
+    vessel: vessel.Vessel
+    show: Show
+    means: environment.EnvironmentState
+    air: tuple
+    current: tuple
+    units: tuple
+    loads: tuple
+    available: tuple
+    sensors: sensors.SensorState
+    reference: reference.ReferenceState
+    estimate: observer.Estimate
+    control: control.ControlState
+    samples: int
+    allocation: allocation.AllocationState
+
+
+class Design(NamedTuple):
+    """What is computed once per run."""
+
+    sea: waves.Waves
+    drift: waves.DriftTable
+    observer: observer.Design
+    allocation: allocation.Design
+
+
+def design(system, variations):
+    """Waves, gains and inverses of a system.
+
+    Parameters
+    ----------
+    system : DpSystem
+    variations : int
+        Number m of variations.
+
+    Returns
+    -------
+    Design
+    """
+    e, ones = system.environment, np.ones(variations)
+    sea = waves.components(
+        e.significant_wave_height * ones,
+        e.peak_period * ones,
+        e.waves_from * ones,
+        e.peak_enhancement * ones,
+        e.seed * np.ones(variations, int),
+    )
+    return Design(
+        sea,
+        waves.drift_table(system.drift_table),
+        observer.design(system.ship, system.observer),
+        allocation.design(system.allocation),
+    )
+
+
+def start(system, design, inputs, variations):
+    """The loop at t = 0: ship and reference at rest in the origin, heading north."""
+    zero = np.zeros(variations)
+    means = environment.EnvironmentState(*(value + zero for value in inputs[3:7]))
+    air = _air(0.0, means, system)
+    current = environment.water_velocity(means)
+    ship = vessel.Vessel(zero, zero, zero, zero, zero, zero)
+    show = _show(0.0, ship, air, current, system, design)
+    measured = sensors.start(0.0, _truth(ship, show), parameters=system.sensors)
+    units = (
+        drive.at_rest(system.allocation.port_azimuth + zero),
+        drive.at_rest(system.allocation.starboard_azimuth + zero),
+        drive.at_rest(0.5 * np.pi + zero),
+    )
+    return LoopState(
+        ship,
+        show,
+        means,
+        air,
+        current,
+        units,
+        _loads(units, show, ship, system),
+        (True, True, True),
+        measured,
+        reference.at_rest(zero, zero, zero),
+        observer.at_rest(_measurement(measured)),
+        control.at_rest(wind_loads(*measured.measured[6:], wind=system.known_wind)),
+        0,
+        allocation.at_rest((zero, zero, zero)),
+    )
+
+
+def step(t, h, state, inputs, *, system, design):
+    """The loop a step later.
+
+    Parameters
+    ----------
+    t, h : float
+        Time at the start, and step. [s]
+    state : LoopState
+    inputs : Inputs
+        Held over the step.
+    system : DpSystem
+    design : Design
+        Made of the same system by `design`.
+
+    Returns
+    -------
+    LoopState
+    """
+    means = environment.step(h, state.means, *inputs[3:7], parameters=system.environment)
+    air, current = _air(t + h, means, system), environment.water_velocity(means)
+    ship = _moved(state, h, system)
+    units = _driven(state, inputs, h, system)
+    estimate, law, samples = _controlled(t, state, system, design)
+    return LoopState(
+        ship,
+        _show(t + h, ship, state.air, state.current, system, design),
+        means,
+        air,
+        current,
+        units,
+        _loads(units, state.show, state.vessel, system),
+        tuple(failed is False or ~np.asarray(failed) for failed in inputs[7:]),
+        sensors.step(t, state.sensors, _truth(state.vessel, state.show), parameters=system.sensors),
+        reference.step(state.reference, inputs[:3], h, parameters=system.reference),
+        estimate,
+        law,
+        samples,
+        allocation.step(
+            state.allocation,
+            state.control[-3:],
+            state.available,
+            h,
+            parameters=system.allocation,
+            design=design.allocation,
+        ),
+    )
+
+
+def simulate(system, events, *, variations, stop_time, h=0.05, every=1):
+    """Run the loop and record it.
+
+    Parameters
+    ----------
+    system : DpSystem
+    events : iterable of (float, dict)
+        Times in s, and fields of `Inputs` that have these values from then on; those at 0 are the start values.
+    variations : int
+        Number m of variations.
+    stop_time : float
+        Length of the run. [s]
+    h : float
+        Step. [s]
+    every : int
+        Steps from one recorded row to the next.
+
+    Returns
+    -------
+    dict of str to array
+        ``"time"`` (n,) and the signals of `signals`, each (n, m), named as in the co-simulation.
+    """
+    events = sorted(events, key=lambda event: event[0])
+    made = design(system, variations)
+    inputs, rows, state = Inputs(), [], None
+    for k in range(round(stop_time / h) + 1):
+        t = k * h
+        while events and events[0][0] <= t + 1e-9:
+            inputs = inputs._replace(**events.pop(0)[1])
+        state = state or start(system, made, inputs, variations)
+        if k % every == 0:
+            rows.append(signals(t, state))
+        state = step(t, h, state, inputs, system=system, design=made)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def signals(t, state):
+    """What is recorded of a state, named ``component.variable`` as in the co-simulation."""
+    zero = 0.0 * state.vessel.x
+    rows = {"time": t}
+    rows |= _named("vessel", "x y psi u v r", state.vessel)
+    rows |= _named("environment", "wind_north wind_east current_north current_east", (*state.air, *state.current))
+    for name, unit, loads in zip(("port", "starboard", "tunnel"), state.units, state.loads, strict=True):
+        rows |= _named(name, "thrust rpm saturated", (loads.thrust, 60.0 * unit.n, zero + unit.saturated))
+    measured = state.sensors.measured
+    rows |= _named("sensors", "x_meas y_meas psi_meas u_meas v_meas r_meas", measured)
+    desired = state.reference
+    rows |= _named("reference", "x_d y_d psi_d", (desired.x, desired.y, wrap(desired.psi)))
+    e, law = state.estimate, state.control
+    rows |= _named("controller", "x_hat y_hat psi_hat u_hat v_hat r_hat", (e.x, e.y, wrap(e.psi), e.u, e.v, e.r))
+    rows |= _named("controller", "tau_X_cmd tau_Y_cmd tau_N_cmd", law[-3:])
+    a = state.allocation
+    rows |= _named("allocator", "port_thrust_cmd starboard_thrust_cmd tunnel_thrust_cmd tau_X tau_Y tau_N", a)
+    return rows | {"allocator.saturated": zero + a.saturated}
+
+
+def _named(component, names, values):
+    return {f"{component}.{name}": value for name, value in zip(names.split(), values, strict=False)}
+
+
+def _air(t, means, system):
+    e = system.environment
+    return environment.air_velocity(t, means, gust_scale=e.gust_scale, seed=e.seed)
+
+
+def _show(t, ship, air, current, system, design):
+    """What the ship shows at t, with the air and water she was given last."""
+    x, y, psi, u, v, _ = ship
+    hull = system.hull
+    drift, motion = waves.wave_response(
+        t, x, y, psi, u, v, design.sea, design.drift, length=hull.length, breadth=hull.breadth, draught=hull.draught
+    )
+    return Show(drift, motion, apparent_wind(psi, u, v, *air), vessel.through_water(psi, u, v, *current))
+
+
+def _moved(state, h, system):
+    """The ship a step later, under the loads of thrusters, wind and waves."""
+    ship = state.vessel
+    weather = wind_loads(*apparent_wind(ship.psi, ship.u, ship.v, *state.air), wind=system.wind)
+    parts = (weather, state.show.drift, *(loads[-3:] for loads in state.loads))
+    return vessel.step(ship, *(sum(axis) for axis in zip(*parts, strict=True)), *state.current, h, hull=system.hull)
+
+
+def _driven(state, inputs, h, system):
+    """The thrusters a step later."""
+    u_r, v_r = state.show.through_water
+    port, starboard, tunnel = state.units
+    a, angles = state.allocation, system.allocation
+    flow = (u_r, v_r, state.vessel.r)
+    return (
+        thruster.azimuth_step(port, a.port, angles.port_azimuth, *flow, inputs.port_failed, h, unit=system.port),
+        thruster.azimuth_step(
+            starboard, a.starboard, angles.starboard_azimuth, *flow, inputs.starboard_failed, h, unit=system.starboard
+        ),
+        thruster.tunnel_step(tunnel, a.tunnel, u_r, inputs.tunnel_failed, h, tunnel=system.tunnel),
+    )
+
+
+def _loads(units, show, ship, system):
+    """Loads of the thrusters with the inflow they were given last."""
+    u_r, v_r = show.through_water
+    return (
+        thruster.azimuth_loads(units[0], u_r, v_r, ship.r, unit=system.port),
+        thruster.azimuth_loads(units[1], u_r, v_r, ship.r, unit=system.starboard),
+        thruster.tunnel_loads(units[2], u_r, tunnel=system.tunnel),
+    )
+
+
+def _controlled(t, state, system, design):
+    """Estimate, control state and number of samples after those that are due at t."""
+    estimate, law, samples = state.estimate, state.control, state.samples
+    allocated = state.allocation[3:6]
+    while samples < samples_due(t, system.observer.sample_period):
+        estimate = observer.step(
+            estimate,
+            _measurement(state.sensors),
+            control.known_load(law, allocated),
+            ship=system.ship,
+            parameters=system.observer,
+            design=design.observer,
+        )
+        law = control.step(
+            law,
+            estimate,
+            state.reference,
+            allocated,
+            wind_loads(*state.sensors.measured[6:], wind=system.known_wind),
+            system.observer.sample_period,
+            ship=system.ship,
+            parameters=system.control,
+        )
+        samples += 1
+    return estimate, law, samples
+
+
+def _truth(ship, show):
+    """What the sensors are shown: the ship in waves, and the apparent wind."""
+    return sensors.Truth(*(a + b for a, b in zip(ship, show.motion, strict=True)), *show.apparent_wind)
+
+
+def _measurement(state):
+    return observer.Measurement(*state.measured[:6])
