@@ -111,7 +111,10 @@ def four_corner():
         generator = np.random.default_rng(3)
         signals = {**poses(time, generator), **loads(time, generator), **weather(time, generator)}
         for name in "uvr":
-            signals[f"vessel.{name}"] = (0.05 * smooth_noise(generator, len(time), 40), "rad/s" if name == "r" else "m/s")
+            signals[f"vessel.{name}"] = (
+                0.05 * smooth_noise(generator, len(time), 40),
+                "rad/s" if name == "r" else "m/s",
+            )
         return xr.Dataset(
             {k: ("time", v, {"units": unit, "long_name": f"made-up {k}"}) for k, (v, unit) in signals.items()},
             coords={"time": ("time", time, {"units": "s"})},

@@ -12,7 +12,7 @@
   };
   const font = { family: getComputedStyle(document.body).fontFamily, size: 12, color: data.colours.ink };
   const axis = { gridcolor: "#e4e7eb", zerolinecolor: "#cbd2d9", linecolor: "#9aa5b1", ticks: "outside", tickcolor: "#9aa5b1", ticklen: 4 };
-  const config = { responsive: true, displaylogo: false, scrollZoom: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+  const config = { responsive: true, displaylogo: false, scrollZoom: false, displayModeBar: "hover", modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]] };
   const whole = [time[0], time[time.length - 1]];
   let shownWindow = whole;
 
@@ -55,8 +55,8 @@
       : { ...axis, automargin: true };
     const event = (t) => ({ type: "line", x0: t, x1: t, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: "#9aa5b1", width: 1, dash: "dot" } });
     return {
-      title, font, yaxis, margin: { l: 56, r: 12, t: 46, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
-      legend: { orientation: "h", x: 1, xanchor: "right", y: 1.02, yanchor: "bottom", font: { size: 11 } }, hoverlabel: { bgcolor: "rgba(255,255,255,0.92)", font: { size: 12 } },
+      title, font, yaxis, margin: { l: 56, r: 12, t: 54, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
+      legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom", font: { size: 11 } }, hoverlabel: { bgcolor: "rgba(255,255,255,0.92)", font: { size: 12 } },
       xaxis: { ...axis, range: shownWindow.slice(), ticksuffix: " s", showticksuffix: "last", hoverformat: ".6~g", unifiedhovertitle: { text: "%{x} s" } },
       shapes: data.events.filter((t) => t > whole[0]).map(event), paper_bgcolor: "#fff", plot_bgcolor: "#fff",
     };
@@ -136,8 +136,8 @@
     const chart = { ...axis, zeroline: false, ticksuffix: " m", constrain: "domain" };
     const ghost = { type: "scatter", mode: "lines", name: "at the cursor", x: [], y: [], line: { color: "#d55e00", width: 2 }, fill: "toself", fillcolor: "rgba(213,94,0,0.15)", hoverinfo: "skip", showlegend: false };
     Plotly.newPlot(track, [...data.track.traces, ghost], {
-      font, margin: { l: 60, r: 12, t: 36, b: 46 }, hovermode: "closest", dragmode: "pan", paper_bgcolor: "#fff", plot_bgcolor: "#fff",
-      legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom" },
+      font, margin: { l: 60, r: 12, t: 30, b: 76 }, hovermode: "closest", dragmode: "pan", paper_bgcolor: "#fff", plot_bgcolor: "#fff",
+      legend: { orientation: "h", x: 0.5, xanchor: "center", yref: "container", y: 0 },
       xaxis: { ...chart, title: { text: "East" }, range: data.track.x }, yaxis: { ...chart, title: { text: "North" }, range: data.track.y, scaleanchor: "x", scaleratio: 1 },
     }, { ...config, scrollZoom: true });
   }
@@ -172,9 +172,9 @@
     const groups = {};
     for (const name of data.choice) (groups[name.includes(".") ? name.slice(0, name.lastIndexOf(".")) : ""] ??= []).push(name);
     for (const [component, names] of Object.entries(groups)) {
-      const group = document.createElement("fieldset"), legend = document.createElement("legend");
-      legend.textContent = component || "outermost system";
-      group.append(legend, ...names.map(choice));
+      const group = document.createElement("div"), heading = document.createElement("h3");
+      heading.textContent = component || "outermost system";
+      group.append(heading, ...names.map(choice));
       document.getElementById("choices").append(group);
     }
   }
@@ -207,7 +207,7 @@
 
   document.getElementById("filter").addEventListener("input", (event) => {
     const words = event.target.value.toLowerCase().split(/\s+/);
-    for (const group of document.querySelectorAll("#choices fieldset")) {
+    for (const group of document.querySelectorAll("#choices div")) {
       for (const row of group.querySelectorAll("label")) {
         const text = row.querySelector("input").value.toLowerCase() + " " + row.title.toLowerCase();
         row.hidden = !words.every((word) => text.includes(word));

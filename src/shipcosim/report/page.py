@@ -60,7 +60,9 @@ def render(table, *, scenario=None, verdicts=(), system=None):
         chart=parts.chart(track is not None),
         weather=parts.weather(summary.weather(shown, roles)),
         figures=parts.key_figures(summary.key_figures(shown, roles)),
-        expectations=parts.expectations(verdicts),
+        expectations=parts.expectations(
+            verdicts, {n: (v.attrs["units"], v.attrs["factor"]) for n, v in shown.data_vars.items()}
+        ),
         sections=parts.sections(sections),
         thinning=parts.thinning(span, shown.sizes["time"], drawn.sizes["time"]),
         details=parts.details(summary.details(table), scenario),
@@ -69,6 +71,25 @@ def render(table, *, scenario=None, verdicts=(), system=None):
         data=_embedded(_payload(drawn, table, track, sections, scenario)),
         script=_asset("page.js"),
     )
+
+
+def digest(table, verdicts=()):
+    """Outcome of a run and what must not be overlooked, as the page says them.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        A run.
+    verdicts : sequence of Verdict
+        What was expected of it.
+
+    Returns
+    -------
+    (Outcome, list of str)
+    """
+    roles = find_roles(table.data_vars)
+    shown = add_derived(display_table(table, roles), table, roles, verdicts)
+    return summary.outcome(table, verdicts), summary.remarks(shown, roles)
 
 
 def _payload(drawn, table, track, sections, scenario):

@@ -58,7 +58,7 @@ def weather(flows):
     """Compass rose with an arrow for wind, current and waves, and their sizes."""
     if not flows:
         return ""
-    arrows = "".join(_arrow(degrees, sense, WEATHER_COLOURS[what]) for what, _, _, degrees, sense in flows)
+    arrows = "".join(_arrow(what, degrees, sense, WEATHER_COLOURS[what]) for what, _, _, degrees, sense in flows)
     rows = "".join(
         f"<tr><td><i style='background:{WEATHER_COLOURS[what]}'></i>{what}</td><td>{size} {unit}</td>"
         f"<td>{sense} {degrees:03.0f}°</td></tr>"
@@ -72,15 +72,13 @@ def weather(flows):
     return f"<section id='weather'><h2>Weather</h2><div class='weather'>{rose}<table>{rows}</table></div></section>"
 
 
-def _arrow(degrees, sense, colour):
-    """Arrow along the flow, in at the rim where it comes from, out at the rim where it goes to."""
-    ends = (-44, -14) if sense == "from" else (10, 42)
-    turn = degrees + 180 if sense == "from" else degrees
-    start, tip = (-end for end in ends)
+def _arrow(what, degrees, sense, colour):
+    """Arrow along the flow: wind at the rim, waves nearer the middle, the current outwards from it."""
+    tail, tip = {"wind": (-44, -25), "waves": (-23, -4)}.get(what, (6, 43))
+    turn = degrees if sense == "from" else degrees + 180
     return (
         f"<g transform='rotate({turn:.1f})' stroke='{colour}' fill='{colour}'>"
-        f"<line y1='{start}' y2='{tip + 6}' stroke-width='4'/>"
-        f"<path d='M0 {tip}l-6 10h12z' stroke='none'/></g>"
+        f"<line y1='{tail}' y2='{tip - 8}' stroke-width='4'/><path d='M0 {tip}l-6 -9h12z' stroke='none'/></g>"
     )
 
 
@@ -90,11 +88,19 @@ def key_figures(figures):
     return f"<section id='figures'><h2>Key figures</h2><table>{rows}</table></section>" if rows else ""
 
 
-def expectations(verdicts):
-    """Each expectation with pass or fail, its worst value and when."""
+def expectations(verdicts, units):
+    """Each expectation with pass or fail, its worst value and when, in the page's units.
+
+    Parameters
+    ----------
+    verdicts : sequence of Verdict
+        What was judged.
+    units : dict of str to (str, float)
+        Unit and factor of every signal.
+    """
     if not verdicts:
         return ""
-    rows = "".join(_expectation(verdict) for verdict in verdicts)
+    rows = "".join(_expectation(verdict, *units[verdict.expect.signal[0]]) for verdict in verdicts)
     head = "<tr><th></th><th>Expected</th><th>During</th><th>Worst</th><th>At</th></tr>"
     return (
         f"<section id='expectations'><h2>Expectations</h2><table><thead>{head}</thead>"
@@ -102,15 +108,26 @@ def expectations(verdicts):
     )
 
 
-def _expectation(verdict):
+def _expectation(verdict, unit, factor):
     expect = verdict.expect
-    claim = str(expect).removesuffix(f" during {expect.during[0]:g} to {expect.during[1]:g} s" if expect.during else "")
     during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
     judged = math.isfinite(verdict.time)
-    worst, when = (f"{verdict.worst:.3g}", f"{verdict.time:g} s") if judged else ("no row", "–")
+    worst, when = (f"{factor * verdict.worst:.3g} {unit}", f"{verdict.time:g} s") if judged else ("no row", "–")
     kind, word = ("passed", "✓ pass") if verdict.passed else ("failed", "✗ FAIL")
-    cells = "".join(f"<td>{escape(text)}</td>" for text in (claim, during, worst, when))
+    cells = "".join(f"<td>{escape(text)}</td>" for text in (_claim(expect, unit, factor), during, worst, when))
     return f"<tr class='{kind}'><td class='word'>{word}</td>{cells}</tr>"
+
+
+def _claim(expect, unit, factor):
+    """What is expected: 'vessel.psi: 0 ± 1 deg'."""
+    text = lambda value: value if isinstance(value, str) else f"{round(factor * value, 4):.4g}"  # noqa: E731
+    subject = ", ".join(expect.signal)
+    if expect.statistic:
+        subject = f"{expect.statistic} of {subject}"
+    if expect.near is not None:
+        return f"{subject}: {', '.join(map(text, expect.near))}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}"
+    limits = {"≥": expect.at_least, "≤": expect.at_most}
+    return f"{subject} " + ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None)
 
 
 def sections(made):
@@ -119,7 +136,9 @@ def sections(made):
     for k, section in enumerate(made):
         places = "".join(f"<div class='panel' id='panel-{number + n}'></div>" for n in range(len(section.panels)))
         number += len(section.panels)
-        text += f"<section id='section-{k}'><h2>{escape(section.title)}</h2><div class='panels'>{places}</div></section>"
+        text += (
+            f"<section id='section-{k}'><h2>{escape(section.title)}</h2><div class='panels'>{places}</div></section>"
+        )
     return text
 
 

@@ -43,7 +43,9 @@ def outcome(table, verdicts):
     missed = sum(not v.passed for v in verdicts)
     if not is_complete(table):
         end = float(table["time"].values[-1]) if table.sizes["time"] else 0.0
-        return Outcome("partial", "PARTIAL", f"The run was interrupted at {end:g} s; expectations were not judged to its end.")
+        return Outcome(
+            "partial", "PARTIAL", f"The run was interrupted at {end:g} s; expectations were not judged to its end."
+        )
     if not verdicts:
         return Outcome("plain", "DONE", "Nothing was expected of this run.")
     if missed:
@@ -138,9 +140,13 @@ def weather(shown, roles):
     found = []
     for what, sense in [("wind", "from"), ("current", "to")]:
         if f"{what} speed" in shown:
-            mean = roles.signal(roles.environment, f"{what}_speed_mean")
-            speed = shown[mean if mean in shown else f"{what} speed"].values
-            found.append((what, _span(speed), "m/s", _mean_direction(shown[f"{what} {sense}"].values), sense))
+            size, angle = (
+                shown[
+                    mean if (mean := roles.signal(roles.environment, f"{what}_{part}_mean")) in shown else derived
+                ].values
+                for part, derived in (("speed", f"{what} speed"), (sense, f"{what} {sense}"))
+            )
+            found.append((what, _span(size), "m/s", _mean_direction(angle), sense))
     height, source = (roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from"))
     if height in shown and source in shown and np.nanmax(shown[height].values) > 0.0:
         found.append(("waves", _span(shown[height].values), "m", _mean_direction(shown[source].values), "from"))

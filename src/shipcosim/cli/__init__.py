@@ -1,0 +1,14 @@
+"""The command `shipcosim`. What it is scripted against is in docs and in `shipcosim COMMAND --help`.
+
+Everything that takes time to import is imported inside the commands: help comes at once.
+"""
+
+from shipcosim.cli.app import app
+
+
+def main() -> None:
+    """Entry point of the command."""
+    app(prog_name="shipcosim")
+
+
+__all__ = ["app", "main"]

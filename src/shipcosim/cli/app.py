@@ -1,0 +1,201 @@
+"""Commands, their arguments and their exit codes."""
+
+from __future__ import annotations
+
+import functools
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.errors import Problem, ShipcosimError
+
+FAILED, UNUSABLE, INTERRUPTED = 1, 2, 130
+
+EXIT_CODES = (
+    "Exit codes: 0 done; 1 the work ran and what it checked does not hold; 2 unusable input or arguments; "
+    "130 interrupted. --debug with any command shows the traceback of an error."
+)
+app = typer.Typer(
+    help="Co-simulation of ships: FMUs, system structures, scenarios.",
+    epilog=EXIT_CODES,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    no_args_is_help=True,
+)
+
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
+Engine = Annotated[str, typer.Option("--engine", help="What runs the FMUs: fmpy.")]
+
+
+def command(function):
+    """Make a function a command: errors become a readable block on stderr and an exit code."""
+
+    @functools.wraps(function)
+    def guarded(*args, debug=False, **kwargs):
+        try:
+            return function(*args, debug=debug, **kwargs)
+        except ShipcosimError as error:
+            _explain(error.problems, debug)
+            raise typer.Exit(UNUSABLE) from None
+        except KeyboardInterrupt:
+            typer.echo("Interrupted.", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+        except Exception as error:
+            if isinstance(error, (typer.Exit, typer.Abort, typer.BadParameter)):
+                raise
+            remedy = "This is a fault of shipcosim. Run the command again with --debug for the traceback."
+            _explain([Problem("shipcosim", f"{type(error).__name__}: {error}", remedy)], debug)
+            raise typer.Exit(UNUSABLE) from None
+
+    return app.command(epilog=EXIT_CODES)(guarded)
+
+
+def _explain(problems, debug):
+    from shipcosim.cli.console import print_problems
+
+    print_problems(problems)
+    if debug:
+        import traceback
+
+        traceback.print_exc()
+
+
+@app.callback(invoke_without_command=True)
+def options(
+    version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
+):
+    """Co-simulation of ships: FMUs, system structures, scenarios."""
+    if version:
+        from shipcosim import __version__
+
+        typer.echo(f"shipcosim {__version__}")
+        raise typer.Exit()
+
+
+@command
+def build(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME]...", help="FMUs and systems; all if none.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder to build into. [default: build]")
+    ] = None,
+    debug: Debug = False,
+):
+    """Build the FMUs in fmus/ and pack each system in ssp/."""
+    from shipcosim.cli.console import progress_of
+    from shipcosim.cli.project import build_named, find_project
+
+    project = find_project(Path.cwd())
+    if project is None:
+        raise ShipcosimError(
+            Problem(str(Path.cwd()), "There is no project here.", "A project has a folder fmus/ or ssp/; go there.")
+        )
+    with progress_of("Building") as progress:
+        built = build_named(project, names or [], out or project / "build", progress)
+    for path in built:
+        typer.echo(os.path.relpath(path))
+
+
+@command
+def run(
+    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="A scenario file, or its name in scenarios/.")],
+    out: Out = None,
+    engine: Engine = "fmpy",
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over the scenario's; repeatable."),
+    ] = None,
+    debug: Debug = False,
+):
+    """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO."""
+    from shipcosim.cli.project import build_stale, find_scenario, parsed_settings
+    from shipcosim.scenario import read_scenario
+    from shipcosim.ssp import read_system, with_values
+
+    happening = read_scenario(find_scenario(scenario))
+    fmus = build_stale(happening.project)
+    system = read_system(happening.system_path, happening.parameter_paths, fmus=fmus)
+    given = parsed_settings(settings or [])
+    with_values(system, given, "--set")
+    happening = happening.model_copy(update={"set": happening.set | given})
+    _simulate_and_save(system, happening, out or Path("results") / happening.name, engine)
+
+
+@command
+def simulate(
+    ssp: Annotated[str, typer.Argument(metavar="SSP", help="A .ssp, a .ssd, or a folder with a SystemStructure.ssd.")],
+    stop_time: Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the system's.")] = None,
+    step_size: Annotated[float | None, typer.Option("--step-size", help="[s] Default: the system's.")] = None,
+    out: Out = None,
+    engine: Engine = "fmpy",
+    parameters: Annotated[
+        list[Path] | None, typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins.")
+    ] = None,
+    inputs: Annotated[
+        Path | None, typer.Option("--inputs", metavar="TABLE", help="CSV or NetCDF that feeds the system's inputs.")
+    ] = None,
+    debug: Debug = False,
+):
+    """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
+
+    Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
+    """
+    from shipcosim.cli.project import build_stale, experiment_of, find_project
+    from shipcosim.series import read_table
+    from shipcosim.ssp import read_system
+
+    project = find_project(Path(ssp.partition("#")[0]))
+    system = read_system(ssp, parameters or (), fmus=build_stale(project) if project else ())
+    happening = experiment_of(system, stop_time, step_size)
+    feeding = read_table(inputs) if inputs else None
+    default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
+    _simulate_and_save(system, happening, out or default, engine, feeding)
+
+
+@command
+def check(
+    files: Annotated[list[str], typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .toml .csv .nc")],
+    as_json: Annotated[bool, typer.Option("--json", help="Report as JSON.")] = False,
+    debug: Debug = False,
+):
+    """Validate files: schema, then meaning. Loads no binary and runs nothing."""
+    from shipcosim.cli.checks import check_any
+    from shipcosim.cli.console import print_report
+
+    reports = {file: check_any(file) for file in files}
+    print_report(reports, as_json)
+    if any(problem.severity == "error" for problems in reports.values() for problem in problems):
+        raise typer.Exit(FAILED)
+
+
+def _simulate_and_save(system, scenario, out, engine, inputs=None):
+    """Run, judge, write, and say how it went; the exit code follows."""
+    from shipcosim.cli.console import print_summary, progress_of
+    from shipcosim.cli.results import save
+    from shipcosim.cosim import Interrupted, RunError
+    from shipcosim.cosim import simulate as simulate_system
+    from shipcosim.scenario import judge
+
+    def keep(table):
+        pages = save(table, out, "result-partial", scenario=scenario, system=system) if table.sizes["time"] else None
+        print_summary(table, (), pages, to_stderr=True)
+
+    try:
+        with progress_of(scenario.name or system.name, scenario.stop_time) as progress:
+            table = simulate_system(system, scenario, engine=engine, inputs=inputs, progress=progress)
+    except Interrupted as stop:
+        keep(stop.table)
+        raise typer.Exit(INTERRUPTED) from None
+    except RunError as error:
+        keep(error.table)
+        raise
+    verdicts = judge(table, scenario)
+    page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)
+    print_summary(table, verdicts, page)
+    if not all(verdict.passed for verdict in verdicts):
+        raise typer.Exit(FAILED)

@@ -1,0 +1,85 @@
+"""What is wrong with a file of any kind that the commands take."""
+
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.cli.project import find_project
+from shipcosim.errors import Problem, ShipcosimError
+
+TABLES = (".csv", ".csv.gz", ".nc")
+
+
+def check_any(file):
+    """Problems of a file; nothing is run and no binary loaded.
+
+    Parameters
+    ----------
+    file : str
+        A scenario (.toml), a table (.csv, .csv.gz, .nc), or a file of a system (see `shipcosim.ssp.check_file`).
+
+    Returns
+    -------
+    list of Problem
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file.
+    """
+    path = Path(file.partition("#")[0])
+    if not path.exists():
+        raise ShipcosimError(Problem(file, "There is no such file or folder.", "Give the path of one."))
+    try:
+        if path.suffix == ".toml":
+            return check_scenario_file(path)
+        if path.name.endswith(TABLES):
+            return check_table(path)
+        return _check_system_file(file, path)
+    except ShipcosimError as error:
+        return error.problems
+
+
+def check_scenario_file(path):
+    """Problems of a scenario, in itself and with its system."""
+    from shipcosim.scenario import check_scenario, read_scenario
+    from shipcosim.ssp import read_system, with_values
+
+    scenario = read_scenario(path)
+    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[scenario.project / "build" / "fmus"])
+    try:
+        system, problems = with_values(system, scenario.set, str(path)), []
+    except ShipcosimError as error:
+        problems = error.problems
+    return [*problems, *check_scenario(scenario, system)]
+
+
+def check_table(path):
+    """Problems of a table: unordered or repeated times are errors, gaps and missing values remarks."""
+    from shipcosim.series import read_table
+
+    table = read_table(path)
+    time, problems = table["time"].values, []
+    steps = np.diff(time)
+    if not np.isfinite(time).all():
+        problems.append(Problem(f"{path}, time", "Not every time is a number."))
+    elif (steps <= 0.0).any():
+        row = int(np.flatnonzero(steps <= 0.0)[0])
+        remedy = "Times should increase from row to row."
+        problems.append(Problem(f"{path}, row {row + 2}", f"{time[row + 1]:g} s follows {time[row]:g} s.", remedy))
+    elif len(steps) and steps.max() > 1.5 * np.median(steps):
+        row = int(np.argmax(steps))
+        found = f"{steps[row]:g} s without a row after {time[row]:g} s; the usual step is {np.median(steps):g} s."
+        problems.append(Problem(f"{path}, time", found, severity="remark"))
+    for name, variable in table.data_vars.items():
+        missing = int(np.sum(~np.isfinite(variable.values))) if variable.dtype.kind == "f" else 0
+        if missing:
+            problems.append(Problem(f"{path}, {name}", f"{missing} values are no numbers.", severity="remark"))
+    return problems
+
+
+def _check_system_file(file, path):
+    from shipcosim.ssp import check_file
+
+    project = find_project(path)
+    return check_file(file, fmus=[project / "build" / "fmus"] if project else ())

@@ -1,0 +1,86 @@
+"""What the commands say: progress and errors on stderr, results on stdout."""
+
+import json
+import math
+import os
+from contextlib import contextmanager
+from dataclasses import asdict
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+STYLES = {"error": "bold red", "remark": "yellow"}
+
+
+def print_problems(problems):
+    """Errors as one readable block on stderr."""
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    for problem in problems:
+        console.print(_block(problem))
+
+
+def _block(problem):
+    block = Text(f"{problem.severity}: ", style=STYLES.get(problem.severity, ""))
+    if problem.where:
+        block.append(f"{problem.where}:\n", style="bold")
+    return block.append(f"{problem.found} {problem.remedy}".rstrip(), style="not bold default")
+
+
+@contextmanager
+def progress_of(label, duration=None):
+    """Progress bar on stderr; yields a function of (done, in all). `duration` adds how fast time passes. [s]"""
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    columns = [TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[pace]}")]
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(str(label), total=None, pace="")
+
+        def report(done, total):
+            elapsed = bar.tasks[0].elapsed or 0.0
+            pace = f"{duration * done / total / elapsed:.0f} x real time" if duration and total and elapsed else ""
+            bar.update(task, completed=done, total=total, pace=pace)
+
+        yield report
+
+
+def print_summary(table, verdicts, page, *, to_stderr=False):
+    """How a run went: its expectations, what must not be overlooked, where the page is."""
+    from shipcosim.report import digest
+
+    console = Console(stderr=to_stderr, highlight=False, soft_wrap=True)
+    outcome, remarks = digest(table, verdicts)
+    if verdicts:
+        console.print(_verdict_table(verdicts))
+    for remark in remarks:
+        console.print(Text(remark, style="yellow"))
+    style = {"passed": "bold green", "failed": "bold red", "partial": "bold yellow"}.get(outcome.kind, "bold")
+    console.print(Text(f"{outcome.word} ", style=style).append(outcome.sentence, style="not bold default"))
+    if page is not None:
+        console.print(f"Page: {os.path.relpath(page)}", markup=False)
+
+
+def _verdict_table(verdicts):
+    listed = Table(box=None, pad_edge=False)
+    for heading in ("", "expected", "worst", "at"):
+        listed.add_column(heading, overflow="fold")
+    for verdict in verdicts:
+        judged = math.isfinite(verdict.time)
+        word = Text("pass", style="green") if verdict.passed else Text("FAIL", style="bold red")
+        worst, time = (f"{verdict.worst:.4g}", f"{verdict.time:g} s") if judged else ("no row", "-")
+        listed.add_row(word, Text(str(verdict.expect)), worst, time)
+    return listed
+
+
+def print_report(reports, as_json):
+    """Findings on files; `reports` maps a file to its problems."""
+    if as_json:
+        listed = [{"file": file, "problems": [asdict(p) for p in problems]} for file, problems in reports.items()]
+        print(json.dumps(listed, indent=2, ensure_ascii=False))
+        return
+    console = Console(highlight=False, soft_wrap=True)
+    for file, problems in reports.items():
+        for problem in problems:
+            console.print(_block(problem))
+        errors = sum(problem.severity == "error" for problem in problems)
+        console.print(Text(f"{file}: " + (f"{errors} error{'s' * (errors > 1)}" if errors else "nothing wrong")))

@@ -1,0 +1,68 @@
+"""The files of a run: all three are there afterwards, or none of them has changed."""
+
+import os
+import tempfile
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+
+
+def save(table, folder, stem, *, scenario, system, verdicts=()):
+    """Write table and page.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        The run.
+    folder : path
+        Made if needed.
+    stem : str
+        ``"result"``, or ``"result-partial"`` for a run that did not get to its end.
+    scenario, system, verdicts
+        As for `write_report`.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    ShipcosimError
+        If something cannot be written.
+    """
+    from shipcosim.report import write_report
+    from shipcosim.series import write_table
+
+    page = "report.html" if stem == "result" else f"{stem}.html"
+    with _staged(Path(folder)) as stage:
+        for suffix in (".nc", ".csv"):
+            write_table(table, stage / f"{stem}{suffix}")
+        write_report(table, stage / page, scenario=scenario, verdicts=verdicts, system=system)
+    return Path(folder) / page
+
+
+@contextmanager
+def _staged(folder):
+    """A folder whose files move into `folder` at the end, unless something fails."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as name:
+            stage = Path(name)
+            try:
+                yield stage
+            except ShipcosimError as error:
+                raise ShipcosimError([_at_home(problem, stage, folder) for problem in error.problems]) from error
+            for file in stage.iterdir():
+                os.replace(file, folder / file.name)
+    except OSError as error:
+        raise ShipcosimError(
+            Problem(str(folder), f"Results cannot be written here: {error.strerror}.", "Choose another --out.")
+        ) from error
+
+
+def _at_home(problem, stage, folder):
+    """The problem with the name that the file would have had."""
+    return replace(problem, where=problem.where.replace(str(stage), str(folder)))
