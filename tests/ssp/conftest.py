@@ -131,7 +131,9 @@ def real(name, value, unit=None):
 @pytest.fixture
 def shop(tmp_path):
     """Workshop in a new folder."""
-    return Workshop(tmp_path)
+    folder = tmp_path / "system"
+    folder.mkdir()
+    return Workshop(folder)
 
 
 @pytest.fixture(name="real")

@@ -1,14 +1,23 @@
-"""Connections, units and transformations come out as plain factors, and what is wrong is refused."""
+"""Connections, units and transformations come out as plain factors and tables, and what is wrong is refused."""
 
 import math
 
 import pytest
 
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp import read_system, with_values
 
-def pair(shop, source="Real m", target="Real m", inside="", **attributes):
+MODES = """
+<SimpleType name="Mode"><Enumeration><Item name="off" value="1"/><Item name="on" value="2"/></Enumeration></SimpleType>
+<SimpleType name="State"><Enumeration><Item name="dead" value="7"/><Item name="alive" value="8"/></Enumeration>
+</SimpleType>
+"""
+
+
+def pair(shop, source="Real m", target="Real m", inside="", types="", **attributes):
     """Two components, one connection between them."""
-    shop.fmu("one", f"output y {source}")
-    shop.fmu("two", f"input u {target}")
+    shop.fmu("one", f"output y {source}", types=types)
+    shop.fmu("two", f"input u {target}", types=types)
     elements = shop.component("a", "one", "output y") + shop.component("b", "two", "input u")
     shop.ssd(elements, shop.connection("a.y", "b.u", inside, **attributes))
 
@@ -28,6 +37,14 @@ def test_start_and_end_of_a_connection_do_not_decide_its_direction(shop):
     assert shop.read().connections[0].source == ("a", "y")
 
 
+def test_two_outputs_connected_are_refused(shop):
+    shop.fmu("one", "output y Real m")
+    shop.ssd(
+        shop.component("a", "one", "output y") + shop.component("b", "one", "output y"), shop.connection("a.y", "b.y")
+    )
+    assert "a.y (output) and b.y (output): both give a value, and neither takes one." in shop.refused()
+
+
 @pytest.mark.parametrize(
     ("source", "target", "factor", "offset"),
     [
@@ -43,3 +60,372 @@ def test_units_are_converted(shop, source, target, factor, offset):
     (connection,) = shop.read().connections
     assert connection.factor == pytest.approx(factor, rel=1e-15)
     assert connection.offset == pytest.approx(offset, rel=1e-15)
+
+
+def test_incompatible_units_are_refused_with_both_names(shop):
+    pair(shop, "Real m/s", "Real deg")
+    message = shop.refused()
+    assert "line 10: a.y -> b.u: a.y is in m/s, b.u in deg; these cannot be converted." in message
+
+
+def test_suppressed_unit_conversion_leaves_the_value(shop):
+    pair(shop, "Real kn", "Real m/s", suppressUnitConversion="true")
+    assert shop.read().connections[0].factor == 1.0
+
+
+def test_a_linear_transformation_comes_after_the_conversion_of_units(shop):
+    pair(shop, "Real km", "Real m", '<ssc:LinearTransformation factor="2" offset="5"/>')
+    (connection,) = shop.read().connections
+    assert (connection.factor, connection.offset) == (2000.0, 5.0)  # 2 * (1000 x) + 5
+
+
+def test_a_linear_transformation_replaces_a_suppressed_conversion(shop):
+    inside = '<ssc:LinearTransformation factor="-1"/>'
+    pair(shop, "Real km", "Real m", inside, suppressUnitConversion="true")
+    assert shop.read().connections[0].factor == -1.0
+
+
+def test_a_linear_transformation_of_booleans_is_refused(shop):
+    pair(shop, "Boolean", "Boolean", '<ssc:LinearTransformation factor="2"/>')
+    assert "A linear transformation of Boolean values." in shop.refused()
+
+
+def test_a_unit_that_is_defined_nowhere_is_a_remark_and_not_converted(shop):
+    pair(shop, "Real parsnip", "Real m")
+    system = shop.read()
+    assert system.connections[0].factor == 1.0
+    assert any("parsnip" in remark.found for remark in system.remarks)
+
+
+def test_an_integer_feeds_a_real_and_not_the_other_way_round(shop):
+    pair(shop, "Integer", "Real m")
+    assert shop.read().connections[0].factor == 1.0
+
+
+@pytest.mark.parametrize(("source", "target"), [("Real m", "Integer"), ("Boolean", "Real m"), ("String", "Integer")])
+def test_types_that_do_not_fit_are_refused(shop, source, target):
+    pair(shop, source, target)
+    kinds = source.split()[0], target.split()[0]
+    assert f"a.y is {kinds[0]}, b.u is {kinds[1]}." in shop.refused()
+
+
+def test_a_boolean_mapping_becomes_a_table(shop):
+    entries = '<ssc:MapEntry source="true" target="false"/><ssc:MapEntry source="false" target="true"/>'
+    inside = f"<ssc:BooleanMappingTransformation>{entries}</ssc:BooleanMappingTransformation>"
+    pair(shop, "Boolean", "Boolean", inside)
+    assert shop.read().connections[0].mapping == {True: False, False: True}
+
+
+def test_an_integer_mapping_leaves_other_values_alone(shop):
+    inside = (
+        '<ssc:IntegerMappingTransformation><ssc:MapEntry source="1" target="5"/></ssc:IntegerMappingTransformation>'
+    )
+    pair(shop, "Integer", "Integer", inside)
+    assert shop.read().connections[0].mapping == {1: 5}
+
+
+ENUMERATION_MAPPING = (
+    '<ssc:EnumerationMappingTransformation><ssc:MapEntry source="off" target="dead"/>'
+    '<ssc:MapEntry source="on" target="{}"/></ssc:EnumerationMappingTransformation>'
+)
+
+
+def test_an_enumeration_mapping_by_names_becomes_one_by_numbers(shop):
+    inside = ENUMERATION_MAPPING.format("alive")
+    pair(shop, "Enumeration declaredType=Mode", "Enumeration declaredType=State", inside, types=MODES)
+    assert shop.read().connections[0].mapping == {1: 7, 2: 8}
+
+
+def test_an_enumeration_mapping_to_an_unknown_item_is_refused(shop):
+    inside = ENUMERATION_MAPPING.format("alvie")
+    pair(shop, "Enumeration declaredType=Mode", "Enumeration declaredType=State", inside, types=MODES)
+    assert "no item 'alvie'. It has: alive, dead. Did you mean 'alive'?" in shop.refused()
+
+
+def test_different_enumerations_without_a_mapping_are_refused(shop):
+    pair(shop, "Enumeration declaredType=Mode", "Enumeration declaredType=State", types=MODES)
+    assert "Values 1, 2 of the source's enumeration do not exist in the target's." in shop.refused()
+
+
+def test_a_connection_to_a_name_that_does_not_exist_says_what_there_is(shop):
+    shop.fmu("allocation", "output thrust_cmd_bow Real m")
+    shop.fmu("thruster", "input thrust_cmd Real m")
+    elements = shop.component("allocation", "allocation", "output thrust_cmd_bow")
+    elements += shop.component("thruster_bow", "thruster", "input thrust_cmd")
+    shop.ssd(elements, shop.connection("allocation.thrust_cmd_bow", "thruster_bow.thrust_comand"))
+    assert shop.refused() == (
+        f"{shop.path}, line 10: allocation.thrust_cmd_bow -> thruster_bow.thrust_comand: "
+        "thruster_bow has no input 'thrust_comand'. It has: thrust_cmd. Did you mean 'thrust_cmd'?"
+    )
+
+
+def test_a_connection_to_an_element_that_does_not_exist_says_what_there_is(shop):
+    pair(shop)
+    shop.path.write_text(shop.path.read_text().replace('endElement="b"', 'endElement="bb"'))
+    assert "There is no element 'bb' in test. There is: a, b." in shop.refused()
+
+
+def test_a_second_connection_into_an_input_names_the_first(shop):
+    shop.fmu("one", "output y Real m", "output z Real m")
+    shop.fmu("two", "input u Real m")
+    elements = shop.component("a", "one", "output y", "output z") + shop.component("b", "two", "input u")
+    shop.ssd(elements, shop.connection("a.y", "b.u") + shop.connection("a.z", "b.u"))
+    message = shop.refused()
+    assert "line 11: a.z -> b.u: A second connection into b.u." in message
+    assert "line 10: a.y -> b.u" in message
+
+
+def test_everything_wrong_is_reported_at_once(shop):
+    shop.fmu("one", "output y Real m")
+    elements = shop.component("a", "one", "output y", "output nothing") + shop.component("b", "missing", "input u")
+    shop.ssd(elements, shop.connection("a.y", "c.u"))
+    message = shop.refused()
+    for part in ("no output 'nothing'", "'resources/missing.fmu' does not exist", "There is no element 'c'"):
+        assert part in message
+
+
+def test_a_connector_whose_kind_or_type_is_not_the_fmus_is_refused(shop):
+    shop.fmu("one", "output y Real m")
+    shop.ssd(shop.component("a", "one", "input y <ssc:Integer/>"))
+    message = shop.refused()
+    assert "The connector is of kind input, the variable in one.fmu of causality output." in message
+    assert "The connector is of type Integer, but in one.fmu the variable is Real." in message
+
+
+def test_a_connectors_unit_counts_between_connectors_and_the_fmus_at_the_fmu(shop):
+    """The SSD calls a variable in rad one in deg: what arrives in deg must be converted for the FMU, with a remark."""
+    shop.fmu("one", "output y Real deg")
+    shop.fmu("two", "input u Real rad")
+    elements = shop.component("a", "one", "output y") + shop.component("b", "two", 'input u <ssc:Real unit="deg"/>')
+    shop.ssd(elements, shop.connection("a.y", "b.u"))
+    system = shop.read()
+    assert system.connections[0].factor == pytest.approx(math.pi / 180)
+    assert any("The connector is in deg, the variable in two.fmu in rad" in remark.found for remark in system.remarks)
+
+
+def test_unconnected_inputs_are_a_remark(shop):
+    shop.fmu("two", "input u Real m", "input w Real m")
+    shop.ssd(shop.component("b", "two"))
+    (remark,) = shop.read().remarks
+    assert (remark.where, remark.found) == ("b", "Unconnected inputs keep their start value: u, w.")
+
+
+def test_a_connector_that_is_only_in_the_fmu_is_a_remark(shop):
+    shop.fmu("one", "output y Real m")
+    shop.fmu("two", "input u Real m")
+    shop.ssd(shop.component("a", "one") + shop.component("b", "two", "input u"), shop.connection("a.y", "b.u"))
+    system = shop.read()
+    assert len(system.connections) == 1
+    assert any("a.y is not declared as a connector" in remark.found for remark in system.remarks)
+
+
+def nested(shop, inner_unit="", fmu_unit="m", transformation="", suppress="false"):
+    """Source a on the outside, b two systems deep; connectors on the way."""
+    shop.fmu("one", "output y Real km")
+    shop.fmu("two", f"input u Real {fmu_unit}", "output v Real m")
+    typed = f'<ssc:Real unit="{inner_unit}"/>' if inner_unit else ""
+    connectors = (
+        f'<ssd:Connectors><ssd:Connector name="in" kind="input">{typed}</ssd:Connector>'
+        '<ssd:Connector name="out" kind="output"/></ssd:Connectors>'
+    )
+    through = shop.connection("in", "core.in", transformation) + shop.connection("core.out", "out")
+    core = shop.component("b", "two", "input u", "output v")
+    core = (
+        f'<ssd:System name="core">{connectors}<ssd:Elements>{core}</ssd:Elements><ssd:Connections>'
+        + shop.connection("in", "b.u", suppressUnitConversion=suppress)
+        + shop.connection("b.v", "out")
+        + "</ssd:Connections></ssd:System>"
+    )
+    shell = (
+        f'<ssd:System name="shell">{connectors}<ssd:Elements>{core}</ssd:Elements>'
+        f"<ssd:Connections>{through}</ssd:Connections></ssd:System>"
+    )
+    outer = '<ssd:Connectors><ssd:Connector name="result" kind="output"/></ssd:Connectors>'
+    elements = shop.component("a", "one", "output y") + shell
+    shop.ssd(elements, shop.connection("a.y", "shell.in") + shop.connection("shell.out", "result"), head=outer)
+
+
+def test_two_levels_of_systems_become_one_connection(shop):
+    nested(shop)
+    system = shop.read()
+    assert list(system.components) == ["a", "shell.core.b"]
+    ways = {(connection.source, connection.target): connection.factor for connection in system.connections}
+    assert ways == {(("a", "y"), ("shell.core.b", "u")): 1000.0, (("shell.core.b", "v"), (None, "result")): 1.0}
+    assert system.outputs["result"].unit == "m"
+
+
+def test_units_and_transformations_on_the_way_through_systems_combine(shop):
+    """km at the source; metres at the shell; 3 x + 1 in metres at the core; the FMU counts in km again."""
+    nested(shop, inner_unit="m", fmu_unit="km", transformation='<ssc:LinearTransformation factor="3" offset="1"/>')
+    units = '<ssd:Units><ssc:Unit name="m"><ssc:BaseUnit m="1"/></ssc:Unit></ssd:Units>'
+    end = "</ssd:SystemStructureDescription>"
+    shop.path.write_text(shop.path.read_text().replace(end, units + end))
+    connection = next(c for c in shop.read().connections if c.target[1] == "u")
+    assert connection.factor * 2.0 + connection.offset == pytest.approx((3 * 2000.0 + 1) / 1000.0)
+
+
+def test_there_and_back_through_units_changes_no_digit(shop):
+    nested(shop, inner_unit="nmi", fmu_unit="km")
+    connection = next(c for c in shop.read().connections if c.target[1] == "u")
+    assert connection.factor == 1.0
+
+
+def test_a_missing_connector_of_a_nested_system_is_refused(shop):
+    nested(shop)
+    shop.path.write_text(
+        shop.path.read_text().replace('endElement="shell" endConnector="in"', 'endElement="shell" endConnector="inn"')
+    )
+    assert "a.y -> shell.inn: shell has no input 'inn'. It has: in. Did you mean 'in'?" in shop.refused()
+
+
+def test_inputs_of_the_system_feed_components_and_start_as_these_do(shop):
+    shop.fmu("two", "input u Real m start=1500")
+    head = (
+        '<ssd:Connectors><ssd:Connector name="way" kind="input"><ssc:Real unit="km"/></ssd:Connector></ssd:Connectors>'
+    )
+    shop.ssd(shop.component("b", "two", "input u"), shop.connection("way", "b.u"), head=head)
+    system = shop.read()
+    (connection,) = system.connections
+    assert (connection.source, connection.factor) == ((None, "way"), 1000.0)
+    assert (system.inputs["way"].unit, system.inputs["way"].start) == ("km", 1.5)
+
+
+def test_calculated_parameters_go_to_parameters_once(shop):
+    shop.fmu("one", "calculatedParameter c Real km", "output y Real m")
+    shop.fmu("two", "parameter p Real m")
+    elements = shop.component("a", "one", "calculatedParameter c", "output y") + shop.component(
+        "b", "two", "parameter p"
+    )
+    shop.ssd(elements, shop.connection("a.c", "b.p"))
+    (connection,) = shop.read().connections
+    assert connection.initial and connection.factor == 1000.0
+
+    shop.ssd(elements, shop.connection("a.y", "b.p"))
+    assert "a.y (output) cannot feed b.p (parameter)." in shop.refused()
+
+
+def test_signals_of_a_dictionary_reach_all_who_read_them(shop):
+    shop.fmu("one", "output y Real deg")
+    shop.fmu("two", "input u Real rad")
+    dictionaries = (
+        '<ssd:SignalDictionaries><ssd:SignalDictionary name="bus"><ssb:SignalDictionary version="1.0">'
+        '<ssb:DictionaryEntry name="heading"><ssc:Real unit="rad"/></ssb:DictionaryEntry><ssb:Units>'
+        '<ssc:Unit name="rad"><ssc:BaseUnit rad="1"/></ssc:Unit></ssb:Units>'
+        "</ssb:SignalDictionary></ssd:SignalDictionary></ssd:SignalDictionaries>"
+    )
+
+    def reference(name):
+        return (
+            f'<ssd:SignalDictionaryReference name="{name}" dictionary="bus"><ssd:Connectors>'
+            '<ssd:Connector name="heading" kind="inout"/></ssd:Connectors></ssd:SignalDictionaryReference>'
+        )
+
+    parts = shop.component("b", "two", "input u") + reference("port")
+    inner = (
+        f'<ssd:System name="inner"><ssd:Elements>{parts}</ssd:Elements>'
+        f"<ssd:Connections>{shop.connection('port.heading', 'b.u')}</ssd:Connections></ssd:System>"
+    )
+    elements = shop.component("a", "one", "output y") + reference("gate") + inner
+    shop.ssd(elements, shop.connection("a.y", "gate.heading"), tail=dictionaries)
+    (connection,) = shop.read().connections
+    assert (connection.source, connection.target) == (("a", "y"), ("inner.b", "u"))
+    assert connection.factor == pytest.approx(math.pi / 180)
+
+    shop.path.write_text(shop.path.read_text().replace('name="port" dictionary="bus"', 'name="port" dictionary="buss"'))
+    assert "There is no signal dictionary 'buss' here or in a system around. There is: bus." in shop.refused()
+
+
+def test_a_system_in_another_file_counts_as_if_it_stood_here(shop, tmp_path):
+    shop.fmu("two", "input u Real m")
+    head = '<ssd:Connectors><ssd:Connector name="in" kind="input"/></ssd:Connectors>'
+    shop.ssd(shop.component("b", "two", "input u"), shop.connection("in", "b.u"), head=head)
+    text = shop.path.read_text().replace("resources/two.fmu", "two.fmu")
+    (shop.folder / "resources/inner.ssd").write_text(text)
+    shop.fmu("one", "output y Real km")
+    component = '<ssd:Component name="part" type="application/x-ssp-definition" source="resources/inner.ssd"/>'
+    shop.ssd(shop.component("a", "one", "output y") + component, shop.connection("a.y", "part.in"))
+    (connection,) = shop.read().connections
+    assert (connection.target, connection.factor) == (("part.b", "u"), 1000.0)
+
+
+def test_a_system_that_contains_itself_is_refused(shop):
+    shop.ssd('<ssd:Component name="part" type="application/x-ssp-definition" source="SystemStructure.ssd"/>')
+    assert "'SystemStructure.ssd' contains itself." in shop.refused()
+
+
+def test_blanks_and_dots_in_names_are_names(shop):
+    shop.fmu("one", "output y.a[1] Real m")
+    shop.fmu("two", "input u Real m")
+    elements = shop.component("my a.b", "one", "output y.a[1]") + shop.component("b", "two", "input u")
+    elements = elements.replace("resources/two.fmu", "resources/t%20wo.fmu")
+    (shop.folder / "resources/two.fmu").rename(shop.folder / "resources/t wo.fmu")
+    connection = '<ssd:Connection startElement="my a.b" startConnector="y.a[1]" endElement="b" endConnector="u"/>'
+    shop.ssd(elements, connection)
+    system = shop.read()
+    assert system.connections[0].source == ("my a.b", "y.a[1]")
+    assert system.split("my a.b.y.a[1]") == ("my a.b", "y.a[1]")
+
+
+def test_prefixes_do_not_matter(shop):
+    pair(shop, "Real km", "Real m", '<ssc:LinearTransformation factor="2"/>')
+    text = shop.path.read_text()
+    default = text.replace("xmlns:ssd=", "xmlns=").replace("<ssd:", "<").replace("</ssd:", "</")
+    other = default.replace("xmlns:ssc=", "xmlns:q=").replace("<ssc:", "<q:").replace("</ssc:", "</q:")
+    shop.path.write_text(other)
+    assert "ssd:" not in other and "ssc:" not in other
+    assert shop.read().connections[0].factor == 2000.0
+
+
+def test_experiment_and_step_sizes_come_from_annotations(shop):
+    shop.fmu("one", "output y Real m")
+    hint = (
+        '<ssd:Annotations><ssc:Annotation type="com.opensimulationplatform">'
+        '<osp:StepSizeHint xmlns:osp="urn:osp" value="0.1"/></ssc:Annotation></ssd:Annotations>'
+    )
+    rest = (
+        '<ssd:DefaultExperiment startTime="1" stopTime="20"><ssd:Annotations>'
+        '<ssc:Annotation type="com.opensimulationplatform">'
+        '<osp:Algorithm xmlns:osp="urn:osp"><osp:FixedStepAlgorithm baseStepSize="0.05"/></osp:Algorithm>'
+        "</ssc:Annotation></ssd:Annotations></ssd:DefaultExperiment>"
+    )
+    shop.ssd(shop.component("a", "one", "output y", more=hint), rest=rest)
+    system = shop.read()
+    experiment = system.experiment
+    assert (experiment.start_time, experiment.stop_time, experiment.step_size) == (1.0, 20.0, 0.05)
+    assert system.components["a"].step_size == 0.1
+
+    shop.path.write_text(shop.path.read_text().replace('baseStepSize="0.05"', 'baseStepSize="-0.05"'))
+    assert "FixedStepAlgorithm: baseStepSize is -0.05. It must be positive." in shop.refused()
+
+
+def test_fmus_are_found_in_the_folders_given(shop, tmp_path):
+    pair(shop)
+    store = tmp_path / "store"
+    store.mkdir()
+    for name in ("one", "two"):
+        (shop.folder / f"resources/{name}.fmu").rename(store / f"{name}.fmu")
+    assert shop.read(fmus=[store]).components["a"].fmu.path.parent == store
+    message = shop.refused()
+    assert "line 8: a: The file 'resources/one.fmu' does not exist." in message
+
+
+def test_a_ssd_file_and_its_folder_read_alike(shop):
+    pair(shop)
+    assert read_system(shop.path).connections[0].factor == read_system(shop.folder).connections[0].factor
+
+
+def test_values_given_for_a_run_are_checked(shop):
+    shop.fmu("two", "input u Real m", "parameter n Integer", "parameter p Real m min=0 max=5", "output v Real m")
+    shop.ssd(shop.component("b", "two"))
+    system = with_values(shop.read(), {"b.p": 2, "b.n": 3})
+    assert (system.components["b"].start["p"], system.components["b"].start["n"]) == (2.0, 3)
+    with pytest.raises(ShipcosimError) as caught:
+        with_values(system, {"b.p": 7.0, "b.n": 1.5, "b.q": 1, "c.p": 1, "b.v": 1.0, "b.u": math.nan}, "four.toml")
+    assert str(caught.value).splitlines() == [
+        "four.toml: b.p: p cannot be 7 m. Allowed: 0 to 5 m.",
+        "four.toml: b.n: 1.5 is no Integer.",
+        "four.toml: b.q: b has no variable 'q'. It has: n, p, u, v.",
+        "four.toml: c.p: There is no component or connector 'c'. There is: b.",
+        "four.toml: b.v: It is of causality output, a value that the FMU calculates. Set parameters and inputs.",
+        "four.toml: b.u: The value is not a number (NaN).",
+    ]

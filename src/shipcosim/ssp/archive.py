@@ -6,6 +6,7 @@ import struct
 import zipfile
 import zlib
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
 from shipcosim.errors import Problem, ShipcosimError
@@ -80,11 +81,15 @@ def read_entry(path, name, limit, shown=None):
 
 def _opened(path, shown):
     try:
-        return zipfile.ZipFile(path)
+        archive = zipfile.ZipFile(path)
     except BROKEN as error:
         raise _damaged(shown, error) from None
     except OSError as error:
         raise ShipcosimError(Problem(shown, f"Cannot be read: {error.strerror}.")) from None
+    if min((entry.header_offset for entry in archive.infolist()), default=0) > 0:
+        archive.close()  # cut off within an archive that it contains, whose directory was taken for its own
+        raise _damaged(shown, "its start belongs to no entry")
+    return archive
 
 
 def _damaged(shown, error):
@@ -148,5 +153,6 @@ def write_archive(path, files):
                 archive.writestr(entry, files[name], compresslevel=9)
         os.replace(partial, path)
     except OSError as error:
-        partial.unlink(missing_ok=True)
+        with suppress(OSError):
+            partial.unlink()
         raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.archive import entries, read_entry
-from shipcosim.ssp.units import Unit, read_units
+from shipcosim.ssp.units import read_units
 from shipcosim.ssp.values import KINDS, read_value
 from shipcosim.ssp.xml import LARGEST_FILE, Document, Findings, is_true, local, parse, validate
 
@@ -304,6 +304,3 @@ def _start(typed, kind, dimensions):
     if dimensions:
         return tuple(read_value(kind, text) for text in typed.get("start").split())
     return read_value(kind, typed.get("start"))
-
-
-__all__ = ["FmuDescription", "Unit", "Variable", "describe_fmu", "read_fmu"]

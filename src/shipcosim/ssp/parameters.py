@@ -10,6 +10,9 @@ from shipcosim.ssp.units import Unit, find_unit, read_units
 from shipcosim.ssp.values import KINDS, read_value
 from shipcosim.ssp.xml import NAMESPACES, children, is_true, local, qualified, reporting, validate
 
+TOLERANCE = "shipcosim.tolerance"
+"""Type of the annotation with a parameter's tolerance."""
+
 MAPPINGS = {
     "BooleanMappingTransformation": "Boolean",
     "IntegerMappingTransformation": "Integer",
@@ -55,6 +58,8 @@ class ParameterValue:
         What it is and where the number comes from.
     place : str
         Where it stands, for messages.
+    tolerance : float or None
+        Standard deviation within which the value counts as known, in `unit`; kept in an annotation of ours.
     """
 
     name: str
@@ -63,6 +68,7 @@ class ParameterValue:
     unit: Unit | None = None
     description: str = ""
     place: str = ""
+    tolerance: float | None = None
 
 
 @dataclass(frozen=True)
@@ -148,11 +154,20 @@ def _parameter(document, element, units, findings):
     kind = KINDS[local(typed)]
     try:
         value = read_value(kind, typed.get("value", ""))
+        tolerance = _tolerance(element)
     except ValueError as error:
         findings.error(document.place(element, name), str(error))
         return None
     unit = find_unit(typed.get("unit"), units)
-    return ParameterValue(name, kind, value, unit, element.get("description", ""), document.place(element, name))
+    description = element.get("description", "")
+    return ParameterValue(name, kind, value, unit, description, document.place(element, name), tolerance)
+
+
+def _tolerance(element):
+    for annotation in children(element, "ssv:Annotations", "ssc:Annotation"):
+        if annotation.get("type") == TOLERANCE and len(annotation):
+            return read_value("Real", annotation[0].get("value", ""))
+    return None
 
 
 def read_mapping(document, findings):

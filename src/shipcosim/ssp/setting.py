@@ -11,7 +11,7 @@ from difflib import get_close_matches
 
 from shipcosim.errors import suggestion
 from shipcosim.ssp.flow import Flow, advance
-from shipcosim.ssp.tree import SOURCES_INSIDE, Key, variable_port
+from shipcosim.ssp.ports import SOURCES_INSIDE, Key, variable_port
 from shipcosim.ssp.values import has
 
 

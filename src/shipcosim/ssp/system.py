@@ -10,7 +10,7 @@ from shipcosim.ssp.package import open_package
 from shipcosim.ssp.parameters import ParameterSet, read_parameter_set
 from shipcosim.ssp.setting import Settings, check_bounds
 from shipcosim.ssp.structure import Experiment, read_structure
-from shipcosim.ssp.tree import Key, Tree
+from shipcosim.ssp.tree import Tree
 from shipcosim.ssp.values import has
 from shipcosim.ssp.wiring import Connection, connect
 from shipcosim.ssp.xml import Findings, read_document
@@ -350,6 +350,3 @@ def _set(start, variable, value, place, findings):
         findings.error(place, "The value is not a number (NaN).")
     elif check_bounds(value, variable, place, variable.name, findings):
         start[variable.name] = float(value) if variable.kind == "Real" else value
-
-
-__all__ = ["Component", "Key", "Signal", "System", "read_system", "with_values"]

@@ -4,20 +4,14 @@ A port is a connector at its place in the hierarchy. Nested systems, systems in 
 become ports with wires between them, so that what follows knows no hierarchy.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.ssp.fmu import FmuDescription, Variable, describe_fmu
+from shipcosim.ssp.fmu import FmuDescription, describe_fmu
+from shipcosim.ssp.links import wire_of
 from shipcosim.ssp.package import open_package, read_in_component
-from shipcosim.ssp.parameters import (
-    ParameterValue,
-    Transformation,
-    read_dictionary,
-    read_mapping,
-    read_parameter_set,
-)
+from shipcosim.ssp.parameters import read_dictionary, read_mapping, read_parameter_set
+from shipcosim.ssp.ports import Key, Port, Setting, Wire, variable_port
 from shipcosim.ssp.structure import (
     FMU,
     KIND_NAMES,
@@ -27,88 +21,11 @@ from shipcosim.ssp.structure import (
     DictionaryReference,
     SystemElement,
     read_structure,
-    signal,
 )
-from shipcosim.ssp.units import Unit, find_unit, relation
+from shipcosim.ssp.units import find_unit, relation
 from shipcosim.ssp.values import has
 
 MOST_SYSTEMS = 10_000  # a few files that include each other can describe more than any memory holds
-
-SOURCES_OUTSIDE = ("output", "calculatedParameter", "local", "constant")
-SOURCES_INSIDE = ("input", "parameter", "structuralParameter")
-FREE = ("inout", "unspecified")
-FEEDS = {
-    "parameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
-    "structuralParameter": ("structuralParameter", "constant"),
-    "calculatedParameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
-    "constant": ("constant",),
-}
-"""Kinds that may feed a kind, where not all may. SSP 2.0, table of allowed connections."""
-
-
-class Key(NamedTuple):
-    """Which port: names of the elements around it from the outermost system's inside, and its own."""
-
-    path: tuple[str, ...]
-    name: str
-
-    def __str__(self):
-        return ".".join((*filter(None, self.path), self.name))
-
-
-@dataclass(frozen=True)
-class Port:
-    """A connector at its place.
-
-    Parameters
-    ----------
-    kind, type, unit, items
-        As in Connector, with what the FMU says filled in.
-    owner : str
-        ``"component"``, ``"system"``, ``"reference"`` or ``"dictionary"``.
-    variable : Variable or None
-        The FMU's, on a component.
-    variable_unit : Unit or None
-        The FMU's unit, which can be another than the connector's.
-    description, place : str
-        One line; where it stands.
-    """
-
-    kind: str
-    type: str | None
-    owner: str
-    unit: Unit | None = None
-    items: Mapping = field(default_factory=dict)
-    variable: Variable | None = None
-    variable_unit: Unit | None = None
-    description: str = ""
-    place: str = ""
-
-
-@dataclass(frozen=True)
-class Wire:
-    """A connection in the direction that values go."""
-
-    source: Key
-    target: Key
-    transformation: Transformation | None = None
-    suppress_unit_conversion: bool = False
-    place: str = ""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A value for a name within a system or component; settings come in the order in which they are applied.
-
-    `near` says whether the set was bound to a component itself, so that all its names should be known.
-    """
-
-    path: tuple[str, ...]
-    name: str
-    value: ParameterValue
-    transformation: Transformation | None = None
-    suppress_unit_conversion: bool = False
-    near: bool = False
 
 
 class Tree:
@@ -156,7 +73,8 @@ class Tree:
             else:
                 self._component(part, inner, place)
         for link in element.links:
-            self._link(link, element, path)
+            wire = wire_of(link, element, path, self)
+            self.wires += [] if wire is None else [wire]
         self._bindings(element.bindings, path, place)
         for bindings, outer in more_bindings:
             self._bindings(bindings, path, outer)
@@ -345,75 +263,6 @@ class Tree:
             settings.append(Setting(path, entry.target, by_name[entry.source], *how, near=True))
         return settings
 
-    def _link(self, link, system, path):
-        ends = [(link.start_element, link.start_connector), (link.end_element, link.end_connector)]
-        keys = [self._end(ends, i, link, system, path) for i in (0, 1)]
-        if None in keys:
-            return
-        kinds = [self.ports[key].kind for key in keys]
-        if any(kind not in KIND_NAMES for kind in kinds):
-            return  # the schema has said so
-        feeds = [kinds[i] in FREE or (kinds[i] in SOURCES_OUTSIDE) == (ends[i][0] is not None) for i in (0, 1)]
-        takes = [kinds[i] in FREE or not feeds[i] for i in (0, 1)]
-        source, target = (0, 1) if feeds[0] and takes[1] else (1, 0)
-        if not (feeds[source] and takes[target]):
-            which = (
-                "both give a value, and neither takes one" if all(feeds) else "both take a value, and neither gives one"
-            )
-            found = f"{signal(*ends[0])} ({kinds[0]}) and {signal(*ends[1])} ({kinds[1]}): {which}."
-            self.findings.error(link.place, found, "Connect an output to an input.")
-            return
-        feeding = FEEDS.get(kinds[target], KIND_NAMES)
-        if kinds[source] not in (*FREE, *feeding):
-            found = f"{signal(*ends[source])} ({kinds[source]}) cannot feed {signal(*ends[target])} ({kinds[target]})."
-            self.findings.error(link.place, found, f"Feed it from one of: {', '.join(feeding)}.")
-            return
-        how = (link.transformation, link.suppress_unit_conversion, link.place)
-        self.wires.append(Wire(keys[source], keys[target], *how))
-
-    def _end(self, ends, index, link, system, path):
-        """Key of one end of a connection, or None with an error (or without, where its FMU is missing anyway)."""
-        element, name = ends[index]
-        key = Key(path if element is None else (*path, element), name)
-        if key in self.ports:
-            return key
-        names = [part.name for part in system.elements]
-        if element is not None and element not in names:
-            found = f"There is no element '{element}' in {system.name}."
-            self.findings.error(link.place, found, suggestion(element, names))
-            return None
-        if key.path in self.components:
-            _, fmu = self.components[key.path]
-            if fmu is None:
-                return None
-            if name in fmu.variables:
-                return self._undeclared(key, fmu, link)
-        wanted, known = self._wanted(ends, index, key.path, path)
-        self.findings.error(link.place, f"{element or system.name} has no {wanted} '{name}'.", has(name, known))
-        return None
-
-    def _undeclared(self, key, fmu, link):
-        self.ports[key] = variable_port(fmu.variables[key.name], fmu, link.place)
-        found = f"{key} is not declared as a connector; it is taken from {fmu.path.name}."
-        self.findings.remark(link.place, found, f'Add <Connector name="{key.name}" kind="{self.ports[key].kind}"/>.')
-        return key
-
-    def _wanted(self, ends, index, owner, path):
-        """What kind of connector a connection seeks here, by its other end, and those that there are."""
-        other_element, other_name = ends[1 - index]
-        other = self.ports.get(Key(path if other_element is None else (*path, other_element), other_name))
-        seeks_source = index == 0
-        if other is not None:
-            seeks_source = (other.kind in SOURCES_OUTSIDE) == (other_element is None)
-        outside = ends[index][0] is not None
-        kinds = SOURCES_OUTSIDE if seeks_source == outside else SOURCES_INSIDE
-        _, fmu = self.components.get(owner, (None, None))
-        have = {key.name: port.kind for key, port in self.ports.items() if key.path == owner}
-        have |= {} if fmu is None else {name: variable.causality for name, variable in fmu.variables.items()}
-        wanted = "output" if kinds is SOURCES_OUTSIDE else "input"
-        known = [name for name, kind in have.items() if kind == wanted] or [n for n, k in have.items() if k in kinds]
-        return (wanted, known) if known else ("connector", list(have))
-
 
 @dataclass(frozen=True)
 class _Place:
@@ -427,13 +276,6 @@ class _Place:
     @property
     def folder(self):
         return self.structure.document.folder
-
-
-def variable_port(variable, fmu, place):
-    """Port of an FMU's variable as the FMU describes it."""
-    unit = find_unit(variable.unit, fmu.units)
-    fields = (variable.causality, variable.kind, "component", unit, variable.items, variable, unit)
-    return Port(*fields, variable.description, place)
 
 
 def _with_id(system, wanted):

@@ -128,7 +128,7 @@ SYMBOLS = {
 
 PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
 PREFIXABLE = {"g", "m", "s", "A", "K", "rad", "Hz", "N", "Pa", "bar", "J", "W", "V", "Ohm", "l"}
-FACTOR = re.compile(r"([A-Za-z%]+|1|-)\^?(-?\d+)?")
+FACTOR = re.compile(r"([A-Za-z%]+|1|-)(?:\^?(-?\d+))?")
 
 
 def spelled(name):
@@ -143,16 +143,17 @@ def spelled(name):
     numerator, *denominators = name.replace("*", ".").split("/")
     parts = [(factor, 1) for factor in numerator.split(".")]
     for denominator in denominators:
-        if "." in denominator and not re.fullmatch(r"\([^()]*\)", denominator):
+        whole = re.fullmatch(r"\((.*)\)", denominator)
+        if "." in denominator and not whole:
             return None  # "a/b.c" is read in two ways
-        parts += [(factor, -1) for factor in denominator.strip("()").split(".")]
+        parts += [(factor, -1) for factor in (whole[1] if whole else denominator).split(".")]
     exponents, scale, offset = [0] * len(BASE), 1.0, 0.0
     for text, sign in parts:
         symbol = _symbol(text)
         if symbol is None:
             return None
         (powers, factor, offset), power = symbol[:-1], sign * symbol[-1]
-        if offset and len(parts) + power > 2:
+        if offset and (len(parts), power) != (1, 1):
             return None  # a temperature scale in a product
         exponents = [have + power * more for have, more in zip(exponents, powers, strict=True)]
         scale *= factor**power

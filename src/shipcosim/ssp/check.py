@@ -1,0 +1,81 @@
+"""Everything that is wrong with a file, at once."""
+
+import platform
+import sys
+from pathlib import Path
+
+from shipcosim.errors import Problem
+from shipcosim.ssp.fmu import describe_fmu
+from shipcosim.ssp.parameters import read_dictionary, read_mapping, read_parameter_set
+from shipcosim.ssp.system import assemble
+from shipcosim.ssp.xml import Findings, read_document
+
+READERS = {".ssv": read_parameter_set, ".ssm": read_mapping, ".ssb": read_dictionary}
+
+
+def check_system(path, parameters=(), *, fmus=()):
+    """Problems of a system structure and all it refers to; no binary is loaded.
+
+    Parameters
+    ----------
+    path, parameters, fmus
+        As for `read_system`.
+
+    Returns
+    -------
+    list of Problem
+        Errors, and remarks on what stops nothing; empty where all is well.
+    """
+    system, findings = assemble(path, parameters, fmus)
+    described = {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
+    for fmu in described.values():
+        _remark_platform(fmu, fmu.path.name, findings)
+    return list(dict.fromkeys(findings.problems))
+
+
+def check_file(path, *, fmus=()):
+    """Problems of a file by its ending: .ssp, .ssd, a folder with a SystemStructure.ssd, .ssv, .ssm, .ssb or .fmu.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    fmus : iterable of path
+        Folders searched for FMUs that are not beside an SSD.
+
+    Returns
+    -------
+    list of Problem
+    """
+    suffix = Path(str(path).partition("#")[0]).suffix.lower()
+    if suffix in (".ssp", ".ssd") or Path(path).is_dir():
+        return check_system(path, fmus=fmus)
+    findings = Findings()
+    if suffix == ".fmu":
+        fmu = describe_fmu(path, findings)
+        if fmu is not None:
+            _remark_platform(fmu, str(path), findings)
+    elif suffix in READERS:
+        document = read_document(path, str(path), findings)
+        if document is not None:
+            READERS[suffix](document, findings)
+    else:
+        return [
+            Problem(str(path), f"Files ending in '{suffix}' are not known.", "Known: .ssp .ssd .ssv .ssm .ssb .fmu.")
+        ]
+    return list(dict.fromkeys(findings.problems))
+
+
+def _remark_platform(fmu, where, findings):
+    names = this_platform()
+    if not set(names) & set(fmu.platforms):
+        there = ", ".join(fmu.platforms) or "none"
+        findings.remark(where, f"It has no binary for this platform ({names[0]}).", f"It has: {there}.")
+
+
+def this_platform():
+    """Names that FMI 2.0 and FMI 3.0 have for the platform that Python runs on."""
+    system = {"win32": "windows", "darwin": "darwin"}.get(sys.platform, "linux")
+    machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
+    bits = 64 if sys.maxsize > 2**32 else 32
+    return f"{'win' if system == 'windows' else system}{bits}", f"{machine}-{system}"

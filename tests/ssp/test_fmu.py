@@ -1,0 +1,104 @@
+"""Model descriptions of FMI 2.0 and 3.0 are read whole."""
+
+import zipfile
+
+import pytest
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp import read_fmu
+
+FMI3 = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="new" instantiationToken="{{1}}">
+<CoSimulation modelIdentifier="new" canGetAndSetFMUState="true"/>
+<UnitDefinitions><Unit name="m/s"><BaseUnit m="1" s="-1"/></Unit></UnitDefinitions>
+<TypeDefinitions><Float64Type name="Speed" unit="m/s" min="0"/>
+<EnumerationType name="Mode"><Item name="off" value="1"/><Item name="on" value="2"/></EnumerationType></TypeDefinitions>
+<ModelVariables>
+<Float64 name="time" valueReference="0" causality="independent" variability="continuous"/>
+<Float64 name="u" valueReference="1" causality="input" declaredType="Speed" start="1.5"><Alias name="speed"/></Float64>
+<Float32 name="y" valueReference="2" causality="output"/>
+<UInt64 name="n" valueReference="3" causality="structuralParameter" variability="fixed" start="3"/>
+<Float64 name="v" valueReference="4" causality="input" start="1 2 3"><Dimension valueReference="3"/></Float64>
+<String name="s" valueReference="5" causality="parameter" variability="fixed"><Start value="a b"/></String>
+<Boolean name="b" valueReference="6" causality="input" start="true"/>
+<Enumeration name="e" valueReference="7" declaredType="Mode" causality="input" start="2"/>
+</ModelVariables><ModelStructure>{structure}</ModelStructure></fmiModelDescription>
+"""
+
+
+def fmu(path, text, *more):
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("modelDescription.xml", text)
+        for name in more:
+            archive.writestr(name, "")
+    return path
+
+
+def test_fmi_2_variables_with_what_their_types_declare(shop):
+    types = '<SimpleType name="Force"><Real unit="m" min="-5" max="5"/></SimpleType>'
+    path = shop.fmu("one", "input u Real declaredType=Force", "output y Real max=9 declaredType=Force", types=types)
+    described = read_fmu(path)
+    assert (described.fmi_version, described.model_identifier, described.token) == ("2.0", "one", "one")
+    u, y = described.variables["u"], described.variables["y"]
+    assert (u.unit, u.minimum, u.maximum, u.start, u.value_reference) == ("m", -5.0, 5.0, 0.0, 0)
+    assert (y.unit, y.maximum, y.settable, u.settable) == ("m", 9.0, False, True)
+    assert described.units["kn"].factor == pytest.approx(1852 / 3600)
+
+
+def test_fmi_3_variables_arrays_and_aliases(tmp_path):
+    path = fmu(
+        tmp_path / "new.fmu", FMI3.format(structure='<Output valueReference="2"/>'), "binaries/x86_64-linux/new.so"
+    )
+    described = read_fmu(path)
+    variables = described.variables
+    assert (described.fmi_version, described.platforms) == ("3.0", ("x86_64-linux",))
+    assert described.capability("canGetAndSetFMUState")
+    assert (variables["u"].unit, variables["u"].minimum, variables["u"].start) == ("m/s", 0.0, 1.5)
+    assert variables["speed"].value_reference == variables["u"].value_reference
+    assert (variables["y"].kind, variables["n"].kind, variables["b"].start) == ("Real", "Integer", True)
+    assert (variables["v"].dimensions, variables["v"].start) == ((3,), (1.0, 2.0, 3.0))
+    assert (variables["s"].start, variables["e"].start, variables["e"].items) == ("a b", 2, {"off": 1, "on": 2})
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<fmiModelDescription fmiVersion='1.0'/>", "FMI version '1.0'. Versions 2.0 and 3.0 are read"),
+        ("<x/>", "Its outermost element is <x>."),
+        ("<fmiModelDescription", "Not well-formed XML"),
+        ("<fmiModelDescription fmiVersion='2.0'/>", "The attribute 'modelName' is required but missing."),
+        (FMI3.format(structure="<Output/>"), "line 16: Element 'Output': The attribute 'valueReference' is required"),
+    ],
+)
+def test_what_is_no_fmu_is_refused(tmp_path, text, message):
+    with pytest.raises(ShipcosimError) as caught:
+        read_fmu(fmu(tmp_path / "x.fmu", text))
+    assert message in str(caught.value)
+
+
+def test_two_variables_of_one_name_are_refused(shop):
+    path = shop.fmu("one", "output y Real m", "output y Real m")
+    with pytest.raises(ShipcosimError, match="A second variable has this name"):
+        read_fmu(path)
+
+
+def test_an_archive_without_a_model_description_is_refused(tmp_path):
+    with zipfile.ZipFile(tmp_path / "x.fmu", "w"):
+        pass
+    with pytest.raises(ShipcosimError, match="no modelDescription.xml"):
+        read_fmu(tmp_path / "x.fmu")
+
+
+def test_our_stand_in_is_what_fmpy_reads_too(shop):
+    fmpy = pytest.importorskip("fmpy")
+    path = shop.fmu("one", "input u Real m start=2", "output y Integer", "parameter s String")
+    theirs, ours = fmpy.read_model_description(str(path)), read_fmu(path)
+    assert ours.token == theirs.guid
+    for variable in theirs.modelVariables:
+        own = ours.variables[variable.name]
+        assert (own.value_reference, own.type, own.causality, own.unit) == (
+            variable.valueReference,
+            variable.type,
+            variable.causality,
+            variable.unit,
+        )
