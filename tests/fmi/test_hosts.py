@@ -256,6 +256,33 @@ def test_what_cannot_be_stored_is_said_and_the_run_goes_on(build, load):
     assert host.step(2) == [1.0, 2.0]
 
 
+def test_failed_calls_and_new_instances_lose_no_reference(lag, bare_packages):
+    """pythonfmu's binary gives up references that it does not own; without balance, memory is used twice."""
+    printed = run(
+        BARE_HOST.format(fmu=str(lag)),
+        """
+        import gc
+        entry = [module for name, module in sys.modules.items() if name.startswith("lag_") and "_code" not in name][0]
+        counts = []
+        for failures in (0, 0, 3, 0, 30, 0):
+            slave.freeInstance()
+            slave.instantiate(loggingOn=False)
+            for _ in range(failures):
+                try:
+                    slave.setReal([0], [float("nan")])
+                    raise SystemExit("not refused")
+                except Exception:
+                    pass
+            counts.append((sys.getrefcount(vars(entry)), sys.getrefcount(entry.Lag)))
+        namespace, cls = zip(*counts)
+        print(len(set(namespace)), len({after - before for before, after in zip(cls, cls[1:])}))
+        print(sum(isinstance(item, entry.Lag) for item in gc.get_objects()))
+        """,
+        path=bare_packages,
+    )
+    assert printed.split() == ["1", "1", "1"]
+
+
 def test_libcosim_runs_it(lag):
     pytest.importorskip("libcosimpy", reason="libcosim is not installed", exc_type=ImportError)
     from libcosimpy.CosimExecution import CosimExecution

@@ -87,15 +87,15 @@ for path in map(str, Path(__file__).parent.rglob("*.py")):
 
 ENTRY = '''"""Where the binary enters: it runs this file for every instance, and once more when it is imported."""
 
-import ctypes
 import sys
 from os.path import isfile, join
 
-# the binary gives up a reference to this namespace that it does not own
-ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
 try:
     import {modules}
+    from {package}.shipcosim.fmi.binary import keep
     from {package}.{script} import {cls}
+
+    keep(globals())
 finally:
     # the binary has put this folder on the host's path
     if sys.path and isfile(join(sys.path[0], "{entry}.py")):

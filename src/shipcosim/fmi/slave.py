@@ -5,7 +5,6 @@ methods below. It logs the `repr` of what they raise with status fatal, and the 
 """
 
 import copy
-import ctypes
 import functools
 import math
 import operator
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from . import state
+from .binary import keep, let_go_at_exit
 
 CODE = Path(__file__).parents[2]
 SHELL = str(Path(__file__).parent)
@@ -105,11 +105,13 @@ class Fmi2Slave:
         cls._real_outputs = tuple(v.name for v in cls.variables if v.causality == "output" and v.type == "Real")
         cls._starts = {variable.name: variable.start for variable in cls.variables}
 
-    def __init__(self, instance_name="", *, logger=None, **_):
+    def __init__(self, instance_name="", *, resources="", **_):
         self.instance_name = instance_name or type(self).__name__
         self.start_time = self._time = 0.0
         self.messages = []
-        self._in_binary = logger is not None
+        self._in_binary = bool(resources)
+        if resources:
+            let_go_at_exit(resources)
         self._initialising = self._initialised = self._stale = False
         self.__dict__.update(self._starts)
 
@@ -248,13 +250,8 @@ class Fmi2Slave:
         if self._in_binary:
             text = "\n".join([*(message.msg.replace("%%", "%") for message in self.messages), text])
             self.messages.clear()
-            self._keep()
+            keep(type(self), self, self.messages)
         return FmuError(text)
-
-    def _keep(self):
-        """Outlive the exception: the binary gives up its references when one arrives and goes on using them."""
-        for kept in (type(self), self, self.messages):
-            ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
 
     # checks
 
