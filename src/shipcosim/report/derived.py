@@ -1,4 +1,4 @@
-"""Signals that no component puts out but every reader looks for: errors, distances, wind and current as speed and direction."""
+"""Signals that no component puts out but every reader looks for: errors, distances, wind as speed and direction."""
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def errors(shown, roles):
 
 
 def distances(shown, table, roles, verdicts):
-    """Distance from the reference, and in the windows of expectations on x and y together the distance that was judged."""
+    """Distance from the reference, and in the windows of expectations on the position the distance that was judged."""
     if not {ERRORS["x"], ERRORS["y"]} <= set(shown):
         return {}
     distance = np.hypot(shown[ERRORS["x"]].values, shown[ERRORS["y"]].values)

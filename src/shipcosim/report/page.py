@@ -49,7 +49,7 @@ def render(table, *, scenario=None, verdicts=(), system=None):
     roles = find_roles(table.data_vars)
     shown = add_derived(display_table(table, roles), table, roles, verdicts)
     drawn, span = thinned(shown)
-    track = track_figure(drawn, roles, verdicts, ship_size(table))
+    track = track_figure(drawn, roles, verdicts, ship_size(table, roles))
     sections = make_sections(shown, roles, verdicts)
     return Template(_asset("template.html")).substitute(
         title=escape(parts.title_of(scenario, system)),
@@ -60,9 +60,7 @@ def render(table, *, scenario=None, verdicts=(), system=None):
         chart=parts.chart(track is not None),
         weather=parts.weather(summary.weather(shown, roles)),
         figures=parts.key_figures(summary.key_figures(shown, roles)),
-        expectations=parts.expectations(
-            verdicts, {n: (v.attrs["units"], v.attrs["factor"]) for n, v in shown.data_vars.items()}
-        ),
+        expectations=parts.expectations(verdicts, {name: v.attrs for name, v in shown.data_vars.items()}),
         sections=parts.sections(sections),
         thinning=parts.thinning(span, shown.sizes["time"], drawn.sizes["time"]),
         details=parts.details(summary.details(table), scenario),

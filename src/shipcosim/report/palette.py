@@ -1,4 +1,4 @@
-"""Colours of the page: Okabe and Ito's, told apart with every kind of colour vision; pass and fail also differ in sign."""
+"""Colours of the page: Okabe and Ito's, told apart with every kind of colour vision."""
 
 BLUE, VERMILLION, GREEN, ORANGE = "#0072b2", "#d55e00", "#009e73", "#e69f00"
 SKY, PURPLE, OLIVE, INK, PALE = "#56b4e9", "#cc79a7", "#8a7f00", "#1f2933", "#c3cfd9"

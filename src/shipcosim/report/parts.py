@@ -95,12 +95,12 @@ def expectations(verdicts, units):
     ----------
     verdicts : sequence of Verdict
         What was judged.
-    units : dict of str to (str, float)
-        Unit and factor of every signal.
+    units : dict of str to dict
+        `units` and `factor` of every signal.
     """
     if not verdicts:
         return ""
-    rows = "".join(_expectation(verdict, *units[verdict.expect.signal[0]]) for verdict in verdicts)
+    rows = "".join(_expectation(verdict, units[verdict.expect.signal[0]]) for verdict in verdicts)
     head = "<tr><th></th><th>Expected</th><th>During</th><th>Worst</th><th>At</th></tr>"
     return (
         f"<section id='expectations'><h2>Expectations</h2><table><thead>{head}</thead>"
@@ -108,8 +108,8 @@ def expectations(verdicts, units):
     )
 
 
-def _expectation(verdict, unit, factor):
-    expect = verdict.expect
+def _expectation(verdict, shown_as):
+    expect, unit, factor = verdict.expect, shown_as["units"], shown_as["factor"]
     during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
     judged = math.isfinite(verdict.time)
     worst, when = (f"{factor * verdict.worst:.3g} {unit}", f"{verdict.time:g} s") if judged else ("no row", "–")

@@ -43,9 +43,7 @@ def outcome(table, verdicts):
     missed = sum(not v.passed for v in verdicts)
     if not is_complete(table):
         end = float(table["time"].values[-1]) if table.sizes["time"] else 0.0
-        return Outcome(
-            "partial", "PARTIAL", f"The run was interrupted at {end:g} s; expectations were not judged to its end."
-        )
+        return Outcome("partial", "PARTIAL", f"The run ended early, at {end:g} s. Its expectations were not judged.")
     if not verdicts:
         return Outcome("plain", "DONE", "Nothing was expected of this run.")
     if missed:
@@ -140,13 +138,9 @@ def weather(shown, roles):
     found = []
     for what, sense in [("wind", "from"), ("current", "to")]:
         if f"{what} speed" in shown:
-            size, angle = (
-                shown[
-                    mean if (mean := roles.signal(roles.environment, f"{what}_{part}_mean")) in shown else derived
-                ].values
-                for part, derived in (("speed", f"{what} speed"), (sense, f"{what} {sense}"))
-            )
-            found.append((what, _span(size), "m/s", _mean_direction(angle), sense))
+            means = [roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)]
+            size, angle = means if None not in means else (f"{what} speed", f"{what} {sense}")
+            found.append((what, _span(shown[size].values), "m/s", _mean_direction(shown[angle].values), sense))
     height, source = (roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from"))
     if height in shown and source in shown and np.nanmax(shown[height].values) > 0.0:
         found.append(("waves", _span(shown[height].values), "m", _mean_direction(shown[source].values), "from"))

@@ -1,9 +1,12 @@
 """The track on a chart: north up, one scale both ways, the ship drawn to scale where she was."""
 
+import json
+
 import numpy as np
 
 from shipcosim.report import palette
 from shipcosim.report.derived import desired
+from shipcosim.report.roles import join
 
 LENGTH, BREADTH = 33.9, 9.6  # m, R/V Gunnerus between perpendiculars: for tables that do not say
 HULL = (  # outline over length and breadth from amidships, starboard side from stern to bow; drawn, not measured
@@ -17,9 +20,11 @@ HULL = (  # outline over length and breadth from amidships, starboard side from 
 SPACING, TURN, MOST = 0.3, 20.0, 40  # outlines: apart in lengths, turned in deg, at most so many
 
 
-def ship_size(table):
-    """Length and breadth of the ship to draw, from the table's attributes where they say. [m, m]"""
-    return float(table.attrs.get("ship_length", LENGTH)), float(table.attrs.get("ship_breadth", BREADTH))
+def ship_size(table, roles):
+    """Length and breadth of the ship to draw, from the start values in the table's attributes. [m, m]"""
+    known = json.loads(table.attrs.get("start_values", "{}"))
+    sizes = (("length", LENGTH), ("breadth", BREADTH))
+    return tuple(float(known.get(join(roles.ship or "", name), default)) for name, default in sizes)
 
 
 def hull_outline(length, breadth):
