@@ -141,6 +141,18 @@ def test_tensors_give_what_floats_give(case):
     np.testing.assert_allclose(found.astype(float), by_floats(case), rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_gradients_are_finite_even_at_rest(case):
+    torch = pytest.importorskip("torch")
+    columns = [torch.as_tensor(np.array(column)) for column in zip(*case.rows, strict=True)]
+    columns = [column.requires_grad_() if column.is_floating_point() else column for column in columns]
+    values = [value for value in case(*columns) if isinstance(value, torch.Tensor) and value.requires_grad]
+    if values:
+        sum(value.sum() for value in values).backward()
+    gradients = [column.grad for column in columns if column.grad is not None]
+    assert all(torch.isfinite(gradient).all() for gradient in gradients)
+
+
 def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
     missing = [f"{name}.{function.__name__}" for name, function in promising() if function not in covered]

@@ -11,6 +11,7 @@ from bisect import bisect_right
 import numpy as np
 
 pi = math.pi
+_TINY = 1e-30
 
 
 def _library(*values):
@@ -62,10 +63,11 @@ def atan2(y, x):
 
 
 def hypot(x, y):
-    """Length of the vector (x, y)."""
+    """Length of the vector (x, y); of tensors with a finite derivative at 0 too."""
     if isinstance(y, float) and isinstance(x, float):
         return math.sqrt(x * x + y * y)
-    return sqrt(x * x + y * y)
+    square = x * x + y * y
+    return np.sqrt(square) if _library(x, y) is np else (square + _TINY).sqrt()
 
 
 def where(condition, a, b):
