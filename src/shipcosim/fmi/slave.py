@@ -34,7 +34,6 @@ class Message(NamedTuple):
     status: int
     category: str
     msg: str
-    debug: bool = False
 
 
 class State(NamedTuple):
