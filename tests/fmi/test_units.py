@@ -61,3 +61,8 @@ def test_exponents_come_in_the_order_of_fmi():
 def test_what_cannot_be_read_is_refused_by_name(unit):
     with pytest.raises(ValueError, match="unit"):
         base_unit(unit)
+
+
+def test_fractional_exponents_are_refused_with_a_way_out():
+    with pytest.raises(ValueError, match="square"):
+        base_unit("m/s1.5")

@@ -73,6 +73,8 @@ def base_unit(unit):
     """
     if unit == "degC":
         return BaseUnit({"K": 1}, 1.0, 273.15)
+    if re.search(r"\d\.\d", unit):
+        raise ValueError(f"unit {unit!r}: FMI knows whole exponents only; give the square of the value instead")
     above, _, below = unit.partition("/")
     if below.startswith("(") and below.endswith(")"):
         below = below[1:-1]
