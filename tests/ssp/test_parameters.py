@@ -1,5 +1,7 @@
 """Parameter values arrive where the standard says, in the FMU's unit and type, the highest level last."""
 
+import zipfile
+
 import pytest
 
 from shipcosim.ssp import parameter, write_ssv
@@ -207,6 +209,17 @@ def test_a_written_set_reads_back_the_same(tmp_path):
         same = ("name", "kind", "value", "unit", "description", "tolerance")
         assert [getattr(one, name) for name in same] == [getattr(other, name) for name in same]
     assert b'<ssv:ParameterSet xmlns:ssv="' in path.read_bytes()  # libcosim needs these prefixes
+
+
+def test_a_set_inside_the_fmu_is_found_there(ship, real):
+    with zipfile.ZipFile(ship.folder / "resources/hull.fmu", "a") as archive:
+        archive.writestr("extra/own.ssv", ship.ssv(real("mass", "8")).read_text())
+    ship.ssd(
+        ship.component("hull", "hull", more=by_file("extra/own.ssv").replace("source", 'sourceBase="component" source'))
+    )
+    assert start(ship) == {"mass": 8.0}
+    ship.ssd(ship.component("hull", "hull", more=by_file("own.ssv").replace("source", 'sourceBase="component" source')))
+    assert "hull.fmu has no file 'own.ssv'." in ship.refused()
 
 
 def test_a_read_only_place_for_a_set_is_an_error_and_leaves_nothing(tmp_path):

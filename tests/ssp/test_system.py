@@ -1,11 +1,12 @@
 """Connections, units and transformations come out as plain factors and tables, and what is wrong is refused."""
 
 import math
+import pickle
 
 import pytest
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import read_system, with_values
+from shipcosim.ssp import pack, read_system, with_values
 
 MODES = """
 <SimpleType name="Mode"><Enumeration><Item name="off" value="1"/><Item name="on" value="2"/></Enumeration></SimpleType>
@@ -348,9 +349,65 @@ def test_a_system_in_another_file_counts_as_if_it_stood_here(shop, tmp_path):
     assert (connection.target, connection.factor) == (("part.b", "u"), 1000.0)
 
 
-def test_a_system_that_contains_itself_is_refused(shop):
-    shop.ssd('<ssd:Component name="part" type="application/x-ssp-definition" source="SystemStructure.ssd"/>')
-    assert "'SystemStructure.ssd' contains itself." in shop.refused()
+@pytest.mark.parametrize("source", ["SystemStructure.ssd", "#inner"])
+def test_a_system_that_contains_itself_is_refused(shop, source):
+    part = f'<ssd:Component name="part" type="application/x-ssp-definition" source="{source}"/>'
+    shop.ssd(f'<ssd:System name="inner" id="inner"><ssd:Elements>{part}</ssd:Elements></ssd:System>')
+    assert f"'{source}' contains itself." in shop.refused()
+
+
+def test_a_system_of_this_file_is_instantiated_again_by_its_id(shop):
+    shop.fmu("two", "input u Real m")
+    inner = (
+        f'<ssd:System name="one" id="pattern"><ssd:Elements>{shop.component("b", "two")}</ssd:Elements></ssd:System>'
+    )
+    shop.ssd(inner + '<ssd:Component name="other" type="application/x-ssp-definition" source="#pattern"/>')
+    assert list(shop.read().components) == ["one.b", "other.b"]
+
+
+def test_a_packed_system_within_a_system_takes_the_bindings_of_its_component(shop, tmp_path, real):
+    shop.fmu("two", "parameter p Real m")
+    shop.ssd(shop.component("b", "two"))
+    pack(shop.folder, (), tmp_path / "inner.ssp")
+    (tmp_path / "inner.ssp").rename(shop.folder / "resources/inner.ssp")
+    shop.ssv(real("b.p", "4"))
+    binding = '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/numbers.ssv"/></ssd:ParameterBindings>'
+    source = 'type="application/x-ssp-package" source="resources/inner.ssp"'
+    shop.ssd(f'<ssd:Component name="part" {source}>{binding}</ssd:Component>')
+    system = shop.read()
+    assert system.components["part.b"].start == {"p": 4.0}
+    path = system.components["part.b"].fmu.path
+    assert path.is_file()
+    del system
+    assert not path.exists()  # what was unpacked goes with the system
+
+
+def test_the_form_of_an_fmu_that_is_asked_for_must_be_there(shop):
+    shop.fmu("one", "output y Real m")
+    shop.ssd(shop.component("a", "one").replace("source=", 'implementation="ModelExchange" source='))
+    assert "one.fmu offers no ModelExchange. It offers CoSimulation." in shop.refused()
+
+
+def test_a_path_relative_to_the_working_folder_is_shown_as_given(shop, monkeypatch):
+    pair(shop)
+    shop.ssv("<oops/>")
+    binding = '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/numbers.ssv"/></ssd:ParameterBindings>'
+    text = shop.path.read_text().replace("<ssd:Elements>", binding + "<ssd:Elements>")
+    shop.path.write_text(text)
+    monkeypatch.chdir(shop.folder.parent)
+    with pytest.raises(ShipcosimError) as caught:
+        read_system(shop.folder.name)
+    assert str(caught.value).startswith("system/resources/numbers.ssv, line 5: Element 'oops'")
+
+
+def test_a_system_travels_to_another_process(shop, tmp_path):
+    pair(shop)
+    pack(shop.folder, (), tmp_path / "x.ssp")
+    system = read_system(tmp_path / "x.ssp")
+    copy = pickle.loads(pickle.dumps(system))
+    assert copy.connections == system.connections
+    del copy
+    assert system.components["a"].fmu.path.is_file()
 
 
 def test_blanks_and_dots_in_names_are_names(shop):

@@ -250,9 +250,7 @@ def _variable(element, name, description, types, sizes):
     typed = _type_element(element)
     declared = types.get(typed.get("declaredType"))
     kind = KINDS[local(typed)]
-    dimensions = tuple(
-        int(part.get("start") or sizes[part.get("valueReference")]) for part in element if local(part) == "Dimension"
-    )
+    dimensions = tuple(_size(part, sizes) for part in element if local(part) == "Dimension")
     return Variable(
         name=name,
         value_reference=int(element.get("valueReference")),
@@ -268,6 +266,14 @@ def _variable(element, name, description, types, sizes):
         items=_items(declared) if kind == "Enumeration" else {},
         dimensions=dimensions,
     )
+
+
+def _size(dimension, sizes):
+    """Size of one dimension of an array: given as such, or the start value of a structural parameter."""
+    text = dimension.get("start") or sizes.get(dimension.get("valueReference"))
+    if text is None:
+        raise ValueError("The size of a dimension is neither given nor that of a variable with a start value.")
+    return read_value("Integer", text)
 
 
 def _declaration(declared):

@@ -39,7 +39,11 @@ class Package:
 
     def show(self, path):
         """Name of a file of the package as the user knows it."""
-        return f"{self.shown}/{Path(path).relative_to(self.folder).as_posix()}"
+        path, folder = Path(path).resolve(), self.folder.resolve()
+        return f"{self.shown}/{path.relative_to(folder).as_posix()}" if path.is_relative_to(folder) else str(path)
+
+    def __getstate__(self):
+        return self.__dict__ | {"unpacked": None}  # a copy in another process uses the files, and does not remove them
 
     def document(self, findings):
         """The SSD, or None where it cannot be read."""
@@ -63,6 +67,13 @@ class Package:
         findings : Findings
             Takes what is wrong.
         """
+        try:
+            return self._located(uri, base, place, findings)
+        except (ValueError, OSError) as error:  # a NUL in it, longer than any file system takes, ...
+            findings.error(place, f"'{uri[:80]}' is no usable address: {error}.")
+            return None
+
+    def _located(self, uri, base, place, findings):
         parts = urlsplit(uri)
         if parts.scheme or parts.netloc or uri.startswith("/") or not parts.path:
             remedy = "Addresses are relative to the SSD, e.g. resources/name.fmu."
@@ -107,7 +118,7 @@ def open_package(path, findings, fmus=(), shown=None):
         findings.error(shown, "There is no such file or folder.", "Right would be a .ssp, a .ssd or a folder with one.")
         return None
     if path.suffix.lower() == ".ssd":
-        return Package(path.parent, str(Path(shown).parent) if "/" in shown else ".", path.name, fmus)
+        return Package(path.parent, str(Path(shown).parent), path.name, fmus)
     unpacked = tempfile.TemporaryDirectory(prefix="shipcosim-")
     try:
         unpack(path, unpacked.name, shown)

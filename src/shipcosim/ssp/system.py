@@ -71,6 +71,8 @@ class Signal:
 class System:
     """A system that a master can execute without looking at any file but the FMUs.
 
+    FMUs unpacked from an .ssp stay on disk as long as the system (or one made from it) is referred to.
+
     Parameters
     ----------
     name : str
@@ -205,9 +207,12 @@ def _system(tree, structure, file, findings):
     }
     _check_names(tree, findings)
     _remark_unconnected(components, connections, findings)
+    name = structure.name or structure.system.name
+    if findings.errors:
+        return System(name, file, components)
     signals = _Signals(tree, components, connections, settings.system_start)
     return System(
-        name=structure.name or structure.system.name,
+        name=name,
         file=file,
         components=components,
         connections=connections,

@@ -137,9 +137,7 @@ class Tree:
 
     def _described(self, file, package):
         if file not in self._fmus:
-            inside = file.is_relative_to(package.folder.resolve())
-            shown = f"{package.shown}/{file.relative_to(package.folder.resolve()).as_posix()}" if inside else str(file)
-            self._fmus[file] = describe_fmu(file, self.findings, shown)
+            self._fmus[file] = describe_fmu(file, self.findings, package.show(file))
         return self._fmus[file]
 
     def _check_implementation(self, element, fmu):
