@@ -64,17 +64,21 @@ class ObserverParameters:
     wave_yaw: float = quantity(
         0.3 * DEGREE, "rad", "standard deviation of yaw in waves", "the model's motion at Hs 0.5 m", minimum=0.0
     )
-    unsteady_acceleration: float = quantity(
-        2e-3,
-        "m/s1.5",
-        "white disturbance of velocity",
+    velocity_disturbance: float = quantity(
+        4e-6,
+        "m2/s3",
+        "intensity of the white disturbance of velocity",
         "tuned: thrust that is not delivered as allocated",
-        minimum=1e-9,
+        minimum=1e-18,
     )
-    unsteady_yaw: float = quantity(1e-4, "rad/s1.5", "white disturbance of yaw rate", "tuned", minimum=1e-9)
-    bias_walk: float = quantity(1e-3, "m/s2.5", "random walk of the bias force over mass", "tuned", minimum=1e-9)
-    bias_walk_yaw: float = quantity(
-        1e-4, "rad/s2.5", "random walk of the bias moment over inertia", "tuned", minimum=1e-9
+    rate_disturbance: float = quantity(
+        1e-8, "rad2/s3", "intensity of the white disturbance of yaw rate", "tuned", minimum=1e-18
+    )
+    bias_drift: float = quantity(
+        1e-6, "m2/s5", "intensity of the random walk of the bias force over mass", "tuned", minimum=1e-18
+    )
+    bias_drift_yaw: float = quantity(
+        1e-8, "rad2/s5", "intensity of the random walk of the bias moment over inertia", "tuned", minimum=1e-18
     )
 
 
@@ -162,13 +166,13 @@ def design(ship, parameters):
         wave,
         p.wave_motion,
         p.wave_frequency,
-        p.unsteady_acceleration,
-        p.bias_walk,
+        p.velocity_disturbance,
+        p.bias_drift,
         p.position_noise,
         p.velocity_noise,
     )
     yaw = _axis_gains(
-        dt, wave, p.wave_yaw, p.wave_frequency, p.unsteady_yaw, p.bias_walk_yaw, p.heading_noise, p.rate_noise
+        dt, wave, p.wave_yaw, p.wave_frequency, p.rate_disturbance, p.bias_drift_yaw, p.heading_noise, p.rate_noise
     )
     determinant = ship.mass_sway * ship.mass_yaw - ship.mass_sway_yaw * ship.mass_sway_yaw
     inverse = (
@@ -323,7 +327,7 @@ def _correct(e, measured, *, ship, design):
     )
 
 
-def _axis_gains(dt, wave, wave_std, wave_frequency, unsteady, bias_walk, position_noise, velocity_noise):
+def _axis_gains(dt, wave, wave_std, wave_frequency, disturbance, bias_drift, position_noise, velocity_noise):
     """Gains of one axis. The noise that drives the wave model is scaled so that its motion has `wave_std`."""
     one, zero = dt / dt, 0.0 * dt
     w11, w12, w21, w22 = wave
@@ -339,7 +343,7 @@ def _axis_gains(dt, wave, wave_std, wave_frequency, unsteady, bias_walk, positio
     output = np.array([[1.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0]])
     stationary = _diagonal(wave_std**2, (wave_std * wave_frequency) ** 2, zero, zero, zero)
     noise = stationary - transition @ stationary @ np.swapaxes(transition, -1, -2)
-    noise = noise + _diagonal(zero, zero, zero, unsteady**2 * dt, bias_walk**2 * dt)
+    noise = noise + _diagonal(zero, zero, zero, disturbance * dt, bias_drift * dt)
     gain = kalman_gain(transition, noise, output, _diagonal(position_noise**2, velocity_noise**2))
     return AxisGains(*_floats(*(gain[..., state, measured] for measured in (0, 1) for state in range(5))))
 
