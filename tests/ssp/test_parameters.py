@@ -161,6 +161,7 @@ def test_a_systems_parameter_connector_hands_its_value_in(ship, real):
     system = ship.read()
     assert system.components["hull"].start == {"mass": 3000.0}
     assert (system.parameters["weight"].start, system.parameters["weight"].unit) == (3.0, "km")
+    assert system.connections == ()
 
 
 def test_a_set_may_hold_values_for_elements_that_are_not_here(ship, real):

@@ -271,6 +271,16 @@ def test_there_and_back_through_units_changes_no_digit(shop):
     assert connection.factor == 1.0
 
 
+def test_connections_in_a_circle_without_a_component_are_refused(shop):
+    shop.fmu("two", "input u Real m")
+    connectors = '<ssd:Connector name="in" kind="input"/><ssd:Connector name="out" kind="output"/>'
+    through = f"<ssd:Connections>{shop.connection('in', 'out')}</ssd:Connections>"
+    loop = f'<ssd:System name="loop"><ssd:Connectors>{connectors}</ssd:Connectors>{through}</ssd:System>'
+    ways = shop.connection("loop.out", "loop.in") + shop.connection("loop.out", "b.u")
+    shop.ssd(shop.component("b", "two", "input u") + loop, ways)
+    assert "The connections go in a circle without a component." in shop.refused()
+
+
 def test_a_missing_connector_of_a_nested_system_is_refused(shop):
     nested(shop)
     shop.path.write_text(
@@ -289,6 +299,9 @@ def test_inputs_of_the_system_feed_components_and_start_as_these_do(shop):
     (connection,) = system.connections
     assert (connection.source, connection.factor) == ((None, "way"), 1000.0)
     assert (system.inputs["way"].unit, system.inputs["way"].start) == ("km", 1.5)
+    assert with_values(system, {"way": 2.0}).inputs["way"].start == 2.0
+    with pytest.raises(ShipcosimError, match="way: 'far' is no Real"):
+        with_values(system, {"way": "far"})
 
 
 def test_calculated_parameters_go_to_parameters_once(shop):
@@ -484,5 +497,5 @@ def test_values_given_for_a_run_are_checked(shop):
         "four.toml: b.q: b has no variable 'q'. It has: n, p, u, v.",
         "four.toml: c.p: There is no component or connector 'c'. There is: b.",
         "four.toml: b.v: It is of causality output, a value that the FMU calculates. Set parameters and inputs.",
-        "four.toml: b.u: The value is not a number (NaN).",
+        "four.toml: b.u: nan is not a finite number.",
     ]

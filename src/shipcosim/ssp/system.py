@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import isfinite
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -215,14 +216,21 @@ def _system(tree, structure, file, findings):
         name=name,
         file=file,
         components=components,
-        connections=connections,
+        connections=tuple(c for c in connections if not _is_given(c, structure.system)),
         inputs=signals.of("input"),
-        outputs=signals.of("output", "local"),
+        outputs=signals.of("output", "local", "calculatedParameter", "constant"),
         parameters=signals.of("parameter", "structuralParameter"),
         experiment=_experiment(structure),
         remarks=tuple(dict.fromkeys(findings.remarks)),
         _packages=tuple(tree.packages),
     )
+
+
+def _is_given(connection, system):
+    """Whether a connection only hands in a parameter of the outermost system, whose value is among the start values."""
+    kinds = {connector.name: connector.kind for connector in system.connectors}
+    owner, name = connection.source
+    return owner is None and kinds[name] in ("parameter", "structuralParameter")
 
 
 def _experiment(structure):
@@ -324,7 +332,8 @@ def with_values(system, values, where=""):
         if component is not None:
             _set(starts[component], system.components[component].fmu.variables[name], value, place, findings)
         elif name in inputs:
-            inputs[name] = replace(inputs[name], start=value)
+            if _fits(value, inputs[name], inputs[name].type, place, findings):
+                inputs[name] = replace(inputs[name], start=value)
         else:
             findings.error(place, "It is no input of the system.", f"Inputs: {', '.join(inputs) or 'none'}.")
     if findings.errors:
@@ -340,18 +349,23 @@ def _set(start, variable, value, place, findings):
     """Put a value for a variable into `start`, checked and in the variable's type."""
     if variable.items and isinstance(value, str):
         value = variable.items.get(value, value)
-    fits = isinstance(value, PYTHON.get(variable.kind, (bytes,)))
-    if not fits or (isinstance(value, bool) and variable.kind != "Boolean"):
-        findings.error(
-            place, f"{value!r} is no {variable.kind}.", f"Items: {', '.join(variable.items)}." * bool(variable.items)
-        )
-    elif not variable.settable:
-        findings.error(
-            place,
-            f"It is of causality {variable.causality}, a value that the FMU calculates.",
-            "Set parameters and inputs.",
-        )
-    elif isinstance(value, float) and value != value:
-        findings.error(place, "The value is not a number (NaN).")
+    if not _fits(value, variable, variable.kind, place, findings):
+        return
+    if not variable.settable:
+        found = f"It is of causality {variable.causality}, a value that the FMU calculates."
+        findings.error(place, found, "Set parameters and inputs.")
     elif check_bounds(value, variable, place, variable.name, findings):
         start[variable.name] = float(value) if variable.kind == "Real" else value
+
+
+def _fits(value, owner, kind, place, findings):
+    """Whether a value is of a kind, with an error if not; `owner` has the items of an enumeration."""
+    right = kind is None or isinstance(value, PYTHON.get(kind, (bytes,)))
+    if not right or (isinstance(value, bool) and kind not in ("Boolean", None)):
+        remedy = f"Items: {', '.join(owner.items)}." if owner.items else ""
+        findings.error(place, f"{value!r} is no {kind}.", remedy)
+        return False
+    if isinstance(value, float) and not isfinite(value):
+        findings.error(place, f"{value} is not a finite number.")
+        return False
+    return True

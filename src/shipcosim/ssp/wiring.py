@@ -84,7 +84,7 @@ def _way(key, incoming, findings):
     while key in incoming:
         wires.insert(0, incoming[key])
         key = incoming[key].source
-        if any(wire.target == key for wire in wires[1:]) or key == wires[-1].target:
+        if any(wire.target == key for wire in wires):
             findings.error(
                 wires[-1].place, "The connections go in a circle without a component.", "Remove one of them."
             )
@@ -109,5 +109,5 @@ def _connection(wires, source, tree, findings):
     flow = flow.in_unit(last.variable_unit or last.unit)
     key = wires[-1].target
     target = (".".join(key.path) if last.owner == "component" else None, key.name)
-    initial = last.kind in ("parameter", "structuralParameter", "calculatedParameter", "constant")
+    initial = last.owner == "component" and last.kind in ("parameter", "structuralParameter")
     return Connection(source, target, flow.factor, flow.offset, flow.mapping, initial, wires[-1].place)
