@@ -1,8 +1,15 @@
 """A made-up four-corner run with the signals of gunnerus_dp: the page's tests need no FMU."""
 
+import json
+import os
+import shutil
+import time as clock
+
 import numpy as np
 import pytest
 import xarray as xr
+
+from shipcosim.scenario import Event, Expectation, Scenario, judge
 
 SET_POINTS = [  # time [s], x [m], y [m], psi [rad]
     (0.0, 20.0, 0.0, 0.0),
@@ -121,3 +128,107 @@ def four_corner():
         )
 
     return table
+
+
+@pytest.fixture(scope="session")
+def scenario():
+    """What the made-up run was asked to do; the last expectation is missed."""
+    expect = []
+    for (_, x, y, psi), end in zip(SET_POINTS, [250.0, 450.0, 650.0, 850.0, 1100.0], strict=True):
+        during = [end - 20.0, end]
+        expect.append(Expectation(signal=["vessel.x", "vessel.y"], near=[x, y], within=0.5, during=during))
+        expect.append(Expectation(signal=["vessel.psi"], near=[psi], within=0.0175, during=during))
+    expect.append(Expectation(signal=["port.power"], at_most=100.0))
+    events = [Event(time=t, override={"reference.x_set": x}) for t, x, _, _ in SET_POINTS]
+    return Scenario(description="Four corners & more", stop_time=1100.0, step_size=0.05, events=events, expect=expect)
+
+
+@pytest.fixture(scope="session")
+def verdicts(four_corner, scenario):
+    """On the made-up run."""
+    return judge(four_corner(), scenario)
+
+
+@pytest.fixture(scope="session")
+def chromium(tmp_path_factory):
+    """Headless Chromium; the tests skip where it is absent, unless SHIPCOSIM_NO_SKIP says that it must be there."""
+    programs = [next(filter(None, map(shutil.which, names)), None) for names in CHROMIUM]
+    if None in programs and not os.environ.get("SHIPCOSIM_NO_SKIP"):
+        pytest.skip("needs Chromium and its driver, which are not here")
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs[0]
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    for switch in (*SWITCHES, f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
+        options.add_argument(switch)
+    driver = webdriver.Chrome(options=options, service=Service(programs[1]))
+    yield driver
+    driver.quit()
+
+
+CHROMIUM = (("chromium", "chromium-browser", "google-chrome"), ("chromedriver",))
+SWITCHES = (
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--window-size=1280,1000",
+)
+
+
+class Page:
+    """A page in the browser, and what the tests ask it."""
+
+    def __init__(self, driver, path):
+        self.driver = driver
+        driver.get_log("browser"), driver.get_log("performance")
+        driver.get(path.as_uri())
+        self.wait("return document.body.dataset.drawn === 'all'")
+
+    def ask(self, script, *arguments):
+        """What a script returns."""
+        return self.driver.execute_script(script, *arguments)
+
+    def wait(self, script, seconds=30.0):
+        """Until a script returns something true."""
+        end = clock.monotonic() + seconds
+        while not self.ask(script):
+            assert clock.monotonic() < end, f"still not: {script}"
+            clock.sleep(0.05)
+
+    def panels(self):
+        """Names of the curves in each panel, by the panel's title."""
+        return self.ask(
+            "return Object.fromEntries([...document.querySelectorAll('.panel')].map(p => "
+            "[p._fullLayout.title.text.replace(/<.?b>/g, ''), p.data.map(t => t.name)]))"
+        )
+
+    def text(self, selector):
+        """Visible text of the first element."""
+        return self.ask("return document.querySelector(arguments[0])?.innerText", selector)
+
+    def trace(self, name):
+        """East and north of a trace of the chart."""
+        find = "const t = document.getElementById('track').data.find(t => t.name === arguments[0]); return [t.x, t.y]"
+        return self.ask(find, name)
+
+    def errors(self):
+        """What the console complains of."""
+        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+
+    def requests(self):
+        """Addresses that were asked for, other than the page itself."""
+        messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
+        urls = [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]
+        return [url for url in urls if not url.startswith(("file:", "data:", "blob:"))]
+
+
+@pytest.fixture
+def browse(chromium):
+    """Function that opens a page."""
+    return lambda path: Page(chromium, path)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -87,7 +86,7 @@ def build(
     debug: Debug = False,
 ):
     """Build the FMUs in fmus/ and pack each system in ssp/."""
-    from shipcosim.cli.console import progress_of
+    from shipcosim.cli.console import progress_of, shown_path
     from shipcosim.cli.project import build_named, find_project
 
     project = find_project(Path.cwd())
@@ -98,7 +97,7 @@ def build(
     with progress_of("Building") as progress:
         built = build_named(project, names or [], out or project / "build", progress)
     for path in built:
-        typer.echo(os.path.relpath(path))
+        typer.echo(shown_path(path))
 
 
 @command

@@ -1,16 +1,16 @@
 """What the commands say: progress and errors on stderr, results on stdout."""
 
 import json
-import math
-import os
 from contextlib import contextmanager
 from dataclasses import asdict
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 STYLES = {"error": "bold red", "remark": "yellow"}
+VERDICTS = {"passed": "bold green", "failed": "bold red", "partial": "bold yellow"}
 
 
 def print_problems(problems):
@@ -49,26 +49,30 @@ def print_summary(table, verdicts, page, *, to_stderr=False):
     from shipcosim.report import digest
 
     console = Console(stderr=to_stderr, highlight=False, soft_wrap=True)
-    outcome, remarks = digest(table, verdicts)
-    if verdicts:
-        console.print(_verdict_table(verdicts))
+    outcome, remarks, judged = digest(table, verdicts)
+    if judged:
+        console.print(_expectations(judged))
     for remark in remarks:
         console.print(Text(remark, style="yellow"))
-    style = {"passed": "bold green", "failed": "bold red", "partial": "bold yellow"}.get(outcome.kind, "bold")
-    console.print(Text(f"{outcome.word} ", style=style).append(outcome.sentence, style="not bold default"))
+    console.print(Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence))
     if page is not None:
-        console.print(f"Page: {os.path.relpath(page)}", markup=False)
+        console.print(f"Page: {shown_path(page)}", markup=False)
 
 
-def _verdict_table(verdicts):
+def shown_path(path):
+    """A path as short as it can be said from here."""
+    here = Path.cwd()
+    path = Path(path).absolute()
+    return path.relative_to(here) if path.is_relative_to(here) else path
+
+
+def _expectations(judged):
     listed = Table(box=None, pad_edge=False)
-    for heading in ("", "expected", "worst", "at"):
-        listed.add_column(heading, overflow="fold")
-    for verdict in verdicts:
-        judged = math.isfinite(verdict.time)
-        word = Text("pass", style="green") if verdict.passed else Text("FAIL", style="bold red")
-        worst, time = (f"{verdict.worst:.4g}", f"{verdict.time:g} s") if judged else ("no row", "-")
-        listed.add_row(word, Text(str(verdict.expect)), worst, time)
+    for heading in ("", "expected", "during", "worst", "at"):
+        listed.add_column(heading, no_wrap=True)
+    for passed, *texts in judged:
+        word = Text("pass", style="green") if passed else Text("FAIL", style="bold red")
+        listed.add_row(word, *map(Text, texts))
     return listed
 
 

@@ -95,8 +95,8 @@ def thinned(shown, budget=BYTES_FOR_SIGNALS):
 
 
 def is_constant(values):
-    """True if all values are the same; NaN differ from everything."""
-    return len(values) > 0 and bool(np.all(values == values[0]))
+    """True if all values are the same finite number."""
+    return len(values) > 0 and bool(np.isfinite(values[0])) and bool(np.all(values == values[0]))
 
 
 def _extremes(values, drawn, starts, span):

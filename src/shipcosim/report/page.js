@@ -190,19 +190,26 @@
     return row;
   }
 
+  const chosenPlaces = {};  // by unit
+
   function drawChosen() {
-    const area = document.getElementById("chosen"), units = {};
-    for (const place of area.children) { waiting.delete(place); Plotly.purge(place); }
-    area.replaceChildren();
+    const units = {}, cycle = data.colours.cycle;
     for (const name of chosen) (units[data.signals[name].unit] ??= []).push(name);
+    for (const unit of Object.keys(chosenPlaces)) if (!units[unit]) { chosenPlaces[unit].remove(); delete chosenPlaces[unit]; }
     for (const [unit, names] of Object.entries(units)) {
-      const place = document.createElement("div");
-      place.className = "panel";
-      area.append(place);
-      const cycle = data.colours.cycle;
       const lines = names.map((signal, k) => ({ signal, label: signal, colour: cycle[k % cycle.length], dash: "solid", width: 1.5 }));
-      draw(place, { title: names.length > 1 ? "Chosen signals" : names[0], unit, lines, bands: [], states: false });
+      const panel = { title: names.length > 1 ? "Chosen signals" : names[0], unit, lines, bands: [], states: false };
+      const place = chosenPlaces[unit];
+      if (place) Plotly.react(place, lineTraces(panel), layoutOf(panel), config);
+      else draw(newPlace(unit), panel);
     }
+  }
+
+  function newPlace(unit) {
+    const place = chosenPlaces[unit] = document.createElement("div");
+    place.className = "panel";
+    document.getElementById("chosen").append(place);
+    return place;
   }
 
   document.getElementById("filter").addEventListener("input", (event) => {
@@ -225,6 +232,7 @@
     later(place, () => draw(place, panel));
   });
   choices();
+  schedule();
   if (!data.panels.length) for (const box of [...document.querySelectorAll("#choices input")].slice(0, 6)) box.click();
   addEventListener("scroll", schedule, { passive: true });
   addEventListener("beforeprint", () => { work([...waiting.keys()]); for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.Plots.resize(place); });

@@ -60,7 +60,7 @@ def render(table, *, scenario=None, verdicts=(), system=None):
         chart=parts.chart(track is not None),
         weather=parts.weather(summary.weather(shown, roles)),
         figures=parts.key_figures(summary.key_figures(shown, roles)),
-        expectations=parts.expectations(verdicts, {name: v.attrs for name, v in shown.data_vars.items()}),
+        expectations=parts.expectations(summary.judged(verdicts, shown)),
         sections=parts.sections(sections),
         thinning=parts.thinning(span, shown.sizes["time"], drawn.sizes["time"]),
         details=parts.details(summary.details(table), scenario),
@@ -72,7 +72,7 @@ def render(table, *, scenario=None, verdicts=(), system=None):
 
 
 def digest(table, verdicts=()):
-    """Outcome of a run and what must not be overlooked, as the page says them.
+    """What a page says in words, for those who do not open it.
 
     Parameters
     ----------
@@ -83,11 +83,12 @@ def digest(table, verdicts=()):
 
     Returns
     -------
-    (Outcome, list of str)
+    (Outcome, list of str, list of tuple)
+        Verdict on the run, what must not be overlooked, and the expectations as `summary.judged` gives them.
     """
     roles = find_roles(table.data_vars)
     shown = add_derived(display_table(table, roles), table, roles, verdicts)
-    return summary.outcome(table, verdicts), summary.remarks(shown, roles)
+    return summary.outcome(table, verdicts), summary.remarks(shown, roles), summary.judged(verdicts, shown)
 
 
 def _payload(drawn, table, track, sections, scenario):
@@ -112,7 +113,9 @@ def _payload(drawn, table, track, sections, scenario):
 
 def _packed(values, kind):
     """Numbers as base64 of little-endian bytes: a third of the size of text."""
-    return base64.b64encode(np.asarray(values).astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
+    with np.errstate(over="ignore"):  # a run that diverged: what float32 cannot hold becomes a gap
+        packed = np.asarray(values).astype(np.dtype(kind).newbyteorder("<"))
+    return base64.b64encode(packed.tobytes()).decode()
 
 
 def _embedded(payload):

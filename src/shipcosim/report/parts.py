@@ -88,46 +88,21 @@ def key_figures(figures):
     return f"<section id='figures'><h2>Key figures</h2><table>{rows}</table></section>" if rows else ""
 
 
-def expectations(verdicts, units):
-    """Each expectation with pass or fail, its worst value and when, in the page's units.
-
-    Parameters
-    ----------
-    verdicts : sequence of Verdict
-        What was judged.
-    units : dict of str to dict
-        `units` and `factor` of every signal.
-    """
-    if not verdicts:
+def expectations(rows):
+    """Table of expectations; `rows` as `summary.judged` gives them."""
+    if not rows:
         return ""
-    rows = "".join(_expectation(verdict, units[verdict.expect.signal[0]]) for verdict in verdicts)
     head = "<tr><th></th><th>Expected</th><th>During</th><th>Worst</th><th>At</th></tr>"
+    body = "".join(
+        f"<tr class='{'passed' if passed else 'failed'}'><td class='word'>{'✓ pass' if passed else '✗ FAIL'}</td>"
+        + "".join(f"<td>{escape(text)}</td>" for text in texts)
+        + "</tr>"
+        for passed, *texts in rows
+    )
     return (
         f"<section id='expectations'><h2>Expectations</h2><table><thead>{head}</thead>"
-        f"<tbody>{rows}</tbody></table></section>"
+        f"<tbody>{body}</tbody></table></section>"
     )
-
-
-def _expectation(verdict, shown_as):
-    expect, unit, factor = verdict.expect, shown_as["units"], shown_as["factor"]
-    during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
-    judged = math.isfinite(verdict.time)
-    worst, when = (f"{factor * verdict.worst:.3g} {unit}", f"{verdict.time:g} s") if judged else ("no row", "–")
-    kind, word = ("passed", "✓ pass") if verdict.passed else ("failed", "✗ FAIL")
-    cells = "".join(f"<td>{escape(text)}</td>" for text in (_claim(expect, unit, factor), during, worst, when))
-    return f"<tr class='{kind}'><td class='word'>{word}</td>{cells}</tr>"
-
-
-def _claim(expect, unit, factor):
-    """What is expected: 'vessel.psi: 0 ± 1 deg'."""
-    text = lambda value: value if isinstance(value, str) else f"{round(factor * value, 4):.4g}"  # noqa: E731
-    subject = ", ".join(expect.signal)
-    if expect.statistic:
-        subject = f"{expect.statistic} of {subject}"
-    if expect.near is not None:
-        return f"{subject}: {', '.join(map(text, expect.near))}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}"
-    limits = {"≥": expect.at_least, "≤": expect.at_most}
-    return f"{subject} " + ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None)
 
 
 def sections(made):

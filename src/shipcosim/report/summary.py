@@ -51,6 +51,45 @@ def outcome(table, verdicts):
     return Outcome("passed", "PASS", f"All {len(verdicts)} expectations hold.")
 
 
+def judged(verdicts, shown):
+    """Expectations and their verdicts in the units that people read.
+
+    Parameters
+    ----------
+    verdicts : sequence of Verdict
+        What was judged.
+    shown : xarray.Dataset
+        Table in the page's units.
+
+    Returns
+    -------
+    list of (bool, str, str, str, str)
+        Passed, what was expected, when, the worst value and its time.
+    """
+    return [_judged(verdict, shown[verdict.expect.signal[0]].attrs) for verdict in verdicts]
+
+
+def _judged(verdict, shown_as):
+    expect, unit, factor = verdict.expect, shown_as["units"], shown_as["factor"]
+    during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
+    worst, when = "no row", "–"
+    if np.isfinite(verdict.time):
+        worst, when = f"{factor * verdict.worst:.3g} {unit}".rstrip(), f"{verdict.time:g} s"
+    return verdict.passed, _claim(expect, unit, factor), during, worst, when
+
+
+def _claim(expect, unit, factor):
+    """What is expected: 'vessel.psi: 0 ± 1 deg'."""
+    text = lambda value: value if isinstance(value, str) else f"{round(factor * value, 4):.4g}"  # noqa: E731
+    subject = f"{expect.statistic} of " * bool(expect.statistic) + ", ".join(expect.signal)
+    if expect.near is not None:
+        target = ",\u00a0".join(map(text, expect.near))
+        target = f"({target})" if len(expect.near) > 1 else target
+        return f"{subject}: {target}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}".rstrip()
+    limits = {"≥": expect.at_least, "≤": expect.at_most}
+    return f"{subject} " + ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None).rstrip()
+
+
 def remarks(shown, roles):
     """Sentences for what a reader must not overlook.
 
@@ -65,11 +104,7 @@ def remarks(shown, roles):
     -------
     list of str
     """
-    said = [
-        f"{name} is not finite from {shown['time'].values[~np.isfinite(v.values)][0]:g} s on."
-        for name, v in shown.data_vars.items()
-        if str(name) not in _DERIVED and not np.isfinite(v.values).all()
-    ]
+    said = _not_finite(shown)
     limited = _limited(shown, roles)
     if limited and _grows(shown):
         error = shown[FROM_REFERENCE].values
@@ -81,6 +116,18 @@ def remarks(shown, roles):
 
 
 _DERIVED = {*ERRORS.values(), FROM_REFERENCE, "distance from expected point"}
+
+
+def _not_finite(shown):
+    """The first signals that stop being numbers, and how many follow."""
+    begin = {
+        str(name): float(shown["time"].values[~np.isfinite(v.values)][0])
+        for name, v in shown.data_vars.items()
+        if str(name) not in _DERIVED and not np.isfinite(v.values).all()
+    }
+    names = sorted(begin, key=begin.get)
+    others = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return [f"Not finite from {begin[names[0]]:g} s on: {', '.join(names[:3])}{others}."] if names else []
 
 
 def _last(shown):

@@ -122,7 +122,7 @@ def _ships(time, x, y, psi, size):
         "showlegend": False,
     }
     return [
-        _hulls("ship", corners[1:-1], palette.SHIP, "rgba(0,114,178,0.05)", 0.8),
+        _hulls("ship on the way", corners[1:-1], palette.SHIP, "rgba(0,114,178,0.05)", 0.8),
         _hulls("start", corners[:1], palette.INK, "rgba(31,41,51,0.06)", 1.5, "dash"),
         _hulls("end", corners[-1:], palette.INK, "rgba(0,114,178,0.18)", 2.0),
         marks,
