@@ -102,7 +102,7 @@ def drive_step(thruster, thrust_cmd, failed, h, drive, loads, speed, torque):
 
     def motor(n, integral, n_d, load):
         asked = torque(n_d) + drive.proportional_gain * _TURN * (n_d - n) + integral
-        return asked, running * _limited(asked, n, load, drive)
+        return asked, where(failed, 0.0, _limited(asked, n, load, drive))
 
     state = thruster.n, running * thruster.integral, start
     parts = substeps(h, _LONGEST_SUBSTEP)
