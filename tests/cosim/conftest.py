@@ -1,5 +1,6 @@
 """Small FMUs and systems made of them."""
 
+import sys
 import textwrap
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import pytest
 
 from shipcosim.fmi.builder import build_fmu
 from shipcosim.scenario import Scenario
-from shipcosim.ssp import read_system
+from shipcosim.ssp import read_fmu, read_system
 
 HEAD = "from shipcosim.fmi import Fmu, Input, Output, Parameter\n\n\n"
 SOURCES = {
@@ -61,7 +62,7 @@ SOURCES = {
         class Clock(Fmu):
             """Puts out the time, the number of steps and whether that is odd."""
 
-            time = Output("s", "time at the end of the step")
+            time = Output("1", "time at the end of the step")
             count = Output("1", "steps so far", start=0)
             odd = Output("1", "whether their number is odd", start=False)
             text = Output("1", "the number in words", start="none")
@@ -160,7 +161,7 @@ def make_system(fmus, tmp_path):
         parts = {name: part if isinstance(part, tuple) else (part,) for name, part in components.items()}
         folder = [fmus(part[0]) for part in parts.values()][-1]
         file = tmp_path / "SystemStructure.ssd"
-        file.write_text(_ssd(parts, connections, connectors or {}), encoding="utf-8")
+        file.write_text(_ssd(parts, connections, connectors or {}, folder), encoding="utf-8")
         (tmp_path / "resources").mkdir(exist_ok=True)
         return read_system(file, fmus=[folder])
 
@@ -180,16 +181,19 @@ def make_scenario():
 TYPES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
 
 
-def _ssd(parts, connections, connectors):
+def _ssd(parts, connections, connectors, folder):
     lines = [
         '<ssd:SystemStructureDescription name="small" version="1.0"',
         ' xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"',
         ' xmlns:ssc="http://ssp-standard.org/SSP1/SystemStructureCommon"',
         ' xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">',
         '<ssd:System name="small"><ssd:Connectors>',
-        *(f'<ssd:Connector name="{n}" kind="{k}"><ssc:{t} {a}/></ssd:Connector>' for n, (k, t, a) in connectors.items()),
+        *(
+            f'<ssd:Connector name="{n}" kind="{k}"><ssc:{t} {a}/></ssd:Connector>'
+            for n, (k, t, a) in connectors.items()
+        ),
         "</ssd:Connectors><ssd:Elements>" if connectors else "<ssd:Elements>",
-        *(_component(name, *part) for name, part in parts.items()),
+        *(_component(folder, name, *part) for name, part in parts.items()),
         "</ssd:Elements>",
         "<ssd:Connections>" if connections else "",
         *(_connection(line) for line in connections),
@@ -200,27 +204,32 @@ def _ssd(parts, connections, connectors):
     return text if connectors else text.replace("<ssd:Connectors>", "", 1)
 
 
-def _component(name, fmu, start=None, step_size=None):
+BINDING = (
+    "<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>"
+    '<ssv:ParameterSet name="p" version="1.0"><ssv:Parameters>{}</ssv:Parameters></ssv:ParameterSet>'
+    "</ssd:ParameterValues></ssd:ParameterBinding></ssd:ParameterBindings>"
+)
+HINT = (
+    '<ssd:Annotations><ssc:Annotation type="com.opensimulationplatform">'
+    '<osp:StepSizeHint xmlns:osp="https://opensimulationplatform.com/SSP" value="{}"/>'
+    "</ssc:Annotation></ssd:Annotations>"
+)
+
+
+def _component(folder, name, fmu, start=None, step_size=None):
+    connectors = "".join(
+        f'<ssd:Connector name="{v.name}" kind="{v.causality}"><ssc:{v.type}/></ssd:Connector>'
+        for v in read_fmu(folder / f"{fmu}.fmu").variables.values()
+    )
     values = "".join(
         f'<ssv:Parameter name="{n}"><ssv:{TYPES[type(v)]} value="{str(v).lower() if isinstance(v, bool) else v}"/>'
         "</ssv:Parameter>"
         for n, v in (start or {}).items()
     )
-    hint = f'<osp:StepSizeHint xmlns:osp="https://opensimulationplatform.com/SSP" value="{step_size}"/>'
     return (
-        f'<ssd:Component name="{name}" source="resources/{fmu}.fmu">'
-        + (
-            '<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues><ssv:ParameterSet name="p" version="1.0">'
-            f"<ssv:Parameters>{values}</ssv:Parameters></ssv:ParameterSet></ssd:ParameterValues></ssd:ParameterBinding>"
-            "</ssd:ParameterBindings>"
-            if values
-            else ""
-        )
-        + (
-            f'<ssd:Annotations><ssc:Annotation type="com.opensimulationplatform">{hint}</ssc:Annotation></ssd:Annotations>'
-            if step_size
-            else ""
-        )
+        f'<ssd:Component name="{name}" source="resources/{fmu}.fmu"><ssd:Connectors>{connectors}</ssd:Connectors>'
+        + (BINDING.format(values) if values else "")
+        + (HINT.format(step_size) if step_size else "")
         + "</ssd:Component>"
     )
 
@@ -237,6 +246,44 @@ def _connection(line):
     return f"<ssd:Connection{names}>{transformation.strip()}</ssd:Connection>"
 
 
-@pytest.fixture(scope="session")
-def folder_of_tests():
-    return Path(__file__).parent
+STOCK = """
+import helper
+from pythonfmu import Fmi2Slave, Fmi2Causality, Real
+
+
+class Stock(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.y = 0.0
+        self.register_variable(Real("y", causality=Fmi2Causality.output))
+
+    def do_step(self, t, h):
+        self.y = EXPRESSION
+        return True
+"""
+
+
+@pytest.fixture
+def pythonfmu_system(tmp_path):
+    """Function: a system of one or two FMUs as PythonFMU builds them, without our shell."""
+    from pythonfmu.builder import FmuBuilder
+
+    def make(expression, helper="", other_helper=None):
+        parts = {}
+        for name, code in (("stock", helper), ("other", other_helper)):
+            if code is not None:
+                folder = tmp_path / name
+                folder.mkdir()
+                (folder / "helper.py").write_text(code)
+                (folder / "model.py").write_text(STOCK.replace("EXPRESSION", expression))
+                built = FmuBuilder.build_FMU(folder / "model.py", folder, project_files={folder / "helper.py"})
+                (tmp_path / "resources").mkdir(exist_ok=True)
+                Path(built).rename(tmp_path / "resources" / f"{name}.fmu")
+                parts[name] = (name,)
+                for module in ("helper", "model"):
+                    sys.modules.pop(module, None)
+        file = tmp_path / "SystemStructure.ssd"
+        file.write_text(_ssd(parts, [], {}, tmp_path / "resources"), encoding="utf-8")
+        return read_system(file)
+
+    return make

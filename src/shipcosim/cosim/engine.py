@@ -51,7 +51,7 @@ def run(system, scenario, inputs=None, progress=None, order="jacobi"):
     with ExitStack() as stack:
         check_interrupt = stack.enter_context(held_back())
         try:
-            parts = _parts(plan, scenario, exchanges, stack, check_interrupt)
+            parts = _parts(plan, exchanges, stack, check_interrupt)
             rows.parts = list(parts.values())
             master = Master(
                 [parts[name] for name in stepping_order(plan, order)],
@@ -117,7 +117,7 @@ def _exchanges(plan, scenario, n_steps, fed):
     return exchanges, trajectories
 
 
-def _parts(plan, scenario, exchanges, stack, check_interrupt):
+def _parts(plan, exchanges, stack, check_interrupt):
     """The components, instantiated, their start values set; the stack frees them."""
     unpacked, parts = stack.enter_context(Unpacked()), {}
     for component in plan.system.components.values():
@@ -130,8 +130,7 @@ def _parts(plan, scenario, exchanges, stack, check_interrupt):
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
-        multiple = plan.multiples[name]
-        part = parts[name] = Part(name, slave, multiple, multiple * scenario.step_size)
+        part = parts[name] = Part(name, slave, plan.multiples[name])
         for kind, exchange in exchanges.items():
             part.bind(kind, exchange, *plan.rows(kind, name))
     return parts

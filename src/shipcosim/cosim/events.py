@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from shipcosim.cosim.plan import KINDS, Plan
+from shipcosim.cosim.slave import BUFFER_TYPES
 from shipcosim.scenario import Scenario, whole_steps
 
 
@@ -25,7 +26,6 @@ def actions_of(scenario: Scenario, plan: Plan, exchanges: dict) -> dict[int, lis
                 target, row = exchange.input_changes, layout.inputs.index(end)
             else:
                 target, row = exchange.output_changes, layout.outputs.index(end)
-            value = variable.items.get(value, value) if isinstance(value, str) else value
             actions[k].append(partial(getattr(target, change), row, *([] if change == "reset" else [value])))
     return dict(actions)
 
@@ -52,7 +52,8 @@ def settings_over_time(scenario: Scenario, plan: Plan, kind: str, n_steps: int, 
     changing = [end for end in ends if end[0] is None and (end in plan.touched or end[1] in fed)]
     if not changing:
         return None
-    values = np.tile(np.array(list(plan.layouts[kind].settings.values())), (n_steps + 1, 1))
+    start = np.array(list(plan.layouts[kind].settings.values()), dtype=BUFFER_TYPES[kind])
+    values = np.tile(start, (n_steps + 1, 1))
     for end in changing:
         column = ends.index(end)
         values[:, column] = fed.get(end[1], values[:, column])
@@ -75,4 +76,6 @@ def _changes(scenario, plan):
     for event in sorted(scenario.events, key=lambda event: event.time):
         k = whole_steps(event.time, scenario.step_size)
         for change, name, value in event.changes:
-            yield k, change, plan.system.split(name), value
+            end = plan.system.split(name)
+            items = plan.system.inputs[name].items if end[0] is None else plan.variable(end).items
+            yield k, change, end, items.get(value, value)

@@ -1,7 +1,8 @@
 """The master: brings the components to a consistent start, then steps them and passes their values on.
 
 Steps are counted in integers. Time is the quotient of two integers, k p / q for a step size of p / q seconds, so that
-it is the double nearest to the true time at every step; libcosim, which counts nanoseconds, gets the same numbers.
+it is the double nearest to the true time at every step, and an FMU is told to step by the difference of two times, so
+that it ends where the next step begins. libcosim, which counts nanoseconds, gets the same numbers.
 """
 
 from contextlib import contextmanager
@@ -85,28 +86,25 @@ class Master:
     def _settle(self):
         """Sweep over the components until no input changes any more."""
         self._transfer(0)
-        before = None
-        for _ in range(len(self._parts) + SWEEPS):
+        before, moving = None, {}
+        for sweep in range(SWEEPS + len(self._parts)):
             last, before = before, self._inputs()
             changed = [handover.transfer() for handover in self._handovers]
             if last == before and not any(changed):
                 return
+            if sweep >= SWEEPS:
+                moving |= {name: abs(value - last[name]) for name, value in before.items() if value != last[name]}
             self._check_interrupt()
             for part in self._parts:
                 with _blame(part, "at the start"):
                     part.write()
                     part.read()
             self._transfer(0)
-        moving = {name: (last[name], value) for name, value in before.items() if last[name] != value}
-        if any(abs(b - a) > 1e-12 * max(abs(a), abs(b)) for a, b in moving.values()):
-            raise Failure(
-                Problem(
-                    "initialisation",
-                    f"the start does not settle: after {SWEEPS} sweeps {', '.join(moving)} still change.",
-                    "These inputs lie on a loop of direct feedthrough that does not converge. Let one of its "
-                    "components hold its output over a step.",
-                )
-            )
+        if any(change > 1e-12 * abs(before[name]) for name, change in moving.items()):
+            names = ", ".join(name for name in before if name in moving)
+            found = f"the start does not settle: after {SWEEPS} sweeps over the components {names} still change."
+            remedy = "They lie on or behind a loop of direct feedthrough. One of it has to hold its output over a step."
+            raise Failure(Problem("initialisation", found, remedy))
 
     def _inputs(self):
         """Values of all inputs by name."""
@@ -138,7 +136,7 @@ class Master:
         ------
         Failure, KeyboardInterrupt
         """
-        last, report_at = len(times) - 1, perf_counter()
+        clock, last, report_at = times.tolist(), len(times) - 1, perf_counter()
         for k in range(last):
             if k in actions:
                 self._act(actions[k])
@@ -148,11 +146,11 @@ class Master:
             if progress is not None and perf_counter() >= report_at:
                 progress(k, last)
                 report_at = perf_counter() + BETWEEN_REPORTS
-            self._step(k, float(times[k]))
+            self._step(k, clock)
             for target, values in settings:
                 target[:] = values[k + 1]
             self._transfer(k + 1)
-            self._check_finite(times[k + 1])
+            self._check_finite(clock[k + 1])
         if last % every == 0:
             record(last // every)
         if progress is not None:
@@ -164,18 +162,18 @@ class Master:
         for exchange in self._all:
             exchange.refresh()
 
-    def _step(self, k, time):
+    def _step(self, k, clock):
         for part in self._parts:
             if self._sequential:
                 self._transfer(k + 1)
             try:
                 if k % part.multiple == 0:
                     part.write()
-                    part.step(time)
+                    part.step(clock[k], clock[k + part.multiple] - clock[k])
                 if (k + 1) % part.multiple == 0:
                     part.read()
             except SlaveError as error:
-                raise Failure(Problem(part.name, f"failed in the step from t = {time:.9g} s. {error}")) from error
+                raise Failure(Problem(part.name, f"failed in the step from t = {clock[k]:.9g} s. {error}")) from error
 
     def _transfer(self, count):
         for exchange in self._all:

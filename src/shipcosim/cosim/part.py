@@ -30,14 +30,11 @@ class Part:
         Its FMU.
     multiple : int
         Its step, in base steps.
-    step_size : float
-        The same. [s]
     """
 
     name: str
     slave: Slave
     multiple: int
-    step_size: float
     _set_reals: Callable[[], int] | None = None
     _discrete: list[Discrete] = field(default_factory=list)
     _gets: list[tuple[str, Callable[[], int]]] = field(default_factory=list)
@@ -77,9 +74,9 @@ class Part:
                 self.slave.check("SetInteger or SetBoolean", discrete.call())
                 discrete.version = discrete.exchange.version
 
-    def step(self, time: float) -> None:
-        """Advance the FMU by its step from a time."""
-        if (status := self._do_step(time, self.step_size)) >= FAILED:
+    def step(self, time: float, step_size: float) -> None:
+        """Advance the FMU from a time."""
+        if (status := self._do_step(time, step_size)) >= FAILED:
             self.slave.check("DoStep", status)
 
     def read(self) -> None:

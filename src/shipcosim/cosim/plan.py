@@ -77,14 +77,11 @@ class Plan:
 
     def rows(self, kind: str, name: str) -> tuple[tuple, tuple]:
         """First row and variables of a component's outputs and inputs."""
-        layout = self.layouts[kind]
-        return tuple(
-            (
-                next((i for i, end in enumerate(ends) if end[0] == name), 0),
-                [self.variable(e) for e in ends if e[0] == name],
-            )
-            for ends in (layout.outputs, layout.inputs)
-        )
+        return tuple(self._block(ends, name) for ends in (self.layouts[kind].outputs, self.layouts[kind].inputs))
+
+    def _block(self, ends, name):
+        rows = [row for row, end in enumerate(ends) if end[0] == name]
+        return (rows[0] if rows else 0), [self.variable(ends[row]) for row in rows]
 
 
 def label(end: End) -> str:
@@ -112,16 +109,15 @@ def make_plan(system: System, scenario: Scenario, fed=()) -> Plan:
     if problems := [p for component in system.components.values() for p in _component_problems(component, scenario)]:
         raise ShipcosimError(problems)
     touched = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
-    multiples = {
-        c.name: whole_steps(c.step_size or scenario.step_size, scenario.step_size) for c in system.components.values()
-    }
+    base = scenario.step_size
+    multiples = {name: whole_steps(c.step_size or base, base) for name, c in system.components.items()}
     plan = Plan(system, multiples, {kind: Layout() for kind in KINDS.values()}, [], [], touched)
     into = {}
     for connection in system.connections:
         if connection.target[0] is None or not _is_fed(connection.source, plan, fed):
             continue
-        if connection.initial:  # from a parameter of the system it has got its value as a start value
-            plan.handovers += [connection] if connection.source[0] is not None else []
+        if connection.initial:
+            plan.handovers.append(connection)
         elif plan.variable(connection.target).kind == "String":
             plan.texts.append(connection)
         else:
@@ -133,15 +129,12 @@ def make_plan(system: System, scenario: Scenario, fed=()) -> Plan:
 def _component_problems(component, scenario):
     step, base = component.step_size, scenario.step_size
     if "CoSimulation" not in component.fmu.interfaces or component.implementation == "ModelExchange":
-        yield Problem(
-            component.name, f"{component.fmu.path.name} is run as model exchange.", "Co-simulation is needed."
-        )
+        found = f"{component.fmu.path.name} would have to run as model exchange."
+        yield Problem(component.name, found, "Only co-simulation is done.")
     if step is not None and not whole_steps(step, base):
         yield Problem(component.name, f"its step of {step:g} s is no multiple of the step size {base:g} s.")
     elif step is not None and whole_steps(scenario.stop_time, step) is None:
-        yield Problem(
-            component.name, f"its step of {step:g} s does not fit into the {scenario.stop_time:g} s of the run."
-        )
+        yield Problem(component.name, f"its step of {step:g} s does not divide the run's {scenario.stop_time:g} s.")
     arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
     if arrays:
         yield Problem(component.name, f"has arrays, which the master does not handle: {', '.join(arrays[:5])}.")
@@ -152,8 +145,10 @@ def _is_fed(source, plan, fed):
     component, name = source
     if component is not None:
         return True
-    signal = plan.system.inputs.get(name)
-    return signal is not None and (signal.start is not None or name in fed or source in plan.touched)
+    signal = plan.system.inputs.get(name)  # what a parameter of the system passes on are start values already
+    if signal is None or signal.type == "String":
+        return False
+    return signal.start is not None or name in fed or source in plan.touched
 
 
 def _lay_out(plan, into):

@@ -83,8 +83,12 @@ class Slave:
         return [text for status, text in self.messages if status == WARNING]
 
     def free(self) -> None:
-        """Free the instance and its library. FMI forbids even this after a fatal error; PythonFMU stands it."""
-        if self._is_python or not self._is_lost:
+        """Free the instance and its library.
+
+        Not after a fatal error: FMI forbids it, and PythonFMU, which calls every exception fatal and releases its
+        objects then, would release them a second time.
+        """
+        if not self._is_lost:
             self._fmu.freeInstance()
 
     def exit_initialisation(self) -> None:
@@ -164,7 +168,7 @@ class Slave2(Slave):
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
         if not self._is_python:  # PythonFMU logs Python's text as a format: a % in it makes formatting read wild memory
             addLoggerProxy(byref(callbacks))
-        self._fmu.instantiate(callbacks=callbacks)
+        self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
 
 
 class Slave3(Slave):
@@ -243,7 +247,9 @@ class Slave3(Slave):
         return FMU3Slave(**arguments)
 
     def _instantiate(self):
-        self._fmu.instantiate(logMessage=lambda environment, status, category, text: self._log(status, text))
+        self._fmu.instantiate(
+            loggingOn=True, logMessage=lambda environment, status, category, text: self._log(status, text)
+        )
 
 
 _FMI3_TYPES = {
