@@ -3,6 +3,7 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models import waves
 from shipcosim.models.hull import HullParameters, hull_loads
+from shipcosim.models.maths import wrap
 from shipcosim.models.vessel import DriftParameters, nu_dot, step, through_water
 from shipcosim.models.vessel import Vessel as State
 from shipcosim.models.wind import WindParameters, apparent_wind, wind_loads
@@ -82,7 +83,7 @@ class Vessel(Fmu):
     drift = Parameters(DriftParameters)
 
     def start(self):
-        self.state = State(self.x_start, self.y_start, self.psi_start, self.u_start, self.v_start, self.r_start)
+        self.state = State(self.x_start, self.y_start, wrap(self.psi_start), self.u_start, self.v_start, self.r_start)
         self._meet_waves(self.start_time)
         self._write()
 
