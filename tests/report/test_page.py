@@ -81,8 +81,9 @@ def test_every_section_draws_its_curves(page):
     assert panels["Yaw moment [kN·m]"] == ["wind", "drift", "hull", "thrusters", "commanded"]
     assert panels["Thrust, tunnel [kN]"] == ["commanded", "delivered"]
     assert panels["Azimuth [deg]"] == ["port commanded", "port", "starboard commanded", "starboard"]
-    for title in ("Shaft speed [rpm]", "Power [kW]"):
-        assert panels[title] == ["port", "starboard", "tunnel"]
+    assert panels["Shaft speed, port, starboard [rpm]"] == ["port", "starboard"]
+    assert panels["Shaft speed, tunnel [rpm]"] == ["tunnel"]
+    assert panels["Power [kW]"] == ["port", "starboard", "tunnel"]
     assert panels["Wind speed [m/s]"] == ["with gusts", "mean"]
     assert {"Current speed [m/s]", "Current to [deg]", "Waves [m]", "At a limit, failed"} <= set(panels)
 

@@ -55,7 +55,7 @@ def render(table, *, scenario=None, verdicts=(), system=None):
         title=escape(parts.title_of(scenario, system)),
         css=_asset("page.css"),
         header=parts.header(table, scenario, system, summary.outcome(table, verdicts)),
-        remarks=parts.remarks(summary.remarks(shown, roles)),
+        remarks=parts.remarks(summary.remarks(table, shown, roles)),
         navigation=parts.navigation(sections, track is not None),
         chart=parts.chart(track is not None),
         weather=parts.weather(summary.weather(shown, roles)),
@@ -63,7 +63,7 @@ def render(table, *, scenario=None, verdicts=(), system=None):
         expectations=parts.expectations(summary.judged(verdicts, shown)),
         sections=parts.sections(sections),
         thinning=parts.thinning(span, shown.sizes["time"], drawn.sizes["time"]),
-        details=parts.details(summary.details(table), scenario),
+        details=parts.details(summary.details(table, system), scenario),
         version=shipcosim.__version__,
         plotly=_plotly(),
         data=_embedded(_payload(drawn, table, track, sections, scenario)),
@@ -88,7 +88,7 @@ def digest(table, verdicts=()):
     """
     roles = find_roles(table.data_vars)
     shown = add_derived(display_table(table, roles), table, roles, verdicts)
-    return summary.outcome(table, verdicts), summary.remarks(shown, roles), summary.judged(verdicts, shown)
+    return summary.outcome(table, verdicts), summary.remarks(table, shown, roles), summary.judged(verdicts, shown)
 
 
 def _payload(drawn, table, track, sections, scenario):

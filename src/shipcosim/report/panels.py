@@ -147,7 +147,11 @@ def _thrusters(shown, roles):
         ]
         panels += _panel(shown, f"Thrust, {unit}", lines)
     panels += _panel(shown, "Azimuth", _angles(roles))
-    for quantity, title in {"rpm": "Shaft speed", "power": "Power", "torque": "Torque"}.items():
+    turning = [unit for unit in roles.thrusters if roles.signal(unit, "azimuth")]
+    for units in (turning, [unit for unit in roles.thrusters if unit not in turning]):
+        lines = _coloured({roles.signal(unit, "rpm"): unit for unit in units})
+        panels += _panel(shown, f"Shaft speed, {', '.join(units)}", lines)
+    for quantity, title in {"power": "Power", "torque": "Torque"}.items():
         panels += _panel(shown, title, _coloured({roles.signal(u, quantity): u for u in roles.thrusters}))
     states = {roles.signal(u, s): f"{u} {s}" for s in ("saturated", "failed") for u in roles.thrusters}
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)

@@ -128,7 +128,7 @@ def thinning(span, rows, drawn):
 
 
 def details(tables, scenario):
-    """Events, parameters, versions: to unfold."""
+    """Events, start values, versions: to unfold."""
     text = ""
     if scenario is not None and scenario.events:
         text += _fold("events", [(f"{event.time:g} s", _happening(event)) for event in scenario.events])
@@ -145,6 +145,13 @@ def _happening(event):
     return ", ".join(changes + [f"{name} released" for name in event.reset])
 
 
+def _value(value):
+    """A value as text; dictionaries and lists as their items, one after the other."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_value(item)}" for key, item in value.items())
+    return ", ".join(map(_value, value)) if isinstance(value, (list, tuple)) else str(value)
+
+
 def _fold(title, rows):
-    body = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(str(v))}</td></tr>" for k, v in rows)
-    return f"<details><summary>{escape(title.capitalize())}</summary><table>{body}</table></details>"
+    body = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(_value(v))}</td></tr>" for k, v in rows)
+    return f"<details><summary>{escape(title[:1].upper() + title[1:])}</summary><table>{body}</table></details>"

@@ -90,11 +90,13 @@ def _claim(expect, unit, factor):
     return f"{subject} " + ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None).rstrip()
 
 
-def remarks(shown, roles):
+def remarks(table, shown, roles):
     """Sentences for what a reader must not overlook.
 
     Parameters
     ----------
+    table : xarray.Dataset
+        The run; its attribute `remarks` holds what the FMUs warned of.
     shown : xarray.Dataset
         Table in the page's units, with the derived signals.
     roles : Roles
@@ -104,7 +106,7 @@ def remarks(shown, roles):
     -------
     list of str
     """
-    said = _not_finite(shown)
+    said = [*_parsed(table.attrs.get("remarks", "[]")), *_not_finite(shown)]
     limited = _limited(shown, roles)
     if limited and _grows(shown):
         error = shown[FROM_REFERENCE].values
@@ -205,16 +207,51 @@ def _mean_direction(degrees):
     return float(np.degrees(np.arctan2(np.nanmean(np.sin(angle)), np.nanmean(np.cos(angle)))) % 360.0)
 
 
-def details(table):
-    """Parameters, versions and whatever else the table says of itself, as (title, dict) for tables to unfold."""
+SHOWN_ELSEWHERE = ("events", "remarks")
+
+
+def details(table, system=None):
+    """Start values, versions and whatever else the table says of itself.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        The run.
+    system : System, optional
+        Gives the units of start values.
+
+    Returns
+    -------
+    list of (str, dict)
+        Titles and contents of tables to unfold.
+    """
     plain, nested = {}, []
     for name, value in table.attrs.items():
         content = _parsed(value)
-        if isinstance(content, dict):
+        if name == "start_values":
+            nested += _by_component(content, system)
+        elif isinstance(content, dict):
             nested.append((name, content))
-        else:
+        elif name not in SHOWN_ELSEWHERE:
             plain[name] = content
     return ([("run", plain)] if plain else []) + nested
+
+
+def _by_component(values, system):
+    """Start values with their units, a table for each component."""
+    groups = {}
+    for signal, value in values.items():
+        component, _, name = signal.rpartition(".")
+        unit = _unit(system, component, name) or ""
+        groups.setdefault(component, {})[name] = value if unit in ("", "1") else f"{value} {unit}"
+    return [(f"Start values: {component or 'the system'}", content) for component, content in groups.items()]
+
+
+def _unit(system, component, name):
+    if system is None:
+        return None
+    variables = system.components[component].fmu.variables if component in system.components else system.inputs
+    return variables[name].unit if name in variables else None
 
 
 def _parsed(value):
