@@ -274,14 +274,9 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
     """
     problems = list(check_times(scenario))
     for number, event in enumerate(scenario.events):
-        for verb, changes in (
-            ("override", event.override),
-            ("bias", event.bias),
-            ("reset", dict.fromkeys(event.reset)),
-        ):
-            for signal, value in changes.items():
-                if complaint := _event_complaint(system, verb, signal, value):
-                    problems.append(_at(scenario, ("events", number, verb, signal), *complaint))
+        for verb, signal, value in event.changes:
+            if complaint := _event_complaint(system, verb, signal, value):
+                problems.append(_at(scenario, ("events", number, verb, signal), *complaint))
     changed = {signal for event in scenario.events for _, signal, _ in event.changes}
     for number, expect in enumerate(scenario.expect):
         for signal in expect.signals:

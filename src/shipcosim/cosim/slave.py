@@ -178,7 +178,7 @@ class Slave3(Slave):
 
     def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
-        groups = self._groups("Set", variables)
+        groups = list(self._groups("Set", variables))
 
         def set_all():
             for rows, own, call in groups:
@@ -191,7 +191,7 @@ class Slave3(Slave):
 
     def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
-        groups = self._groups("Get", variables)
+        groups = list(self._groups("Get", variables))
 
         def get_all():
             for rows, own, call in groups:

@@ -4,6 +4,7 @@ PythonFMU puts each FMU's resources on the one `sys.path` and imports from there
 module of the same name runs the first one's code.
 """
 
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -21,9 +22,9 @@ class Unpacked:
         return self
 
     def __exit__(self, *_):
-        for name in self._imported():
+        for name in self._imported(self._root):
             del sys.modules[name]
-        sys.path[:] = [entry for entry in sys.path if not Path(entry).is_relative_to(self._root)]
+        sys.path[:] = [entry for entry in sys.path if not entry.startswith(f"{self._root}{os.sep}")]
         self._temporary.cleanup()
 
     def folder(self, fmu: Path) -> Path:
@@ -37,11 +38,12 @@ class Unpacked:
     def _make_room(self, folder):
         """Forget modules of other FMUs that have the name of one in this FMU; who has imported them keeps them."""
         own = {path.stem for path in (folder / "resources").glob("*")}
-        for name, file in self._imported().items():
-            if name.partition(".")[0] in own and not file.is_relative_to(folder):
+        for name in self._imported(self._root) - self._imported(folder):
+            if name.partition(".")[0] in own:
                 del sys.modules[name]
 
-    def _imported(self):
-        """Modules that come from FMUs of this run, with their files."""
-        files = {name: getattr(module, "__file__", None) for name, module in list(sys.modules.items())}
-        return {name: Path(file) for name, file in files.items() if file and Path(file).is_relative_to(self._root)}
+    @staticmethod
+    def _imported(folder):
+        """Names of the modules that come from a folder."""
+        files = {name: getattr(module, "__file__", None) or "" for name, module in list(sys.modules.items())}
+        return {name for name, file in files.items() if file.startswith(f"{folder}{os.sep}")}
