@@ -5,12 +5,12 @@ Run `python ssp/write_parameter_sets.py` after a number has changed; a test comp
 
 from pathlib import Path
 
-from shipcosim.models.ships import SHIPS, parameter_set
+from shipcosim.models.ships import COMPONENTS, SHIPS, parameter_set
 from shipcosim.ssp import parameter, write_ssv
 
 HERE = Path(__file__).parent
 SYSTEMS = {
-    "gunnerus_dp": ("vessel", "port", "starboard", "tunnel"),
+    "gunnerus_dp": tuple(COMPONENTS),
     "gunnerus_open": ("vessel", "port", "starboard", "tunnel"),
 }
 

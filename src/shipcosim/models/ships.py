@@ -4,11 +4,16 @@ The defaults of the parameter classes are gunnerus-33m9. Another ship is what di
 deviations within which a number counts as known; where a set does not say, those of the default hold, relative to size.
 """
 
+import math
 from dataclasses import fields
 from typing import Any, NamedTuple
 
+from .allocation import AllocationParameters
+from .control import ControlParameters
 from .hull import HullParameters
 from .load_tables import DRIFT_28M9, WIND_28M9
+from .observer import DpShip, ObserverParameters
+from .reference import ReferenceParameters
 from .thruster import AzimuthParameters, TunnelParameters
 from .vessel import DriftParameters
 from .wind import WindParameters
@@ -19,6 +24,10 @@ COMPONENTS = {
     "port": (AzimuthParameters,),
     "starboard": (AzimuthParameters,),
     "tunnel": (TunnelParameters,),
+    "reference": (ReferenceParameters,),
+    "controller": (DpShip, ObserverParameters, ControlParameters, WindParameters),
+    "allocator": (AllocationParameters,),
+    "predictor": (HullParameters, WindParameters, DriftParameters),
 }
 """Component of the system: its parameter classes."""
 
@@ -173,6 +182,28 @@ _TUNNEL_THESIS = {
     "power_max": (350e3, "what 30 kN need"),
 }
 
+_WIND_TABLE_28M9 = {"wind_table": _VESSEL_28M9["wind_table"]}
+
+_DP_SHIP_28M9 = {
+    "mass_surge": (490_252.4, "m + A11"),
+    "mass_sway": (819_124.41, "m + A22"),
+    "mass_sway_yaw": (-331_671.6384, "A26"),
+    "mass_yaw": (33_696_679.9, "Iz + A66"),
+}
+
+_ALLOCATION_28M9 = {
+    "port_x": (-13.22, _OSP),
+    "port_y": (-2.7, _OSP),
+    "starboard_x": (-13.22, _OSP),
+    "starboard_y": (2.7, _OSP),
+    "tunnel_x": (13.08, _OSP),
+}
+
+_REFERENCE_THESIS = {
+    "position_frequency": (2.0 * math.pi / 200.0, "thesis, author's reference model: no leg of 200 s settles"),
+    "heading_frequency": (2.0 * math.pi / 200.0, "thesis, author's reference model: no leg of 200 s settles"),
+}
+
 _PORT, _STARBOARD = {"y": (-2.0, "thesis, grade A")}, {"y": (2.0, "thesis, grade A")}
 
 _CHANGES = {
@@ -182,10 +213,15 @@ _CHANGES = {
         "port": {"x": (-13.22, _OSP, 0.02), "y": (-2.7, _OSP)},
         "starboard": {"x": (-13.22, _OSP, 0.02), "y": (2.7, _OSP)},
         "tunnel": {"x": (13.08, _OSP, 0.02)},
+        "controller": _DP_SHIP_28M9 | _WIND_TABLE_28M9,
+        "allocator": _ALLOCATION_28M9,
+        "predictor": _VESSEL_28M9,
     },
     "thesis": {
         "port": _PORT | _AZIMUTH_THESIS,
         "starboard": _STARBOARD | _AZIMUTH_THESIS,
         "tunnel": _TUNNEL_THESIS,
+        "reference": _REFERENCE_THESIS,
+        "allocator": {"tunnel_thrust_max": (30e3, "Skulstad 2021, paper V, Table I")},
     },
 }
