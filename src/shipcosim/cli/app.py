@@ -118,7 +118,7 @@ def run(
 
     happening = read_scenario(find_scenario(scenario))
     fmus = build_stale(happening.project)
-    system = read_system(happening.system_path, happening.parameter_paths, fmus=fmus)
+    system = read_system(happening.system_path, happening.parameter_paths, fmus=[fmus])
     given = parsed_settings(settings or [])
     with_values(system, given, "--set")
     happening = happening.model_copy(update={"set": happening.set | given})
@@ -149,7 +149,7 @@ def simulate(
     from shipcosim.ssp import read_system
 
     project = find_project(Path(ssp.partition("#")[0]))
-    system = read_system(ssp, parameters or (), fmus=build_stale(project) if project else ())
+    system = read_system(ssp, parameters or (), fmus=[build_stale(project)] if project else ())
     happening = experiment_of(system, stop_time, step_size)
     feeding = read_table(inputs) if inputs else None
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shipcosim.cli.project import find_project
+from shipcosim.cli.project import built_fmus, find_project
 from shipcosim.errors import Problem, ShipcosimError
 
 TABLES = (".csv", ".csv.gz", ".nc")
@@ -46,7 +46,7 @@ def check_scenario_file(path):
     from shipcosim.ssp import read_system, with_values
 
     scenario = read_scenario(path)
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[scenario.project / "build" / "fmus"])
+    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[built_fmus(scenario.project)])
     try:
         system, problems = with_values(system, scenario.set, str(path)), []
     except ShipcosimError as error:
@@ -74,7 +74,8 @@ def check_table(path):
     for name, variable in table.data_vars.items():
         missing = int(np.sum(~np.isfinite(variable.values))) if variable.dtype.kind == "f" else 0
         if missing:
-            problems.append(Problem(f"{path}, {name}", f"{missing} values are no numbers.", severity="remark"))
+            found = f"{missing} row{'s' * (missing > 1)} without a number."
+            problems.append(Problem(f"{path}, {name}", found, severity="remark"))
     return problems
 
 
@@ -82,4 +83,8 @@ def _check_system_file(file, path):
     from shipcosim.ssp import check_file
 
     project = find_project(path)
-    return check_file(file, fmus=[project / "build" / "fmus"] if project else ())
+    fmus = built_fmus(project) if project else None
+    problems = check_file(file, fmus=[fmus] if fmus else ())
+    if fmus and not fmus.is_dir() and any(problem.severity == "error" for problem in problems):
+        problems.append(Problem(str(fmus), "There are no FMUs yet.", "`shipcosim build` builds them.", "remark"))
+    return problems

@@ -16,6 +16,11 @@ def find_project(start):
     return next((f for f in folders if (f / "fmus").is_dir() or (f / "ssp").is_dir()), None)
 
 
+def built_fmus(project):
+    """Folder of a project's built FMUs."""
+    return project / "build" / "fmus"
+
+
 def find_scenario(given):
     """Scenario file: a path, or a name in the project's scenarios/.
 
@@ -113,17 +118,16 @@ def build_stale(project):
 
     Returns
     -------
-    list of Path
-        Folders to search for FMUs: build/fmus.
+    Path
+        Folder with the FMUs.
     """
-    out = project / "build"
     package = Path(shipcosim.__file__).parent
     shared = max(_newest(package / room) for room in IN_EVERY_FMU)
     for name, folder in _fmus(project).items():
-        fmu = out / "fmus" / f"{name}.fmu"
+        fmu = built_fmus(project) / f"{name}.fmu"
         if not fmu.is_file() or fmu.stat().st_mtime < max(shared, _newest(folder)):
-            _build(folder, out)
-    return [out / "fmus"]
+            _build(folder, project / "build")
+    return built_fmus(project)
 
 
 def experiment_of(system, stop_time=None, step_size=None):

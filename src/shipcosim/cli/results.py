@@ -8,9 +8,11 @@ from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
 
+PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
+
 
 def save(table, folder, stem, *, scenario, system, verdicts=()):
-    """Write table and page.
+    """Write table and page; a complete run takes away what an interrupted one left before it.
 
     Parameters
     ----------
@@ -41,6 +43,9 @@ def save(table, folder, stem, *, scenario, system, verdicts=()):
         for suffix in (".nc", ".csv"):
             write_table(table, stage / f"{stem}{suffix}")
         write_report(table, stage / page, scenario=scenario, verdicts=verdicts, system=system)
+    if stem == "result":
+        for name in PARTIAL:
+            (Path(folder) / name).unlink(missing_ok=True)
     return Path(folder) / page
 
 

@@ -1,0 +1,102 @@
+"""A project as small as one can be: one FMU, one system, one scenario."""
+
+from types import SimpleNamespace
+
+import pytest
+from typer.testing import CliRunner
+
+from shipcosim.cli import app
+
+FMU = '''
+"""Lag that can fail on demand."""
+
+import time
+from pathlib import Path
+
+from shipcosim.fmi import Fmu, Input, Output, Parameter
+
+
+class Lag(Fmu):
+    """First-order lag."""
+
+    u = Input("m", "input", start=1.0)
+    y = Output("m", "output")
+    time_constant = Parameter(1.0, "s", "time constant", minimum=0.01)
+    fails_at = Parameter(1e9, "s", "time from which its step raises")
+    pause = Parameter(0.0, "s", "time that a step takes on the clock")
+
+    def start(self):
+        self.y = 0.0
+
+    def step(self, t, h):
+        if t >= self.fails_at:
+            raise ValueError("the pump has run dry")
+        if self.pause:
+            Path("stepping").touch()
+            time.sleep(self.pause)
+        self.y += h / self.time_constant * (self.u - self.y)
+'''
+
+SSD = """<?xml version="1.0" encoding="UTF-8"?>
+<ssd:SystemStructureDescription name="tank" version="1.0"
+    xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"
+    xmlns:ssc="http://ssp-standard.org/SSP1/SystemStructureCommon"
+    xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">
+  <ssd:System name="tank">
+    <ssd:Connectors>
+      <ssd:Connector name="level_set" kind="input"><ssc:Real unit="m"/></ssd:Connector>
+    </ssd:Connectors>
+    <ssd:Elements>
+      <ssd:Component name="lag" type="application/x-fmu-sharedlibrary" source="resources/lag.fmu">
+        <ssd:Connectors>
+          <ssd:Connector name="u" kind="input"><ssc:Real unit="m"/></ssd:Connector>
+          <ssd:Connector name="y" kind="output"><ssc:Real unit="m"/></ssd:Connector>
+        </ssd:Connectors>
+      </ssd:Component>
+    </ssd:Elements>
+    <ssd:Connections>
+      <ssd:Connection startConnector="level_set" endElement="lag" endConnector="u"/>
+    </ssd:Connections>
+  </ssd:System>
+</ssd:SystemStructureDescription>
+"""
+
+SCENARIO = """description = "Filling a tank"
+system    = "tank"
+stop_time = 5.0
+step_size = 0.1
+
+[set]
+"lag.time_constant" = 0.5
+
+[[expect]]
+signal = "lag.y"
+near   = 1.0
+within = 0.05
+during = [4.0, 5.0]
+"""
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    """Folder of the project, which is the working folder of the test."""
+    files = {"fmus/lag/lag.py": FMU, "ssp/tank/SystemStructure.ssd": SSD, "scenarios/fill.toml": SCENARIO}
+    for name, text in files.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True)
+        path.write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    return tmp_path
+
+
+@pytest.fixture
+def call():
+    """Function that calls the command: its exit code, stdout and stderr."""
+
+    def call(*arguments):
+        result = CliRunner().invoke(app, [str(a) for a in arguments])
+        assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+        return SimpleNamespace(code=result.exit_code, out=result.stdout, err=result.stderr)
+
+    return call
