@@ -1,7 +1,7 @@
 """What a step of an FMU costs beside the FMU's own work: nine FMUs that do nothing, ten values in and out of each.
 
 The time is that of the whole run after its start, so it contains the master, the calls through ctypes, PythonFMU's
-binary and the shell: everything but the model. The goal of 20 microseconds, aim 10, holds for an otherwise idle machine.
+binary and the shell: everything but the model. The goal of 20 microseconds, aim 10, is for an otherwise idle machine.
 """
 
 import time

@@ -96,7 +96,7 @@ SOURCES = {
         class Failing(Fmu):
             """Fails in the way and at the time that it is told to."""
 
-            how = Parameter("raise", "1", "raise, start, nan or stop")
+            how = Parameter("raise", "1", "raise, start, stop or warn")
             when = Parameter(0.5, "s", "time of the step in which it fails")
             y = Output("1", "time at the end of the step")
 
@@ -114,6 +114,8 @@ SOURCES = {
                         raise ValueError("50%s of it is wrong")
                     if self.how == "stop":
                         signal.raise_signal(signal.SIGINT)
+                    if self.how == "warn":
+                        self.log("100% full", "warning")
         ''',
     "shaft": '''
         class Shaft(Fmu):

@@ -1,6 +1,7 @@
 """What goes wrong is said with component and time, and the rows before it are kept."""
 
 import gc
+import json
 import os
 import sys
 import tempfile
@@ -50,6 +51,11 @@ def test_nan_is_named_with_component_variable_and_time(pythonfmu_system, make_sc
 def test_percent_signs_in_a_stock_fmus_message_do_no_harm(pythonfmu_system, make_scenario):
     with pytest.raises(RunError, match=r"(?s)stock: failed.*100%s %n wrong"):
         simulate(pythonfmu_system("int('100%s %n wrong')"), make_scenario(1.0, 0.1))
+
+
+def test_warnings_of_an_fmu_stay_with_the_table(failing, make_scenario):
+    table = simulate(failing("warn"), make_scenario(0.6, 0.1))
+    assert json.loads(table.attrs["remarks"]) == ["engine: engine at t = 0.5 s: 100% full"]
 
 
 def test_ctrl_c_inside_an_fmu_stops_the_run_and_keeps_its_rows(failing, make_scenario):

@@ -39,15 +39,15 @@ def feed(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, 
     ShipcosimError
         If a name, a unit or a time does not fit, or a value is not finite.
     """
-    problems, fed = [], {}
     clock = table["time"].values
     if len(clock) == 0 or np.any(np.diff(clock) <= 0.0) or clock[0] > times[0] or clock[-1] < times[-1] - 1e-9:
-        span = f"from {clock[0]:g} to {clock[-1]:g} s" if len(clock) else "no time at all"
-        found = f"covers {span}, or its times do not grow."
-        problems.append(Problem("inputs", found, f"It has to cover 0 to {times[-1]:g} s in growing times."))
+        span = f"cover {clock[0]:g} to {clock[-1]:g} s" if len(clock) else "are none"
+        remedy = f"They have to grow from 0 to at least {times[-1]:g} s."
+        raise ShipcosimError(Problem("inputs", f"The times {span}, or do not grow.", remedy))
+    problems, fed = [], {}
     for name, column in table.data_vars.items():
         try:
-            fed[name] = _column(str(name), column, system, clock, times) if not problems else None
+            fed[name] = _column(str(name), column, system, clock, times)
         except ShipcosimError as error:
             problems += error.problems
     if problems:
@@ -59,9 +59,10 @@ def _column(name, column, system, clock, times):
     where = f"inputs: {name}"
     if name not in system.inputs:
         raise ShipcosimError(Problem(where, f"{system.name} has no input '{name}'.", suggestion(name, system.inputs)))
-    how = column.attrs.get("interpolation", "held")
-    if how not in INTERPOLATIONS:
-        raise ShipcosimError(Problem(where, f"interpolation = {how!r}.", f"Known are {', '.join(INTERPOLATIONS)}."))
+    how, kind = column.attrs.get("interpolation", "held"), system.inputs[name].type
+    if how not in INTERPOLATIONS or (how == "linear" and kind != "Real"):
+        remedy = "It can be 'held', or 'linear' for a Real."
+        raise ShipcosimError(Problem(where, f"interpolation = {how!r} of a {kind}.", remedy))
     if not np.isfinite(column.values).all():
         row = int(np.flatnonzero(~np.isfinite(column.values))[0])
         raise ShipcosimError(Problem(where, f"is {column.values[row]} at {clock[row]:g} s.", "Fill or drop such rows."))

@@ -13,6 +13,7 @@ from shipcosim.cosim.slave import FAILED, Slave
 class Discrete:
     """Prepared call that sets inputs of a type other than Real, which is made only when a value has changed."""
 
+    function: str
     exchange: Exchange
     call: Callable[[], int]
     version: int = -1
@@ -63,7 +64,7 @@ class Part:
             if kind == "Real":
                 self._set_reals = call
             else:
-                self._discrete.append(Discrete(exchange, call))
+                self._discrete.append(Discrete(f"Set{kind}", exchange, call))
 
     def write(self) -> None:
         """Hand the inputs over to the FMU."""
@@ -71,7 +72,7 @@ class Part:
             self.slave.check("SetReal", status)
         for discrete in self._discrete:
             if discrete.version != discrete.exchange.version:
-                self.slave.check("SetInteger or SetBoolean", discrete.call())
+                self.slave.check(discrete.function, discrete.call())
                 discrete.version = discrete.exchange.version
 
     def step(self, time: float, step_size: float) -> None:

@@ -96,8 +96,8 @@ class Slave:
         self.call("ExitInitializationMode")
 
     def terminate(self) -> None:
-        """End the simulation; an FMU that fails to is left alone."""
-        self._function("Terminate")(self.component)
+        """End the simulation. That an FMU fails to is no matter any more."""
+        self._is_lost = self._function("Terminate")(self.component) == FATAL
 
     def _function(self, name):
         return self._fmu._functions[self._prefix + name]
