@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Scenario, judge, read_scenario, whole_steps
+from shipcosim.scenario import Scenario, check_times, judge, read_scenario, whole_steps
 from shipcosim.series import make_table
 
 GOOD = """\
@@ -101,6 +101,13 @@ def test_all_mistakes_are_said_at_once_in_the_order_of_the_file(tmp_path):
         read_scenario(written(tmp_path, text))
     lines = [problem.where.rpartition("line ")[2] for problem in error.value.problems[1:]]
     assert lines == ["4", "12", "21"]
+
+
+def test_what_lies_after_the_end_is_remarked(tmp_path):
+    scenario = read_scenario(written(tmp_path, GOOD)).model_copy(update={"stop_time": 3.0})
+    said = [str(problem) for problem in check_times(scenario) if problem.severity == "remark"]
+    assert "line 16: the event at 4 s never acts: the run ends at 3 s." in said[0]
+    assert "line 23: during = [5.0, 10.0] reaches beyond the end of the run at 3 s." in said[1]
 
 
 def test_missing_file_is_an_error(tmp_path):

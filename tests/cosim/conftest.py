@@ -266,26 +266,32 @@ class Stock(Fmi2Slave):
 
 
 @pytest.fixture
-def pythonfmu_system(tmp_path):
-    """Function: a system of one or two FMUs as PythonFMU builds them, without our shell."""
+def pythonfmu_code(tmp_path):
+    """Function: a system of two FMUs, stock and other, as PythonFMU builds them from a script, without our shell."""
     from pythonfmu.builder import FmuBuilder
 
-    def make(expression, helper="", other_helper=None):
-        parts = {}
-        for name, code in (("stock", helper), ("other", other_helper)):
-            if code is not None:
-                folder = tmp_path / name
-                folder.mkdir()
-                (folder / "helper.py").write_text(code)
-                (folder / "model.py").write_text(STOCK.replace("EXPRESSION", expression))
-                built = FmuBuilder.build_FMU(folder / "model.py", folder, project_files={folder / "helper.py"})
-                (tmp_path / "resources").mkdir(exist_ok=True)
-                Path(built).rename(tmp_path / "resources" / f"{name}.fmu")
-                parts[name] = (name,)
-                for module in ("helper", "model"):
-                    sys.modules.pop(module, None)
+    def make(script, connections=(), helpers=("", "")):
+        (tmp_path / "resources").mkdir(exist_ok=True)
+        for name, helper in zip(("stock", "other"), helpers, strict=True):
+            folder = tmp_path / name
+            folder.mkdir()
+            (folder / "helper.py").write_text(helper)
+            (folder / "model.py").write_text(script)
+            built = FmuBuilder.build_FMU(folder / "model.py", folder, project_files={folder / "helper.py"})
+            Path(built).rename(tmp_path / "resources" / f"{name}.fmu")
+            for module in ("helper", "model"):
+                sys.modules.pop(module, None)
         file = tmp_path / "SystemStructure.ssd"
-        file.write_text(_ssd(parts, [], {}, tmp_path / "resources"), encoding="utf-8")
+        parts = {"stock": ("stock",), "other": ("other",)}
+        file.write_text(_ssd(parts, connections, {}, tmp_path / "resources"), encoding="utf-8")
         return read_system(file)
 
     return make
+
+
+@pytest.fixture
+def pythonfmu_system(pythonfmu_code):
+    """Function: the same, whose output is an expression, which can use each one's own module `helper`."""
+    return lambda expression, *helpers: pythonfmu_code(
+        STOCK.replace("EXPRESSION", expression), helpers=helpers or ("", "")
+    )

@@ -55,7 +55,7 @@ def test_percent_signs_in_a_stock_fmus_message_do_no_harm(pythonfmu_system, make
 
 def test_warnings_of_an_fmu_stay_with_the_table(failing, make_scenario):
     table = simulate(failing("warn"), make_scenario(0.6, 0.1))
-    assert json.loads(table.attrs["remarks"]) == ["engine: engine at t = 0.5 s: 100% full"]
+    assert json.loads(table.attrs["remarks"]) == ["engine at t = 0.5 s: 100% full"]
 
 
 def test_ctrl_c_inside_an_fmu_stops_the_run_and_keeps_its_rows(failing, make_scenario):
@@ -129,7 +129,7 @@ def test_step_of_a_component_has_to_fit(make_system, make_scenario):
 
 
 def test_modules_of_one_name_in_two_stock_fmus_run_their_own_code(pythonfmu_system, make_scenario):
-    system = pythonfmu_system("helper.VALUE", helper="VALUE = 1.0", other_helper="VALUE = 2.0")
+    system = pythonfmu_system("helper.VALUE", "VALUE = 1.0", "VALUE = 2.0")
     for _ in range(2):
         table = simulate(system, make_scenario(0.2, 0.1))
         assert (float(table["stock.y"][-1]), float(table["other.y"][-1])) == (1.0, 2.0)

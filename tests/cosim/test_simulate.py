@@ -133,6 +133,15 @@ def test_connectors_of_the_system_are_fed_by_a_table_and_shown(make_system, make
     assert np.allclose(table["gain.y"].values[1:], ramp[:-1]) and np.array_equal(table["seen"], table["gain.y"])
 
 
+def test_connectors_that_nothing_feeds_leave_the_components_start_values(make_system, make_scenario):
+    parts = {"a": ("gain", {"u": 1.0}), "b": ("gain", {"u": 2.0})}
+    system = make_system(parts, ["both -> a.u", "both -> b.u"], {"both": ("input", "Real", "")})
+    table = simulate(system, make_scenario(0.2, 0.1))
+    assert (
+        "both" not in table and table["a.u"].values.tolist() == [1.0] * 3 and table["b.y"].values.tolist() == [2.0] * 3
+    )
+
+
 @pytest.mark.parametrize(
     ("time", "name", "values", "said"),
     [

@@ -33,3 +33,31 @@ def test_types_other_than_real_reach_the_start_too(make_system, make_scenario):
     parts = {"a": ("meter", {"number": 4}), "b": "meter", "c": "meter"}
     table = simulate(make_system(parts, ["a.number_seen -> b.number", "b.number_seen -> c.number"]), make_scenario())
     assert np.all(table["c.number_seen"] == 4)
+
+
+STOCK = """
+from pythonfmu import Fmi2Slave, Fmi2Causality, Fmi2Initial, Fmi2Variability, Real
+
+
+class Ship(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.length, self.area, self.y = 2.0, 0.0, 0.0
+        fixed = {"variability": Fmi2Variability.fixed}
+        self.register_variable(Real("length", causality=Fmi2Causality.parameter, **fixed))
+        self.register_variable(Real("y", causality=Fmi2Causality.output))
+        calculated = {"causality": Fmi2Causality.calculatedParameter, "initial": Fmi2Initial.calculated}
+        self.register_variable(Real("area", getter=lambda: self.length**2, **calculated, **fixed))
+
+    def exit_initialization_mode(self):
+        self.y = self.length
+
+    def do_step(self, t, h):
+        return True
+"""
+
+
+def test_calculated_parameters_reach_the_parameters_they_feed(pythonfmu_code, make_scenario):
+    system = pythonfmu_code(STOCK, ["stock.area -> other.length"])
+    table = simulate(system, make_scenario(set={"stock.length": 3.0}))
+    assert (float(table["stock.y"][0]), float(table["other.y"][0])) == (3.0, 9.0)

@@ -95,7 +95,7 @@ class _Rows:
     def table(self, complete):
         """Table of the rows so far. Its attribute `complete` is 1 or 0, since NetCDF knows no truth values."""
         columns = {kind: recorder.columns(self.n) for kind, recorder in self.recorders.items()}
-        remarks = [f"{part.name}: {text}" for part in self.parts for text in dict.fromkeys(part.slave.remarks())]
+        remarks = list(dict.fromkeys(text for part in self.parts for text in part.slave.remarks()))
         known = self.attributes | {"complete": int(complete), "remarks": json.dumps(remarks)}
         return table_of(self.plan, self.scenario, self.times[: self.n], columns, known)
 

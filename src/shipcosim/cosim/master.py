@@ -35,7 +35,7 @@ def step_times(step_size, first, last):
     >>> step_times(0.05, 0, 3).tolist()
     [0.0, 0.05, 0.1, 0.15]
     """
-    step = Fraction(step_size).limit_denominator(10**9)
+    step = Fraction(step_size).limit_denominator(10**12)
     return np.arange(first, last + 1) * float(step.numerator) / float(step.denominator)
 
 

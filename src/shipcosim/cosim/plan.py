@@ -60,8 +60,8 @@ class Plan:
         By kind.
     texts, handovers : list of Connection
         Between String variables; from component to component into a parameter, once at the start.
-    touched : set of End
-        What events change.
+    fed, touched : set of End
+        Inputs that a connection feeds; what events change.
     """
 
     system: System
@@ -69,6 +69,7 @@ class Plan:
     layouts: dict[str, Layout]
     texts: list[Connection]
     handovers: list[Connection]
+    fed: set[End]
     touched: set[End]
 
     def variable(self, end: End) -> Variable:
@@ -111,11 +112,12 @@ def make_plan(system: System, scenario: Scenario, fed=()) -> Plan:
     touched = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
     base = scenario.step_size
     multiples = {name: whole_steps(c.step_size or base, base) for name, c in system.components.items()}
-    plan = Plan(system, multiples, {kind: Layout() for kind in KINDS.values()}, [], [], touched)
+    plan = Plan(system, multiples, {kind: Layout() for kind in KINDS.values()}, [], [], set(), touched)
     into = {}
     for connection in system.connections:
         if connection.target[0] is None or not _is_fed(connection.source, plan, fed):
             continue
+        plan.fed.add(connection.target)
         if connection.initial:
             plan.handovers.append(connection)
         elif plan.variable(connection.target).kind == "String":

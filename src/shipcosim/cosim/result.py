@@ -17,8 +17,7 @@ def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
     """Settings and inputs of a kind that the table shows: those of the system, and inputs that no output determines."""
     layout = plan.layouts[kind]
     settings = [i for i, end in enumerate(layout.settings) if end[0] is None]
-    fed = {connection.target for connection in plan.system.connections}
-    inputs = [i for i, end in enumerate(layout.inputs) if end not in fed or end in plan.touched]
+    inputs = [i for i, end in enumerate(layout.inputs) if end not in plan.fed or end in plan.touched]
     return settings, inputs
 
 
@@ -43,11 +42,11 @@ def table_of(plan: Plan, scenario: Scenario, times: np.ndarray, columns: dict, a
         names = list(layout.settings)
         ends = [*layout.outputs, *(names[i] for i in settings), *(layout.inputs[i] for i in inputs)]
         values |= zip(ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True)
-    shown = [*_connectors(plan, values, len(times)), *_variables(plan, values, len(times))]
+    shown = [*_connectors(plan, values), *_variables(plan, values, len(times))]
     return make_table(times, shown, _attributes(plan, scenario) | attributes)
 
 
-def _connectors(plan, values, n):
+def _connectors(plan, values):
     """Columns of the outermost system's inputs and outputs."""
     for name, signal in plan.system.inputs.items():
         if (None, name) in values:
@@ -69,12 +68,11 @@ def _passed_on(values, connection):
 
 def _variables(plan, values, n):
     """Columns of the components' outputs and settings, in the order of the system and of the FMUs."""
-    fed = {connection.target for connection in plan.system.connections}
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end, kind = (component.name, variable.name), KINDS.get(variable.kind)
             column = values.get(end)
-            if column is None and kind and variable.causality == "input" and end not in fed:
+            if column is None and kind and variable.causality == "input" and end not in plan.fed:
                 start = component.start_value(variable.name) or 0
                 column = np.full(n, start, dtype={"Real": float, "Integer": np.int32, "Boolean": bool}[kind])
             if column is not None and variable.causality in ("input", "output", "parameter"):

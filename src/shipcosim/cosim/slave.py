@@ -79,8 +79,9 @@ class Slave:
         return "\n".join(errors[-3:] or [text for _, text in self.messages[-3:]])
 
     def remarks(self) -> list[str]:
-        """Warnings that the FMU logged."""
-        return [text for status, text in self.messages if status == WARNING]
+        """Warnings that the FMU logged, with its name before them."""
+        texts = [text for status, text in self.messages if status == WARNING]
+        return [text if text.startswith(self.name) else f"{self.name}: {text}" for text in texts]
 
     def free(self) -> None:
         """Free the instance and its library.
