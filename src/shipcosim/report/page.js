@@ -55,7 +55,7 @@
       : { ...axis, automargin: true };
     const event = (t) => ({ type: "line", x0: t, x1: t, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: "#9aa5b1", width: 1, dash: "dot" } });
     return {
-      title, font, yaxis, margin: { l: 56, r: 12, t: 54, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
+      title, font, yaxis, margin: { l: 56, r: 24, t: 54, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
       legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom", font: { size: 11 } }, hoverlabel: { bgcolor: "rgba(255,255,255,0.92)", font: { size: 12 } },
       xaxis: { ...axis, range: shownWindow.slice(), ticksuffix: " s", showticksuffix: "last", hoverformat: ".6~g", unifiedhovertitle: { text: "%{x} s" } },
       shapes: data.events.filter((t) => t > whole[0]).map(event), paper_bgcolor: "#fff", plot_bgcolor: "#fff",
@@ -235,5 +235,13 @@
   schedule();
   if (!data.panels.length) for (const box of [...document.querySelectorAll("#choices input")].slice(0, 6)) box.click();
   addEventListener("scroll", schedule, { passive: true });
-  addEventListener("beforeprint", () => { work([...waiting.keys()]); for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.Plots.resize(place); });
+  addEventListener("beforeprint", () => {  // paper has a width of its own, see @page; plotly would resize too late
+    work([...waiting.keys()]);
+    document.body.classList.add("printing");
+    for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: place.clientWidth, height: place.clientHeight });
+  });
+  addEventListener("afterprint", () => {
+    document.body.classList.remove("printing");
+    for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: null, height: null, autosize: true });
+  });
 })();

@@ -153,7 +153,7 @@ def _thrusters(shown, roles):
         panels += _panel(shown, f"Shaft speed, {', '.join(units)}", lines)
     for quantity, title in {"power": "Power", "torque": "Torque"}.items():
         panels += _panel(shown, title, _coloured({roles.signal(u, quantity): u for u in roles.thrusters}))
-    states = {roles.signal(u, s): f"{u} {s}" for s in ("saturated", "failed") for u in roles.thrusters}
+    states = {signal: f"{c} {what}" for what in ("saturated", "failed") for c, signal in roles.flagged(what).items()}
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
 
 

@@ -27,7 +27,7 @@ def header(table, scenario, system, outcome):
     for name, unit in (("step_size", " s"), ("engine", "")):
         if name in table.attrs:
             facts.append((name.replace("_", " ").capitalize(), f"{table.attrs[name]}{unit}"))
-    rows = "".join(f"<span><b>{escape(k)}</b> {escape(str(v))}</span>" for k, v in facts if v)
+    rows = " ".join(f"<span><b>{escape(k)}</b> {escape(str(v))}</span>" for k, v in facts if v)
     return (
         f"<div><h1>{escape(title_of(scenario, system))}</h1><p class='facts'>{rows}</p></div>"
         f"<div id='verdict' class='verdict {outcome.kind}'><strong>{outcome.word}</strong>"

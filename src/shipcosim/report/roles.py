@@ -42,6 +42,10 @@ class Roles:
         """Names of all signals whose connector is one of these, in the order asked for."""
         return [join(component, c) for c in connectors for component, has in self.connectors.items() if c in has]
 
+    def flagged(self, connector):
+        """Signals of this connector by their component, of all components that have it: who says 'saturated'."""
+        return {component: join(component, connector) for component, has in self.connectors.items() if connector in has}
+
     def sources(self):
         """Names of what puts load on the ship: wind, drift, hull, thrusters, in the table's order."""
         found = [LOAD.fullmatch(connector) for connector in self.connectors.get(self.ship, ())]

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.report.derived import ERRORS, FROM_REFERENCE
+from shipcosim.report.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE
 
-LAST = 60.0  # s at the end of a run in which a ship that cannot hold is recognised
-AT_LIMIT = 0.5  # share of LAST in which a thruster must be at its limit
-GROWTH = 1.5  # by which the error must have grown over LAST
+STRETCH = 60.0  # s over which a ship that cannot hold is recognised
+AT_LIMIT = 0.5  # share of the stretch in which something must be at its limit
+GROWTH = 2.0  # m by which the position error must grow over the stretch
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,8 @@ def outcome(table, verdicts):
         return Outcome("plain", "DONE", "Nothing was expected of this run.")
     if missed:
         return Outcome("failed", "FAIL", f"{missed} of {len(verdicts)} expectations missed.")
-    return Outcome("passed", "PASS", f"All {len(verdicts)} expectations hold.")
+    all_of_them = f"All {len(verdicts)} expectations hold." if len(verdicts) > 1 else "The expectation holds."
+    return Outcome("passed", "PASS", all_of_them)
 
 
 def judged(verdicts, shown):
@@ -107,17 +108,10 @@ def remarks(table, shown, roles):
     list of str
     """
     said = [*_parsed(table.attrs.get("remarks", "[]")), *_not_finite(shown)]
-    limited = _limited(shown, roles)
-    if limited and _grows(shown):
-        error = shown[FROM_REFERENCE].values
-        said.append(
-            f"She cannot hold here: {' and '.join(limited)} at the limit for most of the last {LAST:g} s, "
-            f"while the position error grew to {error[-1]:.1f} m."
-        )
-    return said
+    return said + _failures(shown, roles) + _lost_hold(shown, roles)
 
 
-_DERIVED = {*ERRORS.values(), FROM_REFERENCE, "distance from expected point"}
+_DERIVED = {*ERRORS.values(), FROM_REFERENCE, FROM_EXPECTED}
 
 
 def _not_finite(shown):
@@ -132,23 +126,41 @@ def _not_finite(shown):
     return [f"Not finite from {begin[names[0]]:g} s on: {', '.join(names[:3])}{others}."] if names else []
 
 
-def _last(shown):
+def _failures(shown, roles):
+    """What failed during the run, and when."""
+    begin = {}
+    for component, signal in roles.flagged("failed").items():
+        if signal in shown and (failed := shown[signal].values > 0.5).any():
+            begin.setdefault(shown["time"].values[np.argmax(failed)], []).append(component)
+    return [f"Failed from {time:g} s on: {', '.join(components)}." for time, components in begin.items()]
+
+
+def _lost_hold(shown, roles):
+    """Where the thrust is at its limit and the error grows all the same: the ship cannot hold there."""
+    limits = {c: shown[s].values > 0.5 for c, s in roles.flagged("saturated").items() if s in shown}
     time = shown["time"].values
-    return time >= time[-1] - LAST if len(time) else np.zeros(0, bool)
+    starts = np.flatnonzero(time <= time[-1] - STRETCH)
+    if not limits or FROM_REFERENCE not in shown or not len(starts):
+        return []
+    ends = np.searchsorted(time, time[starts] + STRETCH, side="right") - 1
+    error = shown[FROM_REFERENCE].values
+    shares = {c: _share(flags, starts, ends) for c, flags in limits.items()}
+    lost = (error[ends] - error[starts] > GROWTH) & (np.max(list(shares.values()), axis=0) > AT_LIMIT)
+    if not lost.any():
+        return []
+    k = int(np.argmax(lost))
+    limited = [component for component, share in shares.items() if share[k] > AT_LIMIT]
+    begin = starts[k] + np.argmax(limits[limited[0]][starts[k] :])
+    return [
+        f"She cannot hold: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}) while the "
+        f"position error grows to {error[ends[k]]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
+    ]
 
 
-def _limited(shown, roles):
-    """Thrusters that were at their limit for most of the end."""
-    rows = _last(shown)
-    names = [(unit, roles.signal(unit, "saturated")) for unit in roles.thrusters]
-    return [unit for unit, name in names if name in shown and np.mean(shown[name].values[rows]) > AT_LIMIT]
-
-
-def _grows(shown):
-    if FROM_REFERENCE not in shown:
-        return False
-    error = shown[FROM_REFERENCE].values[_last(shown)]
-    return len(error) > 1 and error[-1] > GROWTH * max(error[0], 1.0)
+def _share(flags, starts, ends):
+    """Share of set flags from each start up to its end."""
+    count = np.concatenate([[0.0], np.cumsum(flags)])
+    return (count[ends + 1] - count[starts]) / (ends + 1 - starts)
 
 
 def key_figures(shown, roles):
@@ -175,10 +187,9 @@ def key_figures(shown, roles):
     if powers:
         total, unit = np.sum([shown[p].values for p in powers], axis=0), shown[powers[0]].attrs["units"]
         figures.append(("Shaft power", f"{np.nanmean(total):.4g} {unit} mean, {np.nanmax(total):.4g} {unit} at most"))
-    for unit in roles.thrusters:
-        name = roles.signal(unit, "saturated")
+    for component, name in roles.flagged("saturated").items():
         if name in shown:
-            figures.append((f"At a limit, {unit}", f"{100 * np.mean(shown[name].values):.0f} % of the time"))
+            figures.append((f"At a limit, {component}", f"{100 * np.mean(shown[name].values):.0f} % of the time"))
     return figures
 
 
@@ -189,7 +200,8 @@ def weather(shown, roles):
         if f"{what} speed" in shown:
             means = [roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)]
             size, angle = means if None not in means else (f"{what} speed", f"{what} {sense}")
-            found.append((what, _span(shown[size].values), "m/s", _mean_direction(shown[angle].values), sense))
+            if np.nanmax(shown[size].values) > 0.0:
+                found.append((what, _span(shown[size].values), "m/s", _mean_direction(shown[angle].values), sense))
     height, source = (roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from"))
     if height in shown and source in shown and np.nanmax(shown[height].values) > 0.0:
         found.append(("waves", _span(shown[height].values), "m", _mean_direction(shown[source].values), "from"))

@@ -17,6 +17,7 @@ HULL = (  # outline over length and breadth from amidships, starboard side from 
     (0.45, 0.17),
     (0.5, 0.0),
 )
+LEAST_ASPECT = 0.7  # of the chart's shorter side to its longer
 SPACING, TURN, MOST = 0.3, 20.0, 40  # outlines: apart in lengths, turned in deg, at most so many
 
 
@@ -187,10 +188,10 @@ def _rounded(values):
 
 
 def _ranges(traces):
-    """Ranges that hold everything drawn, with a margin."""
-    found = {}
+    """Ranges that hold everything drawn, with a margin, and fill most of the place whichever way the track runs."""
+    middle, half = {}, {}
     for axis in "xy":
         values = [v for trace in traces for v in trace[axis] if v is not None]
-        margin = 0.05 * (max(values) - min(values))
-        found[axis] = [min(values) - margin, max(values) + margin]
-    return found
+        middle[axis], half[axis] = 0.5 * (min(values) + max(values)), 0.55 * (max(values) - min(values))
+    least = LEAST_ASPECT * max(half.values())
+    return {axis: [middle[axis] - max(half[axis], least), middle[axis] + max(half[axis], least)] for axis in "xy"}

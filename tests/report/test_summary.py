@@ -1,0 +1,58 @@
+"""What a run comes to."""
+
+import json
+
+import numpy as np
+import pytest
+
+from shipcosim.report import digest
+
+
+@pytest.fixture
+def calm(four_corner):
+    """The made-up run with nothing at its limit."""
+    table = four_corner(1.0)
+    for unit in ("port", "starboard", "tunnel"):
+        table[f"{unit}.saturated"][:] = False
+    return table
+
+
+def test_run_that_holds_has_nothing_to_remark(calm):
+    assert digest(calm)[1] == []
+
+
+def test_ship_that_is_driven_off_at_full_thrust_is_said_to_lose_her_place(calm):
+    time = calm["time"].values
+    calm["vessel.x"][:] = calm["vessel.x"].values - 0.1 * np.maximum(time - 700.0, 0.0)
+    calm["tunnel.saturated"][:] = time >= 690.0
+    (remark,) = digest(calm)[1]
+    assert "cannot hold: from 690 s on" in remark and "(tunnel)" in remark
+    assert "40." in remark or "39." in remark  # 0.1 m/s for 400 s
+
+
+def test_thrust_at_its_limit_alone_is_no_loss_of_position(calm):
+    calm["tunnel.saturated"][:] = True
+    calm["vessel.x"][:] = calm["reference.x_d"].values
+    calm["vessel.y"][:] = calm["reference.y_d"].values
+    assert digest(calm)[1] == []
+
+
+def test_failure_is_said_with_its_time(calm):
+    calm["tunnel.failed"] = ("time", calm["time"].values >= 300.0)
+    assert digest(calm)[1] == ["Failed from 300 s on: tunnel."]
+
+
+def test_signals_that_are_not_finite_are_named(calm):
+    calm["port.power"][500:] = np.nan
+    assert digest(calm)[1] == ["Not finite from 500 s on: port.power."]
+
+
+def test_warnings_of_fmus_are_passed_on(calm):
+    calm.attrs["remarks"] = json.dumps(["tunnel: runs hot"])
+    assert digest(calm)[1] == ["tunnel: runs hot"]
+
+
+@pytest.mark.parametrize("complete", [0, "False", False])
+def test_run_that_ended_early_is_partial_whatever_else_holds(calm, complete):
+    calm.attrs["complete"] = complete
+    assert digest(calm)[0].kind == "partial"
