@@ -32,6 +32,12 @@ def test_version_is_the_packages(call):
     assert call("--version").out == f"shipcosim {shipcosim.__version__}\n"
 
 
+def test_console_without_our_characters_is_no_error(project):
+    running = command("run", "fill", env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    out, err = running.communicate(timeout=30)
+    assert running.returncode == 0 and "PASS" in out and err == ""
+
+
 def test_help_imports_nothing_heavy():
     code = "import sys, shipcosim.cli; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()

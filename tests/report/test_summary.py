@@ -30,6 +30,14 @@ def test_ship_that_is_driven_off_at_full_thrust_is_said_to_lose_her_place(calm):
     assert "40." in remark or "39." in remark  # 0.1 m/s for 400 s
 
 
+def test_ship_that_comes_back_is_said_to_have_been_driven_off(calm):
+    time = calm["time"].values
+    calm["vessel.y"][:] = calm["vessel.y"].values + 5.0 * np.exp(-(((time - 600.0) / 60.0) ** 2))
+    calm["tunnel.saturated"][:] = (time >= 500.0) & (time < 600.0)
+    (remark,) = digest(calm)[1]
+    assert "driven off for a while" in remark and "cannot hold" not in remark
+
+
 def test_thrust_at_its_limit_alone_is_no_loss_of_position(calm):
     calm["tunnel.saturated"][:] = True
     calm["vessel.x"][:] = calm["reference.x_d"].values

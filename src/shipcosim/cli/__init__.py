@@ -3,11 +3,15 @@
 Everything that takes time to import is imported inside the commands: help comes at once.
 """
 
+import sys
+
 from shipcosim.cli.app import app
 
 
 def main() -> None:
     """Entry point of the command."""
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="replace")  # a console that knows no '≥' shows '?'
     app(prog_name="shipcosim")
 
 

@@ -37,6 +37,8 @@ def command(function):
     def guarded(*args, debug=False, **kwargs):
         try:
             return function(*args, debug=debug, **kwargs)
+        except typer.Exit:
+            raise
         except ShipcosimError as error:
             _explain(error.problems, debug)
             raise typer.Exit(UNUSABLE) from None
@@ -44,8 +46,6 @@ def command(function):
             typer.echo("Interrupted.", err=True)
             raise typer.Exit(INTERRUPTED) from None
         except Exception as error:
-            if isinstance(error, (typer.Exit, typer.Abort, typer.BadParameter)):
-                raise
             remedy = "This is a fault of shipcosim. Run the command again with --debug for the traceback."
             _explain([Problem("shipcosim", f"{type(error).__name__}: {error}", remedy)], debug)
             raise typer.Exit(UNUSABLE) from None

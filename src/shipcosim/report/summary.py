@@ -150,9 +150,10 @@ def _lost_hold(shown, roles):
         return []
     k = int(np.argmax(lost))
     limited = [component for component, share in shares.items() if share[k] > AT_LIMIT]
+    drift = "She cannot hold" if error[-1] > GROWTH else "She is driven off for a while"
     begin = starts[k] + np.argmax(limits[limited[0]][starts[k] :])
     return [
-        f"She cannot hold: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}) while the "
+        f"{drift}: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}) while the "
         f"position error grows to {error[ends[k]]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
     ]
 
