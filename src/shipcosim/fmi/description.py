@@ -31,6 +31,9 @@ LOG_CATEGORIES = {
 }
 
 
+LONGEST_SHOWN = 24  # characters of a start value in a table for readers
+
+
 def model_description(cls, identifier, guid):
     """The model description as bytes, the same for the same class.
 
@@ -103,9 +106,14 @@ def table_of_variables(cls):
     rows = ["| variable | kind | type | unit | start | meaning |", "|---|---|---|---|---|---|"]
     for v in cls.variables:
         kind = f"tunable {v.causality}" if v.tunable else v.causality
-        start = "" if v.causality == "output" else f"`{_text(v.start)}`" if v.start != "" else ""
+        start = "" if v.causality == "output" or v.start == "" else _shown(v.start)
         rows.append(f"| `{v.name}` | {kind} | {v.type} | {v.unit} | {start} | {_full_text(v).replace('|', '&#124;')} |")
     return "\n".join(rows) + "\n"
+
+
+def _shown(start):
+    text = _text(start)
+    return f"`{text}`" if len(text) <= LONGEST_SHOWN else f"`{text[:LONGEST_SHOWN]}` ..."
 
 
 def _co_simulation(root, identifier):

@@ -1,0 +1,110 @@
+"""Writes what is derived from the FMUs: the table of variables in each README, and each reference.csv.
+
+Run `python docs/write_fmu_documents.py` after an FMU or a number has changed; tests compare the files with this.
+
+A reference result is 60 s of one component of the four-corner run: at each row the inputs it had there, and the outputs
+that the FMU gives when it is started with the first row's inputs and stepped from row to row with the inputs held. All
+parameters have their default values.
+"""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.cli.project import build_stale
+from shipcosim.cosim import simulate
+from shipcosim.fmi.description import table_of_variables
+from shipcosim.scenario import read_scenario
+from shipcosim.series import make_table, write_table
+from shipcosim.ssp import read_system
+
+ROOT = Path(__file__).resolve().parents[1]
+MARK = "## Variables\n"
+DURATION, INTERVAL = 60.0, 0.5  # s
+COMPONENTS = {
+    "environment": "environment",
+    "vessel": "vessel",
+    "azimuth_thruster": "port",
+    "tunnel_thruster": "tunnel",
+    "sensors": "sensors",
+    "reference": "reference",
+    "dp_controller": "controller",
+    "allocator": "allocator",
+    "predictor": "predictor",
+}
+"""FMU: the component of gunnerus_dp whose inputs it gets."""
+
+
+def fmu_class(name):
+    """The class in fmus/<name>/<name>.py."""
+    path = ROOT / "fmus" / name / f"{name}.py"
+    spec = importlib.util.spec_from_file_location(f"documented_{name}", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return next(
+        c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name and hasattr(c, "step")
+    )
+
+
+def readme(name):
+    """README of an FMU with its table of variables as it should be."""
+    text = (ROOT / "fmus" / name / "README.md").read_text(encoding="utf-8").partition(MARK)[0].rstrip()
+    return f"{text}\n\n{MARK}\n{table_of_variables(fmu_class(name))}"
+
+
+def four_corner():
+    """Table and system of the first minute of the four-corner run."""
+    scenario = read_scenario(ROOT / "scenarios" / "four_corner.toml")
+    events = [event for event in scenario.events if event.time < DURATION]
+    scenario = scenario.model_copy(
+        update={"stop_time": DURATION, "output_interval": INTERVAL, "events": events, "expect": []}
+    )
+    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(ROOT)])
+    return simulate(system, scenario), system
+
+
+def inputs_of(component, table, system):
+    """Values of a component's inputs over a run, by name."""
+    values = {}
+    for name, variable in system.components[component].fmu.variables.items():
+        if variable.causality == "input" and f"{component}.{name}" in table:
+            values[name] = table[f"{component}.{name}"].values
+    for connection in system.connections:
+        if connection.target[0] == component:
+            values[connection.target[1]] = table[".".join(connection.source)].values
+    return values
+
+
+def driven(name, times, inputs):
+    """Outputs of an FMU's class under given inputs, by name: one row a time, the first after its start."""
+    fmu = fmu_class(name)()
+    outputs = [variable for variable in fmu.variables if variable.causality == "output"]
+    types = {variable.name: type(variable.start) for variable in fmu.variables}
+    rows = {variable.name: np.empty(len(times), type(variable.start)) for variable in outputs}
+    for row in range(len(times)):
+        for key, values in inputs.items():
+            setattr(fmu, key, types[key](values[row - 1 if row else 0]))
+        fmu.start() if row == 0 else fmu.step(times[row - 1], times[row] - times[row - 1])
+        for variable in outputs:
+            rows[variable.name][row] = getattr(fmu, variable.name)
+    return rows
+
+
+def reference(name, table, system):
+    """Reference result of an FMU: its inputs and outputs."""
+    times = table["time"].values
+    inputs = inputs_of(COMPONENTS[name], table, system)
+    values = inputs | driven(name, times, inputs)
+    about = {variable.name: variable for variable in fmu_class(name).variables}
+    columns = [(key, values[key], about[key].unit, about[key].description) for key in about if key in values]
+    return make_table(times, columns)
+
+
+if __name__ == "__main__":
+    run, system = four_corner()
+    for name in COMPONENTS:
+        (ROOT / "fmus" / name / "README.md").write_text(readme(name), encoding="utf-8")
+        write_table(reference(name, run, system), ROOT / "fmus" / name / "reference.csv")
