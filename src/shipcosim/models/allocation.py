@@ -47,7 +47,14 @@ class AllocationParameters:
         14.0,
         "m",
         "a missed yaw moment weighs as a missed force at this distance",
-        "distance of the thrusters",
+        "distance of the thrusters; tuned: longer ones lose the heading, and then the ship, in 12 m/s",
+        minimum=0.1,
+    )
+    yaw_lever_degraded: float = quantity(
+        300.0,
+        "m",
+        "the same where a unit is missing: position before heading",
+        "tuned: two azimuths keep the ship in place, and she turns her stern to the weather",
         minimum=0.1,
     )
 
@@ -65,7 +72,10 @@ class AllocationState(NamedTuple):
 
 
 class Design(NamedTuple):
-    """Effect of the three units on X, Y, N, and for each set of usable units the nine elements of its inverse."""
+    """Effect of the three units on X, Y, N, and the nine elements of the inverse for each set of free units.
+
+    Set k holds unit i where bit i of k is set; bit 3 is set where a unit is missing.
+    """
 
     effect: tuple
     inverses: tuple
@@ -91,24 +101,31 @@ def effect(parameters):
 
 
 def design(parameters):
-    """Weighted generalised inverse for each of the eight sets of usable units.
+    """Weighted generalised inverses for all sets of free units.
+
+    Parameters
+    ----------
+    parameters : AllocationParameters
+        Fields may be arrays of one shape.
+
+    Returns
+    -------
+    Design
 
     Notes
     -----
     f = W^-1/2 (S B W^-1/2)⁺ S τ: the thrusts that miss least of τ in the norm of S, and of those the cheapest in
-    the norm of W. S counts a moment as a force at `yaw_lever`. Set k holds unit i where bit i of k is set.
+    the norm of W. S counts a moment as a force at the yaw lever.
     """
     p = parameters
     b = effect(p)
-    matrix = np.stack(np.broadcast_arrays(*(np.stack(np.broadcast_arrays(*column), -1) for column in b)), -1)
-    scale = np.stack(np.broadcast_arrays(1.0, 1.0, 1.0 / np.asarray(p.yaw_lever)), -1)
-    price = np.stack(np.broadcast_arrays(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight), -1) ** -0.5
-    weighted = scale[..., :, None] * matrix * price[..., None, :]
-    inverses = []
-    for k in range(8):
-        usable = np.array([(k >> unit) & 1 for unit in range(3)], float)
-        inverse = np.linalg.pinv(weighted * usable, rcond=1e-6) * scale[..., None, :] * price[..., :, None]
-        inverses.append(tuple(_float(inverse[..., unit, axis]) for unit in range(3) for axis in range(3)))
+    matrix = np.stack([_vector(*unit) for unit in b], -1)
+    price = _vector(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight) ** -0.5
+    inverses = [
+        _inverse(matrix, price, lever, [(k >> unit) & 1 for unit in range(3)])
+        for lever in (p.yaw_lever, p.yaw_lever_degraded)
+        for k in range(8)
+    ]
     return Design(b, tuple(inverses))
 
 
@@ -169,9 +186,10 @@ def _within_limits(tau, available, *, parameters, design):
     azimuth = (parameters.azimuth_thrust_min, parameters.azimuth_thrust_max)
     limits = (azimuth, azimuth, (-parameters.tunnel_thrust_max, parameters.tunnel_thrust_max))
     free = [where(usable, 1.0, 0.0) for usable in available]
+    missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
     held = [0.0, 0.0, 0.0]
     for _ in range(3):
-        wanted = _solve(_missing(tau, held, design.effect), free, design.inverses)
+        wanted = _solve(_missing(tau, held, design.effect), free, missing, design.inverses)
         given = [clip(f, low, high) for f, (low, high) in zip(wanted, limits, strict=True)]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = [f != g for f, g in zip(wanted, given, strict=True)]
@@ -182,12 +200,25 @@ def _within_limits(tau, available, *, parameters, design):
     return thrusts
 
 
-def _solve(tau, free, inverses):
+def _solve(tau, free, missing, inverses):
     """Thrusts of the free units for a load, 0 for the others."""
-    chosen = free[0] + 2.0 * free[1] + 4.0 * free[2]
+    chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
     a, b, c, d, e, f, g, h, i = _choose(chosen, inverses)
     X, Y, N = tau
     return a * X + b * Y + c * N, d * X + e * Y + f * N, g * X + h * Y + i * N
+
+
+def _inverse(matrix, price, lever, free):
+    """Nine elements of the generalised inverse of the free units' effect, row by row."""
+    scale = _vector(1.0, 1.0, 1.0 / lever)
+    weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]
+    inverse = price[..., :, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale[..., None, :]
+    return tuple(_float(inverse[..., unit, axis]) for unit in range(3) for axis in range(3))
+
+
+def _vector(*values):
+    """(..., n) array of scalars or arrays of one shape."""
+    return np.stack(np.broadcast_arrays(*values), -1)
 
 
 def _choose(index, rows):

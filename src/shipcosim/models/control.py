@@ -13,9 +13,9 @@ from .quantity import quantity
 class ControlParameters:
     """Where the poles are and what is limited. Gains follow from the ship's mass."""
 
-    surge_frequency: float = quantity(0.10, "rad/s", "natural frequency of the loop in surge", "tuned", minimum=0.0)
-    sway_frequency: float = quantity(0.10, "rad/s", "natural frequency of the loop in sway", "tuned", minimum=0.0)
-    yaw_frequency: float = quantity(0.14, "rad/s", "natural frequency of the loop in yaw", "tuned", minimum=0.0)
+    surge_frequency: float = quantity(0.11, "rad/s", "natural frequency of the loop in surge", "tuned", minimum=0.0)
+    sway_frequency: float = quantity(0.11, "rad/s", "natural frequency of the loop in sway", "tuned", minimum=0.0)
+    yaw_frequency: float = quantity(0.18, "rad/s", "natural frequency of the loop in yaw", "tuned", minimum=0.0)
     damping_ratio: float = quantity(1.0, "1", "relative damping of the loops", "tuned", minimum=0.0)
     integral_ratio: float = quantity(
         0.25, "1", "rate of the integral action over the loop's natural frequency", "tuned", minimum=0.0
@@ -33,7 +33,7 @@ class ControlParameters:
     windup_time: float = quantity(
         10.0, "s", "time in which the integral gives way to what the thrusters can do", "tuned", minimum=1e-3
     )
-    wind_time: float = quantity(3.0, "s", "time constant of the filter of the wind's load", "tuned", minimum=1e-3)
+    wind_time: float = quantity(1.0, "s", "time constant of the filter of the wind's load", "tuned", minimum=1e-3)
     wind_share: float = quantity(1.0, "1", "share of the wind's load that is fed forward", "choice", minimum=0.0)
 
 

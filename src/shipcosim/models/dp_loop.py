@@ -15,7 +15,6 @@ from .clock import samples_due
 from .control import ControlParameters
 from .environment import EnvironmentParameters
 from .hull import HullParameters
-from .load_tables import DRIFT_33M9
 from .maths import wrap
 from .observer import DpShip, ObserverParameters
 from .reference import ReferenceParameters
@@ -30,7 +29,7 @@ class DpSystem:
 
     hull: HullParameters = HullParameters()
     wind: WindParameters = WindParameters()
-    drift_table: str = DRIFT_33M9
+    drift: vessel.DriftParameters = vessel.DriftParameters()
     port: AzimuthParameters = AzimuthParameters(y=-2.0)
     starboard: AzimuthParameters = AzimuthParameters(y=2.0)
     tunnel: TunnelParameters = TunnelParameters()
@@ -119,7 +118,7 @@ def design(system, variations):
     )
     return Design(
         sea,
-        waves.drift_table(system.drift_table),
+        waves.drift_table(system.drift.drift_table),
         observer.design(system.ship, system.observer),
         allocation.design(system.allocation),
     )

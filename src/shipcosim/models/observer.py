@@ -65,7 +65,7 @@ class ObserverParameters:
         0.3 * DEGREE, "rad", "standard deviation of yaw in waves", "the model's motion at Hs 0.5 m", minimum=0.0
     )
     velocity_disturbance: float = quantity(
-        4e-6,
+        1e-6,
         "m2/s3",
         "intensity of the white disturbance of velocity",
         "tuned: thrust that is not delivered as allocated",
@@ -75,7 +75,7 @@ class ObserverParameters:
         1e-8, "rad2/s3", "intensity of the white disturbance of yaw rate", "tuned", minimum=1e-18
     )
     bias_drift: float = quantity(
-        1e-6, "m2/s5", "intensity of the random walk of the bias force over mass", "tuned", minimum=1e-18
+        2e-7, "m2/s5", "intensity of the random walk of the bias force over mass", "tuned", minimum=1e-18
     )
     bias_drift_yaw: float = quantity(
         1e-8, "rad2/s5", "intensity of the random walk of the bias moment over inertia", "tuned", minimum=1e-18
