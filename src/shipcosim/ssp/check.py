@@ -26,7 +26,11 @@ def check_system(path, parameters=(), *, fmus=()):
     list of Problem
         Errors, and remarks on what stops nothing; empty where all is well.
     """
-    system, findings = assemble(path, parameters, fmus)
+    return problems_of(*assemble(path, parameters, fmus))
+
+
+def problems_of(system, findings):
+    """Findings about a system, each once, with remarks on what its FMUs lack; the system may be None."""
     described = {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
     for fmu in described.values():
         _remark_platform(fmu, fmu.path.name, findings)

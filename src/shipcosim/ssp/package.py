@@ -29,6 +29,10 @@ class Package:
         Folders searched for FMUs that are not in the package.
     unpacked : TemporaryDirectory or None
         Holds the folder; it is removed with the last reference to it.
+    held : dict of Path to Document or Path
+        What stands for a file of the folder: a document in memory, or a file elsewhere. For systems that are edited.
+    located : dict of str to Path
+        Files that were asked for, by their names in the package: where they are.
     """
 
     folder: Path
@@ -36,6 +40,8 @@ class Package:
     ssd: str = SYSTEM_STRUCTURE
     fmus: tuple[Path, ...] = ()
     unpacked: tempfile.TemporaryDirectory | None = field(default=None, repr=False, compare=False)
+    held: dict = field(default_factory=dict, repr=False, compare=False)
+    located: dict = field(default_factory=dict, repr=False, compare=False)
 
     def show(self, path):
         """Name of a file of the package as the user knows it."""
@@ -43,7 +49,8 @@ class Package:
         return f"{self.shown}/{path.relative_to(folder).as_posix()}" if path.is_relative_to(folder) else str(path)
 
     def __getstate__(self):
-        return self.__dict__ | {"unpacked": None}  # a copy in another process uses the files, and does not remove them
+        # a copy in another process uses the files, and does not remove them
+        return self.__dict__ | {"unpacked": None, "held": {}}
 
     def document(self, findings):
         """The SSD, or None where it cannot be read."""
@@ -51,7 +58,8 @@ class Package:
 
     def read(self, path, findings):
         """Document of one of the package's files."""
-        return read_document(path, self.show(path), findings)
+        held = self.held.get(Path(path).resolve())
+        return held if isinstance(held, Document) else read_document(path, self.show(path), findings)
 
     def locate(self, uri, base, place, findings):
         """File that a relative address means, or None with an error.
@@ -80,13 +88,20 @@ class Package:
             findings.error(place, f"'{uri}' is no address within the package.", remedy)
             return None
         paths = [(base / name).resolve() for name in (unquote(parts.path), parts.path)]
-        if not all(path.is_relative_to(self.folder.resolve()) for path in paths):
+        folder = self.folder.resolve()
+        if not all(path.is_relative_to(folder) for path in paths):
             findings.error(place, f"'{uri}' lies outside the package.", "Put the file beside the SSD, in resources/.")
             return None
         elsewhere = [folder / paths[0].name for folder in self.fmus if paths[0].suffix == ".fmu"]
-        found = next((path for path in (*paths, *elsewhere) if path.is_file()), None)
+        found = next((path for path in (*paths, *elsewhere) if path in self.held or path.is_file()), None)
         if found is None:
             findings.error(place, f"The file '{uri}' does not exist.", self._present(paths[0]))
+            return None
+        if isinstance(self.held.get(found), Path):
+            found, name = self.held[found], found
+        else:
+            name = found if found in paths else paths[0]
+        self.located[name.relative_to(folder).as_posix()] = found
         return found
 
     def _present(self, path):

@@ -154,7 +154,7 @@ def _parameter(document, element, units, findings):
     kind = KINDS[local(typed)]
     try:
         value = read_value(kind, typed.get("value", ""))
-        tolerance = _tolerance(element)
+        tolerance = tolerance_of(element)
     except ValueError as error:
         findings.error(document.place(element, name), str(error))
         return None
@@ -163,7 +163,8 @@ def _parameter(document, element, units, findings):
     return ParameterValue(name, kind, value, unit, description, document.place(element, name), tolerance)
 
 
-def _tolerance(element):
+def tolerance_of(element):
+    """Tolerance in our annotation of a Parameter element, or None."""
     for annotation in children(element, "ssv:Annotations", "ssc:Annotation"):
         if annotation.get("type") == TOLERANCE and len(annotation):
             return read_value("Real", annotation[0].get("value", ""))

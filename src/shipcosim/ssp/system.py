@@ -173,15 +173,34 @@ def assemble(path, parameters=(), fmus=()):
     """System and findings; the system is None or incomplete where there are errors."""
     findings = Findings()
     package = open_package(path, findings, fmus)
-    document = None if package is None else package.document(findings)
+    return None if package is None else assemble_package(package, parameters, str(path), findings), findings
+
+
+def assemble_package(package, parameters, file, findings, described=None):
+    """System of a package, None or incomplete where there are errors.
+
+    Parameters
+    ----------
+    package : Package
+        Where the files are.
+    parameters : path or ParameterSet, or iterable of them
+        Applied over those of the system.
+    file : str
+        The system's name for messages.
+    findings : Findings
+        Takes what is wrong.
+    described : dict, optional
+        Keeps descriptions of FMUs from one call to the next.
+    """
+    document = package.document(findings)
     structure = None if document is None else read_structure(document, findings)
     if structure is None:
-        return None, findings
-    tree = Tree(findings)
+        return None
+    tree = Tree(findings, described)
     tree.grow(structure, package)
     for values in _parameter_sets(parameters, findings):
         tree.bind(values)
-    return _system(tree, structure, str(path), findings), findings
+    return _system(tree, structure, file, findings)
 
 
 def _parameter_sets(parameters, findings):

@@ -35,9 +35,11 @@ class Tree:
     ----------
     findings : Findings
         Takes what is wrong.
+    described : dict, optional
+        Keeps descriptions of FMUs without fault for other trees.
     """
 
-    def __init__(self, findings):
+    def __init__(self, findings, described=None):
         self.findings = findings
         self.components: dict[tuple[str, ...], tuple[ComponentElement, FmuDescription | None]] = {}
         self.systems: dict[tuple[str, ...], SystemElement] = {}
@@ -47,6 +49,7 @@ class Tree:
         self.references: dict[Key, Key] = {}
         self.packages = []
         self._fmus = {}
+        self.described = {} if described is None else described
 
     def grow(self, structure, package):
         """Take in the outermost system."""
@@ -137,8 +140,18 @@ class Tree:
 
     def _described(self, file, package):
         if file not in self._fmus:
-            self._fmus[file] = describe_fmu(file, self.findings, package.show(file))
+            self._fmus[file] = self._description(file, package)
         return self._fmus[file]
+
+    def _description(self, file, package):
+        key = file, file.stat().st_mtime_ns
+        if key not in self.described:
+            before = len(self.findings.problems)
+            fmu = describe_fmu(file, self.findings, package.show(file))
+            if len(self.findings.problems) > before:
+                return fmu  # not kept: the next tree has to hear of its faults too
+            self.described[key] = fmu
+        return self.described[key]
 
     def _check_implementation(self, element, fmu):
         wanted = element.implementation

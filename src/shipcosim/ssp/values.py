@@ -68,6 +68,19 @@ def _number(convert, text, name):
     return value
 
 
+def text_of(value):
+    """Text of a value, which `read_value` makes the same value of.
+
+    Examples
+    --------
+    >>> text_of(True), text_of(0.1), text_of(b"~")
+    ('true', '0.1', '7e')
+    """
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return value.hex() if isinstance(value, bytes) else str(value)
+
+
 def has(name, known):
     """Remedy for a name that something does not have, in the words of the conventions.
 

@@ -3,18 +3,18 @@
 import os
 from contextlib import suppress
 from pathlib import Path
-from urllib.parse import unquote
 
 from lxml import etree
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.archive import write_archive
+from shipcosim.ssp.markup import add, ensure, to_bytes
 from shipcosim.ssp.package import open_package
-from shipcosim.ssp.parameters import TOLERANCE, ParameterValue
-from shipcosim.ssp.structure import FMU, ComponentElement, SystemElement, read_structure
-from shipcosim.ssp.system import read_system
-from shipcosim.ssp.units import BASE, find_unit
-from shipcosim.ssp.xml import NAMESPACES, Findings, qualified
+from shipcosim.ssp.parameters import ParameterValue
+from shipcosim.ssp.sets import write_value
+from shipcosim.ssp.system import assemble_package
+from shipcosim.ssp.units import find_unit
+from shipcosim.ssp.xml import Findings, qualified
 
 KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}
 
@@ -67,48 +67,15 @@ def write_ssv(path, name, values):
     ShipcosimError
         If it cannot be written.
     """
-    used = {prefix: NAMESPACES[prefix] for prefix in ("ssv", "ssc")}
-    root = etree.Element(qualified("ssv:ParameterSet"), {"version": "1.0", "name": name}, used)
-    listed = etree.SubElement(root, qualified("ssv:Parameters"))
-    values = list(values)
+    root = etree.Element(qualified("ssv:ParameterSet"), {"version": "1.0", "name": name})
+    listed = ensure(root, "ssv:Parameters")
     for value in values:
-        _add_parameter(listed, value)
-    units = {value.unit.name: value.unit for value in values if value.unit is not None}
-    if units:
-        defined = etree.SubElement(root, qualified("ssv:Units"))
-        for unit in units.values():
-            _add_unit(defined, unit)
-    _write(Path(path), etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8"))
+        write_value(root, add(listed, "ssv:Parameter", name=value.name), value)
+    write_file(Path(path), to_bytes(root, "ssv", "ssc"))
 
 
-def _add_parameter(listed, value):
-    given = {"description": value.description} if value.description else {}
-    element = etree.SubElement(listed, qualified("ssv:Parameter"), given, name=value.name)
-    typed = etree.SubElement(element, qualified(f"ssv:{value.kind}"), value=_text(value.value))
-    if value.unit is not None:
-        typed.set("unit", value.unit.name)
-    if value.tolerance is not None:
-        annotations = etree.SubElement(element, qualified("ssv:Annotations"))
-        annotation = etree.SubElement(annotations, qualified("ssc:Annotation"), type=TOLERANCE)
-        etree.SubElement(annotation, "tolerance", value=repr(float(value.tolerance)))
-
-
-def _text(value):
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return value.hex() if isinstance(value, bytes) else str(value)
-
-
-def _add_unit(defined, unit):
-    element = etree.SubElement(defined, qualified("ssc:Unit"), name=unit.name)
-    powers = {name: str(power) for name, power in zip(BASE, unit.exponents, strict=True) if power}
-    base = etree.SubElement(element, qualified("ssc:BaseUnit"), powers)
-    for name, neutral in (("factor", 1.0), ("offset", 0.0)):
-        if getattr(unit, name) != neutral:
-            base.set(name, repr(getattr(unit, name)))
-
-
-def _write(path, data):
+def write_file(path, data):
+    """Write a file, complete or not at all; its folder is made if needed."""
     partial = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -137,26 +104,16 @@ def pack(folder, fmus, out):
     ShipcosimError
         With everything that is wrong with the system, or if the archive cannot be written.
     """
-    read_system(folder, fmus=fmus)
-    folder = Path(folder)
+    findings, folder = Findings(), Path(folder)
+    package = open_package(folder, findings, fmus)
+    if package is not None:
+        assemble_package(package, (), str(folder), findings)
+    if findings.errors:
+        raise ShipcosimError(list(dict.fromkeys(findings.errors)))
     files = {
         path.relative_to(folder).as_posix(): path.read_bytes()
         for path in sorted(folder.rglob("*"))
         if path.is_file() and not any(part.startswith(".") for part in path.relative_to(folder).parts)
     }
-    findings = Findings()
-    package = open_package(folder, findings, fmus)
-    structure = read_structure(package.document(findings), findings)
-    for element in _fmu_elements(structure.system):
-        name = unquote(element.source)
-        if name not in files:
-            files[name] = package.locate(element.source, folder, element.place, findings).read_bytes()
+    files |= {name: path.read_bytes() for name, path in package.located.items() if name not in files}
     write_archive(out, files)
-
-
-def _fmu_elements(system):
-    for element in system.elements:
-        if isinstance(element, SystemElement):
-            yield from _fmu_elements(element)
-        elif isinstance(element, ComponentElement) and element.type == FMU:
-            yield element

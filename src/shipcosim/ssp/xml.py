@@ -77,7 +77,8 @@ class Document:
 
     def place(self, element, what=""):
         """Where an element stands, for the user to look it up."""
-        return f"{self.file}, line {element.sourceline}" + (f": {what}" if what else "")
+        line = f", line {element.sourceline}" if element.sourceline else ""  # none where it was made in memory
+        return f"{self.file}{line}" + (f": {what}" if what else "")
 
 
 @contextmanager
@@ -198,7 +199,8 @@ def validate(root, schema, file, findings):
     for entry in checker.error_log:
         text = re.sub(r"\{[^}]*\}", "", entry.message)
         found, _, expected = text.partition(" Expected is ")
-        findings.error(f"{file}, line {entry.line}", found, f"Expected is {expected}" if expected else "")
+        where = f"{file}, line {entry.line}" if entry.line else file
+        findings.error(where, found, f"Expected is {expected}" if expected else "")
 
 
 @cache
