@@ -31,15 +31,15 @@ EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SS
 """
 
 
-def read(path, *, fmus=()):
+def read(path, *, fmus=None):
     """Read a system structure to look at it, change it, run it, write it.
 
     Parameters
     ----------
     path : path
         A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, or a .ssd.
-    fmus : iterable of path
-        Folders searched for FMUs that are not beside the SSD.
+    fmus : iterable of path, optional
+        Folders searched for FMUs that are not beside the SSD; build/fmus of the project around it if not given.
 
     Returns
     -------
@@ -52,7 +52,7 @@ def read(path, *, fmus=()):
         If there is no such file, or no system structure in it.
     """
     findings = Findings()
-    package = open_package(path, findings, fmus)
+    package = open_package(path, findings, built_fmus(path) if fmus is None else fmus)
     document = None if package is None else package.document(findings)
     if document is not None and has_root(document, "ssd:SystemStructureDescription", findings):
         if child(document.root, "ssd:System") is None:
@@ -62,15 +62,19 @@ def read(path, *, fmus=()):
     return SystemStructure(Draft(package, document, str(path)))
 
 
-def new(name, *, fmus=()):
+def built_fmus(path):
+    """Folder build/fmus of the project around a system, in a list; empty where there is none."""
+    start = Path(str(path).partition("#")[0]).resolve()
+    return [folder for above in (start, *start.parents) if (folder := above / "build" / "fmus").is_dir()][:1]
+
+
+def new(name):
     """An empty system structure.
 
     Parameters
     ----------
     name : str
         Of the system.
-    fmus : iterable of path
-        Folders searched for FMUs.
 
     Returns
     -------
@@ -80,7 +84,7 @@ def new(name, *, fmus=()):
     root = parse(EMPTY.encode(), name, Findings())
     for element in (root, child(root, "ssd:System")):
         element.set("name", name)
-    package = Package(Path(folder.name), name, fmus=tuple(map(Path, fmus)), unpacked=folder)
+    package = Package(Path(folder.name), name, unpacked=folder)
     document = Document(f"{name}/{SYSTEM_STRUCTURE}", root, package.folder)
     return SystemStructure(Draft(package, document, name))
 
@@ -430,7 +434,7 @@ class SystemStructure:
         """
         with self.changes():
             inside = (self._draft.path.parent / source).resolve()
-            there = inside in self._draft.package.held or inside.is_file()
+            there = not Path(source).is_absolute() and (inside in self._draft.package.held or inside.is_file())
             if not there and not Path(source).is_file():
                 raise self._error(str(source), "There is no such file, in the package or elsewhere.")
             uri = quote(Path(source).as_posix()) if there else self._draft.resource(Path(source))

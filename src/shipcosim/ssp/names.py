@@ -137,21 +137,27 @@ def best_pair(source, target, system, exists, where):
     ]
     start, end = max(pairs, key=lambda pair: sum(_likely(reading, exists) for reading in pair))
     for signal, reading in ((source, start), (target, end)):
-        if reading.element is None and "." in reading.connector and not exists(reading):
-            raise ShipcosimError(_unknown(signal, system, exists, f"{where}: {source} -> {target}"))
+        if not exists(reading):
+            _refuse_if_elsewhere(signal, reading, system, exists, f"{where}: {source} -> {target}")
     return start, end
 
 
 def _likely(reading, exists):
-    if exists(reading):
-        return 2
-    return 0 if reading.element is None and "." in reading.connector else 1
+    return 2 if exists(reading) else 0 if _names_an_element(reading) else 1
 
 
-def _unknown(signal, system, exists, where):
-    if any(exists(reading) for reading in readings(signal, system)):
+def _names_an_element(reading):
+    """Whether what is taken for a connector's name looks like one of a component that is not there."""
+    return reading.element is None and "." in reading.connector
+
+
+def _refuse_if_elsewhere(signal, reading, system, exists, where):
+    """Raise where a signal is in another system, or of an element that is not there; the check finds all else."""
+    if any(exists(other) for other in readings(signal, system)):
         remedy = "A connection stays within one system: go through connectors of the systems between."
-        return Problem(where, f"{signal} is in another system than the other end.", remedy)
-    names = [part.get("name", "") for part in parts(system)]
-    element = signal.partition(".")[0]
-    return Problem(where, f"There is no element '{element}' in {system.get('name')}.", suggestion(element, names))
+        raise ShipcosimError(Problem(where, f"{signal} is in another system than the other end.", remedy))
+    if _names_an_element(reading):
+        names = [part.get("name", "") for part in parts(system)]
+        element = signal.partition(".")[0]
+        found = f"There is no element '{element}' in {system.get('name')}."
+        raise ShipcosimError(Problem(where, found, suggestion(element, names)))

@@ -1,6 +1,7 @@
 """Start values of a system that is edited, as a mapping of names to values in the FMUs' units."""
 
 from collections.abc import MutableMapping
+from math import isfinite
 
 from shipcosim.errors import ShipcosimError, suggestion
 from shipcosim.ssp.markup import drop
@@ -93,6 +94,8 @@ class StartValues(MutableMapping):
         if type(value) not in KIND_OF:
             found = f"{value!r} is no value."
             raise ShipcosimError(self._draft.problem(name, found, "A value is a number, true or false, or a text."))
+        if isinstance(value, float) and not isfinite(value):
+            raise ShipcosimError(self._draft.problem(name, f"{value} is not a finite number."))
         own = KIND_OF[type(value)]
         fits = (own, kind) in (("Integer", "Real"), ("String", "Enumeration"))
         return kind if fits else own
