@@ -146,7 +146,7 @@ def test_connectors_that_nothing_feeds_leave_the_components_start_values(make_sy
     ("time", "name", "values", "said"),
     [
         ([0.0, 1.0], "rmap", [0.0, 1.0], "no input 'rmap'.*Did you mean 'ramp'"),
-        ([0.0, 0.5], "ramp", [0.0, 1.0], "grow from 0 to at least 1 s"),
+        ([0.0, 0.5], "ramp", [0.0, 1.0], "the run from 0 s to 1 s"),
         ([0.0, 1.0], "ramp", [0.0, math.nan], "inputs: ramp: is nan at 1 s"),
     ],
 )

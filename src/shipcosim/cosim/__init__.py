@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from shipcosim.cosim.engine import Interrupted, RunError, run
-from shipcosim.errors import ShipcosimError, suggestion
+from shipcosim.cosim.replay import replay
+from shipcosim.cosim.snapshot import Snapshot, read_snapshot, write_snapshot
+from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import Scenario, check_scenario
 from shipcosim.ssp import System, read_system, with_values
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["ENGINES", "Interrupted", "RunError", "simulate"]
+__all__ = [
+    "ENGINES",
+    "Interrupted",
+    "RunError",
+    "Snapshot",
+    "read_snapshot",
+    "replay",
+    "simulate",
+    "write_snapshot",
+]
 
 ENGINES = {"fmpy": run}
 """Functions from a checked system and a scenario to a table."""
@@ -29,6 +41,10 @@ def simulate(
     inputs: xarray.Dataset | None = None,
     progress: Callable[[int, int], None] | None = None,
     order: str = "jacobi",
+    start_time: float = 0.0,
+    until: float | None = None,
+    resume: Snapshot | str | os.PathLike | None = None,
+    store: Callable[[Snapshot], None] | str | os.PathLike | None = None,
 ) -> xarray.Dataset:
     """Run a system through a scenario.
 
@@ -42,18 +58,29 @@ def simulate(
         A key of ENGINES.
     inputs : Dataset, optional
         Feeds inputs of the system, by their names. A variable's attribute ``interpolation`` says what it does between
-        its rows: ``"held"``, the default, or ``"linear"``.
+        its rows: ``"held"``, the default, or ``"linear"``, angles the shorter way round. The table's attribute
+        ``max_gap`` is the longest time between two rows that is not taken for lost data. [s]
     progress : callable, optional
         Called with (steps done, steps in all) some ten times a second.
     order : str
         ``"jacobi"``: every component steps with what the others had put out at the start of the step, as in libcosim.
         ``"gauss-seidel"``: with what those before it have just put out.
+    start_time : float
+        Time at the start, which the FMUs are told and the scenario's times are on. [s]
+    until : float, optional
+        Where the run ends, if not at the scenario's stop time. [s]
+    resume : Snapshot or path, optional
+        Where the run continues from: the scenario may have other events and another stop time from there on, and what
+        was overridden then stays so. What happens before that time in the scenario is not done again.
+    store : callable or path, optional
+        Gets the state of the whole system at the end of the run.
 
     Returns
     -------
     Dataset
-        One row per output interval from 0 to the stop time: outputs of all components, inputs that nothing feeds or an
-        event changes, inputs and outputs of the system. Its attributes say what is needed to repeat the run.
+        One row per output interval from the start or the snapshot to the end: outputs of all components, inputs that
+        nothing feeds or an event changes, inputs and outputs of the system. Its attributes say what is needed to
+        repeat the run.
 
     Raises
     ------
@@ -71,4 +98,18 @@ def simulate(
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
         raise ShipcosimError(errors)
-    return ENGINES[engine](system, scenario, inputs=inputs, progress=progress, order=order)
+    course = _course(start_time, until, resume, store)
+    if course and engine != "fmpy":
+        remedy = "The engine 'fmpy' does."
+        raise ShipcosimError(Problem(f"engine '{engine}'", f"It does not know {', '.join(course)}.", remedy))
+    return ENGINES[engine](system, scenario, inputs=inputs, progress=progress, order=order, **course)
+
+
+def _course(start_time, until, resume, store):
+    """What differs from a whole run from time 0 on, as the engine's arguments; files are read and written."""
+    if resume is not None and not isinstance(resume, Snapshot):
+        resume = read_snapshot(resume)
+    if store is not None and not callable(store):
+        store = partial(write_snapshot, path=store)
+    course = {"start_time": start_time or None, "until": until, "resume": resume, "store": store}
+    return {name: value for name, value in course.items() if value is not None}

@@ -18,7 +18,7 @@ class Text:
     input: Variable
     mapping: dict | None = None
     period: int = 1
-    _last: str | None = None
+    last: str | None = None
 
     def transfer(self, count: int) -> None:
         """Pass the text on where it is due and has changed."""
@@ -26,9 +26,9 @@ class Text:
             return
         text = self.source.get_strings([self.output])[0]
         text = (self.mapping or {}).get(text, text)
-        if text != self._last:
+        if text != self.last:
             self.target.set_strings([self.input], [text])
-            self._last = text
+            self.last = text
 
 
 class Handover:

@@ -1,7 +1,6 @@
 """Our engine: FMUs instantiated through FMPy, run by the master, their values in one table."""
 
 import json
-from contextlib import ExitStack
 from math import lcm
 
 import numpy as np
@@ -9,18 +8,20 @@ import numpy as np
 from shipcosim.cosim.carry import Handover, Text
 from shipcosim.cosim.events import actions_of, settings_over_time
 from shipcosim.cosim.exchange import Exchange
-from shipcosim.cosim.feed import feed
+from shipcosim.cosim.feed import digest, feed
+from shipcosim.cosim.instances import Instances
 from shipcosim.cosim.interrupt import held_back
-from shipcosim.cosim.master import Failure, Master, step_times
+from shipcosim.cosim.master import Failure, Master
 from shipcosim.cosim.order import ORDERS, stepping_order
 from shipcosim.cosim.part import Part, set_start_values
 from shipcosim.cosim.plan import KINDS, make_plan
 from shipcosim.cosim.recorder import Recorder
-from shipcosim.cosim.result import recorded_rows, table_of
-from shipcosim.cosim.slave import BUFFER_TYPES, Slave2, Slave3, SlaveError
-from shipcosim.cosim.unpacked import Unpacked
+from shipcosim.cosim.restore import check_fit, check_storable, put_back, take
+from shipcosim.cosim.result import attributes_of, columns_of, recorded_rows
+from shipcosim.cosim.slave import BUFFER_TYPES, SlaveError
+from shipcosim.cosim.span import span_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario import whole_steps
+from shipcosim.series import make_table
 
 
 class RunError(ShipcosimError):
@@ -39,68 +40,152 @@ class Interrupted(KeyboardInterrupt):
         self.table = table
 
 
-def run(system, scenario, inputs=None, progress=None, order="jacobi"):
-    """Run a checked system. See `shipcosim.cosim.simulate`."""
-    if order not in ORDERS:
-        raise ShipcosimError(f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}")
-    times = step_times(scenario.step_size, 0, whole_steps(scenario.stop_time, scenario.step_size))
-    fed = feed(inputs, system, times) if inputs is not None else {}
-    plan = make_plan(system, scenario, fed)
-    exchanges, trajectories = _exchanges(plan, scenario, len(times) - 1, fed)
-    rows = _Rows(plan, scenario, times, exchanges, {"engine": "fmpy", "order": order})
-    with ExitStack() as stack:
-        check_interrupt = stack.enter_context(held_back())
-        try:
-            parts = _parts(plan, exchanges, stack, check_interrupt)
-            rows.parts = list(parts.values())
-            master = Master(
-                [parts[name] for name in stepping_order(plan, order)],
-                exchanges,
-                _texts(plan, parts),
-                _handovers(plan, parts),
-                {kind: plan.layouts[kind].names for kind in exchanges},
-                check_interrupt,
-                sequential=order == "gauss-seidel",
-            )
-            master.initialise(scenario.stop_time)
-            actions = actions_of(scenario, plan, exchanges)
-            master.run(times, actions, trajectories, rows.record, rows.every, progress)
-        except Failure as failure:
-            raise RunError(failure.problem, rows.table(complete=False)) from failure
-        except KeyboardInterrupt:
-            raise Interrupted(rows.table(complete=False)) from None
-        for part in parts.values():
-            part.slave.terminate()
-    return rows.table(complete=True)
+def run(
+    system, scenario, *, inputs=None, progress=None, order="jacobi", start_time=0.0, until=None, resume=None, store=None
+):
+    """Run a checked system. See `simulate`; `resume` is a Snapshot, `store` a callable that gets one."""
+    if resume is not None:
+        check_fit(resume, system, scenario)
+        start_time = resume.start_time
+    if store is not None:
+        check_storable(system)
+    span = span_of(scenario, start_time, resume.step if resume else 0, until)
+    journey = Journey(system, scenario, span, order, inputs, resume)
+    with held_back() as check_interrupt, Instances() as instances:
+        journey.run(instances, check_interrupt, progress)
+        if store is not None:
+            store(journey.snapshot())
+        journey.end()
+    return journey.table(complete=True)
 
 
-class _Rows:
-    """The rows of a run, and the table they make."""
+class Journey:
+    """One run of a checked system, planned before anything is instantiated.
 
-    def __init__(self, plan, scenario, times, exchanges, attributes):
-        self.plan, self.scenario, self.attributes, self.parts = plan, scenario, attributes, []
-        self.every = whole_steps(scenario.output_interval or scenario.step_size, scenario.step_size)
-        self.times, self.n = times[:: self.every], 0
-        self.recorders = {
-            kind: Recorder(exchange, len(self.times), *recorded_rows(plan, kind))
-            for kind, exchange in exchanges.items()
+    Parameters
+    ----------
+    system : System
+        With the scenario's start values.
+    scenario : Scenario
+        Checked against the system.
+    span : Span
+        The steps that are done.
+    order : str
+        Of the exchange.
+    inputs : Dataset, optional
+        Feeds inputs of the system.
+    resume : Snapshot, optional
+        Where the run continues from; checked.
+
+    Raises
+    ------
+    ShipcosimError
+        If this cannot be run.
+    """
+
+    def __init__(self, system, scenario, span, order="jacobi", inputs=None, resume=None):
+        if order not in ORDERS:
+            raise ShipcosimError(f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}")
+        self._scenario, self._span, self._order, self._inputs, self._resume = scenario, span, order, inputs, resume
+        fed = feed(inputs, system, span.run_times) if inputs is not None else {}
+        self._in_force = resume.changes if resume else {}
+        self._plan = make_plan(system, scenario, fed, self._in_force, span.start_time)
+        self._exchanges, self._trajectories = _exchanges(self._plan, scenario, span, fed, self._in_force)
+        self._parts, self._texts, self._n_rows = {}, [], 0
+        self._recorders = {
+            kind: Recorder(exchange, len(span.row_times), *recorded_rows(self._plan, kind))
+            for kind, exchange in self._exchanges.items()
         }
 
-    def record(self, row):
-        """Keep the present values."""
-        for recorder in self.recorders.values():
-            recorder.record(row)
-        self.n = row + 1
+    def run(self, instances, check_interrupt, progress=None):
+        """Go to the end of the span.
+
+        Parameters
+        ----------
+        instances : Instances
+            Where the FMUs come from.
+        check_interrupt : callable
+            Raises KeyboardInterrupt where the user wants to stop.
+        progress : callable, optional
+            As for `simulate`.
+
+        Raises
+        ------
+        RunError, Interrupted
+            With the table so far.
+        """
+        span = self._span
+        try:
+            self._parts = _parts(self._plan, self._exchanges, instances, check_interrupt)
+            self._texts = _texts(self._plan, self._parts)
+            master = self._master(check_interrupt)
+            master.initialise(span.start_time, span.stop_time)
+            if self._resume is not None:
+                put_back(self._resume, self._plan, self._exchanges, self._texts, self._parts)
+                master.resume(span.first)
+            actions = actions_of(self._scenario, self._plan, self._exchanges, span)
+            master.run(span, actions, self._trajectories, self._record, progress)
+        except Failure as failure:
+            raise RunError(failure.problem, self.table(complete=False)) from failure
+        except KeyboardInterrupt:
+            raise Interrupted(self.table(complete=False)) from None
+
+    def snapshot(self):
+        """State of the whole system at the end of the span. Raises RunError if an FMU does not give its state."""
+        running = self._plan, self._exchanges, self._texts, self._parts
+        try:
+            return take(*running, self._span, self._scenario, self._in_force)
+        except Failure as failure:
+            raise RunError(failure.problem, self.table(complete=True)) from failure
+
+    def end(self):
+        """End the simulation in all FMUs."""
+        for part in self._parts.values():
+            part.slave.terminate()
+
+    @property
+    def row_times(self):
+        """Times of the rows so far. [s]"""
+        return self._span.row_times[: self._n_rows]
+
+    def columns(self):
+        """Columns of the table of the rows so far: (name, values, unit, long name)."""
+        recorded = {kind: recorder.columns(self._n_rows) for kind, recorder in self._recorders.items()}
+        return columns_of(self._plan, self._n_rows, recorded)
+
+    def attributes(self, complete):
+        """What is known about the run. `complete` is 1 or 0, since NetCDF knows no truth values."""
+        known = attributes_of(self._plan.system, self._scenario)
+        known |= {"start_time": self._span.start_time, "engine": "fmpy", "order": self._order}
+        if self._inputs is not None:
+            known["inputs_sha256"] = digest(self._inputs)
+        if self._resume is not None:
+            known["continued_from"] = self._resume.time
+        remarks = list(dict.fromkeys(text for part in self._parts.values() for text in part.slave.remarks()))
+        return known | {"complete": int(complete), "remarks": json.dumps(remarks)}
 
     def table(self, complete):
-        """Table of the rows so far. Its attribute `complete` is 1 or 0, since NetCDF knows no truth values."""
-        columns = {kind: recorder.columns(self.n) for kind, recorder in self.recorders.items()}
-        remarks = list(dict.fromkeys(text for part in self.parts for text in part.slave.remarks()))
-        known = self.attributes | {"complete": int(complete), "remarks": json.dumps(remarks)}
-        return table_of(self.plan, self.scenario, self.times[: self.n], columns, known)
+        """Table of the rows so far."""
+        return make_table(self.row_times, self.columns(), self.attributes(complete))
+
+    def _record(self):
+        for recorder in self._recorders.values():
+            recorder.record(self._n_rows)
+        self._n_rows += 1
+
+    def _master(self, check_interrupt):
+        return Master(
+            [self._parts[name] for name in stepping_order(self._plan, self._order)],
+            self._exchanges,
+            self._texts,
+            _handovers(self._plan, self._parts),
+            {kind: self._plan.layouts[kind].names for kind in self._exchanges},
+            check_interrupt,
+            sequential=self._order == "gauss-seidel",
+        )
 
 
-def _exchanges(plan, scenario, n_steps, fed):
+def _exchanges(plan, scenario, span, fed, in_force):
     """Exchange of each kind that occurs, and what the settings among them do over time."""
     exchanges, trajectories = {}, []
     for kind, dtype in BUFFER_TYPES.items():  # Real is last: its settings may follow the others
@@ -110,23 +195,21 @@ def _exchanges(plan, scenario, n_steps, fed):
         settings = np.array(list(layout.settings.values()), dtype=dtype)
         crossings = [(setting, exchanges[source], row) for setting, source, row in layout.crossings]
         exchange = exchanges[kind] = Exchange(len(layout.outputs), settings, layout.wires, crossings)
-        values = settings_over_time(scenario, plan, kind, n_steps, fed)
+        values = settings_over_time(scenario, plan, kind, span, fed, in_force)
         if values is not None:
             exchange.settings[:] = values[0]
             trajectories.append((exchange.settings, values))
     return exchanges, trajectories
 
 
-def _parts(plan, exchanges, stack, check_interrupt):
-    """The components, instantiated, their start values set; the stack frees them."""
-    unpacked, parts = stack.enter_context(Unpacked()), {}
+def _parts(plan, exchanges, instances, check_interrupt):
+    """The components, instantiated, their start values set."""
+    parts = {}
     for component in plan.system.components.values():
         check_interrupt()
         fmu, name = component.fmu, component.name
-        kind = Slave3 if fmu.fmi_version.startswith("3") else Slave2
         try:
-            slave = kind(name, unpacked.folder(fmu.path), fmu.model_identifier, fmu.token)
-            stack.callback(slave.free)
+            slave = instances.of(component)
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error

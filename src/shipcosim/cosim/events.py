@@ -9,29 +9,34 @@ from functools import partial
 
 import numpy as np
 
-from shipcosim.cosim.plan import KINDS, Plan
+from shipcosim.cosim.exchange import Changes
+from shipcosim.cosim.plan import KINDS, End, Plan
 from shipcosim.cosim.slave import BUFFER_TYPES
+from shipcosim.cosim.span import Span
 from shipcosim.scenario import Scenario, whole_steps
 
 
-def actions_of(scenario: Scenario, plan: Plan, exchanges: dict) -> dict[int, list]:
+def actions_of(scenario: Scenario, plan: Plan, exchanges: dict, span: Span) -> dict[int, list]:
     """Calls that events on components' variables make, by the number of the step before which they are due."""
     actions = defaultdict(list)
-    for k, change, end, value in _changes(scenario, plan):
+    for k, change, end, value in _changes(scenario, plan, span):
         if end[0] is not None:
-            variable = plan.variable(end)
-            kind = KINDS[variable.kind]
-            layout, exchange = plan.layouts[kind], exchanges[kind]
-            if end in layout.inputs:
-                target, row = exchange.input_changes, layout.inputs.index(end)
-            else:
-                target, row = exchange.output_changes, layout.outputs.index(end)
+            target, row = target_of(end, plan, exchanges)
             actions[k].append(partial(getattr(target, change), row, *([] if change == "reset" else [value])))
     return dict(actions)
 
 
-def settings_over_time(scenario: Scenario, plan: Plan, kind: str, n_steps: int, fed: dict):
-    """Settings of a kind at each step, or None where they never change.
+def target_of(end: End, plan: Plan, exchanges: dict) -> tuple[Changes, int]:
+    """Where changes of a component's variable are kept, and its row there."""
+    kind = KINDS[plan.variable(end).kind]
+    layout, exchange = plan.layouts[kind], exchanges[kind]
+    if end in layout.inputs:
+        return exchange.input_changes, layout.inputs.index(end)
+    return exchange.output_changes, layout.outputs.index(end)
+
+
+def settings_over_time(scenario: Scenario, plan: Plan, kind: str, span: Span, fed: dict, in_force: dict):
+    """Settings of a kind at each step of a span, or None where they never change.
 
     Parameters
     ----------
@@ -39,43 +44,57 @@ def settings_over_time(scenario: Scenario, plan: Plan, kind: str, n_steps: int, 
         Of the run.
     kind : str
         Real, Integer or Boolean.
-    n_steps : int
-        Steps of the run.
-    fed : mapping of str to (n_steps + 1,) array
+    span : Span
+        With n steps.
+    fed : mapping of str to (n + 1,) array
         Values of the system's inputs that a table feeds.
+    in_force : mapping of str to (scale, shift)
+        Changes of signals that act from the first step on.
 
     Returns
     -------
-    (n_steps + 1, settings) array or None
+    (n + 1, settings) array or None
     """
     ends = list(plan.layouts[kind].settings)
     changing = [end for end in ends if end[0] is None and (end in plan.touched or end[1] in fed)]
     if not changing:
         return None
     start = np.array(list(plan.layouts[kind].settings.values()), dtype=BUFFER_TYPES[kind])
-    values = np.tile(start, (n_steps + 1, 1))
+    values = np.tile(start, (span.last - span.first + 1, 1))
     for end in changing:
         column = ends.index(end)
         values[:, column] = fed.get(end[1], values[:, column])
-        _bend(values[:, column], [c for c in _changes(scenario, plan) if c[2] == end])
+        changes = [c for c in _changes(scenario, plan, span) if c[2] == end]
+        _bend(values[:, column], in_force.get(end[1]), [(k - span.first, change, v) for k, change, _, v in changes])
     return values
 
 
-def _bend(values, changes):
+def in_force_after(scenario: Scenario, plan: Plan, span: Span, in_force: dict) -> dict[str, tuple]:
+    """Changes of the system's inputs that are in force just before the events at the end of a span act."""
+    in_force = {name: change for name, change in in_force.items() if name in plan.system.inputs}
+    for k, change, (component, name), value in _changes(scenario, plan, span):
+        if component is None and k < span.last:
+            in_force[name] = (0 if change == "override" else 1, value or 0)
+    return in_force
+
+
+def _bend(values, in_force, changes):
     """Lay overrides and biases over the values that an input of the system would have."""
     plain = values.copy()
-    for k, change, _, value in changes:
+    if in_force is not None:
+        values[:] = in_force[0] * plain + in_force[1]
+    for k, change, value in changes:
         if change == "override":
             values[k:] = value
         else:
             values[k:] = plain[k:] + (value if change == "bias" else 0)
 
 
-def _changes(scenario, plan):
-    """(step, override or bias or reset, end, value) in the order in which they act."""
+def _changes(scenario, plan, span):
+    """(step, override or bias or reset, end, value) in the order in which they act, none from before the span."""
     for event in sorted(scenario.events, key=lambda event: event.time):
-        k = whole_steps(event.time, scenario.step_size)
-        for change, name, value in event.changes:
+        k = whole_steps(event.time - span.start_time, scenario.step_size)
+        for change, name, value in event.changes if k >= span.first else ():
             end = plan.system.split(name)
             items = plan.system.inputs[name].items if end[0] is None else plan.variable(end).items
             yield k, change, end, items.get(value, value)

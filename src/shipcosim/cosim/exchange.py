@@ -51,6 +51,15 @@ class Changes:
         self._by_row.pop(row, None)
         self._set()
 
+    @property
+    def in_force(self):
+        """(scale, shift) of the changed rows."""
+        return dict(self._by_row)
+
+    def put(self, row, scale, shift):
+        """Change a row as `in_force` says it."""
+        self._set(row, (scale, shift))
+
     def apply(self, values):
         """Change the rows of an array in place."""
         if self._by_row:

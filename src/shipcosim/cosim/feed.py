@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +17,11 @@ if TYPE_CHECKING:
     from shipcosim.ssp import System
 
 INTERPOLATIONS = ("held", "linear")
+ANGLES = {"deg": 360.0, "rad": 2.0 * np.pi}
+"""Units of angles and what a full turn is in them."""
+LONGEST_GAP = 5.0
+"""Of a table whose rows are evenly spaced: times the usual distance."""
+CLOSE = 1e-6  # s; times of a log in seconds since 1970 are no finer
 
 
 def feed(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, np.ndarray]:
@@ -23,8 +30,10 @@ def feed(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, 
     Parameters
     ----------
     table : Dataset
-        Its variables are named like the inputs. The attribute ``interpolation`` of a variable says what it does
-        between its rows: ``"held"`` (the default) or ``"linear"``.
+        Its variables are named like the inputs. A variable's attribute ``interpolation`` says what it does between
+        its rows: ``"held"`` (the default) or ``"linear"``, angles the shorter way round. The table's attribute
+        ``max_gap`` is the longest time between two rows; where there is none and the rows are evenly spaced, it is
+        five times their distance.
     system : System
         With these inputs.
     times : (n,) array
@@ -33,41 +42,151 @@ def feed(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, 
     Returns
     -------
     dict of str to (n,) array
+        In the units of the inputs.
 
     Raises
     ------
     ShipcosimError
-        If a name, a unit or a time does not fit, or a value is not finite.
+        If a name, a unit or a time does not fit, or a value that is needed is not finite. Only rows that these times
+        need are looked at.
     """
-    clock = table["time"].values
-    if len(clock) == 0 or np.any(np.diff(clock) <= 0.0) or clock[0] > times[0] or clock[-1] < times[-1] - 1e-9:
-        span = f"cover {clock[0]:g} to {clock[-1]:g} s" if len(clock) else "are none"
-        remedy = f"They have to grow from 0 to at least {times[-1]:g} s."
-        raise ShipcosimError(Problem("inputs", f"The times {span}, or do not grow.", remedy))
-    problems, fed = [], {}
-    for name, column in table.data_vars.items():
+    clock = table["time"].values.astype(float)
+    problems = [*_unknown(table, system), *_clock_problems(clock)]
+    if problems:
+        raise ShipcosimError(problems)
+    rows = _rows(clock, times)
+    problems, fed = list(_gaps(table, clock[rows])), {}
+    for name in table.data_vars:
         try:
-            fed[name] = _column(str(name), column, system, clock, times)
+            fed[str(name)] = _column(table[name][rows], system.inputs[name], clock[rows], times)
         except ShipcosimError as error:
-            problems += error.problems
+            problems += [Problem(f"inputs: {name}", p.found, p.remedy) for p in error.problems]
     if problems:
         raise ShipcosimError(problems)
     return fed
 
 
-def _column(name, column, system, clock, times):
-    where = f"inputs: {name}"
-    if name not in system.inputs:
-        raise ShipcosimError(Problem(where, f"{system.name} has no input '{name}'.", suggestion(name, system.inputs)))
-    how, kind = column.attrs.get("interpolation", "held"), system.inputs[name].type
-    if how not in INTERPOLATIONS or (how == "linear" and kind != "Real"):
+def interpolated(table: xarray.Dataset, system: System, names) -> xarray.Dataset:
+    """The table with the attribute that makes some of its columns change linearly between their rows.
+
+    Parameters
+    ----------
+    table : Dataset
+        As for `feed`.
+    system : System
+        With these inputs.
+    names : iterable of str
+        Columns. With * and ? in it a name stands for all columns that it matches and that feed a Real.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such column.
+    """
+    reals = {name for name in table.data_vars if name in system.inputs and system.inputs[name].type == "Real"}
+    table, problems = table.copy(), []
+    for pattern in names:
+        matching = [name for name in reals if fnmatchcase(name, pattern)]
+        matching = [pattern] if pattern in table.data_vars else matching
+        if not matching:
+            remedy = suggestion(pattern, map(str, table.data_vars))
+            problems.append(Problem("inputs", f"no column '{pattern}' can be interpolated.", remedy))
+        for name in matching:
+            table[name].attrs["interpolation"] = "linear"
+    if problems:
+        raise ShipcosimError(problems)
+    return table
+
+
+def digest(table: xarray.Dataset) -> str:
+    """SHA-256 of a table's times, names, units and values."""
+    sha = hashlib.sha256(np.ascontiguousarray(table["time"].values, dtype=float).tobytes())
+    for name, column in sorted(table.data_vars.items()):
+        about = str(name), column.attrs.get("units") or "", column.attrs.get("interpolation", "held")
+        sha.update("\0".join(about).encode())
+        sha.update(np.ascontiguousarray(column.values, dtype=float).tobytes())
+    return sha.hexdigest()
+
+
+def _unknown(table, system):
+    unknown = [str(name) for name in table.data_vars if name not in system.inputs]
+    if unknown:
+        shown = ", ".join(f"'{name}'" for name in unknown[:8]) + (", ..." if len(unknown) > 8 else "")
+        found = f"{system.name} has no input {shown}."
+        yield Problem("inputs", found, f"{suggestion(unknown[0], system.inputs)} Rename or drop such columns.")
+    if not table.data_vars:
+        yield Problem("inputs", "The table has no column beside time.", suggestion("", system.inputs))
+
+
+def _clock_problems(clock):
+    if len(clock) == 0:
+        yield Problem("inputs", "The table has no row.")
+    elif not np.isfinite(clock).all():
+        row = int(np.flatnonzero(~np.isfinite(clock))[0])
+        yield Problem("inputs", f"The time of row {row + 1} is {clock[row]}.", "Drop such rows.")
+    elif len(back := np.flatnonzero(np.diff(clock) <= 0.0)):
+        row = int(back[0]) + 1
+        found = f"The time of row {row + 1} is {clock[row]:g} s, after {clock[row - 1]:g} s in the row before."
+        yield Problem("inputs", found, "Times have to grow. Sort the rows and drop repeated ones.")
+
+
+def _rows(clock, times):
+    """The rows that are needed: from the last one at or before the first time to the first one at or after the last."""
+    start, end = times[0], times[-1]
+    if clock[0] > start + CLOSE or clock[-1] < end - CLOSE:
+        found = f"The table goes from {clock[0]:.9g} s to {clock[-1]:.9g} s, the run from {start:.9g} s to {end:.9g} s."
+        remedy = "Start later or stop earlier: the table has to cover the run from the first step to the last."
+        raise ShipcosimError(Problem("inputs", found, remedy))
+    first = max(0, np.searchsorted(clock, start + CLOSE, side="right") - 1)
+    return slice(int(first), int(np.searchsorted(clock, end - CLOSE)) + 1)
+
+
+def _gaps(table, clock):
+    """Times without rows for longer than is allowed."""
+    apart = np.diff(clock)
+    longest = table.attrs.get("max_gap")
+    if longest is None:
+        usual = float(np.median(apart)) if len(apart) else 0.0
+        even = len(apart) >= 10 and np.mean(np.abs(apart - usual) <= 0.5 * usual) >= 0.9
+        longest = LONGEST_GAP * usual if even else np.inf
+    for row in np.flatnonzero(apart > longest * (1.0 + 1e-9))[:5]:
+        span = f"{clock[row]:.9g} s and {clock[row + 1]:.9g} s"
+        found = f"There is no row between {span}; {longest:.3g} s are allowed."
+        remedy = "Run the parts before and after it, fill it, or allow it (max_gap, --max-gap)."
+        yield Problem("inputs", found, remedy)
+
+
+def _column(column, signal, clock, times):
+    """Values of a column at the times, in the unit of the input that it feeds."""
+    how, values = column.attrs.get("interpolation", "held"), column.values
+    if how not in INTERPOLATIONS or (how == "linear" and signal.type != "Real"):
         remedy = "It can be 'held', or 'linear' for a Real."
-        raise ShipcosimError(Problem(where, f"interpolation = {how!r} of a {kind}.", remedy))
-    if not np.isfinite(column.values).all():
-        row = int(np.flatnonzero(~np.isfinite(column.values))[0])
-        raise ShipcosimError(Problem(where, f"is {column.values[row]} at {clock[row]:g} s.", "Fill or drop such rows."))
-    factor, offset = conversion(column.attrs.get("units"), system.inputs[name].unit)
-    values = column.values if (factor, offset) == (1.0, 0.0) else factor * column.values + offset
+        raise ShipcosimError(Problem("", f"interpolation = {how!r} of a {signal.type}.", remedy))
+    if len(bad := np.flatnonzero(~np.isfinite(values))):
+        more = f" So are {len(bad) - 1} more of the rows that are needed." if len(bad) > 1 else ""
+        remedy = "Fill or drop such rows; a dropped row is held or interpolated over."
+        raise ShipcosimError(Problem("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy))
+    if signal.type != "Real" and np.any(off := values != np.round(values)):
+        found = f"is {values[off][0]} at {clock[off][0]:.9g} s."
+        raise ShipcosimError(Problem("", found, f"It feeds a {signal.type}, which takes whole numbers."))
+    factor, offset = conversion(column.attrs.get("units"), signal.unit)
+    values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset
     if how == "linear":
-        return np.interp(times, clock, values)
-    return values[np.searchsorted(clock, times + 1e-9, side="right") - 1]
+        return _interpolated(clock, values, times, ANGLES.get(signal.unit))
+    return values[_before(clock, times)]
+
+
+def _before(clock, times):
+    """The last row at or before each time."""
+    return np.searchsorted(clock, times + CLOSE, side="right") - 1
+
+
+def _interpolated(clock, values, times, turn):
+    """Values between the rows, (n,); `turn` is a full turn of an angle, or None."""
+    if len(clock) == 1:
+        return values[_before(clock, times)]
+    row, rise = np.minimum(_before(clock, times), len(clock) - 2), np.diff(values)
+    if turn is not None:
+        rise = (rise + 0.5 * turn) % turn - 0.5 * turn
+    share = np.clip((times - clock[row]) / np.diff(clock)[row], 0.0, 1.0)
+    return values[row] + share * rise[row]

@@ -13,6 +13,7 @@ import numpy as np
 
 from shipcosim.cosim.slave import SlaveError
 from shipcosim.errors import Problem
+from shipcosim.scenario import whole_steps
 
 SWEEPS = 200
 """Sweeps over the components, beyond one for each of them, in which the start has to become consistent."""
@@ -27,16 +28,23 @@ class Failure(Exception):
         self.problem = problem
 
 
-def step_times(step_size, first, last):
+def step_times(step_size, first, last, start_time=0.0):
     """Times of the steps from one number to another, both included.
 
     Examples
     --------
     >>> step_times(0.05, 0, 3).tolist()
     [0.0, 0.05, 0.1, 0.15]
+
+    A run that starts on a step of another one has the same times:
+
+    >>> step_times(0.05, 0, 1, start_time=0.15).tolist() == step_times(0.05, 3, 4).tolist()
+    True
     """
-    step = Fraction(step_size).limit_denominator(10**12)
-    return np.arange(first, last + 1) * float(step.numerator) / float(step.denominator)
+    step, before = Fraction(step_size).limit_denominator(10**12), whole_steps(start_time, step_size)
+    if before is None:
+        return start_time + step_times(step_size, first, last)
+    return np.arange(before + first, before + last + 1) * float(step.numerator) / float(step.denominator)
 
 
 class Master:
@@ -67,12 +75,12 @@ class Master:
         self._check_interrupt, self._sequential = check_interrupt, sequential
         self._all = list(exchanges.values())
 
-    def initialise(self, stop_time):
+    def initialise(self, start_time, stop_time):
         """Bring all components to a start at which every input equals what feeds it."""
         for part in self._parts:
             self._check_interrupt()
             with _blame(part, "at the start"):
-                part.slave.enter_initialisation(stop_time)
+                part.slave.enter_initialisation(start_time, stop_time)
                 part.read()
         self._settle()
         for part in self._parts:
@@ -81,7 +89,11 @@ class Master:
                 part.slave.exit_initialisation()
                 part.read()
         self._transfer(0)
-        self._check_finite(0.0)
+        self._check_finite(start_time)
+
+    def resume(self, step):
+        """Pass on what is due before a step, after values and FMUs have been brought into the state they had then."""
+        self._transfer(step)
 
     def _settle(self):
         """Sweep over the components until no input changes any more."""
@@ -114,21 +126,19 @@ class Master:
             for name, value in zip(self._names[kind][1], exchange.inputs.tolist(), strict=True)
         }
 
-    def run(self, times, actions, settings, record, every, progress=None):
+    def run(self, span, actions, settings, record, progress=None):
         """Step to the end, recording rows.
 
         Parameters
         ----------
-        times : (n + 1,) array
-            Times of the steps. [s]
+        span : Span
+            From which step to which, and the steps' times.
         actions : mapping of int to sequence of callables
             What events do before the step of this number.
         settings : sequence of (array, (n + 1, m) array)
-            Settings of an exchange and the values that they take at each step.
+            Settings of an exchange and the values that they take at each step of the span.
         record : callable
-            Called with a row's number when the values are those of this row.
-        every : int
-            Steps from one row to the next.
+            Called when the values are those of the next row.
         progress : callable, optional
             Called with (steps done, steps in all) some ten times a second.
 
@@ -136,25 +146,25 @@ class Master:
         ------
         Failure, KeyboardInterrupt
         """
-        clock, last, report_at = times.tolist(), len(times) - 1, perf_counter()
-        for k in range(last):
+        clock, first, last, every, report_at = span.times.tolist(), span.first, span.last, span.every, perf_counter()
+        for k in range(first, last):
             if k in actions:
                 self._act(actions[k])
             if k % every == 0:
-                record(k // every)
+                record()
             self._check_interrupt()
             if progress is not None and perf_counter() >= report_at:
-                progress(k, last)
+                progress(k - first, last - first)
                 report_at = perf_counter() + BETWEEN_REPORTS
             self._step(k, clock)
             for target, values in settings:
-                target[:] = values[k + 1]
+                target[:] = values[k + 1 - first]
             self._transfer(k + 1)
             self._check_finite(clock[k + 1])
         if last % every == 0:
-            record(last // every)
+            record()
         if progress is not None:
-            progress(last, last)
+            progress(last - first, last - first)
 
     def _act(self, actions):
         for action in actions:

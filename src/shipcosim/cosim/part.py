@@ -75,6 +75,12 @@ class Part:
                 self.slave.check(discrete.function, discrete.call())
                 discrete.version = discrete.exchange.version
 
+    def restore(self, state: bytes) -> None:
+        """Bring the FMU into a state; the inputs that it had then are not taken for those that it has to get."""
+        self.slave.restore(state)
+        for discrete in self._discrete:
+            discrete.version = -1
+
     def step(self, time: float, step_size: float) -> None:
         """Advance the FMU from a time."""
         if (status := self._do_step(time, step_size)) >= FAILED:

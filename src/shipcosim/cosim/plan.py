@@ -90,7 +90,7 @@ def label(end: End) -> str:
     return end[1] if end[0] is None else f"{end[0]}.{end[1]}"
 
 
-def make_plan(system: System, scenario: Scenario, fed=()) -> Plan:
+def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time: float = 0.0) -> Plan:
     """Plan of a run.
 
     Parameters
@@ -101,16 +101,21 @@ def make_plan(system: System, scenario: Scenario, fed=()) -> Plan:
         Checked against the system.
     fed : collection of str
         Inputs of the system that a table feeds.
+    changed : collection of str
+        Signals that are overridden or biased from the beginning.
+    start_time : float
+        Of the run. [s]
 
     Raises
     ------
     ShipcosimError
         If the master cannot run this: arrays, no co-simulation, steps that do not fit.
     """
-    if problems := [p for component in system.components.values() for p in _component_problems(component, scenario)]:
+    base, duration = scenario.step_size, scenario.stop_time - start_time
+    if problems := [p for c in system.components.values() for p in _component_problems(c, base, duration)]:
         raise ShipcosimError(problems)
     touched = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
-    base = scenario.step_size
+    touched |= {system.split(signal) for signal in changed}
     multiples = {name: whole_steps(c.step_size or base, base) for name, c in system.components.items()}
     plan = Plan(system, multiples, {kind: Layout() for kind in KINDS.values()}, [], [], set(), touched)
     into = {}
@@ -128,15 +133,15 @@ def make_plan(system: System, scenario: Scenario, fed=()) -> Plan:
     return plan
 
 
-def _component_problems(component, scenario):
-    step, base = component.step_size, scenario.step_size
+def _component_problems(component, base, duration):
+    step = component.step_size
     if "CoSimulation" not in component.fmu.interfaces or component.implementation == "ModelExchange":
         found = f"{component.fmu.path.name} would have to run as model exchange."
         yield Problem(component.name, found, "Only co-simulation is done.")
     if step is not None and not whole_steps(step, base):
         yield Problem(component.name, f"its step of {step:g} s is no multiple of the step size {base:g} s.")
-    elif step is not None and whole_steps(scenario.stop_time, step) is None:
-        yield Problem(component.name, f"its step of {step:g} s does not divide the run's {scenario.stop_time:g} s.")
+    elif step is not None and whole_steps(duration, step) is None:
+        yield Problem(component.name, f"its step of {step:g} s does not divide the run's {duration:g} s.")
     arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
     if arrays:
         yield Problem(component.name, f"has arrays, which the master does not handle: {', '.join(arrays[:5])}.")

@@ -10,7 +10,7 @@ import numpy as np
 from shipcosim import __version__
 from shipcosim.cosim.plan import KINDS, Plan, label
 from shipcosim.scenario import Scenario
-from shipcosim.series import make_table
+from shipcosim.ssp import System
 
 
 def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
@@ -21,29 +21,30 @@ def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
     return settings, inputs
 
 
-def table_of(plan: Plan, scenario: Scenario, times: np.ndarray, columns: dict, attributes: dict):
-    """Table of a run.
+def columns_of(plan: Plan, n_rows: int, recorded: dict) -> list[tuple]:
+    """Columns of the table of a run.
 
     Parameters
     ----------
-    plan, scenario
+    plan
         Of the run.
-    times : (n,) array
-        Of the rows. [s]
-    columns : dict of str to list of (n,) array
+    n_rows : int
+        Rows of the table.
+    recorded : dict of str to list of (n_rows,) array
         By kind: outputs, settings and inputs as the recorder has them.
-    attributes : dict
-        What is known beyond the plan and the scenario.
+
+    Returns
+    -------
+    list of (name, (n_rows,) array, unit, long name)
     """
     values = {}
-    for kind, arrays in columns.items():
+    for kind, arrays in recorded.items():
         layout = plan.layouts[kind]
         settings, inputs = recorded_rows(plan, kind)
         names = list(layout.settings)
         ends = [*layout.outputs, *(names[i] for i in settings), *(layout.inputs[i] for i in inputs)]
         values |= zip(ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True)
-    shown = [*_connectors(plan, values), *_variables(plan, values, len(times))]
-    return make_table(times, shown, _attributes(plan, scenario) | attributes)
+    return [*_connectors(plan, values), *_variables(plan, values, n_rows)]
 
 
 def _connectors(plan, values):
@@ -79,22 +80,37 @@ def _variables(plan, values, n):
                 yield label(end), column, variable.unit or "", variable.description
 
 
-def _attributes(plan, scenario):
-    components = plan.system.components.values()
-    starts = {
-        label((c.name, v.name)): c.start_value(v.name)
-        for c in components
-        for v in c.fmu.variables.values()
-        if v.causality == "parameter" or v.name in c.start
+def start_values(system: System) -> dict:
+    """Start values of all parameters and of what else the system sets, by signal."""
+    return {
+        label((component.name, variable.name)): component.start_value(variable.name)
+        for component in system.components.values()
+        for variable in component.fmu.variables.values()
+        if variable.causality == "parameter" or variable.name in component.start
     }
-    starts |= {name: signal.start for name, signal in plan.system.inputs.items() if signal.start is not None}
-    hashes = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in {c.fmu.path for c in components}}
+
+
+def hashes(system: System) -> dict[str, str]:
+    """SHA-256 of each component's FMU."""
+    paths = {component.fmu.path for component in system.components.values()}
+    digests = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}
+    return {component.name: digests[component.fmu.path] for component in system.components.values()}
+
+
+def attributes_of(system: System, scenario: Scenario) -> dict:
+    """What has to be known to repeat a run, as texts and numbers."""
+    starts = start_values(system)
+    starts |= {name: signal.start for name, signal in system.inputs.items() if signal.start is not None}
+    digests = hashes(system)
+    fmus = {c.name: {"file": c.fmu.path.name, "sha256": digests[c.name]} for c in system.components.values()}
     return {
         "scenario": scenario.name,
         "description": scenario.description,
-        "system": plan.system.name,
+        "system": system.name,
+        "system_sha256": fingerprint(system),
         "step_size": scenario.step_size,
         "stop_time": scenario.stop_time,
+        "output_interval": scenario.output_interval or scenario.step_size,
         "shipcosim_version": __version__,
         "fmpy_version": version("fmpy"),
         "numpy_version": version("numpy"),
@@ -102,5 +118,19 @@ def _attributes(plan, scenario):
         "start_values": json.dumps(starts, default=str),
         "seeds": json.dumps({name: value for name, value in starts.items() if name.endswith("seed")}),
         "events": json.dumps([event.model_dump() for event in scenario.events]),
-        "fmus": json.dumps({c.name: {"file": c.fmu.path.name, "sha256": hashes[c.fmu.path]} for c in components}),
+        "fmus": json.dumps(fmus),
     }
+
+
+def fingerprint(system: System) -> str:
+    """SHA-256 of how a system is wired: components, connections, connectors; start values are not part of it."""
+    wiring = {
+        "components": [(c.name, c.step_size) for c in system.components.values()],
+        "connections": [
+            (c.source, c.target, c.factor, c.offset, list((c.mapping or {}).items()), c.initial)
+            for c in system.connections
+        ],
+        "inputs": [(s.name, s.type, s.unit) for s in system.inputs.values()],
+        "outputs": [(s.name, s.type, s.unit) for s in system.outputs.values()],
+    }
+    return hashlib.sha256(json.dumps(wiring, default=str).encode()).hexdigest()

@@ -8,7 +8,7 @@ Enumeration) and Boolean as int32, whatever the FMU's own types are.
 import os
 import sys
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint, cast
+from ctypes import byref, c_char, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, cast
 from functools import partial
 from pathlib import Path
 
@@ -92,6 +92,32 @@ class Slave:
         if not self._is_lost:
             self._fmu.freeInstance()
 
+    def reset(self) -> None:
+        """Bring the instance back to where it was when it was made, also after the end of a run."""
+        self.call("Reset")
+        self.messages.clear()
+
+    def state(self) -> bytes:
+        """The whole state, which `restore` of any instance of this FMU takes, in another process too."""
+        names, state, size = self._state_calls, c_void_p(), c_size_t()
+        self.call(names["get"], byref(state))
+        try:
+            self.call(names["size"], state, byref(size))
+            data = (c_char * size.value)()
+            self.call(names["serialise"], state, self._as_bytes(names["serialise"], 2, data), size)
+        finally:
+            self.call(names["free"], byref(state))
+        return data.raw
+
+    def restore(self, data: bytes) -> None:
+        """Bring the instance into a state from `state`."""
+        names, state, buffer = self._state_calls, c_void_p(), (c_char * len(data)).from_buffer_copy(data)
+        self.call(names["deserialise"], self._as_bytes(names["deserialise"], 1, buffer), len(data), byref(state))
+        try:
+            self.call(names["set"], state)
+        finally:
+            self.call(names["free"], byref(state))
+
     def exit_initialisation(self) -> None:
         """Leave the initialisation mode."""
         self.call("ExitInitializationMode")
@@ -99,6 +125,9 @@ class Slave:
     def terminate(self) -> None:
         """End the simulation. That an FMU fails to is no matter any more."""
         self._is_lost = self._function("Terminate")(self.component) == FATAL
+
+    def _as_bytes(self, function, position, buffer):
+        return cast(buffer, self._function(function).argtypes[position])
 
     def _function(self, name):
         return self._fmu._functions[self._prefix + name]
@@ -113,6 +142,14 @@ class Slave2(Slave):
     """An instance of an FMU of FMI 2.0."""
 
     _prefix = "fmi2"
+    _state_calls = {
+        "get": "GetFMUstate",
+        "set": "SetFMUstate",
+        "free": "FreeFMUstate",
+        "size": "SerializedFMUstateSize",
+        "serialise": "SerializeFMUstate",
+        "deserialise": "DeSerializeFMUstate",
+    }
 
     def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
@@ -138,9 +175,9 @@ class Slave2(Slave):
         texts = (c_char_p * len(variables))(*(value.encode() for value in values))
         self.call("SetString", _references(variables), len(variables), texts)
 
-    def enter_initialisation(self, stop_time: float) -> None:
-        """Enter the initialisation mode at time 0."""
-        self.call("SetupExperiment", 0, 0.0, 0.0, 1, stop_time)
+    def enter_initialisation(self, start_time: float, stop_time: float) -> None:
+        """Enter the initialisation mode for a run between two times."""
+        self.call("SetupExperiment", 0, 0.0, start_time, 1, stop_time)
         self.call("EnterInitializationMode")
 
     def _exchange(self, verb, kind, variables, buffer):
@@ -176,6 +213,14 @@ class Slave3(Slave):
     """An instance of an FMU of FMI 3.0: scalar variables, no event mode, no early return."""
 
     _prefix = "fmi3"
+    _state_calls = {
+        "get": "GetFMUState",
+        "set": "SetFMUState",
+        "free": "FreeFMUState",
+        "size": "SerializedFMUStateSize",
+        "serialise": "SerializeFMUState",
+        "deserialise": "DeserializeFMUState",
+    }
 
     def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
@@ -227,9 +272,9 @@ class Slave3(Slave):
         texts = (c_char_p * len(variables))(*(value.encode() for value in values))
         self.call("SetString", _references(variables), len(variables), texts, len(variables))
 
-    def enter_initialisation(self, stop_time: float) -> None:
-        """Enter the initialisation mode at time 0."""
-        self.call("EnterInitializationMode", False, 0.0, 0.0, True, stop_time)
+    def enter_initialisation(self, start_time: float, stop_time: float) -> None:
+        """Enter the initialisation mode for a run between two times."""
+        self.call("EnterInitializationMode", False, 0.0, start_time, True, stop_time)
 
     def _groups(self, verb, variables):
         """For each of the FMU's types among the variables: their rows, a buffer of this type and the prepared call."""

@@ -1,0 +1,45 @@
+"""The FMUs of a system, loaded once and used for any number of runs."""
+
+from contextlib import ExitStack
+
+from shipcosim.cosim.slave import Slave, Slave2, Slave3, SlaveError
+from shipcosim.cosim.unpacked import Unpacked
+from shipcosim.ssp import Component
+
+
+class Instances:
+    """Instances of FMUs by component; a ``with`` statement frees them and removes what was unpacked."""
+
+    def __enter__(self):
+        self._slaves, self._stack = {}, ExitStack()
+        self._unpacked = self._stack.enter_context(Unpacked())
+        return self
+
+    def __exit__(self, *_):
+        for name in list(self._slaves):
+            self._free(name)
+        self._stack.close()
+
+    def of(self, component: Component) -> Slave:
+        """Instance of a component's FMU in which nothing has been set yet.
+
+        From the second time on it is the same one, reset; an FMU that cannot be reset is instantiated anew.
+
+        Raises
+        ------
+        SlaveError
+            If it cannot be instantiated.
+        """
+        name, fmu = component.name, component.fmu
+        if name in self._slaves:
+            try:
+                self._slaves[name].reset()
+                return self._slaves[name]
+            except SlaveError:
+                self._free(name)
+        kind = Slave3 if fmu.fmi_version.startswith("3") else Slave2
+        self._slaves[name] = kind(name, self._unpacked.folder(fmu.path), fmu.model_identifier, fmu.token)
+        return self._slaves[name]
+
+    def _free(self, name):
+        self._slaves.pop(name).free()

@@ -1,0 +1,196 @@
+"""Many segments of one record, each run from the state that was recorded at its start: open-loop predictions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.cosim.engine import Journey, RunError
+from shipcosim.cosim.instances import Instances
+from shipcosim.cosim.interrupt import held_back
+from shipcosim.cosim.span import span_of
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario import Scenario
+from shipcosim.series import conversion
+from shipcosim.ssp import System, with_values
+
+if TYPE_CHECKING:
+    import xarray
+
+
+MOST_PROBLEMS = 20
+"""That are listed of a record with many bad segments."""
+
+
+def replay(
+    system: System,
+    inputs: xarray.Dataset,
+    starts: Sequence[float],
+    duration: float,
+    *,
+    states: Mapping | None = None,
+    step_size: float | None = None,
+    output_interval: float | None = None,
+    signals: Sequence[str] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> xarray.Dataset:
+    """Run a system over segments of a record.
+
+    Every segment is a run of its own: it starts from given values, and the table feeds the system's inputs at the
+    record's times, which the FMUs are told too.
+
+    Parameters
+    ----------
+    system : System
+        With inputs that the table feeds.
+    inputs : Dataset
+        As for `simulate`. Only rows that a segment needs have to be without gap and NaN.
+    starts : (n,) sequence of float
+        Where the segments start. [s]
+    duration : float
+        Of each segment. [s]
+    states : mapping of str to (n,) sequence or value
+        Start values by signal, e.g. ``"vessel.x_start"``: one for each segment, or one for all. A DataArray with
+        ``units`` is converted into the unit of the variable; other numbers are in this unit already.
+    step_size : float, optional
+        The system's own where it is not given. [s]
+    output_interval : float, optional
+        From row to row; every step where it is not given. [s]
+    signals : sequence of str, optional
+        What is kept; everything where it is not given.
+    progress : callable, optional
+        Called with (segments done, segments in all).
+
+    Returns
+    -------
+    Dataset
+        Dimensions ``segment`` and ``time``, the time since the segment's start; coordinate ``start_time`` of the
+        segments.
+
+    Raises
+    ------
+    ShipcosimError
+        If a start value, the table or a segment's time does not fit; names the segment. As RunError if a run fails.
+
+    Examples
+    --------
+    >>> predicted = replay(system, record, [100.0, 160.0], 60.0, states={  # doctest: +SKIP
+    ...     "vessel.x_start": [0.0, 12.5], "vessel.psi_start": [0.0, 0.4]})
+    >>> predicted["vessel.x"].sel(segment=1, time=30.0)  # doctest: +SKIP
+    """
+    starts = np.asarray(starts, dtype=float)
+    if starts.ndim != 1 or len(starts) == 0 or not np.isfinite(starts).all():
+        raise ShipcosimError(Problem("replay", "starts is no list of times.", "Give the time of each segment's start."))
+    segments = _Segments(system, inputs, starts, duration, step_size, output_interval, states or {})
+    segments.check()
+    table = None
+    with held_back() as check_interrupt, Instances() as instances:
+        for number in range(len(starts)):
+            journey = segments.journey(number)
+            with _named(number, starts):
+                journey.run(instances, check_interrupt)
+            journey.end()
+            table = table if table is not None else _Stacked(journey, starts, signals)
+            table.put(number, journey)
+            if progress is not None:
+                progress(number + 1, len(starts))
+    return table.dataset()
+
+
+class _Segments:
+    """What each segment's run is."""
+
+    def __init__(self, system, inputs, starts, duration, step_size, output_interval, states):
+        step_size = step_size or system.experiment.step_size
+        if not step_size:
+            raise ShipcosimError(Problem("replay", "No step size is known.", "Give step_size in seconds."))
+        self.system, self.inputs, self.starts, self.duration = system, inputs, starts, duration
+        self.how = {"step_size": step_size, "output_interval": output_interval}
+        self.states = {name: _per_segment(name, given, system, len(starts)) for name, given in states.items()}
+
+    def check(self):
+        """Raise ShipcosimError with what is wrong with any segment."""
+        problems = []
+        for number in range(len(self.starts)):
+            try:
+                with _named(number, self.starts):
+                    self.journey(number)
+            except ShipcosimError as error:
+                problems += error.problems
+        if problems:
+            raise ShipcosimError(problems[:MOST_PROBLEMS])
+
+    def journey(self, number):
+        """Run of a segment, planned."""
+        start = float(self.starts[number])
+        system = with_values(self.system, {name: values[number] for name, values in self.states.items()}, "states")
+        scenario = Scenario(description=f"Replay of {system.name}", stop_time=start + self.duration, **self.how)
+        return Journey(system, scenario, span_of(scenario, start), inputs=self.inputs)
+
+
+def _per_segment(name, given, system, n):
+    """Start value of a signal for each segment, in the unit of the variable."""
+    component, variable = system.split(name, "replay: states")
+    owners = system.inputs if component is None else system.components[component].fmu.variables
+    try:
+        factor, offset = conversion(getattr(given, "attrs", {}).get("units"), owners[variable].unit)
+    except ShipcosimError as error:
+        raise ShipcosimError(Problem(f"replay: states: {name}", error.problems[0].found)) from None
+    values = np.asarray(given)
+    if values.shape not in ((), (n,)):
+        found = f"{values.shape} values for {n} segments."
+        raise ShipcosimError(Problem(f"replay: states: {name}", found, f"Give one, or {n}."))
+    values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset
+    return np.broadcast_to(values, (n,)).tolist()
+
+
+@contextmanager
+def _named(number, starts):
+    """Put the segment's number and start before what is wrong."""
+    try:
+        yield
+    except ShipcosimError as error:
+        where = f"segment {number} at {starts[number]:.9g} s"
+        problems = [replace(p, where=f"{where}: {p.where}" if p.where else where) for p in error.problems]
+        if isinstance(error, RunError):
+            raise RunError(problems, error.table) from error
+        raise ShipcosimError(problems) from error
+
+
+class _Stacked:
+    """Rows of all segments: (segments, rows) an array for each signal."""
+
+    def __init__(self, journey, starts, signals):
+        columns = {name: (values, about) for name, values, *about in journey.columns()}
+        if unknown := [name for name in signals or () if name not in columns]:
+            found = f"there is no signal '{unknown[0]}'."
+            raise ShipcosimError(Problem("replay: signals", found, suggestion(unknown[0], columns)))
+        self.names = columns if signals is None else list(signals)
+        self.starts, self.time = starts, journey.row_times - starts[0]
+        self.about = {name: columns[name][1] for name in self.names}
+        self.arrays = {name: np.empty((len(starts), len(self.time)), columns[name][0].dtype) for name in self.names}
+        self.attributes = journey.attributes(complete=True)
+
+    def put(self, number, journey):
+        """Keep the rows of a segment."""
+        for name, values, *_ in journey.columns():
+            if name in self.arrays:
+                self.arrays[name][number] = values
+
+    def dataset(self):
+        """The table. Its start values are those of the first segment."""
+        import xarray
+
+        variables = {
+            name: (("segment", "time"), values, dict(zip(("units", "long_name"), self.about[name], strict=True)))
+            for name, values in self.arrays.items()
+        }
+        coordinates = {
+            "time": ("time", self.time, {"units": "s", "long_name": "time since the segment's start"}),
+            "start_time": ("segment", self.starts, {"units": "s", "long_name": "time of the segment's start"}),
+        }
+        return xarray.Dataset(variables, coordinates, self.attributes)
