@@ -7,12 +7,12 @@ import matplotlib
 
 matplotlib.use("Agg")
 
-import matplotlib.pyplot as plt  # noqa: E402 - the backend must be chosen before
+import matplotlib.pyplot as plt
 
-from shipcosim.models import vessel  # noqa: E402
-from shipcosim.models.hull import HullParameters  # noqa: E402
-from shipcosim.models.ships import parameters  # noqa: E402
-from shipcosim.models.thruster import AzimuthParameters, azimuth_loads, azimuth_replay  # noqa: E402
+from shipcosim.models import vessel
+from shipcosim.models.hull import HullParameters
+from shipcosim.models.ships import parameters
+from shipcosim.models.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
 
 PICTURES = Path(__file__).resolve().parent / "pictures"
 KNOT = 1852.0 / 3600.0

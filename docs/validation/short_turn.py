@@ -100,20 +100,25 @@ def validate(shared):
     errors = unit_force_errors(record)
     largest = np.max(np.hypot(*record.forces.transpose(1, 0, 2)))
     _draw(record, given, free)
-    return {
-        "seconds": record.eta.shape[1] - 1,
-        "way": float(np.sum(np.hypot(*np.diff(record.eta[:2])))),
-        "turned": abs(degrees(record.eta[2, -1] - record.eta[2, 0])),
-        "X_miss": missing[0],
-        "Y_miss": missing[1] / 1e3,
-        "N_miss": missing[2] / 1e3,
-        "X_size": np.max(np.abs(record.tau[0])) / 1e3,
-        "Y_size": np.max(np.abs(record.tau[1])) / 1e3,
-        "N_size": np.max(np.abs(record.tau[2])) / 1e3,
-        "unit_rms": float(np.sqrt(np.mean(np.sum(errors**2, axis=1)))) / 1e3,
-        "unit_worst": float(np.max(np.hypot(errors[:, 0], errors[:, 1]))) / 1e3,
-        "unit_size": largest / 1e3,
-    } | _ends("given", given, record) | _ends("free", free, record)
+    return (
+        {
+            "seconds": record.eta.shape[1] - 1,
+            "way": float(np.sum(np.hypot(*np.diff(record.eta[:2])))),
+            "turned": abs(degrees(record.eta[2, -1] - record.eta[2, 0])),
+            "X_miss": missing[0],
+            "Y_miss": missing[1] / 1e3,
+            "N_miss": missing[2] / 1e3,
+            "X_size": np.max(np.abs(record.tau[0])) / 1e3,
+            "Y_size": np.max(np.abs(record.tau[1])) / 1e3,
+            "N_share": 100.0 * missing[2] / np.max(np.abs(record.tau[2])),
+            "N_size": np.max(np.abs(record.tau[2])) / 1e3,
+            "unit_rms": float(np.sqrt(np.mean(np.sum(errors**2, axis=1)))) / 1e3,
+            "unit_worst": float(np.max(np.hypot(errors[:, 0], errors[:, 1]))) / 1e3,
+            "unit_size": largest / 1e3,
+        }
+        | _ends("given", given, record)
+        | _ends("free", free, record)
+    )
 
 
 def _ends(name, states, record):

@@ -17,7 +17,7 @@ STRAIGHT = {  # rpm: two legs in opposite directions [s]; constant orders, speed
 }
 ZIG_ZAGS = {  # name: (order, heading of the helm change in deg, from, to in s)
     "10/10 at 171 rpm": (10.0, 10.0, 4390.0, 4543.0),
-    "10/20 at 170 rpm": (10.0, 20.0, 1970.0, 2187.0),
+    "10/20 at 170 rpm": (10.0, 20.0, 1940.0, 2187.0),
     "10/20 at 110 rpm": (10.0, 20.0, 3350.0, 3642.0),
     "20/20 at 171 rpm": (20.0, 20.0, 4158.0, 4212.5),
 }
@@ -47,7 +47,8 @@ class Log:
 
     def part(self, start, end):
         """Rows of a window in s, both ends included."""
-        rows = slice(round(start / STEP), round(end / STEP) + 1)
+        first = float(self.time[0])
+        rows = slice(round((start - first) / STEP), round((end - first) / STEP) + 1)
         return Log(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
 
@@ -79,8 +80,9 @@ def speed_ratio(log):
 
 
 def clock_ratio(log):
-    """Heading turned over the integral of the logged yaw rate: 1 where rows are as far apart as they say. [1]"""
-    return float((log.psi[-1] - log.psi[0]) / np.trapezoid(log.r, dx=STEP))
+    """Heading turned, to and fro, over the integral of the logged yaw rate: 1 where rows are 0.5 s apart. [1]"""
+    turning = np.abs(log.r) > np.radians(0.3)
+    return float(np.sum(np.abs(np.diff(log.psi))[turning[1:]]) / (STEP * np.sum(np.abs(log.r)[turning])))
 
 
 def circles(log):
@@ -97,6 +99,6 @@ def circles(log):
 def _start_of_order(log, row):
     """Time at which the order that is large at a row began to move."""
     rest = np.median(log.azimuth[row - 60 : row - 20])
-    while abs(log.azimuth[row - 1] - rest) > np.radians(1.0):
+    while abs(log.azimuth[row - 1] - rest) > np.radians(2.0):
         row -= 1
     return float(log.time[row - 1])

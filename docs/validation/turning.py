@@ -20,8 +20,8 @@ def turn_numbers(time, psi, u, v, r, north, east):
     Returns
     -------
     dict of str to float
-        Approach speed, t90 and t180 in s, advance and tactical diameter in m, and from 180 deg of turn on speed in m/s, rate
-        in deg/s (always positive) and diameter in m; NaN for what was not reached.
+        Approach speed, t90 and t180 in s, advance and tactical diameter in m, and from 180 deg of turn on speed in
+        m/s, rate in deg/s (always positive) and diameter in m; NaN for what was not reached.
     """
     turned = np.abs(psi - psi[0])
     c, s = np.cos(psi[0]), np.sin(psi[0])
