@@ -33,6 +33,8 @@ class DpSystem:
     port: AzimuthParameters = AzimuthParameters(y=-2.0)
     starboard: AzimuthParameters = AzimuthParameters(y=2.0)
     tunnel: TunnelParameters = TunnelParameters()
+    port_azimuth_start: float = 0.0
+    starboard_azimuth_start: float = 0.0
     environment: EnvironmentParameters = EnvironmentParameters()
     sensors: SensorParameters = SensorParameters()
     reference: ReferenceParameters = ReferenceParameters()
@@ -134,8 +136,8 @@ def start(system, design, inputs, variations):
     show = _show(0.0, ship, air, current, system, design)
     measured = sensors.start(0.0, _truth(ship, show), parameters=system.sensors)
     units = (
-        drive.at_rest(system.allocation.port_azimuth + zero),
-        drive.at_rest(system.allocation.starboard_azimuth + zero),
+        drive.at_rest(system.port_azimuth_start + zero),
+        drive.at_rest(system.starboard_azimuth_start + zero),
         drive.at_rest(0.5 * np.pi + zero),
     )
     return LoopState(
