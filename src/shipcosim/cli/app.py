@@ -28,6 +28,15 @@ app = typer.Typer(
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
 Engine = Annotated[str, typer.Option("--engine", help="What runs the FMUs: fmpy.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others; repeatable."),
+]
+Until = Annotated[float | None, typer.Option("--until", help="[s] End here, before the stop time.")]
+Store = Annotated[
+    Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")
+]
+From = Annotated[Path | None, typer.Option("--from", metavar="FILE", help="Continue from a state that --store left.")]
 
 
 def command(function):
@@ -105,13 +114,16 @@ def run(
     scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="A scenario file, or its name in scenarios/.")],
     out: Out = None,
     engine: Engine = "fmpy",
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over the scenario's; repeatable."),
-    ] = None,
+    settings: Settings = None,
+    until: Until = None,
+    store: Store = None,
+    resume: From = None,
     debug: Debug = False,
 ):
-    """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO."""
+    """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO.
+
+    A part of a run is checked for what is expected within it.
+    """
     from shipcosim.cli.project import build_stale, find_scenario, parsed_settings
     from shipcosim.scenario import read_scenario
     from shipcosim.ssp import read_system, with_values
@@ -122,7 +134,8 @@ def run(
     given = parsed_settings(settings or [])
     with_values(system, given, "--set")
     happening = happening.model_copy(update={"set": happening.set | given})
-    _simulate_and_save(system, happening, out or Path("results") / happening.name, engine)
+    course = {"until": until, "store": store, "resume": resume}
+    _simulate_and_save(system, happening, out or Path("results") / happening.name, engine, **course)
 
 
 @command
@@ -138,22 +151,35 @@ def simulate(
     inputs: Annotated[
         Path | None, typer.Option("--inputs", metavar="TABLE", help="CSV or NetCDF that feeds the system's inputs.")
     ] = None,
+    interpolate: Annotated[
+        list[str] | None,
+        typer.Option("--interpolate", metavar="INPUT", help="Linear between rows, not held; '*' for all; repeatable."),
+    ] = None,
+    max_gap: Annotated[
+        float | None, typer.Option("--max-gap", help="[s] Longest time between rows. Default: 5 x an even spacing.")
+    ] = None,
+    start_time: Annotated[float, typer.Option("--start-time", help="[s] On the clock of the table.")] = 0.0,
+    settings: Settings = None,
+    until: Until = None,
+    store: Store = None,
+    resume: From = None,
     debug: Debug = False,
 ):
     """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
 
     Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
     """
-    from shipcosim.cli.project import build_stale, experiment_of, find_project
-    from shipcosim.series import read_table
-    from shipcosim.ssp import read_system
+    from shipcosim.cli.project import build_stale, experiment_of, feeding, find_project, parsed_settings
+    from shipcosim.ssp import read_system, with_values
 
     project = find_project(Path(ssp.partition("#")[0]))
     system = read_system(ssp, parameters or (), fmus=[build_stale(project)] if project else ())
+    system = with_values(system, parsed_settings(settings or []), "--set")
     happening = experiment_of(system, stop_time, step_size)
-    feeding = read_table(inputs) if inputs else None
+    table = feeding(inputs, system, interpolate or (), max_gap)
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
-    _simulate_and_save(system, happening, out or default, engine, feeding)
+    course = {"start_time": start_time, "until": until, "store": store, "resume": resume}
+    _simulate_and_save(system, happening, out or default, engine, table, **course)
 
 
 @command
@@ -172,8 +198,8 @@ def check(
         raise typer.Exit(FAILED)
 
 
-def _simulate_and_save(system, scenario, out, engine, inputs=None):
-    """Run, judge, write, and say how it went; the exit code follows."""
+def _simulate_and_save(system, scenario, out, engine, inputs=None, **course):
+    """Run, judge, write, and say how it went; the exit code follows. `course` is where the run starts and ends."""
     from shipcosim.cli.console import print_summary, progress_of
     from shipcosim.cli.results import save
     from shipcosim.cosim import Interrupted, RunError
@@ -186,15 +212,24 @@ def _simulate_and_save(system, scenario, out, engine, inputs=None):
 
     try:
         with progress_of(scenario.name or system.name, scenario.stop_time) as progress:
-            table = simulate_system(system, scenario, engine=engine, inputs=inputs, progress=progress)
+            table = simulate_system(system, scenario, engine=engine, inputs=inputs, progress=progress, **course)
     except Interrupted as stop:
         keep(stop.table)
         raise typer.Exit(INTERRUPTED) from None
     except RunError as error:
         keep(error.table)
         raise
+    scenario = _part(scenario, table)
     verdicts = judge(table, scenario)
     page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)
     print_summary(table, verdicts, page)
     if not all(verdict.passed for verdict in verdicts):
         raise typer.Exit(FAILED)
+
+
+def _part(scenario, table):
+    """The scenario with what it expects within the table's times."""
+    first, last = table["time"].values[[0, -1]]
+    inside = [e for e in scenario.expect if not e.during or (first <= e.during[0] and e.during[1] <= last)]
+    is_whole = first == 0.0 and last >= scenario.stop_time - 1e-9
+    return scenario if is_whole else scenario.model_copy(update={"expect": inside})

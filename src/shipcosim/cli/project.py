@@ -155,6 +155,37 @@ def experiment_of(system, stop_time=None, step_size=None):
     return scenario
 
 
+def feeding(path, system, interpolated, max_gap):
+    """Table that feeds a system's inputs, or None without a path.
+
+    Parameters
+    ----------
+    path : Path or None
+        Of a table.
+    system : System
+        With the inputs.
+    interpolated : collection of str
+        Columns, or patterns of them, that change linearly between their rows.
+    max_gap : float or None
+        Longest time between two rows. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file or column, or no table for these options.
+    """
+    if path is None:
+        if interpolated or max_gap is not None:
+            found = "There is no table that this could be about."
+            raise ShipcosimError(Problem("--interpolate, --max-gap", found, "Give one with --inputs."))
+        return None
+    from shipcosim.cosim import interpolated as marked
+    from shipcosim.series import read_table
+
+    table = marked(read_table(path), system, interpolated)
+    return table if max_gap is None else table.assign_attrs(max_gap=max_gap)
+
+
 def _fmus(project):
     """Folders of FMUs by name, in the order of their names."""
     return {f.name: f for f in sorted((project / "fmus").glob("*")) if (f / f"{f.name}.py").is_file()}

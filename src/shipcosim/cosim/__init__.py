@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from shipcosim.cosim.engine import Interrupted, RunError, run
+from shipcosim.cosim.feed import interpolated
 from shipcosim.cosim.replay import replay
 from shipcosim.cosim.snapshot import Snapshot, read_snapshot, write_snapshot
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -22,6 +23,7 @@ __all__ = [
     "Interrupted",
     "RunError",
     "Snapshot",
+    "interpolated",
     "read_snapshot",
     "replay",
     "simulate",
