@@ -1,5 +1,7 @@
 """Changes of a system arrive where they should, and wrong ones are refused at once and leave nothing behind."""
 
+import pickle
+
 import pytest
 
 from shipcosim.errors import ShipcosimError
@@ -225,6 +227,24 @@ def test_fmus_of_one_name_and_different_content_live_side_by_side(system, tmp_pa
     assert after.components["other"].fmu.path.name == "hull_2.fmu"
     assert list(after.components["other"].fmu.variables) == ["only"]
     assert "mass" in after.components["hull"].fmu.variables
+
+
+def test_an_fmu_is_packed_once_for_all_its_components(system, plant, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    fmu = (plant.folder / "resources/hull.fmu").rename(tmp_path / "elsewhere/boat.fmu")
+    with system.changes():
+        system.remove("hull")
+        system.add_component("one", fmu)
+        system.add_component("two", fmu)
+    after, _ = written(system, tmp_path)
+    assert {part.fmu.path.name for part in after.components.values()} == {"boat.fmu", "thruster.fmu"}
+    fmu.unlink()
+    assert "The file 'resources/boat.fmu' does not exist." in refused(system.checked)
+
+
+def test_what_runs_can_go_to_another_process(system):
+    checked = system.checked()
+    assert pickle.loads(pickle.dumps(checked)) == checked
 
 
 def test_a_connection_declares_what_it_needs_and_starts_at_its_source(system, tmp_path):

@@ -126,13 +126,14 @@ class Draft:
 
     def resource(self, file):
         """Address under which a file from elsewhere belongs to the package from now on."""
-        folder = self.path.parent / "resources"
-        for name, path in self.package.located.items():
-            if Path(name).name == file.name and cmp(path, file, shallow=False):
-                return quote((self.package.folder.resolve() / name).relative_to(self.path.parent).as_posix())
-        taken = {path.stem for path in (*self.package.held, *folder.glob(f"*{file.suffix}")) if path.parent == folder}
-        taken |= {Path(name).stem for name in self.package.located}
-        name = unused(file.stem, taken) + file.suffix
+        folder, top = self.path.parent / "resources", self.package.folder.resolve()
+        known = {top / name: path for name, path in self.package.located.items()}
+        known |= {path: held for path, held in self.package.held.items() if isinstance(held, Path)}
+        for place, path in known.items():
+            if place.name == file.name and path.is_file() and cmp(path, file, shallow=False):
+                return quote(place.relative_to(self.path.parent).as_posix())
+        names = {path.name for path in (*known, *self.package.held, *folder.glob("*"))}
+        name = unused(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
         self.package.held[folder / name] = file.resolve()
         return quote(f"resources/{name}")
 

@@ -93,7 +93,7 @@ class Package:
             findings.error(place, f"'{uri}' lies outside the package.", "Put the file beside the SSD, in resources/.")
             return None
         elsewhere = [folder / paths[0].name for folder in self.fmus if paths[0].suffix == ".fmu"]
-        found = next((path for path in (*paths, *elsewhere) if path in self.held or path.is_file()), None)
+        found = next((path for path in (*paths, *elsewhere) if self._is_there(path)), None)
         if found is None:
             findings.error(place, f"The file '{uri}' does not exist.", self._present(paths[0]))
             return None
@@ -103,6 +103,10 @@ class Package:
             name = found if found in paths else paths[0]
         self.located[name.relative_to(folder).as_posix()] = found
         return found
+
+    def _is_there(self, path):
+        held = self.held.get(path, path)
+        return isinstance(held, Document) or held.is_file()
 
     def _present(self, path):
         folders = [path.parent, *(self.fmus if path.suffix == ".fmu" else ())]

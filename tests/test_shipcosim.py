@@ -1,0 +1,108 @@
+"""The package as a library: cheap to import, and a system runs in a line."""
+
+import subprocess
+import sys
+
+import pytest
+
+import shipcosim as sc
+
+RAMP = '''
+from shipcosim.fmi import Fmu, Input, Output, Parameter
+
+
+class Ramp(Fmu):
+    """Rises at a rate."""
+
+    more = Input("m/s", "added to the rate")
+    height = Output("m", "height")
+    rate = Parameter(1.0, "m/s", "rate")
+
+    def step(self, t, h):
+        self.height += h * (self.rate + self.more)
+'''
+
+
+@pytest.fixture(scope="module")
+def ramp(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("ramp")
+    (folder / "ramp.py").write_text(RAMP)
+    return sc.build_fmu(folder / "ramp.py", folder)
+
+
+@pytest.fixture
+def system(ramp):
+    system = sc.new("climb")
+    system.add_component("ramp", ramp)
+    system.parameters["ramp.rate"] = 2.0
+    return system
+
+
+def refused(*arguments, **keywords):
+    with pytest.raises(sc.ShipcosimError) as caught:
+        sc.simulate(*arguments, **keywords)
+    return str(caught.value)
+
+
+def test_every_public_name_is_there_and_nothing_is_imported_before():
+    code = (
+        "import sys, shipcosim as sc; loaded = {name.partition('.')[0] for name in sys.modules};"
+        "assert not loaded & {'numpy', 'lxml', 'pydantic', 'xarray', 'fmpy'}, loaded;"
+        "assert set(sc.__all__) <= set(dir(sc)); [getattr(sc, name) for name in sc.__all__]"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="module 'shipcosim' has no attribute 'simulat'"):
+        sc.simulat  # noqa: B018
+
+
+def test_an_fmu_does_not_carry_the_library(ramp):
+    import zipfile
+
+    with zipfile.ZipFile(ramp) as archive:
+        carried = {name.partition("/shipcosim/")[2] for name in archive.namelist()}
+    assert "__init__.py" in carried
+    assert not any(name.startswith(("ssp/", "cosim/", "report/", "scenario")) for name in carried)
+
+
+def test_a_system_runs_in_a_line(system):
+    table = sc.simulate(system, stop_time=1.0, step_size=0.1, output_interval=0.5)
+    assert table["time"].values.tolist() == [0.0, 0.5, 1.0]
+    assert table["ramp.height"].values == pytest.approx([0.0, 1.0, 2.0])
+    assert table["ramp.height"].attrs["units"] == "m"
+
+
+def test_start_values_and_events_come_as_keywords(system):
+    events = [{"time": 0.5, "override": {"ramp.more": -2.0}}]
+    table = sc.simulate(system, stop_time=1.0, step_size=0.1, set={"ramp.rate": 4.0}, events=events)
+    assert table["ramp.height"].values[[5, 10]] == pytest.approx([2.0, 3.0])
+    assert system.parameters["ramp.rate"] == 2.0
+
+
+def test_the_default_experiment_says_what_nobody_else_does(system, tmp_path):
+    system.stop_time, system.step_size = 2.0, 0.5
+    system.write(tmp_path / "climb.ssp")
+    assert sc.simulate(tmp_path / "climb.ssp")["ramp.height"].values[-1] == pytest.approx(4.0)
+    assert sc.simulate(system.checked(), stop_time=1.0).sizes["time"] == 3
+
+
+def test_a_scenario_runs_alone_and_with_what_is_added(system, tmp_path):
+    system.write(tmp_path / "ssp" / "climb")
+    (tmp_path / "scenarios").mkdir()
+    scenario = tmp_path / "scenarios" / "fast.toml"
+    scenario.write_text('system = "climb"\nstop_time = 1.0\nstep_size = 0.25\n[set]\n"ramp.rate" = 8.0\n')
+    assert sc.simulate(scenario=scenario)["ramp.height"].values[-1] == pytest.approx(8.0)
+    table = sc.simulate(scenario=sc.read_scenario(scenario), stop_time=2.0, set={"ramp.more": 1.0})
+    assert table["ramp.height"].values[-1] == pytest.approx(18.0)
+    assert sc.simulate(system, scenario, set={"ramp.rate": 0.0})["ramp.height"].values[-1] == 0.0
+
+
+def test_what_makes_no_sense_is_refused(system):
+    assert "system is missing. Give a system or a scenario." in refused()
+    assert "step_size is missing." in refused(system, stop_time=1.0)
+    assert "stop_time = 'long'." in refused(system, stop_time="long", step_size=0.1)
+    assert "is no multiple of the step size 0.1 s" in refused(system, stop_time=1.05, step_size=0.1)
+    assert "The event does nothing." in refused(system, stop_time=1.0, step_size=0.1, events=[{"time": 0.0}])
+    assert "ramp has no variable 'rat'." in refused(system, stop_time=1.0, step_size=0.1, set={"ramp.rat": 1.0})
