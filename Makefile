@@ -34,7 +34,7 @@ benchmarks: .venv/installed-test
 # torch by its exact version: where a CPU build is at hand pip takes that one, a range would fetch gigabytes of GPU packages
 .venv/installed-test: .venv/installed
 	$(BIN)/python -m pip install --quiet torch==2.13.0
-	$(BIN)/python -m pip install --quiet --editable ".[engines,test]"
+	$(BIN)/python -m pip install --quiet --editable ".[docs,engines,test]"
 	$(BIN)/python -c "open('.venv/installed-test', 'w')"
 
 clean:
