@@ -2,6 +2,7 @@
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models import waves
+from shipcosim.models.clock import tidy_time
 from shipcosim.models.environment import EnvironmentParameters, EnvironmentState, air_velocity, step, water_velocity
 from shipcosim.models.maths import wrap
 
@@ -39,7 +40,7 @@ class Environment(Fmu):
     def step(self, t, h):
         setpoints = self.wind_speed, self.wind_from, self.current_speed, self.current_to
         self.means = step(h, self.means, *setpoints, parameters=self.model)
-        self._write(t + h)
+        self._write(tidy_time(t + h))
 
     def _write(self, t):
         model, means = self.model, self.means

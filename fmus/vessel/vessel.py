@@ -2,6 +2,7 @@
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models import waves
+from shipcosim.models.clock import tidy_time
 from shipcosim.models.hull import HullParameters, hull_loads
 from shipcosim.models.maths import wrap
 from shipcosim.models.vessel import DriftParameters, nu_dot, step, through_water
@@ -90,7 +91,7 @@ class Vessel(Fmu):
     def step(self, t, h):
         tau = self._loads()
         self.state = step(self.state, *tau, self.current_north, self.current_east, h, hull=self.hull)
-        self._meet_waves(t + h)
+        self._meet_waves(tidy_time(t + h))
         self._write()
 
     def _loads(self):
