@@ -7,8 +7,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
+from shipcosim.cosim import ecos, libcosim
 from shipcosim.cosim.engine import Interrupted, RunError, run
 from shipcosim.cosim.feed import interpolated
+from shipcosim.cosim.repeat import repeat
 from shipcosim.cosim.replay import replay
 from shipcosim.cosim.snapshot import Snapshot, read_snapshot, write_snapshot
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -23,16 +25,28 @@ __all__ = [
     "Interrupted",
     "RunError",
     "Snapshot",
+    "engines_missing",
     "interpolated",
     "read_snapshot",
+    "repeat",
     "replay",
     "simulate",
     "write_snapshot",
 ]
 
-ENGINES = {"fmpy": run}
+ENGINES = {"fmpy": run, "libcosim": libcosim.run, "ecos": ecos.run}
 """Functions from a checked system and a scenario to a table."""
-FUTURE_ENGINES = ("libcosim", "ecos")
+
+
+def engines_missing() -> dict[str, Problem]:
+    """Engines that are not installed, with what to install."""
+    missing = {}
+    for name, module in {"libcosim": libcosim, "ecos": ecos}.items():
+        try:
+            module.check_installed()
+        except ShipcosimError as error:
+            missing[name] = error.problems[0]
+    return missing
 
 
 def simulate(
@@ -92,8 +106,6 @@ def simulate(
         On Ctrl-C, with the rows so far.
     """
     if engine not in ENGINES:
-        if engine in FUTURE_ENGINES:
-            raise ShipcosimError(f"The engine '{engine}' is not there yet. Use: {', '.join(ENGINES)}.")
         raise ShipcosimError(f"There is no engine '{engine}'. {suggestion(engine, ENGINES)}")
     if not isinstance(system, System):
         system = read_system(system, scenario.parameter_paths, fmus=[scenario.project / "build" / "fmus"])

@@ -1,0 +1,82 @@
+"""A run again, from what its table says about it."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shipcosim.cosim.engine import run
+from shipcosim.cosim.feed import digest
+from shipcosim.cosim.result import fingerprint, hashes
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario
+from shipcosim.series import read_table
+from shipcosim.ssp import System, read_system, with_values
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def repeat(
+    table: xarray.Dataset | str | os.PathLike,
+    system: System | str | os.PathLike | None = None,
+    *,
+    inputs: xarray.Dataset | None = None,
+    fmus: tuple = (),
+) -> xarray.Dataset:
+    """Repeat a run of our engine: every start value, event and time comes from the attributes of its table.
+
+    On the machine of the first run the table is the same, to the last digit.
+
+    Parameters
+    ----------
+    table : Dataset or path
+        Result of `simulate`.
+    system : System or path, optional
+        That ran, with any start values; where it is not given, the folder of its name in ssp/.
+    inputs : Dataset, optional
+        The table that fed the system's inputs.
+    fmus : tuple of path
+        Folders searched for FMUs that are not beside the SSD; build/fmus where it is not given.
+
+    Raises
+    ------
+    ShipcosimError
+        If system, FMUs or inputs are others than those of the run, or it was continued from a snapshot.
+    """
+    facts = table.attrs if hasattr(table, "attrs") else read_table(table).attrs
+    if "system_sha256" not in facts:
+        raise ShipcosimError(Problem("repeat", "The table does not say how it came about.", "Give a result.nc."))
+    if not isinstance(system, System):
+        system = read_system(system or Path("ssp") / facts["system"], fmus=fmus or [Path("build") / "fmus"])
+    if problems := list(_differences(facts, system, inputs)):
+        raise ShipcosimError(problems)
+    starts = {name: value for name, value in json.loads(facts["start_values"]).items() if value is not None}
+    about = {key: facts[key] for key in ("description", "stop_time", "step_size", "output_interval")}
+    scenario = Scenario.model_validate(_plain(about) | {"events": json.loads(facts["events"])})
+    course = {"inputs": inputs, "order": facts["order"], "start_time": float(facts["start_time"])}
+    again = run(with_values(system, starts, "repeat"), scenario, **course)
+    return again.assign_attrs(scenario=facts["scenario"])
+
+
+def _plain(about):
+    """NetCDF gives numbers of NumPy's types."""
+    return {key: value if isinstance(value, str) else float(value) for key, value in about.items()}
+
+
+def _differences(facts, system, inputs):
+    if "continued_from" in facts:
+        yield Problem("repeat", f"The run was continued from a snapshot at {facts['continued_from']:g} s.")
+    if fingerprint(system) != facts["system_sha256"]:
+        yield Problem("repeat", f"{system.name} is not wired as {facts['system']} was in the run.")
+    wanted, present = json.loads(facts["fmus"]), hashes(system)
+    for name in sorted(wanted.keys() & present.keys()):
+        if wanted[name]["sha256"] != present[name]:
+            yield Problem(
+                "repeat", f"{name}: {wanted[name]['file']} is another FMU than in the run.", "Build that one."
+            )
+    fed = facts.get("inputs_sha256")
+    if fed != (None if inputs is None else digest(inputs)):
+        yield Problem("repeat", "inputs: The table is not the one that fed the run." if fed else "inputs: None fed it.")
