@@ -5,10 +5,13 @@ import math
 import subprocess
 import sys
 import textwrap
+import venv
 from pathlib import Path
 
 import pytest
 from fmpy.fmi1 import FMICallException
+
+from shipcosim.cli.project import build_stale
 
 
 def run(*code, path):
@@ -320,3 +323,44 @@ def test_ecos_runs_it(lag):
             assert simulation.get_integer("lag::steps") == 10
             assert simulation.get_real("lag::gain") == 2.0
             simulation.terminate()
+
+
+def test_all_fmus_of_the_project_run_with_python_numpy_and_fmpy_alone(root, bare_packages):
+    """For 10 s each, through FMPy's own master; nothing else of what is installed here can be found."""
+    fmus = build_stale(root)
+    names = sorted(path.parent.name for path in (root / "fmus").glob("*/*.py") if path.stem == path.parent.name)
+    printed = run(
+        f"names, folder = {names!r}, {str(fmus)!r}",
+        """
+        import importlib.util
+        from fmpy import simulate_fmu
+        for name in names:
+            rows = simulate_fmu(f"{folder}/{name}.fmu", stop_time=10.0, step_size=0.05, output_interval=0.05)
+            print(name, len(rows), all(abs(value) < 1e9 for row in rows.tolist() for value in row))
+        absent = ("shipcosim", "pythonfmu", "scipy", "xarray", "pandas", "pydantic", "pint")
+        assert not any(importlib.util.find_spec(module) for module in absent)
+        """,
+        path=bare_packages,
+    )
+    assert len(names) == 9 and printed.splitlines() == [f"{name} 201 True" for name in names]
+
+
+@pytest.mark.slow
+def test_all_fmus_of_the_project_run_in_an_environment_with_only_fmpy_installed(root, tmp_path):
+    """A fresh virtual environment, NumPy comes with FMPy; skips where no package index can be reached."""
+    fmus = build_stale(root)
+    venv.create(tmp_path / "venv", with_pip=True)
+    python = next(path for path in (tmp_path / "venv").glob("*/python*") if path.is_file())
+    installed = subprocess.run([python, "-m", "pip", "install", "-q", "fmpy"], capture_output=True, text=True)
+    if installed.returncode:
+        pytest.skip(f"needs a package index: {installed.stderr[-200:]}")
+    code = """
+    import sys
+    from fmpy import simulate_fmu
+    for fmu in sys.argv[1:]:
+        print(len(simulate_fmu(fmu, stop_time=5.0, step_size=0.05, output_interval=0.05)))
+    """
+    command = [python, "-I", "-c", textwrap.dedent(code), *map(str, sorted(fmus.glob("*.fmu")))]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["101"] * 9

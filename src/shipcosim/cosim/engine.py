@@ -159,6 +159,8 @@ class Journey:
         known |= {"start_time": self._span.start_time, "engine": "fmpy", "order": self._order}
         if self._inputs is not None:
             known["inputs_sha256"] = digest(self._inputs)
+        if self._span.run_times[-1] < self._span.times[-1]:
+            known["until"] = float(self._span.run_times[-1])
         if self._resume is not None:
             known["continued_from"] = self._resume.time
         remarks = list(dict.fromkeys(text for part in self._parts.values() for text in part.slave.remarks()))

@@ -57,7 +57,7 @@ def repeat(
     about = {key: facts[key] for key in ("description", "stop_time", "step_size", "output_interval")}
     scenario = Scenario.model_validate(_plain(about) | {"events": json.loads(facts["events"])})
     course = {"inputs": inputs, "order": facts["order"], "start_time": float(facts["start_time"])}
-    again = run(with_values(system, starts, "repeat"), scenario, **course)
+    again = run(with_values(system, starts, "repeat"), scenario, until=facts.get("until"), **course)
     return again.assign_attrs(scenario=facts["scenario"])
 
 
