@@ -1,5 +1,6 @@
 """What every test may ask for."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,19 @@ ROOT = Path(__file__).resolve().parents[1]
 def root():
     """Folder of the project."""
     return ROOT
+
+
+@pytest.fixture(scope="session")
+def needs():
+    """Function to call where something is missing: skips the test, or fails it where SHIPCOSIM_NO_SKIP is set (CI)."""
+
+    def missing(what, why=""):
+        reason = f"needs {what}, which is not here. {why}".strip()
+        if os.environ.get("SHIPCOSIM_NO_SKIP"):
+            pytest.fail(reason)
+        pytest.skip(reason)
+
+    return missing
 
 
 @pytest.fixture(scope="session")

@@ -27,7 +27,7 @@ app = typer.Typer(
 
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
-Engine = Annotated[str, typer.Option("--engine", help="What runs the FMUs: fmpy.")]
+Engine = Annotated[str, typer.Option("--engine", help="What runs the FMUs: fmpy (ours), libcosim or ecos.")]
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others; repeatable."),

@@ -5,6 +5,7 @@ it from this step on; an output from what this step puts out.
 """
 
 from collections import defaultdict
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -19,7 +20,7 @@ from shipcosim.scenario import Scenario, whole_steps
 def actions_of(scenario: Scenario, plan: Plan, exchanges: dict, span: Span) -> dict[int, list]:
     """Calls that events on components' variables make, by the number of the step before which they are due."""
     actions = defaultdict(list)
-    for k, change, end, value in _changes(scenario, plan, span):
+    for k, change, end, value in changes(scenario, plan, span):
         if end[0] is not None:
             target, row = target_of(end, plan, exchanges)
             actions[k].append(partial(getattr(target, change), row, *([] if change == "reset" else [value])))
@@ -64,22 +65,31 @@ def settings_over_time(scenario: Scenario, plan: Plan, kind: str, span: Span, fe
     for end in changing:
         column = ends.index(end)
         values[:, column] = fed.get(end[1], values[:, column])
-        changes = [c for c in _changes(scenario, plan, span) if c[2] == end]
-        _bend(values[:, column], in_force.get(end[1]), [(k - span.first, change, v) for k, change, _, v in changes])
+        due = [c for c in changes(scenario, plan, span) if c[2] == end]
+        bend(values[:, column], in_force.get(end[1]), [(k - span.first, change, v) for k, change, _, v in due])
     return values
 
 
 def in_force_after(scenario: Scenario, plan: Plan, span: Span, in_force: dict) -> dict[str, tuple]:
     """Changes of the system's inputs that are in force just before the events at the end of a span act."""
     in_force = {name: change for name, change in in_force.items() if name in plan.system.inputs}
-    for k, change, (component, name), value in _changes(scenario, plan, span):
+    for k, change, (component, name), value in changes(scenario, plan, span):
         if component is None and k < span.last:
             in_force[name] = (0 if change == "override" else 1, value or 0)
     return in_force
 
 
-def _bend(values, in_force, changes):
-    """Lay overrides and biases over the values that an input of the system would have."""
+def bend(values: np.ndarray, in_force: tuple | None, changes: list[tuple]) -> None:
+    """Lay overrides and biases over the values that a signal would have.
+
+    Parameters
+    ----------
+    values : (n,) array
+        At each step; changed in place.
+    in_force : (scale, shift) or None
+        Change that acts from the first step on.
+    changes : list of (step, override or bias or reset, value)
+    """
     plain = values.copy()
     if in_force is not None:
         values[:] = in_force[0] * plain + in_force[1]
@@ -90,7 +100,7 @@ def _bend(values, in_force, changes):
             values[k:] = plain[k:] + (value if change == "bias" else 0)
 
 
-def _changes(scenario, plan, span):
+def changes(scenario: Scenario, plan: Plan, span: Span) -> Iterator[tuple]:
     """(step, override or bias or reset, end, value) in the order in which they act, none from before the span."""
     for event in sorted(scenario.events, key=lambda event: event.time):
         k = whole_steps(event.time - span.start_time, scenario.step_size)

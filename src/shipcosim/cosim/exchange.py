@@ -27,6 +27,14 @@ class Wire:
     table: dict | None = None
     period: int = 1
 
+    def passed_on(self, values):
+        """What arrives of a source over time: (n,) arrays with one value for each base step."""
+        values = values[np.arange(len(values)) // self.period * self.period]
+        passed = values if self.table is None else np.array([self.table.get(v, v) for v in values.tolist()])
+        if (self.factor, self.offset) != (1.0, 0.0):
+            passed = self.factor * passed + self.offset
+        return passed.astype(values.dtype)
+
 
 class Changes:
     """Overrides and biases in force on an array of values: changed = scale * value + shift on some rows."""

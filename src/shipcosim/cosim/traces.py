@@ -1,0 +1,21 @@
+"""What Python FMUs leave behind in this process when an engine other than ours has run them."""
+
+import sys
+from contextlib import contextmanager
+
+
+@contextmanager
+def no_traces():
+    """Put `sys.path` back in the end, and forget modules that were imported from what was added to it.
+
+    PythonFMU adds the folder of each FMU. A later run would otherwise take a module of the same name from there.
+    """
+    before = list(sys.path)
+    try:
+        yield
+    finally:
+        added = tuple(entry for entry in sys.path if entry not in before)
+        sys.path[:] = before
+        for name, module in list(sys.modules.items()):
+            if added and (getattr(module, "__file__", None) or "").startswith(added):
+                del sys.modules[name]
