@@ -183,6 +183,33 @@ def simulate(
 
 
 @command
+def compare(
+    what: Annotated[str, typer.Argument(metavar="SCENARIO_OR_SSP", help="A scenario, as for run, or a system.")],
+    stop_time: Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the scenario's.")] = None,
+    step_size: Annotated[float | None, typer.Option("--step-size", help="[s] Default: the scenario's.")] = None,
+    parameters: Annotated[
+        list[Path] | None, typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins.")
+    ] = None,
+    tolerance: Annotated[
+        float, typer.Option("--tolerance", min=0.0, help="Largest difference between engines, of a signal's range.")
+    ] = 1e-9,
+    as_json: Annotated[bool, typer.Option("--json", help="Report as JSON.")] = False,
+    debug: Debug = False,
+):
+    """Run on every engine that is installed, and on ours with half the step; show by how much each signal differs."""
+    from shipcosim.cli.comparison import matter_of, print_comparison
+    from shipcosim.cli.console import progress_of
+    from shipcosim.cosim.compare import compare as compare_engines
+
+    system, happening = matter_of(what, parameters or (), stop_time, step_size)
+    with progress_of("Comparing") as progress:
+        comparison = compare_engines(system, happening, tolerance=tolerance, progress=progress)
+    print_comparison(comparison, as_json)
+    if not comparison.agree:
+        raise typer.Exit(FAILED)
+
+
+@command
 def check(
     files: Annotated[list[str], typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .toml .csv .nc")],
     as_json: Annotated[bool, typer.Option("--json", help="Report as JSON.")] = False,

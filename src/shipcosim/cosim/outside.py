@@ -20,7 +20,7 @@ from shipcosim.cosim.events import bend, changes, settings_over_time
 from shipcosim.cosim.feed import digest, feed
 from shipcosim.cosim.interrupt import held_back
 from shipcosim.cosim.master import BETWEEN_REPORTS
-from shipcosim.cosim.plan import KINDS, End, label, make_plan
+from shipcosim.cosim.plan import KINDS, label, make_plan
 from shipcosim.cosim.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.slave import BUFFER_TYPES
 from shipcosim.cosim.span import span_of
@@ -291,6 +291,3 @@ def held(values: np.ndarray, steps: np.ndarray, n_rows: int) -> np.ndarray:
     if len(values) == n_rows:
         return values
     return values[np.searchsorted(steps, np.arange(n_rows), side="right") - 1]
-
-
-__all__ = ["Driven", "End", "EngineError", "Job", "held", "indices", "is_linear", "refuse", "run_on"]

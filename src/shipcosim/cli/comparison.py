@@ -1,0 +1,109 @@
+"""What `shipcosim compare` takes and says."""
+
+import json
+import math
+from dataclasses import asdict
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from shipcosim.cli.project import build_stale, experiment_of, find_project, find_scenario
+from shipcosim.cosim.compare import OURS
+from shipcosim.errors import ShipcosimError
+from shipcosim.scenario import check_times, read_scenario
+from shipcosim.ssp import read_system
+
+WIDTH = 160
+"""Columns that the table may take; a narrow terminal breaks its lines, numbers cut short would be no use."""
+
+
+def print_comparison(comparison, as_json):
+    """Table of signals, then what did not run, what explains differences, and the verdict; or all of it as JSON."""
+    if as_json:
+        print(json.dumps(_plain(asdict(comparison) | {"agree": comparison.agree}), indent=2, ensure_ascii=False))
+        return
+    console = Console(highlight=False, soft_wrap=True)
+    console.width = max(console.width, WIDTH)
+    console.print(_table(comparison))
+    for name, seconds in comparison.seconds.items():
+        console.print(f"{name} ran in {seconds:.1f} s.")
+    for name, why in comparison.left_out.items():
+        console.print(Text(f"{name} {'failed' if name in comparison.failed else 'did not run'}: {why}", style="yellow"))
+    for name, remarks in comparison.remarks.items():
+        for remark in remarks:
+            console.print(Text(f"{name}: {remark}", style="yellow"))
+    console.print(*_verdict(comparison))
+
+
+def matter_of(given, parameters=(), stop_time=None, step_size=None):
+    """System and scenario that an argument means.
+
+    Parameters
+    ----------
+    given : str
+        A scenario (.toml, or its name in the project's scenarios/) or a system.
+    parameters : iterable of path
+        Parameter sets over those of the scenario or the system.
+    stop_time, step_size : float, optional
+        In place of those of the scenario or the system. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such thing, or the times do not fit.
+    """
+    if not given.endswith(".toml") and Path(given.partition("#")[0]).exists():
+        project = find_project(Path(given.partition("#")[0]))
+        system = read_system(given, parameters, fmus=[build_stale(project)] if project else ())
+        return system, experiment_of(system, stop_time, step_size)
+    scenario = read_scenario(find_scenario(given))
+    fmus = [build_stale(scenario.project)]
+    system = read_system(scenario.system_path, [*scenario.parameter_paths, *parameters], fmus=fmus)
+    times = {"stop_time": stop_time, "step_size": step_size}
+    scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
+    if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
+        raise ShipcosimError(problems)
+    return system, scenario
+
+
+def _table(comparison):
+    others = [name for name in comparison.seconds if name != OURS]
+    table = Table(box=None, pad_edge=False)
+    table.add_column("signal", no_wrap=True)
+    headings = ["unit", "range", *others, "of range", "at t [s]", "half the step", "of range"]
+    for heading in headings:
+        table.add_column(heading, justify="left" if heading == "unit" else "right", no_wrap=True)
+    for signal in comparison.signals:
+        table.add_row(*map(Text, _row(signal, others)), style="red" if signal.worst > comparison.tolerance else "")
+    return table
+
+
+def _row(signal, others):
+    found = [signal.engines[name] for name in others]
+    worst = max(found, key=lambda d: math.inf if math.isnan(d.relative) else d.relative, default=None)
+    cells = [signal.name, signal.unit, f"{signal.range:.4g}", *(f"{difference.largest:.1e}" for difference in found)]
+    cells += ["", ""] if worst is None else [f"{worst.relative:.1e}", f"{worst.time:.6g}" if worst.largest else ""]
+    return [*cells, f"{signal.step.largest:.1e}", f"{signal.step.relative:.1e}"]
+
+
+def _verdict(comparison):
+    others = [name for name in comparison.seconds if name != OURS]
+    if not others and not comparison.failed:
+        return Text("alone", style="bold yellow"), Text("No other engine ran: only the step-size error is known.")
+    differing = sum(signal.worst > comparison.tolerance for signal in comparison.signals)
+    limit, n = f"{comparison.tolerance:g} of its range", len(comparison.signals)
+    if comparison.agree:
+        said = f"{', '.join([OURS, *others])} agree on each of the {n} signals to {limit}."
+        return Text("agree", style="bold green"), Text(said)
+    return Text("differ", style="bold red"), Text(f"{differing} of {n} signals differ by more than {limit}.")
+
+
+def _plain(value):
+    """The same with numbers that JSON does not know as texts."""
+    if isinstance(value, dict):
+        return {name: _plain(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part) for part in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,269 @@
+"""One run on several engines, and on ours with half the step: by how much each signal differs, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.cosim.engine import RunError
+from shipcosim.errors import ShipcosimError
+
+if TYPE_CHECKING:
+    import xarray
+
+OURS = "fmpy"
+TOLERANCE = 1e-9  # of a signal's range
+TURN = {"rad": 2.0 * np.pi, "deg": 360.0}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Largest difference of a signal between two runs.
+
+    Parameters
+    ----------
+    largest : float
+        In the signal's unit. NaN where a value is no number.
+    relative : float
+        To the signal's range in our run; the largest itself where that is 0.
+    time : float
+        When. [s]
+    """
+
+    largest: float
+    relative: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A signal in all runs.
+
+    Parameters
+    ----------
+    name, unit : str
+        As in the table.
+    range : float
+        Largest minus smallest value in our run.
+    engines : dict of str to Difference
+        Of each other engine from ours.
+    step : Difference
+        Of our run with half the step from that with the whole one.
+    """
+
+    name: str
+    unit: str
+    range: float
+    engines: Mapping[str, Difference]
+    step: Difference
+
+    @property
+    def worst(self) -> float:
+        """Largest relative difference between engines; infinite where a value is no number."""
+        found = [difference.relative for difference in self.engines.values()]
+        return max((np.inf if np.isnan(value) else value for value in found), default=0.0)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What came out.
+
+    Parameters
+    ----------
+    signals : list of Signal
+        The largest difference between engines first, then the largest step-size error.
+    seconds : dict of str to float
+        How long each engine that ran took, ours first. [s]
+    left_out : dict of str to str
+        Why an engine did not run.
+    remarks : dict of str to list of str
+        What explains the differences of an engine, in words; empty where there are none to explain.
+    tolerance : float
+        Relative difference from which on a signal differs.
+    failed : tuple of str
+        Engines that started and did not get to the end.
+    """
+
+    signals: list[Signal]
+    seconds: Mapping[str, float]
+    left_out: Mapping[str, str]
+    remarks: Mapping[str, list[str]]
+    tolerance: float
+    failed: tuple[str, ...] = ()
+
+    @property
+    def agree(self) -> bool:
+        """Whether all engines that started agree on every signal."""
+        return not self.failed and all(signal.worst <= self.tolerance for signal in self.signals)
+
+
+def compare(
+    system,
+    scenario,
+    *,
+    inputs: xarray.Dataset | None = None,
+    tolerance: float = TOLERANCE,
+    progress: Callable[[int, int], None] | None = None,
+) -> Comparison:
+    """Run on every engine that is installed, and on ours with half the step.
+
+    Parameters
+    ----------
+    system, scenario, inputs
+        As for `shipcosim.cosim.simulate`.
+    tolerance : float
+        Difference from which on a signal differs, relative to its range.
+    progress : callable, optional
+        Called with (parts done, parts in all) of all runs.
+
+    Raises
+    ------
+    ShipcosimError
+        If our own engine cannot run it.
+    """
+    from shipcosim.cosim import ENGINES, engines_missing
+
+    left_out = {name: str(problem) for name, problem in engines_missing().items()}
+    names = [name for name in ENGINES if name not in left_out]
+    runs = _Runs(system, inputs, progress, len(names) + 2)
+    scenario = scenario.model_copy(update={"output_interval": None})
+    tables = {OURS: runs.run(OURS, scenario)}
+    half = runs.run(OURS, halved(scenario), weight=2)
+    seconds, failed = {OURS: runs.seconds[0]}, []
+    for name in (name for name in names if name != OURS):
+        try:
+            tables[name] = runs.run(name, scenario)
+            seconds[name] = runs.seconds[-1]
+        except ShipcosimError as error:
+            left_out[name] = str(error)
+            failed += [name] if isinstance(error, RunError) else []
+    ours = tables.pop(OURS)
+    signals = [_signal(name, ours, tables, half) for name in ours.data_vars]
+    signals.sort(key=lambda signal: (signal.worst, signal.step.relative), reverse=True)
+    remarks = {name: explained(ours, table, scenario.step_size, tolerance) for name, table in tables.items()}
+    return Comparison(signals, seconds, left_out, remarks, tolerance, tuple(failed))
+
+
+def halved(scenario):
+    """The scenario with half the step and a row at every whole one."""
+    step = scenario.step_size
+    return scenario.model_copy(update={"step_size": step / 2.0, "output_interval": step})
+
+
+class _Runs:
+    """Runs one after the other, timed, with one progress over all of them."""
+
+    def __init__(self, system, inputs, progress, n_parts):
+        self.system, self.inputs, self.progress, self.n_parts = system, inputs, progress, n_parts
+        self.seconds, self._done = [], 0
+
+    def run(self, engine, scenario, weight=1):
+        from shipcosim.cosim import simulate
+
+        def report(done, total):
+            if self.progress is not None:
+                self.progress(self._done + weight * done / total, self.n_parts)
+
+        begin = perf_counter()
+        try:
+            return simulate(self.system, scenario, engine=engine, inputs=self.inputs, progress=report)
+        finally:
+            self._done += weight
+            self.seconds.append(perf_counter() - begin)
+
+
+def _signal(name, ours, tables, half):
+    values = ours[name].values.astype(float)
+    spread = float(np.ptp(values)) if len(values) else 0.0
+    engines = {engine: _difference(name, ours, table, spread) for engine, table in tables.items()}
+    step = _difference(name, ours, half, spread)
+    return Signal(str(name), ours[name].attrs.get("units", ""), spread, engines, step)
+
+
+def _difference(name, ours, theirs, spread):
+    distance = np.abs(_distance(name, ours, theirs))
+    row = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
+    largest = float(distance[row])
+    return Difference(largest, largest / spread if spread else largest, float(ours["time"].values[row]))
+
+
+def _distance(name, ours, theirs):
+    """Theirs minus ours, angles the shorter way round; (n,)."""
+    distance = theirs[name].values.astype(float) - ours[name].values.astype(float)
+    turn = TURN.get(ours[name].attrs.get("units"))
+    return distance if turn is None else (distance + turn / 2.0) % turn - turn / 2.0
+
+
+def explained(
+    ours: xarray.Dataset, theirs: xarray.Dataset, step_size: float, tolerance: float = TOLERANCE
+) -> list[str]:
+    """What explains the differences of a run from ours, in words.
+
+    Only the signals that differ first are looked at: what differs later may follow from them.
+
+    Parameters
+    ----------
+    ours, theirs : Dataset
+        Tables of the same signals and times.
+    step_size : float
+        Of both. [s]
+    tolerance : float
+        Relative to a signal's range.
+
+    Returns
+    -------
+    list of str
+        Empty if no signal differs.
+    """
+    first = {}
+    for name in ours.data_vars:
+        spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
+        beyond = np.flatnonzero(~(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
+        if len(beyond):
+            first[str(name)] = int(beyond[0])
+    if not first:
+        return []
+    row = min(first.values())
+    names = [name for name in first if first[name] == row]
+    time = float(ours["time"].values[row])
+    where = "from the start" if row == 0 else f"from t = {time:.9g} s on"
+    listed = ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+    causes = list(dict.fromkeys(_cause(name, ours, theirs, step_size) for name in names[:5]))
+    return [f"{len(first)} signals differ, {where}: {listed}.", *causes]
+
+
+def _cause(name, ours, theirs, step_size):
+    """The simplest relation that makes most of a signal's difference disappear."""
+    x, y = (table[name].values.astype(float) for table in (ours, theirs))
+    time, distance = ours["time"].values, _distance(name, ours, theirs)
+    largest = np.max(np.abs(distance))
+    if not np.isfinite(largest):
+        return f"{name} is no number somewhere."
+    if len(x) > 2 and np.ptp(x) > 0.0:
+        if np.max(np.abs(y[1:] - x[:-1])) < 0.01 * largest:
+            return f"{name} comes one row late: a connection passes it on a step later."
+        if np.max(np.abs(y[:-1] - x[1:])) < 0.01 * largest:
+            return f"{name} comes one row early: a component gets it within the step, not at its end."
+        factor, offset = np.polyfit(x, y, 1)
+        if np.max(np.abs(factor * x + offset - y)) < 0.01 * largest:
+            return (
+                f"{name} is ours times {factor:.6g} plus {offset:.6g}: "
+                "a transformation, a unit or a parameter is not applied."
+            )
+        drift = _drift_of_sums(time, step_size)
+        if np.max(np.abs(np.gradient(x, time) * drift - distance)) < 0.3 * largest:
+            return f"{name} differs as its rate times {drift[-1]:.1e} s: the engine's time, a sum of steps, drifts."
+    if np.abs(distance[0]) > 0.0:
+        return f"{name} differs at the start: a parameter or start value is not applied, or settled otherwise."
+    return f"{name} was the same before: something is decided otherwise there, e.g. a sample, a limit or an event."
+
+
+def _drift_of_sums(time, step_size):
+    """What is wrong with a time that was summed up step by step, at each time; (n,). [s]"""
+    counts = np.rint(time / step_size).astype(int)
+    summed = np.concatenate([[0.0], np.cumsum(np.full(counts[-1], step_size))])
+    return summed[counts] - time
