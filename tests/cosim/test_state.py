@@ -82,6 +82,7 @@ PARTS = {
     "plant": ("integrator", {"y_start": 0.3}),
     "law": ("gain", {"factor": -0.9, "offset": 0.123}),
     "slow": ("lag", {"time_constant": 1.3}, 0.2),
+    "slower": ("lag", {"time_constant": 0.7}, 0.3),
     "clock": "clock",
     "meter": "meter",
     "gain": ("gain", {"u": 1.0}),
@@ -90,6 +91,7 @@ LINKS = [
     "plant.y -> law.u",
     "law.y -> plant.u",
     "plant.y -> slow.u",
+    "slow.y -> slower.u",
     "clock.count -> meter.number",
     "clock.odd -> meter.flag",
     "clock.text -> meter.text",
@@ -105,7 +107,7 @@ EVENTS = [
 
 @pytest.fixture
 def system(make_system):
-    """All types, a slow component, a loop, an input from outside, one that only events change."""
+    """All types, slow components, a loop, an input from outside, one that only events change."""
     return make_system(PARTS, LINKS, {"push": ("input", "Real", "")})
 
 
@@ -141,11 +143,11 @@ def test_what_a_file_holds_is_what_was_stored(system, make_scenario, tmp_path):
 
 def test_variations_fork_from_one_state(system, make_scenario):
     """The future may have other events; overrides in force stay; what lies before is not done again."""
-    stored, base = [], make_scenario(1.0, 0.1, events=[{"time": 0.2, "override": {"push": 2.0, "gain.u": 4.0}}])
+    stored, base = [], make_scenario(1.2, 0.1, events=[{"time": 0.2, "override": {"push": 2.0, "gain.u": 4.0}}])
     simulate(system, base, until=0.5, store=stored.append)
     for shift in (0.0, 1.0):
         events = [{"time": 0.1, "override": {"push": 99.0}}, {"time": 0.8, "bias": {"plant.y": shift}}]
-        forked = simulate(system, make_scenario(1.6, 0.1, events=events), resume=stored[0])
+        forked = simulate(system, make_scenario(1.8, 0.1, events=events), resume=stored[0])
         assert np.all(forked["push"] == 2.0) and np.all(forked["gain.u"] == 4.0)
         jump = np.diff(forked["plant.y"].sel(time=[0.8, 0.9], method="nearest"))[0]
         assert abs(jump - shift) < 0.2
@@ -154,8 +156,8 @@ def test_variations_fork_from_one_state(system, make_scenario):
 def test_a_table_feeds_the_rest_of_a_stored_run(system, make_scenario):
     from shipcosim.series import make_table
 
-    times = np.linspace(0.0, 2.0, 41)
-    table, scenario, stored = make_table(times, [("push", np.sin(times), "", "")]), make_scenario(2.0, 0.1), []
+    times = np.linspace(0.0, 2.4, 49)
+    table, scenario, stored = make_table(times, [("push", np.sin(times), "", "")]), make_scenario(2.4, 0.1), []
     whole = simulate(system, scenario, inputs=table)
     first = simulate(system, scenario, inputs=table, until=0.9, store=stored.append)
     assert_same(whole, first, simulate(system, scenario, inputs=table, resume=stored[0]))
@@ -173,7 +175,7 @@ def test_components_that_cannot_be_stored_are_named_before_the_run(pythonfmu_sys
 @pytest.fixture
 def stored(system, make_scenario) -> Snapshot:
     taken = []
-    simulate(system, make_scenario(2.0, 0.1), until=0.5, store=taken.append)
+    simulate(system, make_scenario(2.4, 0.1), until=0.5, store=taken.append)
     return taken[0]
 
 
@@ -182,7 +184,7 @@ def test_a_state_goes_on_only_in_the_system_that_it_is_of(system, stored, make_s
         with pytest.raises(ShipcosimError, match=said):
             simulate(other, scenario, resume=stored)
 
-    scenario = make_scenario(2.0, 0.1)
+    scenario = make_scenario(2.4, 0.1)
     refused(with_values(system, {"law.factor": 3.0}), scenario, "law.factor was -0.9 and would now be 3.0.*An event")
     refused(system, make_scenario(2.0, 0.05), "steps of 0.1 s, this one has 0.05 s")
     refused(system, make_scenario(0.5, 0.1), "would go from 0.5 s to 0.5 s")

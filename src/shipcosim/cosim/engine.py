@@ -132,9 +132,8 @@ class Journey:
 
     def snapshot(self):
         """State of the whole system at the end of the span. Raises RunError if an FMU does not give its state."""
-        running = self._plan, self._exchanges, self._texts, self._parts
         try:
-            return take(*running, self._span, self._scenario, self._in_force)
+            return take(self._plan, self._exchanges, self._parts, self._span, self._scenario, self._in_force)
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=True)) from failure
 

@@ -61,7 +61,7 @@ def _changed_values(snapshot, system, where):
     ]
 
 
-def take(plan, exchanges, texts, parts, span, scenario, in_force):
+def take(plan, exchanges, parts, span, scenario, in_force):
     """Snapshot at the end of a span; `in_force` are the changes that were in force at its beginning."""
     outputs, inputs, changes = {}, {}, in_force_after(scenario, plan, span, in_force)
     for kind, exchange in exchanges.items():
@@ -80,7 +80,6 @@ def take(plan, exchanges, texts, parts, span, scenario, in_force):
         outputs=outputs,
         inputs=inputs,
         changes=changes,
-        texts={f"{text.target.name}.{text.input.name}": text.last for text in texts},
         states={name: _blamed(part, part.slave.state) for name, part in parts.items()},
     )
 
@@ -100,7 +99,7 @@ def put_back(snapshot, plan, exchanges, texts, parts):
         exchange.transfer(0)
         _fill(exchange.plain, inputs, snapshot.inputs)
     for text in texts:
-        text.last = snapshot.texts.get(f"{text.target.name}.{text.input.name}")
+        text.last = None
 
 
 def _fill(values, names, known):

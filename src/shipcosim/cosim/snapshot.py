@@ -34,8 +34,6 @@ class Snapshot:
         Last values of the components' outputs, and what the connections carried to their inputs, by signal.
     changes : dict of str to (scale, shift)
         Overrides (0, value) and biases (1, value) in force, by signal.
-    texts : dict of str to str
-        What connections between String variables carried last, by the input.
     states : dict of str to bytes
         State of each component's FMU.
     """
@@ -49,7 +47,6 @@ class Snapshot:
     outputs: dict
     inputs: dict
     changes: dict
-    texts: dict
     states: dict
 
     @property
