@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from shipcosim.cosim import RunError, simulate
+from shipcosim.cosim.instances import Instances
 from shipcosim.ssp import read_system
 
 CODE = """
@@ -16,6 +17,7 @@ CODE = """
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 typedef void (*Log)(void*, int, const char*, const char*);
 typedef struct { double u, y; float half; int64_t count; bool odd; Log log; } Tank;
 
@@ -52,10 +54,19 @@ int fmi3DoStep(Tank* tank, double t, double h, bool keep, bool* event, bool* end
   tank->log(0, 3, "error", "the tank is 100% full");
   return 3;
 }
+int fmi3GetFMUState(Tank* tank, void** state) { *state = memcpy(malloc(sizeof(Tank)), tank, sizeof(Tank)); return 0; }
+int fmi3SetFMUState(Tank* tank, void* state) { memcpy(tank, state, offsetof(Tank, log)); return 0; }
+int fmi3FreeFMUState(Tank* tank, void** state) { free(*state); *state = 0; return 0; }
+int fmi3SerializedFMUStateSize(Tank* tank, void* state, size_t* size) { *size = offsetof(Tank, log); return 0; }
+int fmi3SerializeFMUState(Tank* tank, void* state, uint8_t* data, size_t size) { memcpy(data, state, size); return 0; }
+int fmi3DeserializeFMUState(Tank* tank, const uint8_t* data, size_t size, void** state) {
+  *state = memcpy(calloc(1, sizeof(Tank)), data, size);
+  return 0;
+}
 """
 DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="tank" instantiationToken="{tank}">
-  <CoSimulation modelIdentifier="tank"/>
+  <CoSimulation modelIdentifier="tank" canGetAndSetFMUState="true" canSerializeFMUState="true"/>
   <ModelVariables>
     <Float64 name="u" valueReference="1" causality="input" start="0"/>
     <Float64 name="y" valueReference="2" causality="output"/>
@@ -111,6 +122,22 @@ def test_fmi3_values_of_all_sizes_travel(tanks, make_scenario):
     assert np.allclose(table["a.y"], 0.5 * k) and np.allclose(table["a.half"], 0.25 * k)
     assert np.allclose(table["b.y"], 0.125 * 0.25 * k * (k - 1) / 2)
     assert np.array_equal(table["a.count"], k) and np.array_equal(table["a.odd"], k % 2 == 1)
+
+
+def test_fmi3_state_is_stored_and_restored(tanks, make_scenario, tmp_path):
+    scenario = make_scenario(1.0, 0.125, set={"a.u": 4.0})
+    whole = simulate(tanks, scenario)
+    simulate(tanks, scenario, until=0.375, store=tmp_path / "tanks.state")
+    rest = simulate(tanks, scenario, resume=tmp_path / "tanks.state")
+    assert all(np.array_equal(rest[name], whole[name][3:]) for name in whole)
+
+
+def test_an_fmu_that_cannot_be_reset_is_made_anew(tanks):
+    with Instances() as instances:
+        first = instances.of(tanks.components["a"])
+        again = instances.of(tanks.components["a"])
+        assert again is not first
+        again.enter_initialisation(0.0, 1.0)
 
 
 def test_fmi3_error_arrives_with_its_message(tanks, make_scenario):
