@@ -166,6 +166,22 @@ def test_states_that_do_not_fit_are_refused(integrator, starts, states, said):
         replay(integrator, record([0.0, 9.0], [0.0, 0.0]), starts, 1.0, states=states, step_size=0.1)
 
 
+@pytest.mark.parametrize(
+    "times, said",
+    [
+        ({"duration": 0.25}, "duration = 0.25 s is no whole number of steps of 0.1 s.*nearest would be 0.2 s"),
+        ({"duration": -1.0}, "duration = -1 s"),
+        ({"output_interval": 0.15}, "output_interval = 0.15 s is no whole"),
+        ({"step_size": 0.0}, "No step size"),
+        ({"starts": [-5.0]}, "segment at -5 s ends before time 0"),
+    ],
+)
+def test_times_of_segments_have_to_fit_the_steps(integrator, times, said):
+    options = {"starts": [0.0], "duration": 1.0, "step_size": 0.1} | times
+    with pytest.raises(ShipcosimError, match=said):
+        replay(integrator, record([-9.0, 9.0], [0.0, 0.0]), **options)
+
+
 def test_a_segment_that_fails_is_named(make_system):
     system = make_system({"f": ("failing", {"when": 12.0}), "sum": "integrator"}, ["ramp -> sum.u"], FED)
     with pytest.raises(RunError, match=r"segment 1 at 10 s: f: failed in the step from t = 12 s"):

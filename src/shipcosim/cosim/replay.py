@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -14,7 +15,7 @@ from shipcosim.cosim.instances import Instances
 from shipcosim.cosim.interrupt import held_back
 from shipcosim.cosim.span import span_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario import Scenario
+from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.series import conversion
 from shipcosim.ssp import System, with_values
 
@@ -94,7 +95,7 @@ def replay(
             with _named(number, starts):
                 journey.run(instances, check_interrupt)
             journey.end()
-            table = table if table is not None else _Stacked(journey, starts, signals)
+            table = table if table is not None else _Stacked(journey, starts, segments.states, signals)
             table.put(number, journey)
             if progress is not None:
                 progress(number + 1, len(starts))
@@ -106,8 +107,8 @@ class _Segments:
 
     def __init__(self, system, inputs, starts, duration, step_size, output_interval, states):
         step_size = step_size or system.experiment.step_size
-        if not step_size:
-            raise ShipcosimError(Problem("replay", "No step size is known.", "Give step_size in seconds."))
+        if problems := list(_bad_times(starts, duration, step_size, output_interval)):
+            raise ShipcosimError(problems)
         self.system, self.inputs, self.starts, self.duration = system, inputs, starts, duration
         self.how = {"step_size": step_size, "output_interval": output_interval}
         self.states = {name: _per_segment(name, given, system, len(starts)) for name, given in states.items()}
@@ -130,6 +131,20 @@ class _Segments:
         system = with_values(self.system, {name: values[number] for name, values in self.states.items()}, "states")
         scenario = Scenario(description=f"Replay of {system.name}", stop_time=start + self.duration, **self.how)
         return Journey(system, scenario, span_of(scenario, start), inputs=self.inputs)
+
+
+def _bad_times(starts, duration, step_size, output_interval):
+    """What is wrong with the times of all segments."""
+    if not step_size or not step_size > 0.0:
+        yield Problem("replay", "No step size above 0 is known.", "Give step_size in seconds.")
+        return
+    for name, time in (("duration", duration), ("output_interval", output_interval or step_size)):
+        if not (whole_steps(time, step_size) or 0) > 0:
+            found = f"{name} = {time:g} s is no whole number of steps of {step_size:g} s."
+            yield Problem("replay", found, f"The nearest would be {max(1, round(time / step_size)) * step_size:.9g} s.")
+    if len(early := starts[starts + duration <= 0.0]):
+        found = f"the segment at {early[0]:g} s ends before time 0."
+        yield Problem("replay", found, "Shift the times of the table: runs end after 0.")
 
 
 def _per_segment(name, given, system, n):
@@ -164,7 +179,7 @@ def _named(number, starts):
 class _Stacked:
     """Rows of all segments: (segments, rows) an array for each signal."""
 
-    def __init__(self, journey, starts, signals):
+    def __init__(self, journey, starts, states, signals):
         columns = {name: (values, about) for name, values, *about in journey.columns()}
         if unknown := [name for name in signals or () if name not in columns]:
             found = f"there is no signal '{unknown[0]}'."
@@ -173,7 +188,7 @@ class _Stacked:
         self.starts, self.time = starts, journey.row_times - starts[0]
         self.about = {name: columns[name][1] for name in self.names}
         self.arrays = {name: np.empty((len(starts), len(self.time)), columns[name][0].dtype) for name in self.names}
-        self.attributes = journey.attributes(complete=True)
+        self.attributes = journey.attributes(complete=True) | {"states": json.dumps(states)}
 
     def put(self, number, journey):
         """Keep the rows of a segment."""
@@ -182,7 +197,7 @@ class _Stacked:
                 self.arrays[name][number] = values
 
     def dataset(self):
-        """The table. Its start values are those of the first segment."""
+        """The table. Its attributes are those of the first segment, with the `states` of all."""
         import xarray
 
         variables = {
