@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cosim import ecos, libcosim
@@ -124,6 +125,9 @@ def _course(start_time, until, resume, store):
     if resume is not None and not isinstance(resume, Snapshot):
         resume = read_snapshot(resume)
     if store is not None and not callable(store):
+        if not Path(store).absolute().parent.is_dir():
+            found = "There is no such folder to store the state in."
+            raise ShipcosimError(Problem(str(store), found, "Make it first."))
         store = partial(write_snapshot, path=store)
     course = {"start_time": start_time or None, "until": until, "resume": resume, "store": store}
     return {name: value for name, value in course.items() if value is not None}
