@@ -3,9 +3,8 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.clock import samples_due
 from shipcosim.models.hull import HullParameters
-from shipcosim.models.load_tables import DRIFT_33M9
 from shipcosim.models.prediction import predict
-from shipcosim.models.vessel import Vessel
+from shipcosim.models.vessel import DriftParameters, Vessel
 from shipcosim.models.waves import components, drift_table, mean_drift
 from shipcosim.models.wind import WindParameters
 
@@ -46,9 +45,7 @@ class Predictor(Fmu):
 
     hull = Parameters(HullParameters)
     wind = Parameters(WindParameters)
-    drift_table = Parameter(
-        DRIFT_33M9, "1", "rows 'omega heading X Y N': mean wave drift load per squared amplitude, as for the vessel"
-    )
+    drift = Parameters(DriftParameters)
     prediction_period = Parameter(1.0, "s", "time between predictions", minimum=0.01)
     longest_step = Parameter(1.0, "s", "longest step of the integration", minimum=0.01)
 
@@ -67,7 +64,7 @@ class Predictor(Fmu):
         at_10, at_30, at_60 = predict(
             Vessel(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat),
             (self.tau_thrusters_X, self.tau_thrusters_Y, self.tau_thrusters_N),
-            mean_drift(self.psi_hat, components(*sea), drift_table(self.drift_table)),
+            mean_drift(self.psi_hat, components(*sea), drift_table(self.drift.drift_table)),
             (self.wind_north, self.wind_east),
             (self.current_north, self.current_east),
             horizons=HORIZONS,

@@ -14,7 +14,23 @@ import numpy as np
 import pytest
 
 import shipcosim.models
-from shipcosim.models import drive, gusts, hull, kinematics, maths, propeller, thruster, vessel, waves, wind
+from shipcosim.models import (
+    allocation,
+    control,
+    drive,
+    gusts,
+    hull,
+    kinematics,
+    maths,
+    observer,
+    prediction,
+    propeller,
+    reference,
+    thruster,
+    vessel,
+    waves,
+    wind,
+)
 from shipcosim.models.ships import parameters
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
@@ -48,12 +64,44 @@ class Case:
         return f"{self.function.__module__.rpartition('.')[2]}.{self.function.__name__}"
 
 
+DP_SHIP, NOISE, UNITS = observer.DpShip(), observer.ObserverParameters(), allocation.AllocationParameters()
+LOOP = [
+    (1.0, -2.0, 3.0, 0.1, -0.2, 0.02, 3.0, 2.0, 2.9, 0.2, -0.1, 0.01, 0.1, 0.0, -0.1),
+    (9.0, 8.0, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.5),
+]
+OBSERVER = dict(ship=DP_SHIP, parameters=NOISE, design=observer.design(DP_SHIP, NOISE))
+AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=wind.WindParameters())
+REQUESTS = [(5e3, -4e3, 2e4), (9e3, 7e4, 1e5), (-2e5, 0.0, 9e5)]
+
+
 def of_vessel(*row):
     return vessel.Vessel(*row[:6]), *row[6:]
 
 
 def of_thruster(*row):
     return drive.Thruster(*row[:5], False), *row[5:]
+
+
+def of_reference(*row):
+    return reference.ReferenceState(*row[:12]), row[12:15]
+
+
+def of_observer(*row):
+    return observer.Estimate(*row), observer.Measurement(*row[3:9]), row[9:12]
+
+
+def of_control(*row):
+    return control.ControlState(*row[:9]), observer.Estimate(*row), control.Desired(*row[6:]), row[:3], row[3:6]
+
+
+def of_allocation(*row):
+    state = allocation.AllocationState(*row[:3], *row[:3], False)
+    return state, row[3:6], (True, row[6], True)
+
+
+def of_prediction(*row):
+    ship = vessel.Vessel(*row)
+    return ship, (1e3, 2e3, -3e4), (0.0, 5e2, 1e3), (-6.0, 3.0), (0.2, -0.1)
 
 
 CASES = [
@@ -110,6 +158,17 @@ CASES = [
     Case(waves.mean_drift, ANGLES, lambda psi: (psi, SEA, DRIFT)),
     Case(waves.motion, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA), BOX),
     Case(waves.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
+    Case(reference.critically_damped, [(2.0, -0.3, 0.01)], lambda *e: (13.0, *e), dict(frequency=0.05)),
+    Case(reference.step, LOOP, of_reference, dict(h=0.05, parameters=reference.ReferenceParameters(speed_max=0.3))),
+    Case(observer.step, LOOP, of_observer, OBSERVER),
+    Case(control.step, LOOP, of_control, dict(h=0.1, ship=DP_SHIP, parameters=control.ControlParameters())),
+    Case(
+        allocation.step,
+        [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
+        of_allocation,
+        dict(h=0.5, parameters=UNITS, design=allocation.design(UNITS)),
+    ),
+    Case(prediction.predict, SHIP, of_prediction, AHEAD),
     Case(thruster.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
 ]
 

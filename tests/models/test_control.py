@@ -90,21 +90,21 @@ def test_integral_takes_up_a_constant_force_at_any_heading():
 
 
 def test_far_away_the_ship_is_pulled_no_harder_than_at_the_limit():
-    near, far = (ask(Estimate(distance, 0.0, 0.0), state=at_rest(CALM)) for distance in (8.0, 800.0))
+    near, far = (ask(Estimate(distance, 0.0, 0.0), state=at_rest(CALM)) for distance in (2.5, 800.0))
     assert far.tau_X == pytest.approx(near.tau_X)
-    assert abs(near.tau_X) > abs(ask(Estimate(7.0, 0.0, 0.0)).tau_X)
+    assert abs(near.tau_X) > abs(ask(Estimate(2.4, 0.0, 0.0)).tau_X)
 
 
 def test_what_was_integrated_while_overloaded_does_not_carry_the_ship_past_her_place():
     def storm(t):
-        return (25e3, 0.0, 0.0) if t < 200.0 else CALM
+        return (25e3, 0.0, 0.0) if t < 100.0 else CALM
 
     never = replace(PARAMETERS, missed_force_max=1e12, position_error_max=1e6)
     wound_up = sail((0.0, 0.0, 0.0), 1500.0, force=storm, most=20e3, parameters=never)
     rows = sail((0.0, 0.0, 0.0), 1500.0, force=storm, most=20e3)
-    assert wound_up[2000:, 0].min() < -50.0
-    assert rows[1999, 0] > 100.0
-    assert rows[2000:, 0].min() > -3.0  # of 200 m
+    assert wound_up[1000:, 0].min() < -10.0
+    assert rows[999, 0] > 20.0
+    assert rows[1000:, 0].min() > -2.0
     assert np.abs(rows[-1]).max() < 0.05
 
 

@@ -119,7 +119,7 @@ def design(parameters):
     """
     p = parameters
     b = effect(p)
-    matrix = np.stack([_vector(*unit) for unit in b], -1)
+    matrix = np.stack(np.broadcast_arrays(*(_vector(*unit) for unit in b)), -1)
     price = _vector(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight) ** -0.5
     inverses = [
         _inverse(matrix, price, lever, [(k >> unit) & 1 for unit in range(3)])

@@ -33,7 +33,11 @@ class ControlParameters:
         minimum=0.0,
     )
     position_error_max: float = quantity(
-        8.0, "m", "position error beyond which the restoring force grows no more", "assumed", minimum=1e-3
+        2.5,
+        "m",
+        "position error beyond which the restoring force grows no more",
+        "tuned: the force stays within reach of two units, which else lose her after the third has failed",
+        minimum=1e-3,
     )
     heading_error_max: float = quantity(
         20.0 * math.pi / 180.0,

@@ -1,0 +1,184 @@
+"""The array form of the DP loop: against the FMUs stepped one by one, and whether she holds."""
+
+import importlib.util
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shipcosim.models.dp_loop import DpSystem, simulate
+
+NORTH_EAST = math.pi / 4.0
+MODERATE = dict(significant_wave_height=0.3, peak_period=5.0, waves_from=NORTH_EAST)
+ROUGH = dict(significant_wave_height=0.5, peak_period=6.0, waves_from=NORTH_EAST)
+WIND_8 = dict(wind_speed=8.0, wind_from=NORTH_EAST, current_speed=0.3, current_to=math.pi)
+WIND_10 = dict(wind_speed=10.0, wind_from=NORTH_EAST, current_speed=0.5, current_to=math.pi)
+LEGS = [
+    (0.0, dict(x_set=20.0)),
+    (250.0, dict(y_set=-20.0)),
+    (450.0, dict(psi_set=-NORTH_EAST)),
+    (650.0, dict(x_set=0.0)),
+    (850.0, dict(y_set=0.0, psi_set=0.0)),
+]
+CORNERS = [(250, 20, 0, 0), (450, 20, -20, 0), (650, 20, -20, -NORTH_EAST), (850, 0, -20, -NORTH_EAST), (1100, 0, 0, 0)]
+
+
+def with_seeds(seeds, **environment):
+    system, seeds = DpSystem(), np.asarray(seeds)
+    return replace(
+        system,
+        environment=replace(system.environment, seed=seeds, **environment),
+        sensors=replace(system.sensors, seed=seeds + 100),
+    )
+
+
+def worst_at_corners(run):
+    """Largest distance along north or east and largest turn in the last 20 s of each leg: (legs, m) each. [m, deg]"""
+    places, turns = [], []
+    for end, x, y, psi in CORNERS:
+        rows = (run["time"] > end - 20.0 - 1e-6) & (run["time"] < end + 1e-6)
+        north, east = run["vessel.x"][rows] - x, run["vessel.y"][rows] - y
+        places.append(np.maximum(np.abs(north), np.abs(east)).max(axis=0))
+        turns.append(np.abs(run["vessel.psi"][rows] - psi).max(axis=0))
+    return np.array(places), np.degrees(turns)
+
+
+@pytest.fixture(scope="module")
+def fmus(root):
+    """Makes the class of an FMU."""
+
+    def load(name):
+        path = root / "fmus" / name / f"{name}.py"
+        spec = importlib.util.spec_from_file_location(f"fmu_{name}", path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return next(c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name)
+
+    return load
+
+
+WAVES = ("wave_height", "wave_period", "wave_from", "wave_peak_enhancement", "wave_seed")
+UNITS = ("port", "starboard", "tunnel")
+LOADS = ("tau_X", "tau_Y", "tau_N")
+SHIP = ("x", "y", "psi", "u", "v", "r")
+FLOW = ("u_r", "v_r", "r")
+WATER = ("wind_north", "wind_east", "current_north", "current_east")
+APPARENT = ("apparent_wind_speed", "apparent_wind_from")
+MEASURED = tuple(f"{name}_meas" for name in (*SHIP, "wind_speed", "wind_from"))
+DESIRED = ("x_d", "y_d", "psi_d", "x_d_dot", "y_d_dot", "r_d", "x_d_ddot", "y_d_ddot", "r_d_dot")
+CONNECTIONS = [
+    *(("environment", name, "vessel", name) for name in (*WATER, *WAVES)),
+    *(
+        (unit, load, "vessel", f"{load}_{i}")
+        for i, unit in enumerate(("port", "starboard", "tunnel"), 1)
+        for load in LOADS
+    ),
+    *(("vessel", name, unit, name) for unit in ("port", "starboard") for name in FLOW),
+    ("vessel", "u_r", "tunnel", "u_r"),
+    *(("allocator", f"{unit}_thrust_cmd", unit, "thrust_cmd") for unit in UNITS),
+    *(("allocator", f"{unit}_azimuth_cmd", unit, "azimuth_cmd") for unit in ("port", "starboard")),
+    *((unit, "available", "allocator", f"{unit}_available") for unit in UNITS),
+    *(("vessel", name, "sensors", name) for name in (*SHIP, *(f"{name}_wave" for name in SHIP), *APPARENT)),
+    *(("sensors", name, "controller", name) for name in MEASURED),
+    *(("reference", name, "controller", name) for name in DESIRED),
+    *(("allocator", load, "controller", f"{load}_allocated") for load in LOADS),
+    *(("controller", f"{load}_cmd", "allocator", f"{load}_cmd") for load in LOADS),
+]
+
+
+def stepped_one_by_one(fmus, inputs, parameters, seconds, h=0.05):
+    """Components after each step of a Jacobi exchange, from `fmus`, the FMUs by name."""
+    for component, name, value in (*parameters, *inputs):
+        setattr(fmus[component], name, value)
+
+    def exchange():
+        values = [getattr(fmus[source], name) for source, name, _, _ in CONNECTIONS]
+        for value, (_, _, target, name) in zip(values, CONNECTIONS, strict=True):
+            setattr(fmus[target], name, value)
+
+    for _ in range(4):
+        for fmu in fmus.values():
+            fmu.start()
+        exchange()
+    for k in range(round(seconds / h)):
+        for fmu in fmus.values():
+            fmu.step(k * h, h)
+        exchange()
+        yield fmus
+
+
+def test_array_form_follows_the_fmus_stepped_one_by_one(fmus):
+    components = {name: fmus(name)() for name in ("environment", "vessel", "sensors", "reference", "allocator")}
+    components |= {name: fmus("azimuth_thruster")() for name in ("port", "starboard")}
+    components |= {"tunnel": fmus("tunnel_thruster")(), "controller": fmus("dp_controller")()}
+    parameters = [("environment", name, value) for name, value in MODERATE.items()]
+    parameters += [("environment", "seed", 3), ("sensors", "seed", 103), ("port", "y", -2.0), ("starboard", "y", 2.0)]
+    inputs = [("environment", name, value) for name, value in WIND_8.items()] + [("reference", "x_set", 20.0)]
+    run = simulate(with_seeds([3, 8], **MODERATE), [(0.0, dict(x_set=20.0, **WIND_8))], variations=2, stop_time=60.0)
+    signals = [name for name in run if name != "time"]
+    rows = [
+        [float(getattr(components[name.split(".")[0]], name.split(".")[1])) for name in signals]
+        for components in stepped_one_by_one(components, inputs, parameters, 60.0)
+    ]
+    for name, expected in zip(signals, np.array(rows).T, strict=True):
+        span = np.ptp(expected) or 1.0
+        np.testing.assert_allclose(run[name][1:, 0] / span, expected / span, atol=1e-9, err_msg=name)
+
+
+def test_variation_runs_as_if_it_were_alone():
+    events = [(0.0, WIND_8), (5.0, dict(tunnel_failed=np.array([False, True])))]
+    both = simulate(with_seeds([3, 8], **MODERATE), events, variations=2, stop_time=20.0)
+    events = [(0.0, WIND_8), (5.0, dict(tunnel_failed=True))]
+    alone = simulate(with_seeds([8], **MODERATE), events, variations=1, stop_time=20.0)
+    for name in set(alone) - {"time"}:
+        np.testing.assert_allclose(both[name][:, 1], alone[name][:, 0], rtol=1e-9, atol=1e-9, err_msg=name)
+
+
+def test_ship_is_held_in_moderate_weather():
+    run = simulate(with_seeds([1, 2, 3], **MODERATE), [(0.0, WIND_8)], variations=3, stop_time=120.0, every=10)
+    late = run["time"] > 60.0
+    assert np.hypot(run["vessel.x"], run["vessel.y"])[late].max() < 0.6
+    assert np.abs(run["vessel.psi"][late]).max() < math.radians(1.0)
+    assert not run["allocator.saturated"].any()
+
+
+def test_half_the_step_changes_the_track_by_less_than_5_cm():
+    events = [(0.0, dict(x_set=20.0, **WIND_8))]
+    system = with_seeds([1, 2], **MODERATE)
+    coarse = simulate(system, events, variations=2, stop_time=100.0, every=20)
+    fine = simulate(system, events, variations=2, stop_time=100.0, h=0.025, every=40)
+    assert np.hypot(coarse["vessel.x"] - fine["vessel.x"], coarse["vessel.y"] - fine["vessel.y"]).max() < 0.05
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("weather", "sea", "metres", "degrees"), [(WIND_8, MODERATE, 0.5, 1.0), (WIND_10, ROUGH, 1.0, 2.0)]
+)
+def test_four_corners_are_held_on_18_of_20_seeds(weather, sea, metres, degrees):
+    events = [(0.0, weather), *LEGS]
+    run = simulate(with_seeds(range(1, 21), **sea), events, variations=20, stop_time=1100.0, every=10)
+    places, turns = worst_at_corners(run)
+    held = (places < metres).all(axis=0) & (turns < degrees).all(axis=0)
+    assert held.sum() >= 18
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("unit", ["port_failed", "starboard_failed", "tunnel_failed"])
+def test_any_two_units_keep_the_place_while_the_heading_goes(unit):
+    events = [(0.0, WIND_8), (100.0, {unit: True})]
+    run = simulate(with_seeds([1, 2, 3], **MODERATE), events, variations=3, stop_time=600.0, every=10)
+    assert np.hypot(run["vessel.x"], run["vessel.y"]).max() < 8.0
+    assert run["allocator.saturated"][-200:].mean() > 0.9
+
+
+@pytest.mark.slow
+def test_storm_that_is_too_strong_is_said_and_leaves_nothing_wound_up():
+    weather = dict(significant_wave_height=0.5, peak_period=6.0, waves_from=math.pi / 2.0)
+    events = [(0.0, dict(wind_speed=8.0, wind_from=math.pi / 2.0)), (100.0, dict(wind_speed=18.0))]
+    events.append((250.0, dict(wind_speed=6.0)))
+    run = simulate(with_seeds([1, 2, 3], **weather), events, variations=3, stop_time=550.0, every=10)
+    distance, time = np.hypot(run["vessel.x"], run["vessel.y"]), run["time"]
+    storm, after = (time > 150.0) & (time < 250.0), time > 450.0
+    assert distance[storm].max() > 3.0 and run["allocator.saturated"][storm].mean() > 0.5
+    assert distance[after].max() < 1.0 and np.abs(run["vessel.psi"][after]).max() < math.radians(2.0)
