@@ -76,7 +76,9 @@ def test_interrupt_in_the_progress_display_keeps_the_rows(failing, make_scenario
 
 
 @pytest.mark.parametrize("how", ["nothing", "raise", "start", "stop"])
-def test_nothing_is_left_behind(failing, make_scenario, how):
+def test_nothing_is_left_behind(failing, make_scenario, how, tmp_path, monkeypatch):
+    """In a folder for temporary files that no other process uses."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     system, before = failing(how), traces()
     try:
         simulate(system, make_scenario(1.0, 0.1))
