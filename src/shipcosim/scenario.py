@@ -6,6 +6,7 @@ a run's table against its expectations.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tomllib
@@ -38,6 +39,7 @@ __all__ = [
     "Expectation",
     "Scenario",
     "Verdict",
+    "check_files",
     "check_scenario",
     "check_times",
     "judge",
@@ -47,10 +49,15 @@ __all__ = [
 
 
 def _plain(value):
+    if isinstance(value, float) and not np.isfinite(value):
+        raise ValueError(f"{value} is not a finite number. Give one, in the variable's unit.")
     if isinstance(value, (bool, int, float, str)):
         return value
     raise ValueError(f"{value!r} is no value. A value is a number, true or false, or a text.")
 
+
+MOST_STEPS = 1e8
+"""Steps of a run; the times of more than these would hardly fit into memory."""
 
 Value = Annotated[bool | int | float | str, PlainValidator(_plain)]
 ListOfNames = Annotated[list[str], BeforeValidator(lambda names: [names] if isinstance(names, str) else names)]
@@ -213,19 +220,57 @@ def read_scenario(path: str | os.PathLike) -> Scenario:
         With every problem of the file: its line, what was found, what would be right.
     """
     path = Path(path)
+    text = _text(path)
     try:
-        text = path.read_text(encoding="utf-8")
         scenario = Scenario.model_validate(tomllib.loads(text))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
     except tomllib.TOMLDecodeError as error:
-        raise ShipcosimError(Problem(str(path), f"is no TOML: {error}.")) from error
+        raise ShipcosimError(_no_toml(path, str(error))) from error
     except ValidationError as error:
         raise ShipcosimError(_problems_of(path, text, error)) from None
     scenario._path = path
     if problems := [p for p in check_times(scenario) if p.severity == "error"]:
         raise ShipcosimError(problems)
     return scenario
+
+
+def _text(path):
+    try:
+        return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror or error}.")) from error
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
+        raise ShipcosimError(Problem(f"{path}, line {line}", found, "Save the file in UTF-8.")) from error
+
+
+def _no_toml(path, message):
+    """What the TOML reader says, with its line where all other messages have theirs."""
+    line = re.search(r" \(at line (\d+), column \d+\)", message)
+    where = f"{path}, line {line[1]}" if line else str(path)
+    found = f"is no TOML: {message.replace(line[0], '') if line else message}."
+    return Problem(where, found, "Scenarios are text files in TOML: keys, =, values, texts in quotes.")
+
+
+def check_files(scenario: Scenario) -> list[Problem]:
+    """What a scenario names and what is not there: its system, its parameter sets."""
+    if not scenario.system:
+        return [_at(scenario, ("system",), "the scenario names no system.", suggestion("", _systems(scenario)))]
+    system, problems = scenario.system_path, []
+    if not system.exists() and "#" not in scenario.system:
+        known = _systems(scenario)
+        found = f"there is no system '{scenario.system}', in {scenario.project / 'ssp'} or beside the scenario."
+        return [_at(scenario, ("system",), found, suggestion(scenario.system, known))]
+    for name, path in zip(scenario.parameters, scenario.parameter_paths, strict=True):
+        if not path.exists():
+            known = [file.stem for file in (system / "resources").glob("*.ssv")]
+            found = f"there is no parameter set '{name}', in {system / 'resources'} or beside the scenario."
+            problems.append(_at(scenario, ("parameters",), found, suggestion(name, known)))
+    return problems
+
+
+def _systems(scenario):
+    return [ssd.parent.name for ssd in scenario.project.joinpath("ssp").glob("*/SystemStructure.ssd")]
 
 
 def whole_steps(duration: float, step_size: float) -> int | None:
@@ -245,6 +290,11 @@ def whole_steps(duration: float, step_size: float) -> int | None:
 def check_times(scenario: Scenario) -> Iterator[Problem]:
     """Times of a scenario that do not fall on its steps, or lie after its end."""
     step, stop = scenario.step_size, scenario.stop_time
+    if stop / step > MOST_STEPS:
+        found = f"stop_time = {stop:g} s takes {stop / step:.3g} steps of {step:g} s."
+        remedy = f"At most {MOST_STEPS:,.0f} are done: take larger steps or stop earlier."
+        yield _at(scenario, ("stop_time",), found, remedy)
+        return
     times = [(("stop_time",), stop), (("output_interval",), scenario.output_interval or step)]
     times += [(("events", number, "time"), event.time) for number, event in enumerate(scenario.events)]
     for keys, time in times:
@@ -424,7 +474,7 @@ def _excess(values, expect):
 def _at(scenario, keys, found, remedy="", severity="error"):
     """Problem at a key of the scenario, with its line where the scenario came from a file."""
     path = scenario.path
-    text = path.read_text(encoding="utf-8") if path and path.is_file() else ""
+    text = path.read_text(encoding="utf-8-sig") if path and path.is_file() else ""
     return Problem(_where(path or "scenario", text, keys), found, remedy, severity)
 
 
@@ -469,7 +519,22 @@ def _found_and_remedy(finding):
         return f"'{keys[-1]}' is missing.", ""
     if kind == "value_error":
         return str(finding["ctx"]["error"]), ""
-    return f"{label} = {finding['input']!r}.", finding["msg"].replace("Input", "It", 1) + "."
+    remedy = _REMEDIES.get(kind) or finding["msg"].replace("Input", "It", 1) + "."
+    return f"{label} = {_as_toml(finding['input'])}.", remedy
+
+
+def _as_toml(value):
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, (bool, str)) else repr(value)
+
+
+_REMEDIES = {
+    "string_type": "It should be a text in quotes.",
+    "float_type": "It should be a number, without quotes and with a decimal point.",
+    "list_type": "It should be a list: [ , ].",
+    "too_short": "It takes more values than that.",
+    "too_long": "It takes fewer values than that.",
+}
+"""What would be right, where pydantic's words would not help."""
 
 
 _PARTS = {"events": Event, "expect": Expectation}

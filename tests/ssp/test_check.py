@@ -75,7 +75,7 @@ def test_a_missing_file_and_an_unknown_ending_are_errors(tmp_path):
 
 def test_a_set_and_a_mapping_are_checked_alone(shop, real):
     assert check_file(shop.ssv(real("a", "1", "m"))) == []
-    assert "is not a valid value" in messages(check_file(shop.ssv(real("a", "one"))))
+    assert "'one' is not a number" in messages(check_file(shop.ssv(real("a", "one"))))
     shop.ssm('<ssm:MappingEntry source="a" target="c"/><ssm:MappingEntry source="b" target="c"/>')
     assert "'a' is mapped to this parameter already." in messages(check_file(shop.folder / "resources/names.ssm"))
 

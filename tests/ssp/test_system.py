@@ -493,9 +493,9 @@ def test_values_given_for_a_run_are_checked(shop):
         with_values(system, {"b.p": 7.0, "b.n": 1.5, "b.q": 1, "c.p": 1, "b.v": 1.0, "b.u": math.nan}, "four.toml")
     assert str(caught.value).splitlines() == [
         "four.toml: b.p: p cannot be 7 m. Allowed: 0 to 5 m.",
-        "four.toml: b.n: 1.5 is no Integer.",
+        "four.toml: b.n: 1.5 is no Integer. Give a whole number.",
         "four.toml: b.q: b has no variable 'q'. It has: n, p, u, v.",
         "four.toml: c.p: There is no component or connector 'c'. There is: b.",
         "four.toml: b.v: It is of causality output, a value that the FMU calculates. Set parameters and inputs.",
-        "four.toml: b.u: nan is not a finite number.",
+        "four.toml: b.u: nan is not a finite number. Give a number, with a decimal point, in m.",
     ]

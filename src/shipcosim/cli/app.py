@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -25,6 +26,13 @@ app = typer.Typer(
     no_args_is_help=True,
 )
 
+
+def _finite(value: float | None) -> float | None:
+    if value is not None and not math.isfinite(value):
+        raise typer.BadParameter(f"{value} is no time. Give it in seconds.")
+    return value
+
+
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
 Engine = Annotated[str, typer.Option("--engine", help="What runs the FMUs: fmpy (ours), libcosim or ecos.")]
@@ -32,7 +40,7 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others; repeatable."),
 ]
-Until = Annotated[float | None, typer.Option("--until", help="[s] End here, before the stop time.")]
+Until = Annotated[float | None, typer.Option("--until", callback=_finite, help="[s] End here, before the stop time.")]
 Store = Annotated[
     Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")
 ]
@@ -124,15 +132,19 @@ def run(
 
     A part of a run is checked for what is expected within it.
     """
+    from shipcosim.cli.console import print_problems
     from shipcosim.cli.project import build_stale, find_scenario, parsed_settings
-    from shipcosim.scenario import read_scenario
+    from shipcosim.scenario import check_files, check_times, read_scenario
     from shipcosim.ssp import read_system, with_values
 
     happening = read_scenario(find_scenario(scenario))
+    if missing := check_files(happening):
+        raise ShipcosimError(missing)
     fmus = build_stale(happening.project)
     system = read_system(happening.system_path, happening.parameter_paths, fmus=[fmus])
     given = parsed_settings(settings or [])
     with_values(system, given, "--set")
+    print_problems(check_times(happening))
     happening = happening.model_copy(update={"set": happening.set | given})
     course = {"until": until, "store": store, "resume": resume}
     _simulate_and_save(system, happening, out or Path("results") / happening.name, engine, **course)
@@ -156,9 +168,14 @@ def simulate(
         typer.Option("--interpolate", metavar="INPUT", help="Linear between rows, not held; '*' for all; repeatable."),
     ] = None,
     max_gap: Annotated[
-        float | None, typer.Option("--max-gap", help="[s] Longest time between rows. Default: 5 x an even spacing.")
+        float | None,
+        typer.Option(
+            "--max-gap", callback=_finite, help="[s] Longest time without a row. Default: 5 x an even spacing."
+        ),
     ] = None,
-    start_time: Annotated[float, typer.Option("--start-time", help="[s] On the clock of the table.")] = 0.0,
+    start_time: Annotated[
+        float, typer.Option("--start-time", callback=_finite, help="[s] On the clock of the table.")
+    ] = 0.0,
     settings: Settings = None,
     until: Until = None,
     store: Store = None,
@@ -169,9 +186,17 @@ def simulate(
 
     Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
     """
-    from shipcosim.cli.project import build_stale, experiment_of, feeding, find_project, parsed_settings
+    from shipcosim.cli.project import (
+        build_stale,
+        check_is_system,
+        experiment_of,
+        feeding,
+        find_project,
+        parsed_settings,
+    )
     from shipcosim.ssp import read_system, with_values
 
+    check_is_system(ssp)
     project = find_project(Path(ssp.partition("#")[0]))
     system = read_system(ssp, parameters or (), fmus=[build_stale(project)] if project else ())
     system = with_values(system, parsed_settings(settings or []), "--set")
@@ -225,33 +250,48 @@ def check(
         raise typer.Exit(FAILED)
 
 
-def _simulate_and_save(system, scenario, out, engine, inputs=None, **course):
+def _simulate_and_save(system, scenario, out, engine, inputs=None, store=None, **course):
     """Run, judge, write, and say how it went; the exit code follows. `course` is where the run starts and ends."""
-    from shipcosim.cli.console import print_summary, progress_of
-    from shipcosim.cli.results import save
-    from shipcosim.cosim import Interrupted, RunError
+    from shipcosim.cli.console import print_problems, print_summary, progress_of
+    from shipcosim.cli.results import check_targets, save
+    from shipcosim.cosim import Interrupted, RunError, write_snapshot
     from shipcosim.cosim import simulate as simulate_system
     from shipcosim.scenario import judge
 
-    def keep(table):
-        pages = save(table, out, "result-partial", scenario=scenario, system=system) if table.sizes["time"] else None
-        print_summary(table, (), pages, to_stderr=True)
-
+    check_targets(out, store)
+    print_problems(problem for problem in system.remarks if problem.where not in system.components)
+    snapshots = []
+    course |= {"store": snapshots.append} if store else {}
     try:
         with progress_of(scenario.name or system.name, scenario.stop_time) as progress:
             table = simulate_system(system, scenario, engine=engine, inputs=inputs, progress=progress, **course)
     except Interrupted as stop:
-        keep(stop.table)
+        _keep(stop.table, out, scenario, system)
         raise typer.Exit(INTERRUPTED) from None
     except RunError as error:
-        keep(error.table)
+        try:
+            _keep(error.table, out, scenario, system)
+        except ShipcosimError as another:
+            error.problems += another.problems
         raise
     scenario = _part(scenario, table)
     verdicts = judge(table, scenario)
     page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)
     print_summary(table, verdicts, page)
+    for snapshot in snapshots:
+        write_snapshot(snapshot, store)
     if not all(verdict.passed for verdict in verdicts):
         raise typer.Exit(FAILED)
+
+
+def _keep(table, out, scenario, system):
+    """Save what there is of a run that did not get to its end, unless it did not even start."""
+    from shipcosim.cli.console import print_summary
+    from shipcosim.cli.results import save
+
+    if table.sizes["time"]:
+        page = save(table, out, "result-partial", scenario=scenario, system=system)
+        print_summary(table, (), page, to_stderr=True)
 
 
 def _part(scenario, table):

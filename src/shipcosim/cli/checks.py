@@ -42,10 +42,12 @@ def check_any(file):
 
 def check_scenario_file(path):
     """Problems of a scenario, in itself and with its system."""
-    from shipcosim.scenario import check_scenario, read_scenario
+    from shipcosim.scenario import check_files, check_scenario, read_scenario
     from shipcosim.ssp import read_system, with_values
 
     scenario = read_scenario(path)
+    if missing := check_files(scenario):
+        return missing
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[built_fmus(scenario.project)])
     try:
         system, problems = with_values(system, scenario.set, str(path)), []

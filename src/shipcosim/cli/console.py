@@ -1,6 +1,7 @@
 """What the commands say: progress and errors on stderr, results on stdout."""
 
 import json
+import os
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -23,8 +24,14 @@ def print_problems(problems):
 def _block(problem):
     block = Text(f"{problem.severity}: ", style=STYLES.get(problem.severity, ""))
     if problem.where:
-        block.append(f"{problem.where}:\n", style="bold")
-    return block.append(f"{problem.found} {problem.remedy}".rstrip(), style="not bold default")
+        block.append(f"{_from_here(problem.where)}:\n", style="bold")
+    return block.append(_from_here(f"{problem.found} {problem.remedy}").rstrip(), style="not bold default")
+
+
+def _from_here(text):
+    """The text with the files in it named from the working folder."""
+    here = str(Path.cwd()) + os.sep
+    return text.replace(here, "") if len(here) > 1 else text
 
 
 @contextmanager

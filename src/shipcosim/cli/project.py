@@ -6,6 +6,7 @@ from pathlib import Path
 import shipcosim
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
+SYSTEMS = (".ssp", ".ssd")
 IN_EVERY_FMU = ("models", "fmi")  # folders of this package whose code travels in FMUs
 
 
@@ -31,13 +32,26 @@ def find_scenario(given):
     """
     project = find_project(Path.cwd()) or Path.cwd()
     named = project / "scenarios" / f"{given}.toml"
+    if Path(given).suffix.lower() in SYSTEMS and Path(given).exists():
+        remedy = f"`shipcosim simulate {given}` runs it."
+        raise ShipcosimError(Problem(given, "This is a system, not a scenario.", remedy))
     for path in (Path(given), named):
         if path.is_file():
             return path
     known = [path.stem for path in named.parent.glob("*.toml")]
-    raise ShipcosimError(
-        Problem(given, "There is no such scenario file.", f"In {named.parent}: {suggestion(Path(given).stem, known)}")
-    )
+    remedy = f"In {named.parent} there{suggestion(Path(given).stem, known).removeprefix('There')}"
+    raise ShipcosimError(Problem(given, "There is no such scenario file.", remedy))
+
+
+def check_is_system(given):
+    """Raise ShipcosimError where what should be a system has the ending of something else."""
+    suffix = Path(given).suffix.lower()
+    if suffix == ".toml":
+        remedy = f"If it is a scenario, `shipcosim run {given}` runs it."
+        raise ShipcosimError(Problem(given, "This is no system.", remedy))
+    if suffix == ".fmu":
+        remedy = f"Connect it in a system (.ssp, .ssd). `shipcosim check {given}` says what is in it."
+        raise ShipcosimError(Problem(given, "This is one FMU, not a system.", remedy))
 
 
 def parsed_settings(settings):

@@ -49,6 +49,38 @@ def save(table, folder, stem, *, scenario, system, verdicts=()):
     return Path(folder) / page
 
 
+def check_targets(folder, store=None):
+    """Whether results can be written, as far as that can be known before a long run.
+
+    Parameters
+    ----------
+    folder : Path
+        For the results; it need not exist yet.
+    store : Path, optional
+        File for the state at the end.
+
+    Raises
+    ------
+    ShipcosimError
+        If they cannot.
+    """
+    problems = [Problem(str(folder), found, "Choose another --out.") for found in _complaints(folder)]
+    if store is not None:
+        found = ["This is a folder."] if store.is_dir() else _complaints(store.parent, must_exist=True)
+        problems += [Problem(str(store), text, "Choose another file for --store.") for text in found]
+    if problems:
+        raise ShipcosimError(problems)
+
+
+def _complaints(folder, must_exist=False):
+    there = next(parent for parent in (Path(folder), *Path(folder).absolute().parents) if parent.exists())
+    if not there.is_dir():
+        return [f"{there} is a file, not a folder."]
+    if must_exist and there != Path(folder):
+        return ["There is no such folder to store the state in."]
+    return [] if os.access(there, os.W_OK | os.X_OK) else [f"There is no permission to write in {there}."]
+
+
 @contextmanager
 def _staged(folder):
     """A folder whose files move into `folder` at the end, unless something fails."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
@@ -50,6 +51,14 @@ def feed(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, 
         If a name, a unit or a time does not fit, or a value that is needed is not finite. Only rows that these times
         need are looked at.
     """
+    try:
+        return _fed(table, system, times)
+    except ShipcosimError as error:
+        file = table.encoding.get("source", "inputs")
+        raise ShipcosimError([replace(p, where=p.where.replace("inputs", file, 1)) for p in error.problems]) from error
+
+
+def _fed(table, system, times):
     clock = table["time"].values.astype(float)
     problems = [*_unknown(table, system), *_clock_problems(clock)]
     if problems:

@@ -6,6 +6,7 @@ Enumeration) and Boolean as int32, whatever the FMU's own types are.
 """
 
 import os
+import re
 import sys
 from collections.abc import Callable, Sequence
 from ctypes import byref, c_char, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, cast
@@ -76,7 +77,8 @@ class Slave:
     def last_words(self) -> str:
         """What the FMU logged as errors, or else what it logged last."""
         errors = [text for status, text in self.messages if status >= ERROR]
-        return "\n".join(errors[-3:] or [text for _, text in self.messages[-3:]])
+        words = "\n".join(errors[-3:] or [text for _, text in self.messages[-3:]])
+        return re.sub(r"(?m)^Fatal py exception encountered: .*\n", "", words)  # PythonFMU's own, names no cause
 
     def remarks(self) -> list[str]:
         """Warnings that the FMU logged, with its name before them."""

@@ -66,15 +66,16 @@ def span_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: 
     """
     step, end = scenario.step_size, scenario.stop_time if until is None else until
     n, last = (whole_steps(time - start_time, step) for time in (scenario.stop_time, end))
-    ends = {scenario.stop_time: n, end: last}
-    problems = [Problem("simulate", *_off_step(t, start_time, step)) for t, k in ends.items() if k is None]
+    ends = {"stop time": (scenario.stop_time, n)} | ({} if until is None else {"until": (until, last)})
+    problems = [Problem(name, *_off_step(t, start_time, step)) for name, (t, k) in ends.items() if k is None]
     if not problems and not first < last <= n:
         begin = start_time + first * step
         found = f"the run would go from {begin:g} s to {end:g} s."
-        problems.append(Problem("simulate", found, f"Its end lies after that and up to {scenario.stop_time:g} s."))
+        remedy = f"Its end must lie after {begin:g} s and not after the stop time, {scenario.stop_time:g} s."
+        problems.append(Problem(list(ends)[-1], found, remedy))
     for event in scenario.events:
         if whole_steps(event.time - start_time, step) is None:
-            problems.append(Problem("simulate: event", *_off_step(event.time, start_time, step)))
+            problems.append(Problem("event", *_off_step(event.time, start_time, step)))
     if problems:
         raise ShipcosimError(problems)
     every = whole_steps(scenario.output_interval or step, step)

@@ -91,5 +91,5 @@ def text(rows):
 def _row(number, row):
     try:
         return tuple(float(value) for value in row.split())
-    except ValueError as error:
-        raise ValueError(f"table, row {number}: '{row.strip()}' is not numbers separated by blanks.") from error
+    except ValueError:
+        raise ValueError(f"table, row {number}: '{row.strip()}' is not numbers separated by blanks.") from None

@@ -93,7 +93,7 @@ def _opened(path, shown):
 
 
 def _damaged(shown, error):
-    return ShipcosimError(Problem(shown, f"Damaged or incomplete archive: {error}.", "Copy or export it again."))
+    return ShipcosimError(Problem(shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."))
 
 
 def _check(archive, shown):

@@ -102,7 +102,8 @@ def _compare_units(flow, port, place, names, findings):
     related = relation(flow.unit, port.unit)
     found = f"{names[0]} is in {flow.unit.name}, {names[1]} in {port.unit.name}"
     if related == "incompatible":
-        findings.error(place, f"{found}; these cannot be converted.", "Connect like quantities or correct a unit.")
+        remedy = "Correct the unit." if names[0] == "the value" else "Connect like quantities or correct a unit."
+        findings.error(place, f"{found}; these cannot be converted.", remedy)
     elif related == "unknown":
         findings.remark(place, f"{found}: not converted, the definition of one of them is missing.", "Add it to Units.")
     elif related == "angle":

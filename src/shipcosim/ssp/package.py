@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import ShipcosimError, suggestion
 from shipcosim.ssp.archive import read_entry, unpack
 from shipcosim.ssp.values import has
 from shipcosim.ssp.xml import LARGEST_FILE, Document, parse, read_document
@@ -95,7 +95,9 @@ class Package:
         elsewhere = [folder / paths[0].name for folder in self.fmus if paths[0].suffix == ".fmu"]
         found = next((path for path in (*paths, *elsewhere) if self._is_there(path)), None)
         if found is None:
-            findings.error(place, f"The file '{uri}' does not exist.", self._present(paths[0]))
+            is_folder = any(path.is_dir() for path in (*paths, *elsewhere))
+            what = "is a folder, not a file" if is_folder else "does not exist"
+            findings.error(place, f"The file '{uri}' {what}.", self._present(paths[0]))
             return None
         if isinstance(self.held.get(found), Path):
             found, name = self.held[found], found
@@ -110,9 +112,9 @@ class Package:
 
     def _present(self, path):
         folders = [path.parent, *(self.fmus if path.suffix == ".fmu" else ())]
-        there = {file.name for folder in folders if folder.is_dir() for file in folder.glob(f"*{path.suffix}")}
-        sought = f"; searched too: {', '.join(map(str, self.fmus))}" if path.suffix == ".fmu" and self.fmus else ""
-        return f"{path.parent.name}/: {has(path.name, there)}".replace(": It has", " has") + sought
+        files = [file for folder in folders if folder.is_dir() for file in folder.glob(f"*{path.suffix}")]
+        there = {file.name for file in files if file.is_file()}
+        return f"In {' and '.join(map(str, folders))} there{suggestion(path.name, there).removeprefix('There')}"
 
 
 def open_package(path, findings, fmus=(), shown=None):

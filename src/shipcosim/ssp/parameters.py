@@ -156,7 +156,7 @@ def _parameter(document, element, units, findings):
         value = read_value(kind, typed.get("value", ""))
         tolerance = tolerance_of(element)
     except ValueError as error:
-        findings.error(document.place(element, name), str(error))
+        findings.error(document.place(element, name), str(error), "Correct it, or leave the parameter to its default.")
         return None
     unit = find_unit(typed.get("unit"), units)
     description = element.get("description", "")

@@ -340,7 +340,7 @@ def with_values(system, values, where=""):
     """
     findings = Findings()
     starts = {name: dict(component.start) for name, component in system.components.items()}
-    inputs = dict(system.inputs)
+    inputs, feeding = dict(system.inputs), {connection.target: connection.source for connection in system.connections}
     for signal, value in values.items():
         place = f"{where}: {signal}" if where else signal
         try:
@@ -348,7 +348,11 @@ def with_values(system, values, where=""):
         except ShipcosimError as error:
             findings.problems += error.problems
             continue
-        if component is not None:
+        if (component, name) in feeding:
+            source = ".".join(filter(None, feeding[component, name]))
+            remedy = "Set what feeds it, or hold it with an event (override)."
+            findings.error(place, f"It is connected: {source} gives its value.", remedy)
+        elif component is not None:
             _set(starts[component], system.components[component].fmu.variables[name], value, place, findings)
         elif name in inputs:
             if _fits(value, inputs[name], inputs[name].type, place, findings):
@@ -362,6 +366,12 @@ def with_values(system, values, where=""):
 
 
 PYTHON = {"Real": (int, float), "Integer": (int,), "Boolean": (bool,), "String": (str,), "Enumeration": (int,)}
+WANTED = {
+    "Real": "Give a number, with a decimal point",
+    "Integer": "Give a whole number",
+    "Boolean": "Give true or false",
+}
+LARGEST = 2**31  # FMI's integers have 32 bits
 
 
 def _set(start, variable, value, place, findings):
@@ -381,10 +391,17 @@ def _fits(value, owner, kind, place, findings):
     """Whether a value is of a kind, with an error if not; `owner` has the items of an enumeration."""
     right = kind is None or isinstance(value, PYTHON.get(kind, (bytes,)))
     if not right or (isinstance(value, bool) and kind not in ("Boolean", None)):
-        remedy = f"Items: {', '.join(owner.items)}." if owner.items else ""
+        remedy = f"Items: {', '.join(owner.items)}." if owner.items else _wanted(kind, owner.unit)
         findings.error(place, f"{value!r} is no {kind}.", remedy)
         return False
     if isinstance(value, float) and not isfinite(value):
-        findings.error(place, f"{value} is not a finite number.")
+        findings.error(place, f"{value} is not a finite number.", _wanted("Real", owner.unit))
+        return False
+    if kind == "Integer" and not -LARGEST <= value < LARGEST:
+        findings.error(place, f"{value} is too large for an Integer.", f"Give one from {-LARGEST} to {LARGEST - 1}.")
         return False
     return True
+
+
+def _wanted(kind, unit):
+    return f"{WANTED[kind]}{f', in {unit}' if kind == 'Real' and unit else ''}." if kind in WANTED else ""

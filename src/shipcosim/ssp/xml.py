@@ -29,6 +29,7 @@ SCHEMAS = {
     "fmi2": "schema/fmi2/fmi2ModelDescription.xsd",
     "fmi3": "schema/fmi3/fmi3ModelDescription.xsd",
 }
+WORDS = {"double": "a number", "int": "a whole number", "boolean": "a Boolean (true, false, 1, 0)"}
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
 
 
@@ -198,6 +199,8 @@ def validate(root, schema, file, findings):
         return
     for entry in checker.error_log:
         text = re.sub(r"\{[^}]*\}", "", entry.message)
+        for kind, word in WORDS.items():
+            text = text.replace(f"a valid value of the atomic type 'xs:{kind}'", word)
         found, _, expected = text.partition(" Expected is ")
         where = f"{file}, line {entry.line}" if entry.line else file
         findings.error(where, found, f"Expected is {expected}" if expected else "")
