@@ -1,11 +1,13 @@
-"""A project as small as one can be: one FMU, one system, one scenario."""
+"""Two projects: one as small as one can be, with one FMU, one system, one scenario; and a copy of the real one."""
 
+import shutil
 from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
 
 from shipcosim.cli import app
+from shipcosim.cli.project import build_stale
 
 FMU = '''
 """Lag that can fail on demand."""
@@ -90,12 +92,51 @@ def project(tmp_path, monkeypatch):
     return tmp_path
 
 
+SHORT = """description = "One second of stationkeeping"
+system      = "gunnerus_dp"
+parameters  = "gunnerus-33m9"
+stop_time   = 1.0
+step_size   = 0.05
+
+[set]
+"environment.wind_speed" = 8.0
+
+[[events]]
+time     = 0.5
+override = { "reference.x_set" = 1.0 }
+
+[[expect]]
+signal = "vessel.x"
+near   = 0.0
+within = 5.0
+"""
+
+
+@pytest.fixture(scope="session")
+def built(root):
+    """Folder of the project's FMUs, up to date."""
+    return build_stale(root)
+
+
+@pytest.fixture
+def gunnerus(root, built, tmp_path, monkeypatch):
+    """Copy of the project to break things in, with the scenario `short`; it is the working folder of the test."""
+    left_out = shutil.ignore_patterns("__pycache__")
+    for name, source in {"fmus": root / "fmus", "ssp": root / "ssp", "build/fmus": built}.items():
+        shutil.copytree(source, tmp_path / name, ignore=left_out)
+    (tmp_path / "scenarios").mkdir()
+    (tmp_path / "scenarios" / "short.toml").write_text(SHORT, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    return tmp_path
+
+
 @pytest.fixture
 def call():
     """Function that calls the command: its exit code, stdout and stderr."""
 
     def call(*arguments):
-        result = CliRunner().invoke(app, [str(a) for a in arguments])
+        result = CliRunner().invoke(app, [str(a) for a in arguments], prog_name="shipcosim")
         assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
         return SimpleNamespace(code=result.exit_code, out=result.stdout, err=result.stderr)
 

@@ -33,7 +33,7 @@ def unpack(path, folder, shown=None):
     Raises
     ------
     ShipcosimError
-        If the archive is damaged, too large, or has an entry that would land outside the folder.
+        If the archive is damaged, too large, has an entry that would land outside the folder, or finds no room there.
     """
     shown = shown or str(path)
     with _opened(path, shown) as archive:
@@ -43,6 +43,9 @@ def unpack(path, folder, shown=None):
                 archive.extract(entry, folder)
         except BROKEN as error:
             raise _damaged(shown, error) from None
+        except OSError as error:
+            found = f"Cannot be unpacked into {folder}: {error.strerror}."
+            raise ShipcosimError(Problem(shown, found, "Make room there, or name another folder in TMPDIR.")) from None
 
 
 def entries(path, shown=None):
