@@ -15,6 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
+from shipcosim.cosim.direct import Direct, object_of
+
 BUFFER_TYPES = {"Integer": np.int32, "Boolean": np.int32, "Real": np.float64}
 STATUS = ["ok", "warning", "discard", "error", "fatal", "pending"]
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
@@ -62,6 +64,8 @@ class Slave:
         finally:
             os.chdir(here)  # FMPy stays in the library's folder where loading fails
         self.component = self._fmu.component
+        self._folder = folder
+        self._find_object()
 
     def call(self, function: str, *arguments) -> None:
         """Call a function of the FMU by its name without prefix, e.g. ``"Terminate"``."""
@@ -91,6 +95,7 @@ class Slave:
         Not after a fatal error: FMI forbids it, and PythonFMU, which calls every exception fatal and releases its
         objects then, would release them a second time.
         """
+        self._direct = None
         if not self._is_lost:
             self._fmu.freeInstance()
 
@@ -98,6 +103,7 @@ class Slave:
         """Bring the instance back to where it was when it was made, also after the end of a run."""
         self.call("Reset")
         self.messages.clear()
+        self._find_object()
 
     def state(self) -> bytes:
         """The whole state, which `restore` of any instance of this FMU takes, in another process too."""
@@ -128,6 +134,10 @@ class Slave:
         """End the simulation. That an FMU fails to is no matter any more."""
         self._is_lost = self._function("Terminate")(self.component) == FATAL
 
+    def _find_object(self):
+        target = object_of(self._folder, self.name) if self._is_python else None
+        self._direct = None if target is None else Direct(target, self._note)
+
     def _as_bytes(self, function, position, buffer):
         return cast(buffer, self._function(function).argtypes[position])
 
@@ -136,8 +146,11 @@ class Slave:
 
     def _log(self, status, message):
         text = (message or b"").decode("utf-8", errors="replace")
+        self._note(status, text.replace("%%", "%") if self._is_python else text)
+
+    def _note(self, status, text):
         if status != OK and len(self.messages) < 1000:
-            self.messages.append((status, text.replace("%%", "%") if self._is_python else text))
+            self.messages.append((status, text))
 
 
 class Slave2(Slave):
@@ -155,14 +168,20 @@ class Slave2(Slave):
 
     def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        if self._direct is not None:
+            return self._direct.setter(kind, variables, buffer)
         return self._exchange("Set", kind, variables, buffer)
 
     def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        if self._direct is not None:
+            return self._direct.getter(kind, variables, buffer)
         return self._exchange("Get", kind, variables, buffer)
 
     def stepper(self) -> Callable[[float, float], int]:
         """Prepared call that advances from a time by a step size and returns the status."""
+        if self._direct is not None:
+            return self._direct.stepper()
         do_step, component = self._function("DoStep"), self.component
         return lambda time, step_size: do_step(component, time, step_size, 1)
 

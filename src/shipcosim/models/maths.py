@@ -98,6 +98,9 @@ def maximum(a, b):
 
 def clip(x, low, high):
     """`x` within [low, high]."""
+    if isinstance(x, float) and isinstance(low, float) and isinstance(high, float):
+        x = x if x > low else low
+        return x if x < high else high
     return minimum(maximum(x, low), high)
 
 
