@@ -95,9 +95,15 @@ def normals(purpose, seed, k, width):
     """
     if isinstance(seed, int):
         return _block(purpose, seed, k // _BLOCK, width)[k % _BLOCK]
-    return np.array([normals(purpose, int(one), k, width) for one in np.ravel(seed)]).T
+    return _blocks(purpose, tuple(np.ravel(seed).tolist()), k // _BLOCK, width)[k % _BLOCK]
 
 
 @lru_cache(maxsize=64)
 def _block(purpose, seed, block, width):
     return generator(purpose, seed, block).standard_normal((_BLOCK, width)).tolist()
+
+
+@lru_cache(maxsize=2)
+def _blocks(purpose, seeds, block, width):
+    """(256, width, m) array: the block of every seed."""
+    return np.stack([generator(purpose, seed, block).standard_normal((_BLOCK, width)) for seed in seeds], axis=-1)

@@ -3,6 +3,8 @@
 One sea or one wind has arrays (n,); m variations at once have values (m,) and arrays (n,) or (m, n).
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 
@@ -28,5 +30,10 @@ def per_seed(draw, seed):
     """What `draw(seed)` gives, a tuple of (n,) arrays; stacked to (m, n) for an (m,) array of seeds."""
     if isinstance(seed, int):
         return draw(seed)
-    draws = [draw(int(one)) for one in np.ravel(seed)]
-    return tuple(np.reshape(part, (*np.shape(seed), -1)) for part in zip(*draws, strict=True))
+    return _stacked(draw, tuple(np.ravel(seed).tolist()), np.shape(seed))
+
+
+@lru_cache(maxsize=8)
+def _stacked(draw, seeds, shape):
+    draws = [draw(int(seed)) for seed in seeds]
+    return tuple(np.reshape(part, (*shape, -1)) for part in zip(*draws, strict=True))

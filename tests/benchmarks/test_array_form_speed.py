@@ -1,0 +1,57 @@
+"""The array form against the co-simulation: time of one variation of the four-corner run, 1000 variations at once."""
+
+import statistics
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shipcosim.cli.project import build_stale
+from shipcosim.cosim import simulate
+from shipcosim.models import dp_loop
+from shipcosim.scenario import read_scenario
+from shipcosim.ssp import read_system
+
+VARIATIONS, REPEATS, TO_REACH = 1000, 5, 50.0
+DURATION = 20.0  # s of the run, for both; the cost per step does not depend on it
+
+
+@pytest.mark.slow
+def test_a_variation_of_the_array_form_is_50_times_as_fast_as_the_co_simulation(root):
+    scenario = read_scenario(root / "scenarios" / "four_corner.toml")
+    scenario = scenario.model_copy(update={"stop_time": DURATION, "events": scenario.events[:1], "expect": []})
+    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(root)])
+    ratios = []
+    for _ in range(REPEATS):
+        alone = _elapsed(lambda: simulate(system, scenario)) - _elapsed(lambda: simulate(system, _short(scenario)))
+        many = _elapsed(lambda: _arrays(DURATION)) - _elapsed(lambda: _arrays(1.0))
+        ratios.append(alone / (many / VARIATIONS))
+    print(f"\narray form, {VARIATIONS} variations: {statistics.median(ratios):.0f} times as fast per variation")
+    print(f"({min(ratios):.0f} to {max(ratios):.0f} in {REPEATS} pairs; to reach {TO_REACH:.0f}, aim 100)")
+    assert statistics.median(ratios) >= TO_REACH
+
+
+def _short(scenario):
+    return scenario.model_copy(update={"stop_time": 1.0})
+
+
+def _arrays(duration):
+    weather = {"wind_speed": 8.0, "wind_from": 0.785, "current_speed": 0.3, "current_to": 3.14}
+    default = dp_loop.DpSystem()
+    system = replace(
+        default,
+        environment=replace(
+            default.environment, significant_wave_height=0.3, peak_period=5.0, seed=np.arange(VARIATIONS)
+        ),
+        sensors=replace(default.sensors, seed=np.arange(VARIATIONS)),
+    )
+    events = [(0.0, weather | {"x_set": 20.0})]
+    return dp_loop.simulate(system, events, variations=VARIATIONS, stop_time=duration, every=10)
+
+
+def _elapsed(function):
+    """CPU seconds: both run in one thread, and other work on the machine does not count."""
+    start = time.process_time()
+    function()
+    return time.process_time() - start
