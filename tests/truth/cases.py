@@ -1,0 +1,227 @@
+"""Draw a log with a hidden effect, and its healthy twin.
+
+A log is drawn by a kind and a seed. Everything but the effect has random streams of its own, so that the twin has the
+same ship, weather, plan and noise.
+"""
+
+import zlib
+from dataclasses import dataclass, field, replace
+from datetime import date
+
+import numpy as np
+import pandas as pd
+
+from . import autopilot, effects, faults, sensors, unknowns
+from .effects import Answer, Effect
+from .loop import AFTER, BEFORE, HALF_SECOND, Setup, run
+from .ship import draw_coefficients
+from .weather import draw_weather, elevation, wind_series, windier
+
+KINDS = ("trial", "work", "hold")
+BATCH = 64
+CAUSES = tuple(effects.SIZES)
+ALL_MODES = (autopilot.FIXED, autopilot.TURNING, autopilot.OPPOSED)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A log, and what is hidden in it.
+
+    Attributes
+    ----------
+    log : pandas.DataFrame
+        Measured data as the contract says, columns ``role [unit]``.
+    answer : list of Answer
+        (cause, component, parameters, ...) of everything hidden; empty for a healthy log.
+    truth : pandas.DataFrame
+        The ship's real low-frequency motion at the log's rows, were all clocks right. SI and radians.
+    off_track : (rows,) array
+        Distance from the setpoint. [m]
+    off_heading : (rows,) array
+        [rad]
+    """
+
+    kind: str
+    seed: int
+    log: pd.DataFrame
+    answer: list
+    truth: pd.DataFrame
+    off_track: np.ndarray
+    off_heading: np.ndarray
+    healthy: "Case | None" = field(default=None, repr=False)
+
+    def twin(self):
+        """The healthy log of the same ship, weather, plan and noise."""
+        return self.healthy or self
+
+    def save(self, path):
+        """Write the log as CSV."""
+        self.log.to_csv(path, index=False)
+
+
+def draw(kind, seed, **options):
+    """Draw one log; see `draw_many`."""
+    return draw_many(kind, [seed], **options)[0]
+
+
+def draw_many(kind, seeds, **options):
+    """Draw logs, many at a time.
+
+    Parameters
+    ----------
+    kind : str
+        "trial" (moves and heading steps designed to excite), "work" (ordinary DP) or "hold" (stationkeeping).
+    seeds : iterable of int
+        One log each; the same seed and options give the same bytes.
+    causes : 0, 1, 2 or "unknown"
+        How many causes are hidden (default 1), or one that is in no catalogue.
+    size : float
+        Factor on how far the effects are from neutral (default 1).
+    minutes : int
+        Of log (default 40).
+    mismatch : float
+        Factor on the tolerances from which the ship's coefficients are drawn (default 1).
+    rough : bool
+        A ship of other forms: roll, other wind and cross-flow tables (default no).
+    among : sequence of str, optional
+        Causes (or names of unknown effects) to draw from; all if not given.
+    onset : bool
+        Effects on the ship or its sensors begin within the log (default no).
+
+    Returns
+    -------
+    list of Case
+    """
+    if kind not in KINDS:
+        raise ValueError(f"kind is {kind!r}; it is one of {', '.join(KINDS)}")
+    seeds = list(seeds)
+    return [
+        case
+        for first in range(0, len(seeds), BATCH)
+        for case in draw_batch([set_up(kind, seed, **options) for seed in seeds[first : first + BATCH]])
+    ]
+
+
+def weekly_seed(day=None):
+    """Seed of the week, e.g. 202647; printed, so that a failed run can be repeated."""
+    year, week, _ = (day or date.today()).isocalendar()
+    seed = 100 * year + week
+    print(f"seed of the week: {seed}")
+    return seed
+
+
+def stream(kind, seed, name):
+    """Random generator of its own for one part of one log."""
+    return np.random.default_rng([seed, zlib.crc32(kind.encode()), zlib.crc32(name.encode())])
+
+
+def set_up(kind, seed, causes=1, size=1.0, minutes=40, mismatch=1.0, rough=False, among=None, onset=False):
+    """Everything about a log that is drawn before it is simulated; see `draw_many`."""
+    hidden = draw_effects(kind, stream(kind, seed, "effect"), causes, size, minutes, among, onset)
+    names = {e.answer.cause for e in hidden} | {e.answer.note for e in hidden}
+    weather = draw_weather(stream(kind, seed, "weather"))
+    if names & {"wind_scale", "wind_direction", "wind_shadow"}:
+        weather = windier(weather, 5.5)
+    ticks, rows = 60 * minutes + AFTER, 60 * minutes + 1
+    rng = stream(kind, seed, "plan")
+    heading = rng.uniform(-np.pi, np.pi)
+    if "heading_wrap" in names:
+        heading = np.radians(rng.uniform(-3.0, 3.0))
+    planner = autopilot.Planner((0.0, 0.0, heading), BEFORE, ticks)
+    autopilot.PLANS[kind](planner, rng, modes_for(hidden))
+    half = int((BEFORE + ticks) / HALF_SECOND) + 1
+    air = stream(kind, seed, "air")
+    mast, over_ship = wind_series(weather, air, half, HALF_SECOND)
+    return Setup(
+        kind=kind,
+        seed=seed,
+        rows=rows,
+        coefficients=draw_coefficients(stream(kind, seed, "ship"), mismatch, rough),
+        weather=weather,
+        mast_wind=mast,
+        wind=over_ship,
+        sea=elevation(weather, air, half, HALF_SECOND),
+        style=autopilot.draw_style(stream(kind, seed, "style")),
+        plan=planner.plan(),
+        noise=sensors.draw_noise(stream(kind, seed, "noise"), BEFORE + ticks, rows),
+        effects=tuple(hidden),
+    )
+
+
+def modes_for(hidden):
+    """Ways to use the units in which the hidden effects can show at all."""
+    causes = {e.answer.cause for e in hidden}
+    if "reverse_loss" in causes:
+        return (autopilot.FIXED,) if "thruster_interaction" not in causes else (autopilot.FIXED, autopilot.TURNING)
+    if "thruster_interaction" in causes:
+        return (autopilot.TURNING, autopilot.OPPOSED)
+    if "channel_swap" in causes:
+        return (autopilot.FIXED, autopilot.OPPOSED)
+    return ALL_MODES
+
+
+def draw_effects(kind, rng, causes, size, minutes, among, onset):
+    """Effects of one log: none, one or two of the catalogue, or one outside it."""
+    if causes == "unknown":
+        name = None if among is None else str(rng.choice(among))
+        return [unknowns.draw_unknown(rng, kind, size, (0.0, 0.0), name)]
+    names = list(CAUSES if among is None else among)
+    while True:
+        chosen = [str(name) for name in rng.choice(names, size=causes, replace=False)]
+        if go_together(chosen):
+            return [draw_effect(name, rng, size, minutes, onset) for name in chosen]
+
+
+def go_together(causes):
+    """Whether each of these causes is still what it is beside the others."""
+    if len(causes) < 2:
+        return True
+    if set(causes) & effects.NEVER_PAIRED:
+        return False
+    return all(len(group & set(causes)) < 2 for group in effects.EXCLUSIVE)
+
+
+def draw_effect(cause, rng, size, minutes, onset):
+    """One effect of the catalogue."""
+    if cause in faults.DRAW:
+        return faults.DRAW[cause](rng, size, minutes)
+    component, parameters, shape = effects.DRAW[cause](rng, size, minutes)
+    start = float(rng.uniform(0.25, 0.6) * 60 * minutes)
+    when = start if onset and cause not in effects.WITHOUT_ONSET else 0.0
+    parameters = {name: float(value) for name, value in parameters.items()}
+    return Effect(Answer(cause, component, parameters, onset=when), shape)
+
+
+def draw_batch(setups):
+    """Simulate logs together with their twins."""
+    both = setups + [replace(setup, effects=()) for setup in setups]
+    records = run(both)
+    cases = [write(setup, record) for setup, record in zip(both, records, strict=True)]
+    count = len(setups)
+    return [
+        replace(case, healthy=twin) if setup.effects else case
+        for setup, case, twin in zip(setups, cases[:count], cases[count:], strict=True)
+    ]
+
+
+def write(setup, record):
+    """The log of one simulated ship."""
+    times = np.arange(setup.rows)
+    grid = -BEFORE + HALF_SECOND * np.arange(record["x"].size)
+    when = faults.true_times(times, [e.answer for e in setup.effects])
+    channels = sensors.log_channels(record, grid, when, setup.weather, setup.mast_wind, setup.sea, setup.noise)
+    kept, answer = np.ones(times.size, bool), []
+    for effect in setup.effects:
+        channels, left, told = faults.spoil(channels, times, effect)
+        kept &= left
+        answer.append(told)
+    channels = sensors.wrap_and_round(channels)
+    channels, received = sensors.drop_out(channels, stream(setup.kind, setup.seed, "dropouts"))
+    columns = {"time [s]": times.astype(float)}
+    columns |= {f"{role} [{sensors.ROLES[role][0]}]": values for role, values in channels.items()}
+    log = pd.DataFrame(columns)[kept & received].reset_index(drop=True)
+    truth = pd.DataFrame({name: np.interp(times, grid, record[name]) for name in sensors.RECORDED})
+    target = setup.plan.eta[:, BEFORE : BEFORE + setup.rows]
+    off_track = np.hypot(truth["x"] - target[0], truth["y"] - target[1]).to_numpy()
+    off_heading = (truth["psi"] - target[2]).to_numpy()
+    return Case(setup.kind, setup.seed, log, answer, truth, off_track, off_heading)
