@@ -22,7 +22,7 @@ from shipcosim.errors import Problem, ShipcosimError
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["conversion", "make_table", "read_table", "write_file", "write_table"]
+__all__ = ["conversion", "make_table", "read_columns", "read_table", "write_file", "write_table"]
 
 _HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
 
@@ -68,21 +68,46 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
 
 
 def read_table(path: str | os.PathLike) -> xarray.Dataset:
-    """Read a table from NetCDF (.nc) or CSV (.csv, .csv.gz; header `name [unit]`).
+    """Read a table from NetCDF (.nc), CSV (.csv, .csv.gz; header `name [unit]`) or Parquet (.parquet, headers alike).
 
     Raises
     ------
     ShipcosimError
         If the file cannot be read, has no `time`, or a column is not numeric.
     """
-    readers = {".nc": _read_netcdf, ".csv": _read_csv, ".csv.gz": _read_csv}
+    readers = {".nc": _read_netcdf, ".csv": _read_rows, ".csv.gz": _read_rows, ".parquet": _read_rows}
+    return readers[_suffix(path, readers)](Path(path))
+
+
+def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
+    """Columns of any table of measurements, as they stand in the file: (values, unit) by name.
+
+    Numbers become float64, missing ones NaN, stamps of date and time seconds after the first; a column of texts stays
+    one of texts. Nothing is left out and nothing is asked of the names.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be read or has a column twice.
+    """
     path = Path(path)
-    suffix = next((s for s in readers if path.name.endswith(s)), None)
+    if _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet")) == ".nc":
+        return _netcdf_columns(_open_netcdf(path))
+    names, units, columns = _read_arrow(path)
+    problems = _repeated(path, names)
+    if problems:
+        raise ShipcosimError(problems)
+    return {name: _plain(values, unit) for name, unit, values in zip(names, units, columns, strict=True)}
+
+
+def _suffix(path, known):
+    path = Path(path)
+    suffix = next((s for s in known if path.name.endswith(s)), None)
     if suffix is None:
-        raise ShipcosimError(Problem(str(path), f"'{path.suffix}' is no table.", "Tables are .nc, .csv or .csv.gz."))
+        raise ShipcosimError(Problem(str(path), f"'{path.suffix}' is no table.", f"Tables are {', '.join(known)}."))
     if not path.is_file():
         raise ShipcosimError(Problem(str(path), "there is no such file."))
-    return readers[suffix](path)
+    return suffix
 
 
 def write_file(path: str | os.PathLike, content: bytes) -> None:
@@ -192,45 +217,90 @@ def _csv(table):
     return rows.getvalue().to_pybytes()
 
 
-def _read_netcdf(path):
+def _open_netcdf(path):
     import xarray
 
     try:
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
-            table.load()
+            return table.load()
     except (OSError, ValueError) as error:
         raise ShipcosimError(Problem(str(path), f"is no NetCDF 4 file: {error}.")) from error
+
+
+def _read_netcdf(path):
+    table = _open_netcdf(path)
     if "time" not in table.coords:
         raise ShipcosimError(_no_time(path, list(table.variables)))
     return table
 
 
-def _read_csv(path):
+def _netcdf_columns(table):
+    """The variables with one dimension. Units like "seconds since 2022-10-27" count seconds."""
+    single = {str(name): variable for name, variable in table.variables.items() if variable.ndim == 1}
+    units = {name: str(variable.attrs.get("units", "")).partition(" since ")[0] for name, variable in single.items()}
+    numeric = {name: variable.dtype.kind in "fiub" for name, variable in single.items()}
+    return {
+        name: (np.asarray(variable.values, float) if numeric[name] else variable.values, units[name])
+        for name, variable in single.items()
+    }
+
+
+def _read_arrow(path):
+    """Names, units and columns of a CSV or Parquet file."""
     import pyarrow
     from pyarrow.csv import read_csv
+    from pyarrow.parquet import read_table as read_parquet
 
+    is_parquet = path.name.endswith(".parquet")
     try:
-        content = read_csv(path)
+        content = read_parquet(path) if is_parquet else read_csv(path)
     except (OSError, pyarrow.ArrowInvalid) as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read as CSV: {error}")) from error
+        kind = "Parquet" if is_parquet else "CSV"
+        raise ShipcosimError(Problem(str(path), f"cannot be read as {kind}: {error}")) from error
     headers = [_HEADER.match(header) for header in content.column_names]
-    names = [header["name"] for header in headers]
+    return [header["name"] for header in headers], [header["unit"] or "" for header in headers], content.columns
+
+
+def _read_rows(path):
+    import pyarrow
+
+    names, units, columns = _read_arrow(path)
     problems = [
         Problem(f"{path}, column '{name}'", f"holds {column.type}, not numbers.")
-        for name, column in zip(names, content.columns, strict=True)
+        for name, column in zip(names, columns, strict=True)
         if not (pyarrow.types.is_floating(column.type) or pyarrow.types.is_integer(column.type))
     ]
-    problems += [Problem(f"{path}, column '{name}'", "is there twice.") for name in set(names) if names.count(name) > 1]
+    problems += _repeated(path, names)
     if "time" not in names:
         problems.append(_no_time(path, names))
     if problems:
         raise ShipcosimError(problems)
-    columns = {
-        header["name"]: (header["name"], column.to_numpy(), header["unit"] or "", "")
-        for header, column in zip(headers, content.columns, strict=True)
-    }
-    _, time, unit, _ = columns.pop("time")
-    return make_table(time * conversion(unit, "s")[0], columns.values())
+    signals = {n: (n, c.to_numpy(), unit, "") for n, unit, c in zip(names, units, columns, strict=True)}
+    _, time, unit, _ = signals.pop("time")
+    return make_table(time * conversion(unit, "s")[0], signals.values())
+
+
+def _plain(column, unit):
+    """Values of an Arrow column and their unit."""
+    import pyarrow
+    from pyarrow import types
+
+    if types.is_timestamp(column.type):
+        column, unit = column.cast(pyarrow.timestamp("ns")), "s"
+        stamps = column.to_numpy().astype("datetime64[ns]")
+        known = stamps[~np.isnat(stamps)]
+        return (stamps - known[0] if len(known) else stamps - stamps) / np.timedelta64(1, "s"), unit
+    if types.is_boolean(column.type) or types.is_null(column.type):
+        column = column.cast(pyarrow.float64()) if types.is_null(column.type) else column.cast(pyarrow.int8())
+    if types.is_floating(column.type) or types.is_integer(column.type):
+        return column.cast(pyarrow.float64()).to_numpy(), unit
+    return np.array(column.to_pylist(), dtype=object), unit
+
+
+def _repeated(path, names):
+    return [
+        Problem(f"{path}, column '{name}'", "is there twice.") for name in sorted(set(names)) if names.count(name) > 1
+    ]
 
 
 def _no_time(path, names):
