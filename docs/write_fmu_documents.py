@@ -4,7 +4,7 @@ Run `python docs/write_fmu_documents.py` after an FMU or a number has changed; t
 
 A reference result is 60 s of one component of the four-corner run: at each row the inputs it had there, and the outputs
 that the FMU gives when it is started with the first row's inputs and stepped from row to row with the inputs held. All
-parameters have their default values.
+parameters have their default values. An FMU that is no part of that run keeps times and inputs of its reference.csv.
 """
 
 import importlib.util
@@ -17,7 +17,7 @@ from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
 from shipcosim.fmi.description import table_of_variables
 from shipcosim.scenario import read_scenario
-from shipcosim.series import make_table, write_table
+from shipcosim.series import make_table, read_table, write_table
 from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -51,7 +51,8 @@ def fmu_class(name):
 
 def readme(name):
     """README of an FMU with its table of variables as it should be."""
-    text = (ROOT / "fmus" / name / "README.md").read_text(encoding="utf-8").partition(MARK)[0].rstrip()
+    path = ROOT / "fmus" / name / "README.md"
+    text = path.read_text(encoding="utf-8").partition(MARK)[0].rstrip() if path.is_file() else f"# {name}"
     return f"{text}\n\n{MARK}\n{table_of_variables(fmu_class(name))}"
 
 
@@ -93,10 +94,21 @@ def driven(name, times, inputs):
     return rows
 
 
+def own_inputs(name):
+    """Times and inputs in the FMU's reference.csv; without one a minute in which the inputs stay as they start."""
+    path = ROOT / "fmus" / name / "reference.csv"
+    if not path.is_file():
+        return np.arange(0.0, DURATION + INTERVAL, INTERVAL), {}
+    table = read_table(path)
+    inputs = [variable.name for variable in fmu_class(name).variables if variable.causality == "input"]
+    return table["time"].values, {key: table[key].values for key in inputs if key in table}
+
+
 def reference(name, table, system):
     """Reference result of an FMU: its inputs and outputs."""
-    times = table["time"].values
-    inputs = inputs_of(COMPONENTS[name], table, system)
+    times, inputs = own_inputs(name)
+    if name in COMPONENTS:
+        times, inputs = table["time"].values, inputs_of(COMPONENTS[name], table, system)
     values = inputs | driven(name, times, inputs)
     about = {variable.name: variable for variable in fmu_class(name).variables}
     columns = [(key, values[key], about[key].unit, about[key].description) for key in about if key in values]
@@ -105,6 +117,6 @@ def reference(name, table, system):
 
 if __name__ == "__main__":
     run, system = four_corner()
-    for name in COMPONENTS:
+    for name in sorted(path.stem for path in ROOT.glob("fmus/*/*.py") if path.stem == path.parent.name):
         (ROOT / "fmus" / name / "README.md").write_text(readme(name), encoding="utf-8")
         write_table(reference(name, run, system), ROOT / "fmus" / name / "reference.csv")

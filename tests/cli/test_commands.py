@@ -269,6 +269,15 @@ def test_check_of_sound_files_finds_nothing(call, project):
     assert done.code == 0 and done.out.count("nothing wrong") == 4
 
 
+def test_check_of_an_fmu_lists_its_variables_with_unit_and_start(call, project):
+    call("build")
+    lines = call("check", "build/fmus/lag.fmu").out.splitlines()
+    listed = [line.split() for line in lines]
+    assert ["time_constant", "parameter", "Real", "s", "1.0", "time", "constant"] in listed
+    assert ["y", "output", "Real", "m", "output"] in listed
+    assert json.loads(call("check", "build/fmus/lag.fmu", "--json").out)[0]["problems"] == []
+
+
 def test_check_reports_what_is_wrong_in_each_file(call, project):
     call("build")
     ssd = project / "ssp" / "tank" / "SystemStructure.ssd"

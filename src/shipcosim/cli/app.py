@@ -240,12 +240,14 @@ def check(
     as_json: Annotated[bool, typer.Option("--json", help="Report as JSON.")] = False,
     debug: Debug = False,
 ):
-    """Validate files: schema, then meaning. Loads no binary and runs nothing."""
-    from shipcosim.cli.checks import check_any
-    from shipcosim.cli.console import print_report
+    """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables."""
+    from shipcosim.cli.checks import check_any, variables_in
+    from shipcosim.cli.console import print_report, print_variables
 
     reports = {file: check_any(file) for file in files}
     print_report(reports, as_json)
+    for variables in () if as_json else filter(None, map(variables_in, files)):
+        print_variables(variables)
     if any(problem.severity == "error" for problems in reports.values() for problem in problems):
         raise typer.Exit(FAILED)
 

@@ -40,6 +40,19 @@ def check_any(file):
         return error.problems
 
 
+def variables_in(file):
+    """An FMU's variables as rows of text: name, causality, type, unit, start, description; none for other files."""
+    from shipcosim.ssp.fmu import describe_fmu
+    from shipcosim.ssp.values import text_of
+    from shipcosim.ssp.xml import Findings
+
+    fmu = describe_fmu(Path(file), Findings()) if file.lower().endswith(".fmu") else None
+    return [
+        (v.name, v.causality, v.type, v.unit or "", "" if v.start is None else text_of(v.start), v.description)
+        for v in (fmu.variables.values() if fmu else ())
+    ]
+
+
 def check_scenario_file(path):
     """Problems of a scenario, in itself and with its system."""
     from shipcosim.scenario import check_files, check_scenario, read_scenario

@@ -9,14 +9,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from shipcosim.cli.console import WIDTH
 from shipcosim.cli.project import build_stale, experiment_of, find_project, find_scenario
 from shipcosim.cosim.compare import OURS
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import check_times, read_scenario
 from shipcosim.ssp import read_system
-
-WIDTH = 160
-"""Columns that the table may take; a narrow terminal breaks its lines, numbers cut short would be no use."""
 
 
 def print_comparison(comparison, as_json):

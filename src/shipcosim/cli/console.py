@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
 STYLES = {"error": "bold red", "remark": "yellow"}
 VERDICTS = {"passed": "bold green", "failed": "bold red", "partial": "bold yellow"}
 
@@ -83,6 +84,18 @@ def _expectations(judged):
         word = Text("pass", style="green") if passed else Text("FAIL", style="bold red")
         listed.add_row(word, *map(Text, texts))
     return listed
+
+
+def print_variables(rows):
+    """Table of an FMU's variables."""
+    listed = Table(box=None, pad_edge=False)
+    for heading in ("variable", "", "type", "unit", "start", "meaning"):
+        listed.add_column(heading, no_wrap=True, max_width=24 if heading == "start" else None)
+    for row in rows:
+        listed.add_row(*map(Text, row))
+    console = Console(highlight=False, soft_wrap=True)
+    console.width = max(console.width, WIDTH)
+    console.print(listed)
 
 
 def print_report(reports, as_json):
