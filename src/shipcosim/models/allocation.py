@@ -47,14 +47,14 @@ class AllocationParameters:
         14.0,
         "m",
         "a missed yaw moment weighs as a missed force at this distance",
-        "distance of the thrusters; tuned: longer ones lose the heading, and then the ship, in 12 m/s",
+        "distance of the thrusters; tried: longer ones lose the heading in 12 m/s",
         minimum=0.1,
     )
     yaw_lever_degraded: float = quantity(
         300.0,
         "m",
         "the same where a unit is missing: position before heading",
-        "tuned: two azimuths keep the ship in place, and she turns her stern to the weather",
+        "tried: two azimuths keep the ship in place, and she turns her stern to the weather",
         minimum=0.1,
     )
 

@@ -14,19 +14,19 @@ class ControlParameters:
     """Where the poles are and what is limited. Gains follow from the ship's mass."""
 
     surge_frequency: float = quantity(
-        0.11, "rad/s", "natural frequency of the loop in surge", "tuned on 20 seeds of the four corners", minimum=0.0
+        0.10, "rad/s", "natural frequency of the loop in surge", "tuned on 20 seeds of the four corners", minimum=0.0
     )
     sway_frequency: float = quantity(
-        0.11, "rad/s", "natural frequency of the loop in sway", "tuned on 20 seeds of the four corners", minimum=0.0
+        0.10, "rad/s", "natural frequency of the loop in sway", "tuned on 20 seeds of the four corners", minimum=0.0
     )
     yaw_frequency: float = quantity(
-        0.18, "rad/s", "natural frequency of the loop in yaw", "tuned on 20 seeds of the four corners", minimum=0.0
+        0.16, "rad/s", "natural frequency of the loop in yaw", "tuned on 20 seeds of the four corners", minimum=0.0
     )
     damping_ratio: float = quantity(
         1.0, "1", "relative damping of the loops", "tuned on 20 seeds of the four corners", minimum=0.0
     )
     integral_ratio: float = quantity(
-        0.25,
+        0.4,
         "1",
         "rate of the integral action over the loop's natural frequency",
         "tuned on 20 seeds of the four corners",
@@ -133,21 +133,22 @@ def step(state, estimate, desired, allocated, wind_load, h, *, ship, parameters)
     -----
     With the limited error e = Rᵀ(η_d - η) in body axes and ν_d = Rᵀ η̇_d,
 
-        τ = M (Rᵀ η̈_d + 2 ζ ω (ν_d - ν) + ω² e) + D ν_d + Rᵀ i - τ_wind.
+        τ = M (Rᵀ η̈_d + a) + D ν_d + Rᵀ i - τ_wind,  a = 2 ζ ω (ν_d - ν) + ω² e.
 
-    The integral i grows with κ ω³ M e, but not where e is limited (on a long way home), nor further in a direction in
-    which the last request was not given (thrusters at their limits).
+    The integral i grows with κ ω M a, not with e alone: on a long way home, where e is limited, a is zero at a steady
+    speed. It grows no further in a direction in which the last request was not given (thrusters at their limits).
 
     References
     ----------
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 15.3.
     """
     psi = estimate.psi
-    error, near = _limited_error(estimate, desired, parameters=parameters)
     nu_d = (*to_body(psi, desired.x_dot, desired.y_dot), desired.r)
-    integral = _integral(state, psi, error, near, allocated, h, ship=ship, parameters=parameters)
+    correction = _correction(estimate, desired, nu_d, parameters=parameters)
+    integral = _integral(state, psi, correction, allocated, h, ship=ship, parameters=parameters)
     wind = _filtered(state, wind_load, h, parameters=parameters)
-    X, Y, N = _acceleration_load(estimate, desired, error, nu_d, ship=ship, parameters=parameters)
+    u_dot, v_dot = to_body(psi, desired.x_ddot, desired.y_ddot)
+    X, Y, N = _load(u_dot + correction[0], v_dot + correction[1], desired.r_dot + correction[2], ship=ship)
     i_X, i_Y = to_body(psi, integral[0], integral[1])
     share = parameters.wind_share
     return ControlState(
@@ -164,36 +165,26 @@ def errors(estimate, desired):
     return hypot(estimate.x - desired.x, estimate.y - desired.y), wrap(estimate.psi - desired.psi)
 
 
-def _limited_error(estimate, desired, *, parameters):
-    """Way to the desired position and heading in body axes, shortened to the limits; and 1.0 where within them."""
-    p = parameters
-    surge, sway = to_body(estimate.psi, desired.x - estimate.x, desired.y - estimate.y)
-    yaw = wrap(desired.psi - estimate.psi)
-    distance = hypot(surge, sway)
-    scale = p.position_error_max / maximum(distance, p.position_error_max)
-    near = where(distance < p.position_error_max, 1.0, 0.0), where(abs(yaw) < p.heading_error_max, 1.0, 0.0)
-    return (scale * surge, scale * sway, clip(yaw, -p.heading_error_max, p.heading_error_max)), near
-
-
-def _acceleration_load(estimate, desired, error, nu_d, *, ship, parameters):
-    """Load for the desired acceleration and for the correction of errors of position and velocity."""
+def _correction(estimate, desired, nu_d, *, parameters):
+    """Acceleration that takes the ship to the desired motion, for errors of position and heading up to their limits."""
     p, damping = parameters, 2.0 * parameters.damping_ratio
-    u_dot, v_dot = to_body(estimate.psi, desired.x_ddot, desired.y_ddot)
-    return _load(
-        u_dot + p.surge_frequency * (damping * (nu_d[0] - estimate.u) + p.surge_frequency * error[0]),
-        v_dot + p.sway_frequency * (damping * (nu_d[1] - estimate.v) + p.sway_frequency * error[1]),
-        desired.r_dot + p.yaw_frequency * (damping * (nu_d[2] - estimate.r) + p.yaw_frequency * error[2]),
-        ship=ship,
+    surge, sway = to_body(estimate.psi, desired.x - estimate.x, desired.y - estimate.y)
+    scale = p.position_error_max / maximum(hypot(surge, sway), p.position_error_max)
+    yaw = clip(wrap(desired.psi - estimate.psi), -p.heading_error_max, p.heading_error_max)
+    return (
+        p.surge_frequency * (damping * (nu_d[0] - estimate.u) + p.surge_frequency * scale * surge),
+        p.sway_frequency * (damping * (nu_d[1] - estimate.v) + p.sway_frequency * scale * sway),
+        p.yaw_frequency * (damping * (nu_d[2] - estimate.r) + p.yaw_frequency * yaw),
     )
 
 
-def _integral(state, psi, error, near, allocated, h, *, ship, parameters):
+def _integral(state, psi, correction, allocated, h, *, ship, parameters):
     """Integral load a sample later."""
     p, k = parameters, parameters.integral_ratio
     X, Y, N = _load(
-        k * near[0] * p.surge_frequency**3 * error[0],
-        k * near[0] * p.sway_frequency**3 * error[1],
-        k * near[1] * p.yaw_frequency**3 * error[2],
+        k * p.surge_frequency * correction[0],
+        k * p.sway_frequency * correction[1],
+        k * p.yaw_frequency * correction[2],
         ship=ship,
     )
     north, east = to_ned(
