@@ -76,7 +76,9 @@ def read_table(path: str | os.PathLike) -> xarray.Dataset:
         If the file cannot be read, has no `time`, or a column is not numeric.
     """
     readers = {".nc": _read_netcdf, ".csv": _read_rows, ".csv.gz": _read_rows, ".parquet": _read_rows}
-    return readers[_suffix(path, readers)](Path(path))
+    table = readers[_suffix(path, readers)](Path(path))
+    table.encoding["source"] = str(path)
+    return table
 
 
 def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
@@ -103,6 +105,8 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
 def _suffix(path, known):
     path = Path(path)
     suffix = next((s for s in known if path.name.endswith(s)), None)
+    if path.is_dir():
+        raise ShipcosimError(Problem(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}."))
     if suffix is None:
         raise ShipcosimError(Problem(str(path), f"'{path.suffix}' is no table.", f"Tables are {', '.join(known)}."))
     if not path.is_file():
@@ -163,7 +167,9 @@ def conversion(unit_from: str | None, unit_to: str | None) -> tuple[float, float
         source, target = units(_pint_spelling(unit_from)).units, units(_pint_spelling(unit_to)).units
         offset, one = (float(units.Quantity(value, source).to(target).magnitude) for value in (0.0, 1.0))
     except pint.UndefinedUnitError as error:
-        raise ShipcosimError(Problem("", f"cannot convert '{unit_from}' into '{unit_to}': {error}.")) from error
+        why = str(error).replace("is not defined in the unit registry", "is not known")
+        found = f"cannot convert '{unit_from}' into '{unit_to}': {why}."
+        raise ShipcosimError(Problem("", found, "Units are written like N.m, kn or deg.")) from error
     except pint.DimensionalityError as error:
         raise ShipcosimError(
             Problem("", f"cannot convert '{unit_from}' into '{unit_to}': they measure different things.")
@@ -254,11 +260,21 @@ def _read_arrow(path):
     is_parquet = path.name.endswith(".parquet")
     try:
         content = read_parquet(path) if is_parquet else read_csv(path)
-    except (OSError, pyarrow.ArrowInvalid) as error:
-        kind = "Parquet" if is_parquet else "CSV"
-        raise ShipcosimError(Problem(str(path), f"cannot be read as {kind}: {error}")) from error
-    headers = [_HEADER.match(header) for header in content.column_names]
+        headers = [_HEADER.match(header) for header in content.column_names]
+    except (OSError, pyarrow.ArrowInvalid, UnicodeDecodeError) as error:
+        raise ShipcosimError(_unreadable(path, is_parquet, error)) from error
+    if content.num_rows == 0:
+        raise ShipcosimError(Problem(str(path), "has no row below its header.", "Each row is a time and its values."))
     return [header["name"] for header in headers], [header["unit"] or "" for header in headers], content.columns
+
+
+def _unreadable(path, is_parquet, error):
+    if isinstance(error, UnicodeDecodeError):
+        found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} in its header is none of its characters."
+        return Problem(str(path), found, "Save the file in UTF-8.")
+    said = "".join(c if c.isprintable() else " " for c in str(error).removeprefix("CSV parse error: "))[:100]
+    remedy = "" if is_parquet else "Columns are separated by commas, numbers have a decimal point."
+    return Problem(str(path), f"cannot be read as {'Parquet' if is_parquet else 'CSV'}: {said.rstrip('.')}.", remedy)
 
 
 def _read_rows(path):
@@ -277,7 +293,16 @@ def _read_rows(path):
         raise ShipcosimError(problems)
     signals = {n: (n, c.to_numpy(), unit, "") for n, unit, c in zip(names, units, columns, strict=True)}
     _, time, unit, _ = signals.pop("time")
-    return make_table(time * conversion(unit, "s")[0], signals.values())
+    return make_table(time * _seconds_in(unit, path), signals.values())
+
+
+def _seconds_in(unit, path):
+    try:
+        return conversion(unit, "s")[0]
+    except ShipcosimError as error:
+        raise ShipcosimError(
+            Problem(f"{path}, column 'time'", error.problems[0].found, "It should be in s.")
+        ) from error
 
 
 def _plain(column, unit):

@@ -20,6 +20,7 @@ SSD = "ssp/gunnerus_dp/SystemStructure.ssd"
 SSV = "ssp/gunnerus_dp/resources/gunnerus-33m9.ssv"
 FMU = "build/fmus/tunnel_thruster.fmu"
 TUNNEL = "fmus/tunnel_thruster/tunnel_thruster.py"
+LEVELS = "time [s],tunnel_rpm [rpm]\n"
 OPEN = ("simulate", "ssp/gunnerus_open", "--stop-time", "1", "--step-size", "0.05")
 NOISE = bytes(range(256)) * 8
 LATIN = "Gunnerus på prøvetur".encode("latin-1")
@@ -124,6 +125,7 @@ def test_options_of_a_run(call, gunnerus, arguments, said):
         ([*OPEN, "--parameters", "absent.ssv"], ["absent.ssv:", "No such file"]),
         ([*OPEN, "--parameters", SHORT], [f"{SHORT}, line 1:", "Not well-formed XML"]),
         ([*OPEN, "--inputs", "absent.csv"], ["absent.csv:", "no such file"]),
+        ([*OPEN, "--inputs", "scenarios"], ["scenarios:", "is a folder, no table.", ".csv"]),
         ([*OPEN, "--inputs", SHORT], ["'.toml' is no table.", ".csv"]),
         (["build", "vesel"], ["There is no such FMU or system.", "Did you mean 'vessel'?"]),
         (["build", "reference", "--out", SHORT], [SHORT, "cannot be written: Not a directory"]),
@@ -304,6 +306,52 @@ def test_files_of_windows_editors_are_read(call, gunnerus):
     text = Path(SHORT).read_text(encoding="utf-8")
     Path(SHORT).write_bytes(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode())
     assert call("check", SHORT).code == 0
+
+
+# what feeds the inputs
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        (LEVELS + "0,10\n0.5,nan\n1,10\n", ["in.csv: tunnel_rpm:", "is nan at 0.5 s.", "Fill or drop such rows"]),
+        (LEVELS + "0,10\n0.5,\n1,10\n", ["in.csv: tunnel_rpm:", "is nan at 0.5 s."]),
+        (LEVELS + "0,10\nnan,10\n1,10\n", ["The time of row 2 is nan.", "Drop such rows."]),
+        (LEVELS + "0,10\n0.7,3\n0.5,10\n1,3\n", ["The time of row 3 is 0.5 s, after 0.7 s", "Sort the rows"]),
+        (LEVELS + "0.5,10\n1,10\n", ["The table goes from 0.5 s to 1 s, the run from 0 s to 1 s.", "Start later"]),
+        (LEVELS + "0,10\n0.5,10\n", ["The table goes from 0 s to 0.5 s", "stop earlier"]),
+        (LEVELS, ["in.csv:", "no row"]),
+        ("", ["in.csv:", "cannot be read as CSV: Empty CSV file"]),
+        (LEVELS.replace("rpm [rpm]", "rpms [rpm]") + "0,1\n1,1\n", ["no input 'tunnel_rpms'", "'tunnel_rpm'?"]),
+        (LEVELS.replace("[rpm]", "[m]") + "0,1\n1,1\n", ["cannot convert 'm' into 'rpm'", "measure different things"]),
+        (LEVELS.replace("[rpm]", "[umdr]") + "0,1\n1,1\n", ["'umdr' is not known.", "Units are written like"]),
+        (
+            LEVELS.replace("[s]", "[m]") + "0,1\n1,1\n",
+            ["column 'time':", "cannot convert 'm' into 's'", "It should be in s."],
+        ),
+        (LEVELS.replace("time", "t") + "0,1\n1,1\n", ["has no column 'time'", "It should have 'time [s]'."]),
+        (LEVELS + "0,10\n0.5,1,2\n1,10\n", ["Expected 2 columns, got 3", "Columns are separated by commas"]),
+        (
+            "time [s];tunnel_rpm [rpm]\n0;1,5\n1;1,5\n",
+            ["Columns are separated by commas, numbers have a decimal point"],
+        ),
+        (LEVELS + "0,full\n1,full\n", ["column 'tunnel_rpm':", "holds string, not numbers."]),
+        (NOISE, ["in.csv", "CSV"]),
+        (
+            b"time [s],tunnel_rpm [\xb0]\n0,1\n1,1\n",
+            ["in.csv:", "is not UTF-8 text: byte 0xb0", "Save the file in UTF-8."],
+        ),
+    ],
+)
+def test_table_of_inputs(call, gunnerus, table, said):
+    Path("in.csv").write_bytes(table if isinstance(table, bytes) else table.encode())
+    assert refused(call(*OPEN, "--inputs", "in.csv"), *said) and not results()
+
+
+@pytest.mark.parametrize("name", ["in.nc", "in.csv.gz", "in.parquet"])
+def test_table_of_inputs_that_is_garbage(call, gunnerus, name):
+    Path(name).write_bytes(NOISE)
+    assert refused(call(*OPEN, "--inputs", name), f"{name}:") and not results()
 
 
 # what goes wrong during a run

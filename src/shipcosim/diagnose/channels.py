@@ -54,7 +54,7 @@ def read_channels(path: str | os.PathLike) -> dict[str, Channel]:
         where = f"{path}, {name}"
         if role_of(name) is None and not (isinstance(entry, str | dict) and "." in name):
             remedy = suggestion(name, [*ROLES, "NAME_rpm", "NAME_azimuth", "NAME_thrust"])
-            problems.append(Problem(where, "is no role.", f"{remedy} A connector has a dot: \"vessel.u_r\"."))
+            problems.append(Problem(where, "is no role.", f'{remedy} A connector has a dot: "vessel.u_r".'))
             continue
         try:
             channels[name] = Channel.model_validate({"column": entry} if isinstance(entry, str) else entry)
@@ -126,7 +126,9 @@ def _by_header(path, columns):
 def _values(channel, name, columns):
     """Values of a channel and their unit."""
     if channel.column not in columns:
-        raise ShipcosimError(Problem("", f"there is no column '{channel.column}'.", suggestion(channel.column, columns)))
+        raise ShipcosimError(
+            Problem("", f"there is no column '{channel.column}'.", suggestion(channel.column, columns))
+        )
     values, stated = columns[channel.column]
     if values.dtype.kind != "f":
         example = next((str(value) for value in values if value is not None), "")
@@ -167,4 +169,6 @@ def _local_position(values, units):
 
 def _field_problem(where, detail):
     path = ".".join(str(part) for part in detail["loc"])
-    return Problem(f"{where}.{path}" if path else where, f"{detail['msg']}.", "A channel has column, unit, sign, offset.")
+    return Problem(
+        f"{where}.{path}" if path else where, f"{detail['msg']}.", "A channel has column, unit, sign, offset."
+    )

@@ -180,5 +180,7 @@ def _clipped(time, role, values, good):
     if not bad.any():
         return [], bad
     severity = "fault" if role in NAVIGATION or "wind" in role else "remark"
-    what = "at its limit: the channel is clipped" if severity == "fault" else "at the largest or smallest of the channel"
+    what = (
+        "at its limit: the channel is clipped" if severity == "fault" else "at the largest or smallest of the channel"
+    )
     return [_finding("clipped", role, time, bad, what, severity)], (bad if severity == "fault" else np.zeros_like(bad))
