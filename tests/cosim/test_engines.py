@@ -1,9 +1,12 @@
 """libcosim and ecos behind the same call: the same table as ours, or a refusal in words."""
 
 import json
+import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -232,3 +235,21 @@ def test_seeds_and_hashes_are_in_the_table(loop, make_scenario, engine):
     table = simulate(loop, make_scenario(), engine=engine)
     assert set(json.loads(table.attrs["fmus"])) == set(LOOP)
     assert json.loads(table.attrs["start_values"])["law.offset"] == 0.123
+
+
+def test_names_with_dots_and_folders_with_blanks(make_system, make_scenario, engine, tmp_path):
+    system = make_system({"clock": "clock", "lag": "lag"}, ["clock.time -> lag.u"])
+    folder = tmp_path / "a folder, øre"
+    folder.mkdir()
+    components = {}
+    for name, component in system.components.items():
+        path = shutil.copy(component.fmu.path, folder)
+        fmu = replace(component.fmu, path=Path(path))
+        components[f"inner.{name}"] = replace(component, name=f"inner.{name}", fmu=fmu)
+    inner = [
+        replace(c, source=(f"inner.{c.source[0]}", c.source[1]), target=(f"inner.{c.target[0]}", c.target[1]))
+        for c in system.connections
+    ]
+    system = replace(system, components=components, connections=tuple(inner))
+    scenario = make_scenario(1.0, 0.1, events=[{"time": 0.5, "bias": {"inner.lag.u": 1.0}}])
+    assert_alike(simulate(system, scenario), simulate(system, scenario, engine=engine), EXACT[engine])

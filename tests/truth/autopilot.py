@@ -1,8 +1,8 @@
 """The truth's own DP: where to go, how hard to push, and which thruster does it. One array entry per ship.
 
-No Kalman filter and no model of the ship: a complementary filter on position and velocity, proportional and derivative
-action as a linear-quadratic regulator of a double integrator has it, and a bias in the earth frame that leaks in slowly outside a
-dead band.
+No Kalman filter: a complementary filter on position and velocity, proportional and derivative action as a
+linear-quadratic regulator of a double integrator has it, a rough feed-forward of planned motion and wind, and a bias in
+the earth frame that leaks in slowly outside a dead band.
 """
 
 from dataclasses import dataclass
@@ -107,7 +107,7 @@ class Planner:
 
 
 def plan_trial(planner, rng, modes):
-    """Box, circle on the spot, a run ahead and back, heading steps, in turn, the units used in another way each time."""
+    """Box, circle on the spot, a run ahead and back and heading steps in turn, each with another use of the units."""
 
     def box():
         side, turn = rng.uniform(15, 25), rng.choice((-1, 1))

@@ -41,14 +41,14 @@ def part_of(rng, seconds):
 
 def draw_lag(cause, channels):
     def draw(rng, size, minutes):
-        return Effect(Answer(cause, None, {"lag": draw_size(cause, rng, size)}, (), channels))
+        return Effect(Answer(cause, None, {"lag": float(draw_size(cause, rng, size))}, (), channels))
 
     return draw
 
 
 def draw_clock(rng, size, minutes):
     """One segment of 180 to 400 s, or two of 120 to 200 s, with at least 60 s between them."""
-    rate, seconds = 1.0 + either(rng) * draw_size("clock", rng, size), 60 * minutes
+    rate, seconds = float(1.0 + either(rng) * draw_size("clock", rng, size)), 60 * minutes
     lengths = rng.uniform(180, 400, 1) if rng.random() < 0.5 else rng.uniform(120, 200, 2)
     return Effect(Answer("clock", None, {"rate": rate}, segments(rng, lengths, seconds), ("time",)))
 

@@ -34,7 +34,7 @@ class Ship(NamedTuple):
     u_r: np.ndarray  # through the water
     v_r: np.ndarray
     momentum: tuple  # of three [kg m/s, kg m/s, kg m2/s]
-    rates: tuple  # of the momentum and of psi, one step ago
+    rates: tuple  # of the momentum and of psi, one step ago; empty at the start
     rpm: np.ndarray  # (3, n) real speed of port, starboard and tunnel propeller
     azimuth: np.ndarray  # (2, n) real direction of the units
 
@@ -44,8 +44,7 @@ def at_rest(x, y, psi, rpm, azimuth, coefficients, knobs):
     still = np.zeros_like(psi)
     u_c, v_c = to_body(psi, knobs.current_north, knobs.current_east)
     momentum = momenta(still, still, still, u_c, v_c, coefficients, knobs)
-    rates = (still, still, still, still)
-    return Ship(x, y, psi, still, still, still, still, still, -u_c, -v_c, momentum, rates, rpm, azimuth)
+    return Ship(x, y, psi, still, still, still, still, still, -u_c, -v_c, momentum, (), rpm, azimuth)
 
 
 def to_body(psi, north, east):
@@ -153,7 +152,7 @@ def step(ship, rpm_target, azimuth_target, wind, wave_slope, coefficients, knobs
     rates = (r * p_y + load_x, -r * p_x + load_y, munk + load_n, r)
     p_x, p_y, p_n, psi = (
         value + h * (1.5 * now - 0.5 * before)
-        for value, now, before in zip((*ship.momentum, ship.psi), rates, ship.rates, strict=True)
+        for value, now, before in zip((*ship.momentum, ship.psi), rates, ship.rates or rates, strict=True)
     )
     u_c, v_c = to_body(psi, knobs.current_north, knobs.current_east)
     u_r, v_r, r = velocities((p_x, p_y, p_n), u_c, v_c, coefficients, knobs)

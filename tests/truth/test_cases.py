@@ -1,0 +1,188 @@
+"""Drawn logs: the same again, twins that differ by the effect alone, and a DP that holds the ship."""
+
+import time
+from datetime import date
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from . import cases, effects, unknowns
+from .cases import CAUSES, KINDS, draw, draw_many, weekly_seed
+from .sensors import ROLES
+
+SHORT = {"minutes": 10}
+IN_LOOP = [cause for cause in CAUSES if cause in effects.ACT]
+
+
+@pytest.fixture(scope="module")
+def one_of_each():
+    """A short trial for every cause of the catalogue."""
+    setups = [cases.set_up("trial", 11, among=[cause], **SHORT) for cause in CAUSES]
+    return dict(zip(CAUSES, cases.draw_batch(setups), strict=True))
+
+
+def test_log_has_the_columns_of_the_contract(one_of_each):
+    log = one_of_each["drag"].log
+    assert list(log.columns) == ["time [s]", *(f"{role} [{unit}]" for role, (unit, _) in ROLES.items())]
+    assert log["time [s]"].iloc[[0, -1]].tolist() == [0.0, 600.0]
+    assert log["heading [deg]"].between(0, 360, inclusive="left").all()
+
+
+def test_same_seed_gives_the_same_bytes_alone_or_among_others():
+    many = draw_many("work", range(3), **SHORT)
+    for case in many:
+        alone = draw("work", case.seed, **SHORT)
+        assert alone.log.to_csv() == case.log.to_csv()
+        assert alone.twin().log.to_csv() == case.twin().log.to_csv()
+        assert alone.answer == case.answer
+    assert many[0].log.to_csv() != many[1].log.to_csv()
+
+
+def test_a_healthy_draw_is_its_own_twin_and_that_of_the_faulty_one():
+    healthy = draw("work", 2, causes=0, **SHORT)
+    faulty = draw("work", 2, among=["tow"], **SHORT)
+    assert healthy.answer == [] and healthy.twin() is healthy
+    assert faulty.twin().log.to_csv() == healthy.log.to_csv() != faulty.log.to_csv()
+
+
+@pytest.mark.parametrize("cause", IN_LOOP)
+def test_effects_at_the_ship_change_its_motion(one_of_each, cause):
+    case = one_of_each[cause]
+    assert np.abs(case.truth - case.twin().truth).to_numpy().max() > 1e-3
+
+
+@pytest.mark.parametrize("cause", [cause for cause in CAUSES if cause not in effects.ACT])
+def test_faults_of_the_log_leave_the_ship_alone(one_of_each, cause):
+    case = one_of_each[cause]
+    pd.testing.assert_frame_equal(case.truth, case.twin().truth)
+    assert not case.log.equals(case.twin().log)
+
+
+def test_outside_its_segments_and_channels_a_fault_leaves_the_twins_log(one_of_each):
+    for cause in ("gap", "frame", "channel_swap", "sign", "heading_wrap"):
+        case = one_of_each[cause]
+        (answer,) = case.answer
+        ours, twins = (c.log.set_index("time [s]") for c in (case, case.twin()))
+        at = twins.index.intersection(ours.index)
+        outside = [t for t in at if answer.segments and not any(a <= t <= b for a, b in answer.segments)]
+        pd.testing.assert_frame_equal(ours.loc[outside], twins.loc[outside])
+        others = [c for c in ours if c.split(" [")[0] not in answer.channels]
+        pd.testing.assert_frame_equal(ours.loc[at, others], twins.loc[at, others])
+
+
+def test_a_lag_is_found_by_shifting_the_twins_log():
+    case = draw("trial", 5, among=["navigation_lag"], **SHORT)
+    lag = case.answer[0].parameters["lag"]
+    rate, twins = (c.log.set_index("time [s]")["yaw_rate [deg/s]"].dropna() for c in (case, case.twin()))
+    misfit = {d: np.mean((np.interp(rate.index - d, twins.index, twins) - rate) ** 2) for d in np.arange(0, 6, 0.1)}
+    assert min(misfit, key=misfit.get) == pytest.approx(lag, abs=0.5)
+
+
+def test_answers_are_the_parameters_of_the_contract(one_of_each):
+    names = {
+        "current": {"north", "east"},
+        "current_varying": {"north_start", "east_start", "north_end", "east_end"},
+        "wave_drift": {"north", "east"},
+        "tow": {"north", "east"},
+        "lever_arm": {"x", "y"},
+        "clock": {"rate"},
+    }
+    names |= dict.fromkeys(("thrust_loss", "reverse_loss", "thruster_interaction"), {"loss"})
+    names |= dict.fromkeys(("wind_scale", "mass", "drag", "crossflow", "velocity_scale"), {"scale"})
+    names |= dict.fromkeys(("wind_direction", "azimuth_offset", "rpm_offset", "heading_bias"), {"offset"})
+    names |= dict.fromkeys(("navigation_lag", "thruster_lag"), {"lag"})
+    for cause, case in one_of_each.items():
+        ((named, component, parameters, *_),) = case.answer
+        assert named == cause and set(parameters) == names.get(cause, set())
+        assert all(type(value) is float for value in parameters.values())
+        assert (component is not None) == (cause in ("thrust_loss", "azimuth_offset", "rpm_offset"))
+
+
+def test_two_causes_go_together():
+    for seed in range(300):
+        pair = [e.answer.cause for e in cases.set_effects("work", seed, causes=2)]
+        assert len(set(pair)) == 2 and cases.go_together(pair)
+    with pytest.raises(ValueError, match="go together"):
+        draw("work", 1, causes=2, among=["sign", "frame"])
+
+
+def test_every_cause_is_drawn_and_about_as_often():
+    drawn = [cases.set_effects("trial", seed)[0].answer.cause for seed in range(2000)]
+    counts = pd.Series(drawn).value_counts()
+    assert set(counts.index) == set(CAUSES) and counts.min() > 0.6 * 2000 / len(CAUSES)
+
+
+def test_every_unknown_effect_is_drawn_where_it_can_show():
+    for kind in KINDS:
+        notes = {cases.set_effects(kind, seed, causes="unknown")[0].answer.note for seed in range(300)}
+        assert notes == set(unknowns.SHOWS_AT_REST if kind == "hold" else unknowns.ALL)
+
+
+def test_an_onset_comes_within_the_log():
+    case = draw("work", 3, among=["tow"], onset=True, **SHORT)
+    onset = case.answer[0].onset
+    assert 150.0 <= onset <= 360.0
+    before = case.truth.index < onset
+    pd.testing.assert_frame_equal(case.truth[before], case.twin().truth[before])
+    assert np.abs(case.truth - case.twin().truth)[~before].to_numpy().max() > 0.1
+
+
+def test_dropouts_are_short_and_few():
+    log = draw("hold", 4, causes=0).log
+    assert log.isna().sum().max() <= 40 and np.diff(log["time [s]"]).max() <= 4
+
+
+def test_weekly_seed_is_printed(capsys):
+    assert weekly_seed(date(2026, 11, 21)) == 202647
+    assert "202647" in capsys.readouterr().out
+
+
+def test_bad_options_are_refused():
+    with pytest.raises(ValueError, match="kind"):
+        draw("drift", 1)
+    with pytest.raises(ValueError, match="minutes"):
+        draw("work", 1, minutes=5)
+
+
+def held(drawn):
+    """Share of healthy logs in which the ship stays near its setpoint."""
+    kept = [c.off_track.max() < 12.0 and np.degrees(np.abs(c.off_heading).max()) < 25.0 for c in drawn]
+    return np.mean(kept)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_dp_holds_the_ship(kind):
+    assert held(draw_many(kind, range(500, 540), causes=0, minutes=20)) >= 0.95
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("options", [{}, {"rough": True}, {"mismatch": 2.0}, {"causes": 1}, {"causes": 2}], ids=str)
+def test_the_dp_holds_the_ship_in_40_minutes_of_anything(kind, options):
+    assert held(draw_many(kind, range(600, 664), **{"causes": 0} | options)) >= 0.95
+
+
+def test_stationkeeping_stays_within_two_metres():
+    drawn = draw_many("hold", range(700, 710), causes=0, minutes=20)
+    assert max(c.off_track.max() for c in drawn) < 2.0
+
+
+def test_a_trial_turns_all_round_reverses_and_uses_every_thruster():
+    for case in draw_many("trial", range(3), causes=0):
+        log = case.log
+        assert np.histogram(log["heading [deg]"].dropna(), bins=8, range=(0, 360))[0].min() > 0
+        assert (log["port_rpm [rpm]"] < -20).any() and (log["starboard_rpm [rpm]"] < -20).any()
+        assert log["tunnel_rpm [rpm]"].max() > 400 > -400 > log["tunnel_rpm [rpm]"].min()
+        assert log["surge [m/s]"].max() > 0.8 and log["surge [m/s]"].min() < -0.6
+
+
+@pytest.mark.slow
+def test_two_hundred_logs_in_ten_minutes_and_one_in_five_seconds():
+    start = time.perf_counter()
+    draw("work", 1)
+    one = time.perf_counter() - start
+    draw_many("work", range(200))
+    many = time.perf_counter() - start - one
+    print(f"\none log and its twin: {one:.1f} s; 200: {many:.0f} s")
+    assert one < 5.0 and many < 600.0
