@@ -15,14 +15,16 @@ OK, FATAL = 0, 4
 
 
 def object_of(folder: Path, name: str):
-    """The object behind the instance made last from an unpacked FMU, or None where it has none of our shell's."""
-    inside = str(Path(folder) / "resources")
-    for module in list(sys.modules.values()):
-        if (getattr(module, "__file__", None) or "").startswith(inside):
-            reference = getattr(getattr(module, "Fmi2Slave", None), "newest", None)
-            if reference is not None and (made := reference()) is not None and made.instance_name == name:
-                return made
-    return None
+    """The object behind the instance made last of an unpacked FMU, or None where it has none of our shell's.
+
+    The module that an FMU of ours enters by has a name unique to its content, so it does not matter from which folder
+    the process has loaded it first.
+    """
+    entry = (Path(folder) / "resources" / "slavemodule.txt").read_text(encoding="utf-8").strip()
+    shell = sys.modules.get(f"{entry}_code.shipcosim.fmi.slave")
+    reference = getattr(getattr(shell, "Fmi2Slave", None), "newest", None)
+    made = reference() if reference is not None else None
+    return made if made is not None and made.instance_name == name else None
 
 
 class Direct:
