@@ -30,12 +30,13 @@ def test_log_has_the_columns_of_the_contract(one_of_each):
 
 
 def test_same_seed_gives_the_same_bytes_alone_or_among_others():
-    many = draw_many("work", range(3), **SHORT)
-    for case in many:
-        alone = draw("work", case.seed, **SHORT)
-        assert alone.log.to_csv() == case.log.to_csv()
-        assert alone.twin().log.to_csv() == case.twin().log.to_csv()
-        assert alone.answer == case.answer
+    many = draw_many("work", range(2), **SHORT)
+    alone = draw("work", 1, **SHORT)
+    assert alone.log.to_csv() == many[1].log.to_csv()
+    assert alone.twin().log.to_csv() == many[1].twin().log.to_csv()
+    assert alone.answer == many[1].answer
+    healthy = draw("work", 1, causes=0, **SHORT)
+    assert healthy.log.to_csv() == draw_many("work", range(2), causes=0, **SHORT)[1].log.to_csv()
     assert many[0].log.to_csv() != many[1].log.to_csv()
 
 
@@ -129,8 +130,8 @@ def test_an_onset_comes_within_the_log():
 
 
 def test_dropouts_are_short_and_few():
-    log = draw("hold", 4, causes=0).log
-    assert log.isna().sum().max() <= 40 and np.diff(log["time [s]"]).max() <= 4
+    log = draw("hold", 4, causes=0, minutes=20).log
+    assert log.isna().sum().max() <= 20 and np.diff(log["time [s]"]).max() <= 4
 
 
 def test_weekly_seed_is_printed(capsys):
@@ -169,7 +170,7 @@ def test_stationkeeping_stays_within_two_metres():
 
 
 def test_a_trial_turns_all_round_reverses_and_uses_every_thruster():
-    for case in draw_many("trial", range(3), causes=0):
+    for case in draw_many("trial", range(8), causes=0, minutes=20):
         log = case.log
         assert np.histogram(log["heading [deg]"].dropna(), bins=8, range=(0, 360))[0].min() > 0
         assert (log["port_rpm [rpm]"] < -20).any() and (log["starboard_rpm [rpm]"] < -20).any()

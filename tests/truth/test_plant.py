@@ -42,7 +42,7 @@ def sail(
 def ideal():
     """Ships without resistance of any kind."""
     coefficients = ships()
-    for name in ("drag", "strips", "lift", "side_spin", "side_flow", "propeller"):
+    for name in ("drag", "strips", "lift", "side_spin", "side_flow", "propeller", "wind"):
         setattr(coefficients, name, 0.0 * getattr(coefficients, name))
     return coefficients
 
@@ -130,7 +130,7 @@ def test_a_dead_ship_drifts_with_the_current():
 def test_a_steady_current_only_carries_the_ship_along():
     still = sail(200, (80, 60, 300), (20, -10), nu=(0.5, 0.0, 0.0))
     turn = {"current_north": 0.3, "current_east": 0.2}
-    carried = sail(200, (80, 60, 300), (20, -10), nu=(0.8, 0.2, 0.0), turn=turn)
+    carried = sail(200, (80, 60, 300), (20, -10), wind=(0.3, 0.2), nu=(0.8, 0.2, 0.0), turn=turn)
     assert carried.psi[0] == pytest.approx(still.psi[0], abs=1e-3)
     assert carried.x[0] - still.x[0] == pytest.approx(60.0, abs=0.1)
     assert carried.y[0] - still.y[0] == pytest.approx(40.0, abs=0.1)

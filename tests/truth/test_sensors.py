@@ -59,9 +59,8 @@ def test_position_and_velocity_are_of_the_antenna():
     np.testing.assert_allclose(channels["surge"], 1.0 + 0.02 * 2.0)
     np.testing.assert_allclose(channels["sway"], 0.02 * 6.0)
     t = np.arange(ROWS)
-    np.testing.assert_allclose(
-        channels["north"] - log()["north"], 6 * np.cos(0.02 * t) + 2 * np.sin(0.02 * t), atol=0.01
-    )
+    arm = 6 * np.cos(0.02 * t) + 2 * np.sin(0.02 * t)
+    np.testing.assert_allclose(channels["north"] - log()["north"], arm, atol=0.01)
     rate = np.gradient(channels["north"])[1:-1]
     heading = np.radians(channels["heading"][1:-1])
     seen = np.cos(heading) * channels["surge"][1:-1] - np.sin(heading) * channels["sway"][1:-1]
