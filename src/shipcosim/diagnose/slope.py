@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["slope_bounds"]
+__all__ = ["FAST_SPANS", "SLOW_SPANS", "noise_share", "slope_bounds"]
 
-SPANS = (1, 3, 10, 30, 100)  # steps over which motions are compared
+FAST_SPANS, SLOW_SPANS = (1, 3), (10, 30, 100)  # steps over which motions are compared
 MARGIN = 3.0  # standard errors
 LEAST = 8  # independent spans
 
 
-def slope_bounds(seen: np.ndarray, motion: np.ndarray, known: np.ndarray) -> tuple[float, float]:
+def slope_bounds(
+    seen: np.ndarray, motion: np.ndarray, known: np.ndarray, spans: tuple[int, ...] = FAST_SPANS + SLOW_SPANS
+) -> tuple[float, float]:
     """Lower and upper bound of b in seen = b * motion + noise, where motion has noise of its own.
 
     Parameters
@@ -24,29 +26,37 @@ def slope_bounds(seen: np.ndarray, motion: np.ndarray, known: np.ndarray) -> tup
         Steps.
     known : (n, k) array of bool
         Steps with data; the others count as no motion.
+    spans : tuple of int
+        Numbers of steps over which motions are compared.
     """
-    low, high = -np.inf, np.inf
+    bounds = [_bounds(*products) for products in _products(seen, motion, known, spans)]
+    return max((low for low, _ in bounds), default=-np.inf), min((high for _, high in bounds), default=np.inf)
+
+
+def noise_share(seen: np.ndarray, motion: np.ndarray, known: np.ndarray, spans: tuple[int, ...]) -> float:
+    """Largest share of the motion that can be noise, by the span in which both agree best; 1 where nothing is known."""
+    shares = [1.0 - xy**2 / (xx * yy) for xx, yy, xy, _ in _products(seen, motion, known, spans) if xx * yy > 0.0]
+    return float(min(shares, default=1.0))
+
+
+def _products(seen, motion, known, spans):
+    """Sums of squares and products over spans: of motion, of what is seen, mixed; and the number of spans."""
     seen, motion = np.where(known, seen, 0.0), np.where(known, motion, 0.0)
-    for span in SPANS:
-        if len(seen) < LEAST * span:
-            break
-        sums = [np.cumsum(np.vstack([np.zeros(x.shape[1]), x]), axis=0)[:: max(1, span // 4)] for x in (seen, motion)]
-        lag = span // max(1, span // 4)
-        y, x = ((s[lag:] - s[:-lag]).ravel() for s in sums)
-        below, above = _bounds(x, y, known.sum() / span)
-        low, high = max(low, below), min(high, above)
-    return low, high
+    for span in spans:
+        if len(seen) >= LEAST * span:
+            stride = max(1, span // 4)
+            sums = [np.cumsum(np.vstack([np.zeros(x.shape[1]), x]), axis=0)[::stride] for x in (seen, motion)]
+            y, x = ((s[span // stride :] - s[: -(span // stride)]).ravel() for s in sums)
+            yield x @ x, y @ y, x @ y, max(known.sum() / span, 1.0)
 
 
-def _bounds(x, y, count):
+def _bounds(xx, yy, xy, count):
     """Both regression slopes less and plus their margins."""
-    xx, yy, xy = x @ x, y @ y, x @ y
     if xx <= 0.0 or yy <= 0.0:
         return -np.inf, np.inf
-    spread = np.sqrt(max(xx * yy - xy**2, 0.0) / max(count, 1.0))
-    if abs(xy) < MARGIN * spread:
+    error = MARGIN * np.sqrt(max(xx * yy - xy**2, 0.0) / count)
+    if abs(xy) < error:
         return -np.inf, np.inf
     forward, reverse = sorted((xy / xx, yy / xy), key=abs)
-    error = MARGIN * spread
     bounds = forward - np.sign(xy) * error / xx, reverse + np.sign(xy) * error * yy / xy**2
     return min(bounds), max(bounds)

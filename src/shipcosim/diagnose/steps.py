@@ -15,15 +15,18 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
+from shipcosim.diagnose.slope import FAST_SPANS, SLOW_SPANS, noise_share
+
 __all__ = ["AXES", "Steps", "steps_of"]
 
 AXES = ("north", "east", "heading")
 STEP = 1.0  # [s] shortest step; faster logs are averaged
 SLOW = 4.0  # [s] smoothing that separates the ship's own moves from the motion in waves
-HOLE = 2.6  # longest usual spacing over the median one; nothing is integrated over more
+LONGEST = 2.1  # [s] between two rows that are integrated over, unless rows are farther apart throughout
+COARSE = 1.3  # [s] between rows, beyond which waves are not resolved and only slow motion is told
 
 # What is normal, as standard deviations. Slow: over tens of seconds; fast: in waves, where sensor filters and the
-# sampling of the log act.
+# sampling of the log act. The gains are wider where the motion is not much more than noise.
 POSITION_NUISANCES = {
     "gain": 0.004,
     "fast gain": 0.15,
@@ -53,7 +56,7 @@ class Steps:
     residual : (n, 3) array
         Residual of the step. [m, m, rad]
     motion : (n, 3) array
-        The motion that velocity and rate say. [m, m, rad]
+        The motion that velocity and rate say; without waves where the rows are too far apart for them. [m, m, rad]
     nuisances : (n, 3, m) array
         Change of the residual by each nuisance of unit size.
     spikes : (m,) array
@@ -92,10 +95,14 @@ def steps_of(log: dict[str, np.ndarray], lag: dict[str, float] | None = None) ->
     stacked[:, :2, : parts[0][0].shape[2]] = parts[0][0]
     stacked[:, 2:, :2] = parts[1][0][:, :, :2]
     stacked[:, 2:, parts[0][0].shape[2] :] = parts[1][0][:, :, 2:]
-    spikes = np.array([*POSITION_NUISANCES.values(), *HEADING_NUISANCES.values()])
     known = np.column_stack([parts[0][1], parts[0][1], parts[1][1]])
-    time = blocks.mean(log["time"])[1:]
-    return Steps(time, stacked[:, :, 0], stacked[:, :, 1], stacked[:, :, 2:], spikes, known)
+    residual, motion, nuisances = stacked[:, :, 0], stacked[:, :, 1], stacked[:, :, 2:]
+    spikes = {**POSITION_NUISANCES, **HEADING_NUISANCES}
+    for axes, prefix in ((slice(0, 2), ""), (slice(2, 3), "rate ")):
+        seen, used = (residual + motion)[:, axes], motion[:, axes]
+        for name, spans in ((f"{prefix}gain", SLOW_SPANS), (f"fast {prefix}gain", FAST_SPANS)):
+            spikes[name] = float(np.hypot(spikes[name], 0.7 * noise_share(seen, used, known[:, axes], spans)))
+    return Steps(blocks.mean(log["time"])[1:], residual, motion, nuisances, np.array([*spikes.values()]), known)
 
 
 @dataclass(frozen=True)
@@ -118,7 +125,7 @@ class _Blocks:
     def steps(self, time, rows, sums):
         """Differences of block means of running sums (k, axes, columns), without those over holes; what is known."""
         changes = np.diff(sums, axis=0)
-        changes[np.diff(time) > HOLE * self.spacing] = 0.0
+        changes[np.diff(time) > max(LONGEST, 1.5 * self.spacing)] = 0.0
         means = self.mean(np.concatenate([np.zeros_like(sums[:1]), np.cumsum(changes, axis=0)]), rows)
         filled = np.isfinite(means[:, 0, 0])
         steps = np.zeros((self.count - 1, *sums.shape[1:]))
@@ -150,7 +157,8 @@ def _position(log, blocks):
     aside = _integral(time, np.column_stack([-sine, cosine]))
     turned = np.column_stack([-slow_way[:, 1], slow_way[:, 0]])
     fixed = np.column_stack([log["north"][rows], log["east"][rows]])
-    columns = [fixed - way, way, slow_way, way - slow_way, -slow, slow - velocity, turned, ahead, aside]
+    told = slow_way if blocks.spacing > COARSE else way
+    columns = [fixed - way, told, slow_way, way - slow_way, -slow, slow - velocity, turned, ahead, aside]
     return blocks.steps(time, rows, np.stack(columns, axis=2))
 
 
@@ -161,7 +169,8 @@ def _heading(log, blocks):
     time, rate = log["time"][rows], log["yaw_rate"][rows]
     slow = _slow(rate, time)
     turn, slow_turn = _integral(time, rate), _integral(time, slow)
-    columns = [np.unwrap(log["heading"][rows]) - turn, turn, slow_turn, turn - slow_turn, -slow, slow - rate, time]
+    told = slow_turn if blocks.spacing > COARSE else turn
+    columns = [np.unwrap(log["heading"][rows]) - turn, told, slow_turn, turn - slow_turn, -slow, slow - rate, time]
     return blocks.steps(time, rows, np.stack(columns, axis=1)[:, None, :])
 
 
