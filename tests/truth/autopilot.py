@@ -151,7 +151,7 @@ def plan_work(planner, rng, modes):
         turn = rng.choice((-1, 1)) * np.radians(rng.uniform(15, 80))
         which = rng.integers(3)
         move, turn = move * (which != 0), turn * (which != 1)
-        seconds = max(move / rng.uniform(0.2, 0.35), np.degrees(abs(turn)) / rng.uniform(0.5, 0.9), 30)
+        seconds = max(move / rng.uniform(0.2, 0.35), np.degrees(abs(turn)) / rng.uniform(0.4, 0.7), 30)
         planner.move(move * np.cos(to), move * np.sin(to), turn, seconds)
 
 
