@@ -12,8 +12,9 @@ MAY_IMPORT = {
     "ssp": {"series", "errors"},
     "scenario": {"series", "errors"},
     "cosim": {"series", "ssp", "scenario", "fmi", "errors"},
-    "report": {"errors", "models", "series", "fmi", "ssp", "scenario", "cosim"},
-    "cli": {"errors", "models", "series", "fmi", "ssp", "scenario", "cosim", "report"},
+    "diagnose": {"errors", "models", "series", "ssp", "scenario", "cosim"},
+    "report": {"errors", "models", "series", "fmi", "ssp", "scenario", "cosim", "diagnose"},
+    "cli": {"errors", "models", "series", "fmi", "ssp", "scenario", "cosim", "report", "diagnose"},
 }
 ONLY_DOOR = {
     "pythonfmu": {"fmi"},

@@ -1,0 +1,124 @@
+"""What a diagnosis says: causes with their parameters, verdict and gain, as diagnosis.json holds them."""
+
+from dataclasses import asdict, dataclass, field
+
+SCHEMA = "shipcosim-diagnosis/1"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter of a cause, with its standard deviation, both in `unit`."""
+
+    estimate: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One cause that is present.
+
+    Attributes
+    ----------
+    cause : str
+        Name of the cause as in the catalogue.
+    component : str or None
+        Component of the system that it sits in, where there are several.
+    kind : str
+        ``"data"``: the log is wrong, or ``"physics"``: the model is.
+    probability : float
+        That it is right to name it.
+    parameters : dict of str to Estimate
+        In the units of the catalogue.
+    segments : tuple of (float, float)
+        Where in the log, from and to; empty is all of it. [s]
+    channels : tuple of str
+        Roles of the channels that a fault of the data is in.
+    onset : float or None
+        From when on a cause of the physics acts; None from the start. [s]
+    note : str
+        What else there is to say, one sentence.
+    """
+
+    cause: str
+    component: str | None = None
+    kind: str = "physics"
+    probability: float = 1.0
+    parameters: dict[str, Estimate] = field(default_factory=dict)
+    segments: tuple[tuple[float, float], ...] = ()
+    channels: tuple[str, ...] = ()
+    onset: float | None = None
+    note: str = ""
+
+    def as_json(self) -> dict:
+        """The finding as an entry of diagnosis.json; what does not apply is left out."""
+        entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}
+        entry["parameters"] = {name: asdict(value) for name, value in self.parameters.items()}
+        if self.kind == "data":
+            entry["segments"] = [list(segment) for segment in self.segments]
+            entry["channels"] = list(self.channels)
+        if self.onset is not None:
+            entry["onset"] = self.onset
+        if self.note:
+            entry["note"] = self.note
+        return entry
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A cause with the probability that it is present."""
+
+    cause: str
+    component: str | None
+    probability: float
+
+
+@dataclass(frozen=True)
+class Prescription:
+    """A manoeuvre that tells causes apart which the log could not."""
+
+    manoeuvre: str
+    minutes: float
+    separates: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Everything that diagnosis.json holds.
+
+    Attributes
+    ----------
+    verdict : str
+        ``"consistent"``, ``"named"``, ``"ambiguous"`` or ``"unknown"``.
+    findings : tuple of Finding
+        Most certain first.
+    candidates, indistinguishable : tuple of Candidate
+    not_testable : tuple of str
+        Causes that this log could not have shown.
+    prescription : Prescription or None
+    baseline, gain : dict or None
+        As in the contract; None where there was too little data.
+    """
+
+    verdict: str
+    findings: tuple[Finding, ...] = ()
+    candidates: tuple[Candidate, ...] = ()
+    indistinguishable: tuple[Candidate, ...] = ()
+    not_testable: tuple[str, ...] = ()
+    prescription: Prescription | None = None
+    baseline: dict | None = None
+    gain: dict | None = None
+
+    def as_json(self) -> dict:
+        """The diagnosis as the content of diagnosis.json."""
+        return {
+            "schema": SCHEMA,
+            "verdict": self.verdict,
+            "findings": [finding.as_json() for finding in self.findings],
+            "candidates": [asdict(candidate) for candidate in self.candidates],
+            "indistinguishable": [asdict(candidate) for candidate in self.indistinguishable],
+            "not_testable": list(self.not_testable),
+            "prescription": asdict(self.prescription) if self.prescription else None,
+            "baseline": self.baseline,
+            "gain": self.gain,
+        }
