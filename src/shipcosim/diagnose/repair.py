@@ -1,0 +1,98 @@
+"""A log as the simulation can use it: faults that were found undone or cut out, rows evenly spaced."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.roles import role_of
+from shipcosim.series import make_table
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.finding import Finding
+
+__all__ = ["inside", "repaired", "usable_rows"]
+
+HOLE = 1.5  # over the usual spacing: rows are missing between
+
+
+def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Dataset:
+    """The log on an even grid, with the faults that were found put right or cut out.
+
+    Rows are sorted; of rows with the same time the first is kept; rows without a time are left out. Time runs as the
+    findings on the clock say, mislabelled channels are put right, and what was interpolated over, held or turned
+    through south is cut out.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        As from `read_log`.
+    findings : list of Finding
+        As from `examine`.
+
+    Returns
+    -------
+    xarray.Dataset
+        At the median step of the log, from its first time on. NaN where there is no data; headings in [0, 360).
+        The coordinate `logged_time` says where in the log a row stands. [s]
+    """
+    log = log.isel(time=usable_rows(log["time"].values))
+    logged = log["time"].values
+    step = usual_step(logged)
+    time = logged.copy()
+    channels = {str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()}
+    grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
+    place = _Place(time, grid, np.diff(logged) > HOLE * step)
+    columns = [
+        (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"]) for n, v in channels.items()
+    ]
+    columns = [(n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning) for n, v, unit, meaning in columns]
+    table = make_table(grid, columns, log.attrs)
+    origin = {"units": "s", "long_name": "time as logged"}
+    return table.assign_coords(logged_time=("time", np.interp(grid, time, logged), origin))
+
+
+def usable_rows(time: np.ndarray) -> np.ndarray:
+    """Rows in order of time, without those that have no time or one that was there already: (k,) indices."""
+    rows = np.flatnonzero(np.isfinite(time))
+    rows = rows[np.argsort(time[rows], kind="stable")]
+    return rows[np.diff(time[rows], prepend=-np.inf) > 0.0]
+
+
+def usual_step(time: np.ndarray) -> float:
+    """Median step of increasing times, without the last digits of rounding. [s]"""
+    return float(f"{np.median(np.diff(time)):.9g}")
+
+
+def inside(time: np.ndarray, segments) -> np.ndarray:
+    """Which times are in one of the segments; all where there is none, (n,) array of bool."""
+    if not segments:
+        return np.ones(len(time), bool)
+    return np.any([(time >= first) & (time <= last) for first, last in segments], axis=0)
+
+
+def _is_angle(name):
+    role = role_of(name)
+    return role is not None and role.is_angle
+
+
+class _Place:
+    """Values at the times of a grid: those of the row there, else between the rows on both sides."""
+
+    def __init__(self, time, grid, is_hole):
+        self.before = np.clip(np.searchsorted(time, grid, side="right") - 1, 0, len(time) - 2)
+        span = np.diff(time)[self.before]
+        share = (grid - time[self.before]) / span
+        near = 1e-6 * np.median(span) / span
+        self.share = np.where(np.abs(share) < near, 0.0, np.where(np.abs(share - 1.0) < near, 1.0, share))
+        self.empty = is_hole[self.before] & (self.share > 0.0) & (self.share < 1.0)
+
+    def __call__(self, values, is_angle):
+        first, second = values[self.before], values[self.before + 1]
+        change = np.mod(second - first + 180.0, 360.0) - 180.0 if is_angle else second - first
+        between = first + self.share * change
+        exact = np.where(self.share == 0.0, first, np.where(self.share == 1.0, second, between))
+        return np.where(self.empty, np.nan, exact)
