@@ -29,13 +29,16 @@ class Settings:
     ----------
     start : dict of path to dict of variable to value
         For the components' variables, in the FMU's unit and type.
+    tolerances : dict of path to dict of variable to float
+        Of those of them that have one, in the FMU's unit.
     system_start : dict of str to value
         For the outermost system's own connectors, in the connector's unit.
     """
 
     def __init__(self, tree, findings):
         self.tree, self.findings = tree, findings
-        self.start, self.system_start = defaultdict(dict), {}
+        self.start, self.tolerances, self.system_start = defaultdict(dict), defaultdict(dict), {}
+        self.tolerance = None  # of the value that is being delivered
         self.outgoing = defaultdict(list)
         for wire in tree.wires:
             self.outgoing[wire.source].append(wire)
@@ -60,6 +63,7 @@ class Settings:
                 self._unknown(setting)
             value = setting.value
             flow = Flow(value.kind, value.unit)
+            self.tolerance = value.tolerance
             for key in keys:
                 self._deliver(value.value, flow, setting, key, value.place)
 
@@ -105,9 +109,12 @@ class Settings:
             found = f"{key} is of causality {variable.causality}, a value that the FMU calculates."
             self.findings.error(place, found, "Set parameters and inputs.")
             return
-        value = flow.in_unit(port.variable_unit or port.unit)(value)
-        if check_bounds(value, variable, place, str(key), self.findings):
-            self.start[key.path][key.name] = value
+        convert = flow.in_unit(port.variable_unit or port.unit)
+        if check_bounds(convert(value), variable, place, str(key), self.findings):
+            self.start[key.path][key.name] = convert(value)
+            self.tolerances[key.path].pop(key.name, None)
+            if self.tolerance is not None:
+                self.tolerances[key.path][key.name] = abs(convert(value + self.tolerance) - convert(value))
 
     def _unknown(self, setting):
         """A set may hold more than is used here, as the standard says; but what looks like a slip is an error."""

@@ -33,6 +33,8 @@ class Component:
         The step that an annotation asks for; None: the base step. [s]
     implementation : str
         ``"any"``, ``"CoSimulation"`` or ``"ModelExchange"``.
+    tolerances : mapping of str to float
+        Standard deviations within which start values count as known, where the system says so, in the FMU's unit.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Component:
     start: Mapping = field(default_factory=dict)
     step_size: float | None = None
     implementation: str = "any"
+    tolerances: Mapping = field(default_factory=dict)
 
     def start_value(self, variable):
         """Start value of a variable: the system's, else the FMU's own, else None."""
@@ -220,7 +223,12 @@ def _system(tree, structure, file, findings):
     settings.apply()
     components = {
         ".".join(path): Component(
-            ".".join(path), fmu, dict(settings.start[path]), element.step_size, element.implementation
+            ".".join(path),
+            fmu,
+            dict(settings.start[path]),
+            element.step_size,
+            element.implementation,
+            dict(settings.tolerances[path]),
         )
         for path, (element, fmu) in tree.components.items()
         if fmu is not None
