@@ -17,10 +17,12 @@ class AzimuthThruster(Fmu):
     failed = Input("1", "without power: no motor torque, direction kept", start=False)
     rpm_in = Input("rpm", "shaft speed of a replay")
     azimuth_in = Input("rad", "direction of positive thrust of a replay, clockwise from the bow")
+    neighbour_azimuth = Input("rad", "direction of positive thrust of the unit whose slipstream can meet this one")
+    neighbour_rpm = Input("rpm", "shaft speed of that unit")
 
     thrust = Output("N", "delivered thrust along the axis")
     side_force = Output("N", "force across the axis, 90 deg clockwise of the thrust")
-    azimuth = Output("rad", "direction of positive thrust, clockwise from the bow")
+    azimuth = Output("rad", "direction of positive thrust as given, clockwise from the bow")
     rpm = Output("rpm", "shaft speed, negative astern")
     torque = Output("N.m", "torque of the motor")
     power = Output("W", "power of the motor")
@@ -52,7 +54,8 @@ class AzimuthThruster(Fmu):
 
     def _write(self):
         state = self.state
-        loads = azimuth_loads(state, self.u_r, self.v_r, self.r, unit=self.unit)
+        flow, neighbour = (self.u_r, self.v_r, self.r), (self.neighbour_azimuth, self.neighbour_rpm)
+        loads = azimuth_loads(state, *flow, *neighbour, unit=self.unit)
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
         self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
         self.power = 2.0 * pi * state.n * state.torque

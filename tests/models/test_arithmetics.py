@@ -7,7 +7,7 @@ whose docstring speaks of an "array or tensor" and that is in no case fails the 
 import importlib
 import inspect
 import pkgutil
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi
 
 import numpy as np
@@ -26,6 +26,7 @@ from shipcosim.models import (
     prediction,
     propeller,
     reference,
+    slipstream,
     thruster,
     vessel,
     waves,
@@ -36,6 +37,8 @@ from shipcosim.models.ships import parameters
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
 LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
 PORT = parameters(thruster.AzimuthParameters, "gunnerus-33m9", "port")
+LOSSES = dict(thrust_loss=0.1, reverse_loss=0.2, azimuth_offset=0.1, rpm_offset=5.0, interaction_loss=0.3)
+LOSSY = replace(PORT, **LOSSES)
 TUNNEL = thruster.TunnelParameters()
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
 DRIFT = waves.drift_table(vessel.DriftParameters().drift_table)
@@ -125,7 +128,10 @@ CASES = [
     Case(vessel.nu_dot, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(hull=SHORT)),
     Case(vessel.step, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(h=0.5, hull=SHORT)),
     Case(wind.apparent_wind, [(0.4, 1.0, -0.2, -8.0, 3.0), (-3.0, 0.0, 0.2, 5.0, 6.0)]),
-    Case(wind.wind_loads, [(8.0, -2.0), (5.0, 0.0), (3.0, 3.14)], constants=dict(wind=wind.WindParameters())),
+    *(
+        Case(wind.wind_loads, [(8.0, -2.0), (5.0, 0.0), (3.0, 3.14)], constants=dict(wind=vane))
+        for vane in (wind.WindParameters(), wind.WindParameters(apparent_wind_offset=0.2))
+    ),
     Case(propeller.propeller_loads, [(*p,) for p in PAIRS] + [(0.0, 0.0), (1.0, 0.0)], constants=dict(propeller=PORT)),
     Case(propeller.bollard_speed, [(5e3,), (-5e3,), (0.0,)], constants=dict(propeller=PORT)),
     Case(propeller.bollard_torque, [(2.0,), (-2.0,), (0.0,)], constants=dict(propeller=PORT)),
@@ -136,12 +142,23 @@ CASES = [
         of_thruster,
         dict(h=0.05, unit=PORT),
     ),
-    Case(thruster.azimuth_replay, [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER], constants=dict(unit=PORT)),
     Case(
-        thruster.azimuth_loads,
-        [(n, 0.0, 0.0, 0.4, 0.0, *w) for n in (2.0, -1.0) for w in WATER],
-        of_thruster,
-        dict(unit=PORT),
+        slipstream.slipstream_share,
+        [(-1.0, 2.0, a, n) for a in (-2.0, 0.4) for n in (90.0, 0.0, -5.0)],
+        constants=dict(width=0.4),
+    ),
+    *(
+        Case(thruster.azimuth_replay, [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER], constants=dict(unit=unit))
+        for unit in (PORT, LOSSY)
+    ),
+    *(
+        Case(
+            thruster.azimuth_loads,
+            [(n, 0.0, 0.0, 0.4, 0.0, *w, 1.6, 70.0) for n in (2.0, -1.0) for w in WATER],
+            of_thruster,
+            dict(unit=unit),
+        )
+        for unit in (PORT, LOSSY)
     ),
     Case(
         thruster.tunnel_step,

@@ -248,3 +248,98 @@ def test_loss_under_way_is_neutral_by_default_and_as_stated_otherwise():
     assert full == tunnel_loads(state, 0.0, tunnel=TUNNEL).thrust
     lossy = replace(TUNNEL, speed_loss=1.0 / 2.2**2)
     assert tunnel_loads(state, 2.2, tunnel=lossy).thrust == pytest.approx(full / np.e)
+
+
+PAIR = dict(x=-14.02, y=-2.0, neighbour_x=-14.02, neighbour_y=2.0)
+FLOW = (1.0, -0.2, 0.02)
+
+
+def replayed(rpm, azimuth=0.3, *, unit, neighbour=(0.0, 0.0), flow=FLOW):
+    state = azimuth_replay(rpm / 60.0, azimuth, *flow, unit=unit)
+    return state, azimuth_loads(state, *flow, *neighbour, unit=unit)
+
+
+@pytest.mark.parametrize("rpm", [-90.0, 0.0, 120.0])
+def test_lost_thrust_is_missing_along_the_axis_and_the_torque_stays(rpm):
+    (state, whole), (same, left) = (replayed(rpm, unit=replace(UNIT, thrust_loss=loss)) for loss in (0.0, 0.25))
+    assert left.thrust == pytest.approx(0.75 * whole.thrust)
+    assert left.side_force == whole.side_force and same.torque == state.torque
+    axis = np.array([cos(0.3), sin(0.3)])
+    np.testing.assert_allclose([left.tau_X - whole.tau_X, left.tau_Y - whole.tau_Y], -0.25 * whole.thrust * axis)
+
+
+def test_loss_in_reverse_acts_at_negative_speed_only_and_on_what_the_other_loss_leaves():
+    unit = replace(UNIT, thrust_loss=0.1, reverse_loss=0.4)
+    for rpm, kept in ((120.0, 0.9), (-120.0, 0.9 * 0.6)):
+        assert replayed(rpm, unit=unit)[1].thrust == pytest.approx(kept * replayed(rpm, unit=UNIT)[1].thrust)
+
+
+def test_the_drive_knows_nothing_of_lost_thrust():
+    """Shaft and torque follow the command as without; the ship gets a fifth less."""
+    lossy = replace(UNIT, thrust_loss=0.2)
+    whole, left = run([8e3] * 400)[-1], run([8e3] * 400, unit=lossy)[-1]
+    assert (left.n, left.torque) == (whole.n, whole.torque)
+    assert thrust_of(left, unit=lossy) == pytest.approx(0.8 * 8e3, rel=1e-6)
+
+
+def test_azimuth_offset_turns_the_loads_and_not_what_is_reported():
+    """Offset = real minus given."""
+    offset = replace(UNIT, azimuth_offset=radians(7.0))
+    (state, found), (real, expected) = replayed(100.0, 0.3, unit=offset), replayed(100.0, 0.3 + radians(7.0), unit=UNIT)
+    assert found == pytest.approx(expected) and state.torque == pytest.approx(real.torque)
+    assert state.azimuth == 0.3
+    driven = azimuth_step(at_rest(0.3), 5e3, 0.3, *FLOW, False, H, unit=offset)
+    assert driven.azimuth == pytest.approx(0.3)
+
+
+def test_rpm_offset_is_given_minus_real_and_acts_in_replays_only():
+    unit, tunnel = replace(UNIT, rpm_offset=9.0), replace(TUNNEL, rpm_offset=60.0)
+    assert replayed(109.0, unit=unit)[1] == pytest.approx(replayed(100.0, unit=UNIT)[1])
+    assert run([5e3] * 50, unit=unit)[-1] == run([5e3] * 50)[-1]
+    found = tunnel_replay(660.0 / 60.0, tunnel=tunnel)
+    assert found.n == pytest.approx(10.0)
+    assert tunnel_loads(found, 0.0, tunnel=tunnel).thrust == pytest.approx(6.83e-3 * 600.0**2)
+    assert found.torque == pytest.approx(tunnel_replay(10.0, tunnel=TUNNEL).torque)
+
+
+def test_lost_thrust_of_a_tunnel_leaves_its_torque():
+    lossy = replace(TUNNEL, thrust_loss=0.3)
+    state, whole = tunnel_replay(-15.0, tunnel=lossy), tunnel_replay(-15.0, tunnel=TUNNEL)
+    assert state == whole
+    ratio = tunnel_loads(state, 0.4, tunnel=lossy).thrust / tunnel_loads(whole, 0.4, tunnel=TUNNEL).thrust
+    assert ratio == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize(
+    ("azimuth", "rpm", "kept"),
+    [(90.0, 80.0, 0.6), (110.0, 80.0, 1.0 - 0.4 / np.e), (-90.0, 80.0, 1.0), (-90.0, -80.0, 0.6), (90.0, 0.0, 1.0)],
+)
+def test_the_unit_that_a_slipstream_hits_loses_thrust(azimuth, rpm, kept):
+    """Port, with starboard 4 m beside it: starboard pushing to starboard throws its water at port."""
+    unit = AzimuthParameters(**PAIR, interaction_loss=0.4)
+    hit = replayed(100.0, unit=unit, neighbour=(radians(azimuth), rpm))[1]
+    assert hit.thrust == pytest.approx(kept * replayed(100.0, unit=replace(unit, interaction_loss=0.0))[1].thrust)
+
+
+def test_both_units_of_the_ship_know_where_the_other_one_is():
+    for ship in ("gunnerus-33m9", "gunnerus-28m9", "thesis"):
+        port, starboard = (parameters(AzimuthParameters, ship, side) for side in ("port", "starboard"))
+        assert (port.neighbour_x, port.neighbour_y) == (starboard.x, starboard.y)
+        assert (starboard.neighbour_x, starboard.neighbour_y) == (port.x, port.y)
+
+
+EFFECTS = dict(
+    thrust_loss=0.2, reverse_loss=0.3, azimuth_offset=0.1, rpm_offset=8.0, interaction_loss=0.4, interaction_width=0.5
+)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("rpm", [-80.0, 100.0])
+def test_effects_as_an_array_are_as_many_units(name, rpm):
+    unit = AzimuthParameters(**PAIR, **({"interaction_loss": 0.3} if name == "interaction_width" else {}))
+    values = np.array([getattr(unit, name), EFFECTS[name]])
+    neighbour = (radians(80.0), 60.0)
+    each = [replayed(rpm, unit=replace(unit, **{name: float(value)}), neighbour=neighbour)[1] for value in values]
+    together = replayed(rpm, unit=replace(unit, **{name: values}), neighbour=neighbour)[1]
+    np.testing.assert_allclose(np.broadcast_arrays(*together, values)[:-1], np.transpose(each), rtol=1e-12)
+    assert each[0] == replayed(rpm, unit=unit, neighbour=neighbour)[1]

@@ -1,5 +1,6 @@
 """Wind: who feels what from where, and the tables of both ships against their sources with their own signs."""
 
+from dataclasses import replace
 from math import pi, radians
 
 import numpy as np
@@ -83,3 +84,25 @@ def test_long_ship_is_blendermanns_research_vessel():
 def test_a_table_that_does_not_go_round_is_refused():
     with pytest.raises(ValueError, match="from 0 to 90"):
         wind_loads(1.0, 0.5, wind=WindParameters(wind_table="0 -1 0 0; 90 0 -1 0"))
+
+
+@SHIPS
+def test_a_vane_that_shows_ten_degrees_too_much_has_the_wind_ten_degrees_less(wind):
+    """Offset = given minus real, round the stern too."""
+    vane = replace(wind, apparent_wind_offset=radians(10.0))
+    real = np.radians([-175.0, -60.0, -5.0, 0.0, 5.0, 40.0, 170.0])
+    given = (real + radians(10.0) + pi) % (2.0 * pi) - pi
+    np.testing.assert_allclose(
+        wind_loads(9.0, given, wind=vane), wind_loads(9.0, real, wind=wind), rtol=1e-9, atol=1e-9
+    )
+    ahead = wind_loads(9.0, 0.0, wind=vane)
+    assert ahead[1] > 0.0 and ahead == pytest.approx(wind_loads(9.0, radians(-10.0), wind=wind))
+
+
+@SHIPS
+def test_offsets_as_an_array_are_as_many_vanes(wind):
+    offsets = np.array([0.0, 0.3, -0.2])
+    each = [wind_loads(9.0, 0.5, wind=replace(wind, apparent_wind_offset=float(offset))) for offset in offsets]
+    together = wind_loads(9.0, 0.5, wind=replace(wind, apparent_wind_offset=offsets))
+    np.testing.assert_allclose(together, np.transpose(each), rtol=1e-12)
+    assert each[0] == wind_loads(9.0, 0.5, wind=wind)

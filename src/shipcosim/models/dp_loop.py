@@ -30,8 +30,8 @@ class DpSystem:
     hull: HullParameters = HullParameters()
     wind: WindParameters = WindParameters()
     drift: vessel.DriftParameters = vessel.DriftParameters()
-    port: AzimuthParameters = AzimuthParameters(y=-2.0)
-    starboard: AzimuthParameters = AzimuthParameters(y=2.0)
+    port: AzimuthParameters = AzimuthParameters(y=-2.0, neighbour_x=-14.02, neighbour_y=2.0)
+    starboard: AzimuthParameters = AzimuthParameters(y=2.0, neighbour_x=-14.02, neighbour_y=-2.0)
     tunnel: TunnelParameters = TunnelParameters()
     port_azimuth_start: float = 0.0
     starboard_azimuth_start: float = 0.0
@@ -147,7 +147,7 @@ def start(system, design, inputs, variations):
         air,
         current,
         units,
-        _loads(units, show, ship, system),
+        _loads(units, units, show, ship, system),
         (True, True, True),
         measured,
         reference.at_rest(zero, zero, zero),
@@ -188,7 +188,7 @@ def step(t, h, state, inputs, *, system, design):
         air,
         current,
         units,
-        _loads(units, state.show, state.vessel, system),
+        _loads(units, state.units, state.show, state.vessel, system),
         tuple(failed is False or ~np.asarray(failed) for failed in inputs[7:]),
         sensors.step(t, state.sensors, _truth(state.vessel, state.show), parameters=system.sensors),
         reference.step(state.reference, inputs[:3], h, parameters=system.reference),
@@ -304,12 +304,13 @@ def _driven(state, inputs, h, system):
     )
 
 
-def _loads(units, show, ship, system):
-    """Loads of the thrusters with the inflow they were given last."""
-    u_r, v_r = show.through_water
+def _loads(units, shown, show, ship, system):
+    """Loads of the thrusters with the inflow, and the neighbour's state, that they were given last."""
+    flow = (*show.through_water, ship.r)
+    u_r, port, starboard = flow[0], *((unit.azimuth, 60.0 * unit.n) for unit in shown[:2])
     return (
-        thruster.azimuth_loads(units[0], u_r, v_r, ship.r, unit=system.port),
-        thruster.azimuth_loads(units[1], u_r, v_r, ship.r, unit=system.starboard),
+        thruster.azimuth_loads(units[0], *flow, *starboard, unit=system.port),
+        thruster.azimuth_loads(units[1], *flow, *port, unit=system.starboard),
         thruster.tunnel_loads(units[2], u_r, tunnel=system.tunnel),
     )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from .maths import maximum, minimum
-from .quantity import quantity
+from .quantity import acts, quantity
 
 _MARLEY = "calibrated to the trials of 2022 by M. Marley, MCSim_python, grade B"
 _FITTED = "fitted to the steady turns of 2022, grade C"
@@ -103,29 +103,67 @@ class HullParameters:
     N_modrv: float = _unused("N.s2/rad", "v abs(r)")
     N_modvr: float = _unused("N.s2/rad", "r abs(v)")
 
+    mass_scale: float = quantity(
+        1.0, "1", "factor on mass and moment of inertia together; added mass stays", "neutral", minimum=0.01
+    )
+    drag_scale: float = quantity(1.0, "1", "factor on linear and quadratic damping in surge", "neutral", minimum=0.0)
+    cross_flow_scale: float = quantity(
+        1.0,
+        "1",
+        "factor on the cross-flow drag; without any, on linear and quadratic damping in sway and yaw",
+        "neutral",
+        minimum=0.0,
+    )
+
     @cached_property
     def contributions(self):
         """Names of the contributions that this hull has coefficients for."""
-        return tuple(name for name, (_, names) in CONTRIBUTIONS.items() if any(map(self._used, names)))
+        return tuple(
+            name for name, (_, names) in CONTRIBUTIONS.items() if any(acts(getattr(self, one)) for one in names)
+        )
+
+    @cached_property
+    def rigid_body(self):
+        """Mass and moment of inertia with their scale. [kg, kg.m2]"""
+        return self.mass_scale * self.mass, self.mass_scale * self.inertia_yaw
+
+    @cached_property
+    def linear(self):
+        """Coefficients X_u, Y_v, Y_r, N_v, N_r with their scales."""
+        along, across = self._damping_scales
+        return along * self.X_u, across * self.Y_v, across * self.Y_r, across * self.N_v, across * self.N_r
+
+    @cached_property
+    def quadratic(self):
+        """Coefficients X_uu, Y_modvv, N_modrr with their scales."""
+        along, across = self._damping_scales
+        return along * self.X_uu, across * self.Y_modvv, across * self.N_modrr
+
+    @cached_property
+    def strips(self):
+        """Half the length l, and k l with k = rho C_d T / 2, of the cross flow. [m, kg/m]"""
+        half = 0.5 * self.length
+        return half, 0.5 * self.water_density * self.cross_flow_drag * self.draught * half * self.cross_flow_scale
+
+    @property
+    def _damping_scales(self):
+        return self.drag_scale, 1.0 if "cross_flow" in self.contributions else self.cross_flow_scale
 
     @cached_property
     def inverse_mass(self):
         """Elements 11, 22, 26, 62, 66 of the inverse of M_RB + M_A."""
-        static = self.mass * self.centre_of_gravity_x
-        m22, m26 = self.mass + self.A22, static + self.A26
-        m62, m66 = static + self.A62, self.inertia_yaw + self.A66
+        mass, inertia = self.rigid_body
+        static = mass * self.centre_of_gravity_x
+        m22, m26 = mass + self.A22, static + self.A26
+        m62, m66 = static + self.A62, inertia + self.A66
         determinant = m22 * m66 - m26 * m62
         return (
-            1.0 / (self.mass + self.A11),
+            1.0 / (mass + self.A11),
             m66 / determinant,
             -m26 / determinant,
             -m62 / determinant,
             m22 / determinant,
         )
-
-    def _used(self, name):
-        value = getattr(self, name)
-        return not isinstance(value, (int, float)) or value != 0.0
 
 
 def hull_loads(u_r, v_r, r, *, hull):
@@ -167,12 +205,14 @@ def added_mass_coriolis(u, v, r, *, hull):
 
 def linear_damping(u, v, r, *, hull):
     """Damping proportional to velocity. Parameters and returns as `hull_loads`."""
-    return hull.X_u * u, hull.Y_v * v + hull.Y_r * r, hull.N_v * v + hull.N_r * r
+    X_u, Y_v, Y_r, N_v, N_r = hull.linear
+    return X_u * u, Y_v * v + Y_r * r, N_v * v + N_r * r
 
 
 def quadratic_damping(u, v, r, *, hull):
     """Damping proportional to the square of each velocity. Parameters and returns as `hull_loads`."""
-    return hull.X_uu * u * abs(u), hull.Y_modvv * v * abs(v), hull.N_modrr * r * abs(r)
+    X_uu, Y_vv, N_rr = hull.quadratic
+    return X_uu * u * abs(u), Y_vv * v * abs(v), N_rr * r * abs(r)
 
 
 def lift(u, v, r, *, hull):
@@ -194,8 +234,7 @@ def cross_flow(u, v, r, *, hull):
 
     Parameters and returns as `hull_loads`.
     """
-    half = 0.5 * hull.length
-    k = 0.5 * hull.water_density * hull.cross_flow_drag * hull.draught * half
+    half, k = hull.strips
     w = r * half
     larger, smaller = maximum(abs(v), abs(w)), minimum(abs(v), abs(w))
     q = smaller / (abs(w) + _TINY)

@@ -25,3 +25,16 @@ def quantity(default, unit, description, origin, *, tolerance=0.0, minimum=None,
         unit=unit, description=description, origin=origin, tolerance=tolerance, minimum=minimum, maximum=maximum
     )
     return field(default=default, metadata=metadata)
+
+
+def acts(value, neutral=0.0):
+    """Whether a parameter changes anything: it is not the neutral number, or it is more than one number.
+
+    What does not act can be left out; arrays are not looked into.
+
+    Examples
+    --------
+    >>> acts(0.0), acts(0.1), acts(1.0, neutral=1.0)
+    (False, True, False)
+    """
+    return not isinstance(value, (int, float)) or value != neutral

@@ -204,14 +204,24 @@ _REFERENCE_THESIS = {
     "heading_frequency": (2.0 * math.pi / 200.0, "thesis, author's reference model: no leg of 200 s settles"),
 }
 
-_PORT, _STARBOARD = {"y": (-2.0, "thesis, grade A")}, {"y": (2.0, "thesis, grade A")}
+_NEXT = "the other unit, thesis, grade A"
+_PORT = {"y": (-2.0, "thesis, grade A"), "neighbour_x": (-14.02, _NEXT), "neighbour_y": (2.0, _NEXT)}
+_STARBOARD = {"y": (2.0, "thesis, grade A"), "neighbour_x": (-14.02, _NEXT), "neighbour_y": (-2.0, _NEXT)}
+
+_PORT_28M9 = {"x": (-13.22, _OSP, 0.02), "y": (-2.7, _OSP), "neighbour_x": (-13.22, _OSP), "neighbour_y": (2.7, _OSP)}
+_STARBOARD_28M9 = {
+    "x": (-13.22, _OSP, 0.02),
+    "y": (2.7, _OSP),
+    "neighbour_x": (-13.22, _OSP),
+    "neighbour_y": (-2.7, _OSP),
+}
 
 _CHANGES = {
     "gunnerus-33m9": {"port": _PORT, "starboard": _STARBOARD},
     "gunnerus-28m9": {
         "vessel": _VESSEL_28M9,
-        "port": {"x": (-13.22, _OSP, 0.02), "y": (-2.7, _OSP)},
-        "starboard": {"x": (-13.22, _OSP, 0.02), "y": (2.7, _OSP)},
+        "port": _PORT_28M9,
+        "starboard": _STARBOARD_28M9,
         "tunnel": {"x": (13.08, _OSP, 0.02)},
         "controller": _DP_SHIP_28M9 | _WIND_TABLE_28M9,
         "allocator": _ALLOCATION_28M9,

@@ -4,16 +4,19 @@ Limits, drive and motor are in `drive`, the propeller in `propeller`; here is wh
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from .drive import Thruster, at_rest, drive_step
 from .kinematics import load_at, velocity_at
 from .maths import clip, cos, exp, hypot, pi, sin, sqrt, where, wrap
 from .propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
-from .quantity import quantity
+from .quantity import acts, quantity
+from .slipstream import slipstream_share
 
 _TURN = 2.0 * pi
 _ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
+_LOSS = "share of the thrust that is missing at the speed that the shaft has; torque and drive know nothing of it"
 _LIMITS = "Skulstad 2021, paper V, Table I, grade A"
 
 
@@ -53,6 +56,39 @@ class AzimuthParameters(PropellerParameters):
     )
     integral_gain: float = quantity(6e3, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
 
+    thrust_loss: float = quantity(0.0, "1", _LOSS, "neutral", tolerance=0.01, maximum=1.0)
+    reverse_loss: float = quantity(
+        0.0,
+        "1",
+        "further loss of what is left at negative shaft speed",
+        "neutral; with thrust_loss 5 % outside the first quadrant",
+        tolerance=0.04,
+        maximum=1.0,
+    )
+    azimuth_offset: float = quantity(
+        0.0, "rad", "real direction of the thrust minus the given one", "neutral", tolerance=0.2 * pi / 180.0
+    )
+    rpm_offset: float = quantity(
+        0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", tolerance=0.1
+    )
+    interaction_loss: float = quantity(
+        0.0, "1", "share of the thrust that is lost on the axis of the neighbour's slipstream", "neutral", maximum=1.0
+    )
+    interaction_width: float = quantity(
+        20.0 * pi / 180.0,
+        "rad",
+        "angle off that axis at which 1/e of the loss is left",
+        "some 20 deg, assumed",
+        minimum=1e-3,
+    )
+    neighbour_x: float = quantity(0.0, "m", "position of the neighbour forward", "set by the system")
+    neighbour_y: float = quantity(0.0, "m", "position of the neighbour to starboard", "set by the system")
+
+    @cached_property
+    def loses(self):
+        """Whether some of the thrust of the propeller is lost."""
+        return any(map(acts, (self.thrust_loss, self.reverse_loss, self.interaction_loss)))
+
 
 @dataclass(frozen=True)
 class TunnelParameters:
@@ -85,6 +121,11 @@ class TunnelParameters:
         60.0, "N.m.s/rad", "k_p of the drive", "5 1/s times the inertia, tuned", minimum=0.0
     )
     integral_gain: float = quantity(120.0, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
+
+    thrust_loss: float = quantity(0.0, "1", _LOSS, "neutral; thrust_coefficient has the tolerance", maximum=1.0)
+    rpm_offset: float = quantity(
+        0.0, "rpm", "given motor speed of a replay minus the real one", "neutral", tolerance=1.0
+    )
 
 
 class Loads(NamedTuple):
@@ -129,7 +170,7 @@ def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, u
         State at the end.
     """
     azimuth = turned(thruster.azimuth, azimuth_cmd, where(failed, 0.0, unit.azimuth_rate * h))
-    u_a, _ = _inflow(azimuth, u_r, v_r, r, unit)
+    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
     return drive_step(
         thruster._replace(azimuth=azimuth),
         thrust_cmd,
@@ -148,7 +189,8 @@ def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
     Parameters
     ----------
     n, azimuth : float or (...) array or tensor
-        Shaft speed and direction of positive thrust. [rev/s, rad]
+        Shaft speed and direction of positive thrust as given: less and plus the unit's offsets are the real ones.
+        [rev/s, rad]
     u_r, v_r, r : like n
         Velocity of the ship through the water. [m/s, m/s, rad/s]
     unit : AzimuthParameters
@@ -157,14 +199,19 @@ def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
     Returns
     -------
     Thruster
+        With the real shaft speed and the given direction.
     """
-    u_a, _ = _inflow(azimuth, u_r, v_r, r, unit)
+    n = n - unit.rpm_offset / 60.0
+    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
     thrust, torque = propeller_loads(u_a, n, propeller=unit)
     return Thruster(n, 0.0 * n, thrust, azimuth, torque + unit.friction * _TURN * n, False)
 
 
-def azimuth_loads(thruster, u_r, v_r, r, *, unit):
+def azimuth_loads(thruster, u_r, v_r, r, neighbour_azimuth=0.0, neighbour_rpm=0.0, *, unit):
     """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, on the ship.
+
+    The thrust is that of the propeller less what is lost:
+    (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - interaction_loss · `slipstream_share`).
 
     Parameters
     ----------
@@ -172,6 +219,8 @@ def azimuth_loads(thruster, u_r, v_r, r, *, unit):
         State.
     u_r, v_r, r : like the state
         Velocity of the ship through the water. [m/s, m/s, rad/s]
+    neighbour_azimuth, neighbour_rpm : like the state
+        Direction of positive thrust and shaft speed of the unit whose slipstream can meet this one. [rad, rpm]
     unit : AzimuthParameters
         The thruster.
 
@@ -179,9 +228,11 @@ def azimuth_loads(thruster, u_r, v_r, r, *, unit):
     -------
     Loads
     """
-    n, azimuth = thruster.n, thruster.azimuth
+    n, azimuth = thruster.n, thruster.azimuth + unit.azimuth_offset
     u_a, u_s = _inflow(azimuth, u_r, v_r, r, unit)
     thrust, _ = propeller_loads(u_a, n, propeller=unit)
+    if unit.loses:
+        thrust = thrust * _kept(n, neighbour_azimuth, neighbour_rpm, unit)
     D = unit.diameter
     side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + abs(n) * D) * u_s
     c, s = cos(azimuth), sin(azimuth)
@@ -231,14 +282,16 @@ def tunnel_replay(n, *, tunnel):
     Parameters
     ----------
     n : float or (...) array or tensor
-        Motor speed. [rev/s]
+        Motor speed as given; less the offset it is the real one. [rev/s]
     tunnel : TunnelParameters
         The thruster.
 
     Returns
     -------
     Thruster
+        With the real speed.
     """
+    n = n - tunnel.rpm_offset / 60.0
     square = 3600.0 * n * abs(n)
     torque = tunnel.torque_coefficient * square + tunnel.friction * _TURN * n
     return at_rest(0.5 * pi + 0.0 * n)._replace(n=n, thrust_cmd=tunnel.thrust_coefficient * square, torque=torque)
@@ -261,7 +314,8 @@ def tunnel_loads(thruster, u_r, *, tunnel):
     Loads
     """
     n = 60.0 * thruster.n
-    thrust = tunnel.thrust_coefficient * n * abs(n) * exp(-tunnel.speed_loss * u_r * u_r)
+    kept = (1.0 - tunnel.thrust_loss) * exp(-tunnel.speed_loss * u_r * u_r)
+    thrust = tunnel.thrust_coefficient * n * abs(n) * kept
     return Loads(thrust, 0.0 * n, 0.0 * n, thrust, tunnel.x * thrust)
 
 
@@ -296,3 +350,13 @@ def _inflow(azimuth, u_r, v_r, r, unit):
     u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
     c, s = cos(azimuth), sin(azimuth)
     return c * u + s * v, c * v - s * u
+
+
+def _kept(n, neighbour_azimuth, neighbour_rpm, unit):
+    """Share of the propeller's thrust that the losses leave. [1]"""
+    kept = (1.0 - unit.thrust_loss) * where(n < 0.0, 1.0 - unit.reverse_loss, 1.0)
+    if not acts(unit.interaction_loss):
+        return kept
+    x, y = unit.x - unit.neighbour_x, unit.y - unit.neighbour_y
+    share = slipstream_share(x, y, neighbour_azimuth, neighbour_rpm, width=unit.interaction_width)
+    return kept * (1.0 - unit.interaction_loss * share)

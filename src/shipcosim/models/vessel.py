@@ -100,7 +100,7 @@ def accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, *, hull):
         Rates of u_r, v_r, r in body axes. [m/s2, m/s2, rad/s2]
     """
     X, Y, N = hull_loads(u_r, v_r, r, hull=hull)
-    m, xg = hull.mass, hull.centre_of_gravity_x
+    m, xg = hull.rigid_body[0], hull.centre_of_gravity_x
     X = X + tau_X + m * r * (v_r + xg * r)
     Y = Y + tau_Y - m * r * u_r
     N = N + tau_N - m * xg * r * u_r

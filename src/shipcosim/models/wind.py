@@ -1,12 +1,12 @@
 """Wind on a ship: the apparent wind, and its loads by a table of measured coefficients."""
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from .kinematics import to_body
 from .load_tables import WIND_33M9
-from .maths import atan2, hypot, interp_columns, pi, where
-from .quantity import quantity
+from .maths import atan2, hypot, interp_columns, pi, where, wrap
+from .quantity import acts, quantity
 from .tables import columns
 
 
@@ -24,6 +24,14 @@ class WindParameters:
     wind_load_scale: float = quantity(
         1.0, "1", "factor on the wind loads; 1 as in the table", "neutral", tolerance=0.03, minimum=0.0
     )
+    apparent_wind_offset: float = quantity(
+        0.0, "rad", "direction of the apparent wind as it is given minus the real one, which loads the ship", "neutral"
+    )
+
+    @cached_property
+    def turned(self):
+        """Whether the wind comes from elsewhere than given."""
+        return acts(self.apparent_wind_offset)
 
 
 def apparent_wind(psi, u, v, wind_north, wind_east):
@@ -63,15 +71,17 @@ def wind_loads(speed, wind_from, *, wind):
     speed : float or (...) array or tensor
         Apparent wind speed. [m/s]
     wind_from : like speed
-        Direction it comes from, clockwise from the bow, in [-π, π]. [rad]
+        Direction it comes from as given, clockwise from the bow, in [-π, π]. [rad]
     wind : WindParameters
-        Table and scale.
+        Table, scale and offset.
 
     Returns
     -------
     tuple of three, like speed
         X, Y, N. [N, N, N.m]
     """
+    if wind.turned:
+        wind_from = wrap(wind_from - wind.apparent_wind_offset)
     angles, *loads = _table(wind.wind_table)
     X, Y, N = interp_columns(abs(wind_from), angles, *loads)
     square = wind.wind_load_scale * speed * speed
