@@ -3,8 +3,9 @@
 Run `python docs/write_fmu_documents.py` after an FMU or a number has changed; tests compare the files with this.
 
 A reference result is 60 s of one component of the four-corner run: at each row the inputs it had there, and the outputs
-that the FMU gives when it is started with the first row's inputs and stepped from row to row with the inputs held. All
-parameters have their default values. An FMU that is no part of that run keeps times and inputs of its reference.csv.
+that the FMU gives when it is started with the first row's inputs and stepped from row to row with the inputs held.
+Parameters have their default values; those FMUs that do nothing with these have others. An FMU that is no part of that
+run keeps times and inputs of its reference.csv.
 """
 
 import importlib.util
@@ -35,6 +36,13 @@ COMPONENTS = {
     "predictor": "predictor",
 }
 """FMU: the component of gunnerus_dp whose inputs it gets."""
+PARAMETERS = {
+    "earth_force": {"north": 1000.0, "east": 2000.0, "onset_time": 10.0, "ramp_time": 20.0},
+    "drift_force": {"north": 1500.0, "east": -1000.0, "onset_time": 5.0},
+    "varying_current": {"north_start": 0.3, "east_end": -0.2, "time_start": 10.0, "time_end": 50.0},
+    "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
+}
+"""FMU: its parameters in its reference result that are not as by default."""
 
 
 def fmu_class(name):
@@ -82,6 +90,8 @@ def inputs_of(component, table, system):
 def driven(name, times, inputs):
     """Outputs of an FMU's class under given inputs, by name: one row a time, the first after its start."""
     fmu = fmu_class(name)()
+    for key, value in PARAMETERS.get(name, {}).items():
+        setattr(fmu, key, value)
     outputs = [variable for variable in fmu.variables if variable.causality == "output"]
     types = {variable.name: type(variable.start) for variable in fmu.variables}
     rows = {variable.name: np.empty(len(times), type(variable.start)) for variable in outputs}

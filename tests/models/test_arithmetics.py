@@ -17,9 +17,12 @@ import shipcosim.models
 from shipcosim.models import (
     allocation,
     control,
+    current,
     drive,
+    earth,
     gusts,
     hull,
+    instruments,
     kinematics,
     maths,
     observer,
@@ -40,10 +43,12 @@ PORT = parameters(thruster.AzimuthParameters, "gunnerus-33m9", "port")
 LOSSES = dict(thrust_loss=0.1, reverse_loss=0.2, azimuth_offset=0.1, rpm_offset=5.0, interaction_loss=0.3)
 LOSSY = replace(PORT, **LOSSES)
 TUNNEL = thruster.TunnelParameters()
+ERRORS = dict(heading_bias=0.05, lever_x=3.0, lever_y=-1.0, velocity_scale=1.1)
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
 DRIFT = waves.drift_table(vessel.DriftParameters().drift_table)
 BOX = dict(length=33.9, breadth=9.6, draught=2.7)
 XS, YS = (-1.0, 0.0, 0.5, 2.0), (3.0, -1.0, 4.0, 4.0)
+EVEN = maths.even_table(np.linspace(-1.0, 1.0, 4), np.array(YS), np.array(XS))
 
 ANGLES = [(-3.0,), (-pi / 2,), (0.0,), (0.4,), (3.1,)]
 PAIRS = [(0.3, -0.2), (-1.0, 1.0), (2.0, 2.5), (0.4, 0.4)]
@@ -114,6 +119,8 @@ CASES = [
     Case(maths.clip, [(0.3, -1.0, 0.2), (0.1, -1.0, 0.2), (-3.0, -1.0, 0.2)]),
     Case(maths.where, [(True, 0.3, 0.7), (False, 0.3, 0.7)]),
     Case(maths.interp, [(-2.0,), (-1.0,), (0.3,), (0.5,), (5.0,)], constants=dict(xs=XS, ys=YS)),
+    Case(maths.sincos, ANGLES),
+    Case(maths.interp_even, [(-1.0,), (0.3,), (1.0,)], constants=dict(table=EVEN)),
     Case(maths.interp_columns, [(-2.0,), (0.3,), (5.0,)], arrange=lambda x: (x, XS, YS, XS)),
     Case(maths.rk4, PAIRS, arrange=lambda x, y: (lambda x, y: (y, -maths.sin(x)), (x, y), 0.1)),
     Case(kinematics.to_ned, [(0.4, 1.0, -2.0), (-2.0, 0.3, 0.1)]),
@@ -186,6 +193,15 @@ CASES = [
         dict(h=0.5, parameters=UNITS, design=allocation.design(UNITS)),
     ),
     Case(prediction.predict, SHIP, of_prediction, AHEAD),
+    Case(earth.onset, [(3.0,), (8.0,), (20.0,)], constants=dict(onset_time=5.0, ramp_time=10.0)),
+    Case(earth.earth_force, [(0.4, 1e3, -2e3), (-2.0, 0.0, 0.0)]),
+    Case(earth.drift_force, [(0.4, 1e3, -2e3), (-2.0, 3e3, 2e3), (0.0, 0.0, 0.0)]),
+    Case(
+        current.varying_current,
+        [(t, *ends) for t in (-5.0, 30.0, 99.0) for ends in ((0.3, 0.0, -0.3, 0.1), (0.0, 0.0, 0.2, -0.2))],
+        constants=dict(time_start=0.0, time_end=60.0),
+    ),
+    *(Case(function, SHIP, constants=ERRORS) for function in (instruments.shown, instruments.motion_of)),
     Case(thruster.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
 ]
 
