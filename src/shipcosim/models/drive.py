@@ -12,10 +12,11 @@ the motor's limits cut the torque, z follows back at k_i/k_p. The speed limit le
 
 from typing import Any, NamedTuple
 
-from .maths import clip, maximum, minimum, pi, rk4, substeps, where
+from .maths import clip, maximum, minimum, pi, rk4_pair, substeps, where
 
 _LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
 _TURN = 2.0 * pi
+_SLOW = 0.1 / _TURN  # rev/s, slower the motor's power does not limit it
 _THRUST_TOLERANCE = 1.0  # N, nearer than this the command counts as reached
 
 
@@ -90,32 +91,42 @@ def drive_step(thruster, thrust_cmd, failed, h, drive, loads, speed, torque):
     running = where(failed, 0.0, 1.0)
     start = running * thruster.thrust_cmd
     wanted = running * clip(thrust_cmd, drive.thrust_min, drive.thrust_max)
-    reached = start + clip(wanted - start, -drive.thrust_rate * h, drive.thrust_rate * h)
-    slope = (reached - start) / h
+    change = clip(wanted - start, -drive.thrust_rate * h, drive.thrust_rate * h)
+    gain, ratio = drive.proportional_gain * _TURN, drive.integral_gain / drive.proportional_gain
+    integral_gain, friction, inertia = drive.integral_gain * _TURN, drive.friction * _TURN, drive.inertia * _TURN
+    limited = _limits(drive, gain)
 
-    def rates(n, integral, command):
-        n_d, (thrust, load) = speed(command), loads(n)
-        asked, given = motor(n, integral, n_d, load)
-        n_dot = (given - load - drive.friction * _TURN * n) / (_TURN * drive.inertia)
-        follow = drive.integral_gain / drive.proportional_gain * (given - asked)
-        return n_dot, drive.integral_gain * _TURN * (n_d - speed(thrust)) + follow, slope
+    def demand(share):
+        n_d = speed(start + share * change)
+        return n_d, torque(n_d) + gain * n_d
 
-    def motor(n, integral, n_d, load):
-        asked = torque(n_d) + drive.proportional_gain * _TURN * (n_d - n) + integral
-        return asked, where(failed, 0.0, _limited(asked, n, load, drive))
+    def motor(n, integral, forward, load):
+        asked = forward - gain * n + integral
+        return asked, running * limited(asked, n, load)
 
-    state = thruster.n, running * thruster.integral, start
+    def rates(n, integral, n_d, forward):
+        thrust, load = loads(n)
+        asked, given = motor(n, integral, forward, load)
+        n_dot = (given - load - friction * n) / inertia
+        return n_dot, integral_gain * (n_d - speed(thrust)) + ratio * (given - asked)
+
+    n, integral, now = thruster.n, running * thruster.integral, demand(0.0)
     parts = substeps(h, _LONGEST_SUBSTEP)
-    for _ in range(parts):
-        state = rk4(rates, state, h / parts)
-    n, integral, _ = state
-    asked, given = motor(n, integral, speed(reached), loads(n)[1])
+    for part in range(parts):
+        before, middle, now = now, demand((part + 0.5) / parts), demand((part + 1.0) / parts)
+        n, integral = rk4_pair(rates, n, integral, h / parts, before, middle, now)
+    reached = start + change
+    asked, given = motor(n, integral, now[1], loads(n)[1])
     at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (running > 0.0)
     return Thruster(n, running * integral, reached, thruster.azimuth, given, at_limit)
 
 
-def _limited(torque, n, load, drive):
-    """Torque within the motor's limits of torque, power and speed."""
-    most = minimum(drive.torque_max, drive.power_max / maximum(_TURN * abs(n), 0.1))
-    gain, n_max = drive.proportional_gain * _TURN, drive.rpm_max / 60.0
-    return clip(torque, maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n)))
+def _limits(drive, gain):
+    """Function that keeps a torque within the motor's limits of torque, power and speed."""
+    n_max, torque_max, power = drive.rpm_max / 60.0, drive.torque_max, drive.power_max / _TURN
+
+    def limited(torque, n, load):
+        most = minimum(torque_max, power / maximum(abs(n), _SLOW))
+        return clip(torque, maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n)))
+
+    return limited

@@ -14,7 +14,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from .maths import atan2, interp_columns, pi, sqrt, where
+from .maths import atan2, even_table, interp_even, pi, sqrt, where
 from .quantity import quantity
 
 # Fourier coefficients of CT and CQ of B4-70, P/D 1.4: Roddy, Hess and Faller, Neural network predictions of the
@@ -82,6 +82,11 @@ class PropellerParameters:
     torque_scale: float = quantity(1.0, "1", "factor on the torque", "neutral", minimum=0.0)
 
     @cached_property
+    def disc(self):
+        """C over the squared speed of the reference section, ρ/2 π D²/4. [kg/m]"""
+        return 0.5 * _AREA * self.diameter**2 * self.water_density
+
+    @cached_property
     def bollard(self):
         """Thrust, then torque, over squared shaft speed at no speed, each ahead and astern. [N.s2, N.m.s2]"""
         D, (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.diameter, _bollard()
@@ -118,8 +123,8 @@ def propeller_loads(u_a, n, *, propeller):
     """
     D = propeller.diameter
     tip, u_a = _TIP * D * n, propeller.inflow * u_a
-    ct, cq, outside = _interpolate(atan2(u_a, tip))
-    C = 0.5 * _AREA * D * D * propeller.water_density * (u_a * u_a + tip * tip)
+    ct, cq, outside = interp_even(atan2(u_a, tip), _table())
+    C = propeller.disc * (u_a * u_a + tip * tip)
     scale = propeller.thrust_scale * (1.0 + outside * (propeller.thrust_scale_outside - 1.0))
     return scale * ct * C, propeller.torque_scale * cq * D * C
 
@@ -181,16 +186,10 @@ def series(beta):
     return c @ _CT_COS + s @ _CT_SIN, c @ _CQ_COS + s @ _CQ_SIN
 
 
-def _interpolate(beta):
-    """CT, CQ and the weight of the scale outside the first quadrant, all 1."""
-    tables = _tables() if isinstance(beta, float) else _arrays()
-    return interp_columns(beta, *tables)
-
-
 @lru_cache(maxsize=1)
-def _tables():
-    """The arrays as tuples, which floats are looked up in faster."""
-    return tuple(tuple(column.tolist()) for column in _arrays())
+def _table():
+    """CT, CQ and the weight of the scale outside the first quadrant over β, all 1."""
+    return even_table(*_arrays())
 
 
 @lru_cache(maxsize=1)
@@ -208,7 +207,7 @@ def _arrays():
 @lru_cache(maxsize=1)
 def _bollard():
     """KT ahead and astern, KQ ahead and astern, over n abs(n)."""
-    _, ct, cq, _ = _tables()
+    _, ct, cq, _ = _arrays()
     factor = 0.5 * _AREA * _TIP**2
     middle = len(ct) // 2
-    return factor * ct[middle], -factor * ct[0], factor * cq[middle], -factor * cq[0]
+    return tuple((factor * np.array([ct[middle], -ct[0], cq[middle], -cq[0]])).tolist())
