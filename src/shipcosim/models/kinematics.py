@@ -1,6 +1,6 @@
 """Frames: north-east-down and body (x forward, y to starboard), in the horizontal plane."""
 
-from .maths import cos, sin
+from .maths import sincos
 
 
 def to_ned(psi, forward, starboard):
@@ -18,7 +18,7 @@ def to_ned(psi, forward, starboard):
     tuple of two, like psi
         North and east components. [same unit]
     """
-    c, s = cos(psi), sin(psi)
+    s, c = sincos(psi)
     return c * forward - s * starboard, s * forward + c * starboard
 
 
@@ -44,7 +44,7 @@ def to_body(psi, north, east):
     >>> to_body(0.0, 0.0, 0.5)
     (0.0, 0.5)
     """
-    c, s = cos(psi), sin(psi)
+    s, c = sincos(psi)
     return c * north + s * east, c * east - s * north
 
 

@@ -15,8 +15,8 @@ def column(x):
 
 def total(a, b):
     """Sum of a b over the components; a float where both are (n,) arrays."""
-    if isinstance(a, np.ndarray) and a.ndim == b.ndim == 1:
-        return float(a @ b)
+    if isinstance(a, np.ndarray):
+        return float(a.dot(b)) if a.ndim == b.ndim == 1 else np.einsum("...n,...n->...", a, b)
     return (a * b).sum(-1)
 
 

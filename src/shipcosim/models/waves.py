@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from .clock import generator
-from .maths import _library, cos, exp, floor, interp, minimum, pi, sin, where, wrap
+from .maths import _library, cos, exp, floor, interp, minimum, pi, sin, sincos, where, wrap
 from .sinusoids import column, tensors_if_any, total
 from .tables import parse
 
@@ -202,8 +202,7 @@ def wave_response(t, x, y, psi, u, v, waves, table, *, length, breadth, draught)
         zero = x - x
         return (zero,) * 3, (zero,) * 6
     waves = _like(waves, x, y, psi)
-    angle = _angle(t, x, y, waves)
-    c, s = cos(angle), sin(angle)
+    s, c = sincos(_angle(t, x, y, waves))
     return (
         _drift(c, s, psi, waves, table),
         _motion(c, s, psi, u, v, waves, length, breadth, draught),
@@ -244,8 +243,8 @@ def drift(t, x, y, psi, waves, table):
     if waves.calm:
         return (x - x,) * 3
     waves = _like(waves, x, y, psi)
-    angle = _angle(t, x, y, waves)
-    return _drift(cos(angle), sin(angle), psi, waves, table)
+    s, c = sincos(_angle(t, x, y, waves))
+    return _drift(c, s, psi, waves, table)
 
 
 def mean_drift(psi, waves, table):
@@ -303,8 +302,8 @@ def motion(t, x, y, psi, waves, *, length, breadth, draught, u=0.0, v=0.0):
     if waves.calm:
         return (x - x,) * 6
     waves = _like(waves, x, y, psi)
-    angle = _angle(t, x, y, waves)
-    return _motion(cos(angle), sin(angle), psi, u, v, waves, length, breadth, draught)
+    s, c = sincos(_angle(t, x, y, waves))
+    return _motion(c, s, psi, u, v, waves, length, breadth, draught)
 
 
 @lru_cache(maxsize=8)
@@ -401,18 +400,37 @@ def _drift(c, s, psi, waves, table):
 
 
 def _motion(c, s, psi, u, v, waves, length, breadth, draught):
-    ahead, across = cos(waves.direction - psi), sin(waves.direction - psi)
-    q = waves.wavenumber * column(0.5 * length * _not_zero(ahead))
-    p = waves.wavenumber * column(0.5 * breadth * _not_zero(across))
-    amplitude = waves.amplitude * exp(waves.wavenumber * (-0.5 * draught))
-    mean = sin(q) / q
-    shift = amplitude * mean * sin(p) / p
-    turn = amplitude * (mean - cos(q)) / q * column(6.0 / length * across)
+    across, ahead = sincos(waves.direction - psi)
+    some_across, some_ahead = _not_zero(across), _not_zero(ahead)
+    half_length, half_breadth, spread, turned = _hull_in(waves, length, breadth, draught)
+    q = half_length * column(some_ahead)
+    sin_q, cos_q = sincos(q)
+    sin_p, _ = sincos(half_breadth * column(some_across))
+    shift, turn = spread * sin_q * sin_p, turned * (sin_q - q * cos_q)
     encounter = waves.omega - waves.wavenumber * column(u * ahead + v * across)
-    along, along_dot = total(shift, s), total(shift * encounter, c)
-    psi_wave, r_wave = -total(turn, c), total(turn * encounter, s)
-    north, east = cos(waves.direction), sin(waves.direction)
+    per_shift, per_turn = 1.0 / (some_ahead * some_across), 6.0 / length * across / (some_ahead * some_ahead)
+    along, along_dot = per_shift * total(shift, s), per_shift * total(shift, encounter * c)
+    psi_wave, r_wave = -per_turn * total(turn, c), per_turn * total(turn, encounter * s)
+    east, north = sincos(waves.direction)
     return along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave
+
+
+def _hull_in(waves, length, breadth, draught):
+    """What stays the same for a hull in a sea: k L/2 and k B/2, and a exp(-k T/2) over their product and over the
+    square of the first."""
+    if isinstance(waves.omega, np.ndarray) and isinstance(length, float):
+        return _cached_hull(waves, length, breadth, draught)
+    return _hull(waves, length, breadth, draught)
+
+
+def _hull(waves, length, breadth, draught):
+    k = waves.wavenumber
+    half_length, half_breadth = k * column(0.5 * length), k * column(0.5 * breadth)
+    amplitude = waves.amplitude * exp(k * column(-0.5 * draught))
+    return half_length, half_breadth, amplitude / (half_length * half_breadth), amplitude / half_length**2
+
+
+_cached_hull = lru_cache(maxsize=8)(_hull)
 
 
 def _weighted_drift(weights, psi, waves, table):
@@ -420,10 +438,20 @@ def _weighted_drift(weights, psi, waves, table):
     grid = _cached_grid(waves, table) if isinstance(waves.omega, np.ndarray) else _grid(waves, table)
     position = interp(wrap(waves.direction - psi), table.heading, _counted(len(table.heading)))
     below = minimum(floor(position), len(table.heading) - 2.0)
-    row = _whole(below)
-    lower, upper = _row(grid, row), _row(grid, row + 1)
-    coefficients = lower + column(column(position - below)) * (upper - lower)
-    return _parts((coefficients @ weights[..., None])[..., 0])
+    row, share = _whole(below), position - below
+    if isinstance(row, int) and weights.ndim == 1:
+        pair = (grid[row : row + 2] @ weights).tolist()
+        return tuple([lower + share * (upper - lower) for lower, upper in zip(*pair, strict=True)])
+    lower, upper = (_summed(_row(grid, number), weights) for number in (row, row + 1))
+    loads = lower + column(share) * (upper - lower)
+    return loads[..., 0], loads[..., 1], loads[..., 2]
+
+
+def _summed(rows, weights):
+    """Sum of (..., 3, n) rows times (..., n) weights over the components."""
+    if isinstance(rows, np.ndarray):
+        return np.einsum("...kn,...n->...k", rows, weights)
+    return (rows @ weights[..., None])[..., 0]
 
 
 def _grid(waves, table):
@@ -456,13 +484,6 @@ def _whole(x):
 def _not_zero(x):
     """x kept away from 0, where sin(x)/x and its like have limits; small enough for them, large enough to divide by."""
     return where(abs(x) < _ALMOST_ZERO, _ALMOST_ZERO, x)
-
-
-def _parts(loads):
-    """Last axis taken apart."""
-    if isinstance(loads, np.ndarray) and loads.ndim == 1:
-        return tuple(loads.tolist())
-    return loads[..., 0], loads[..., 1], loads[..., 2]
 
 
 def _like(waves, *values):
