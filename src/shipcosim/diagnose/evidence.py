@@ -1,0 +1,87 @@
+"""Evidence for a cause: how much likelier a log is if its parameters may be as large as they typically are.
+
+The whitened innovations are y = G θ + w. Every number of the ship is known within its tolerance, θ ~ N(0, spike²); a cause
+that is present has θ ~ N(0, 1) in units of its typical size (slab). So small errors of known coefficients are no cause.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Gram:
+    """Inner products of the innovations' columns, the log's own first; of (..., p + 1, p + 1) arrays.
+
+    Attributes
+    ----------
+    products : (..., 1 + p, 1 + p) array
+    blocks : (b, ..., 1 + p, 1 + p) array
+        The same by consecutive parts of the log.
+    log_determinant : (...) array
+    """
+
+    products: np.ndarray
+    blocks: np.ndarray
+    log_determinant: np.ndarray
+
+    @property
+    def free(self):
+        """Log-likelihood of the log without any parameter, up to a constant."""
+        return -0.5 * (self.products[..., 0, 0] + self.log_determinant)
+
+
+def gram(found, parts=8):
+    """Inner products of innovations.
+
+    Parameters
+    ----------
+    found : Innovations
+    parts : int
+        Number of blocks.
+
+    Returns
+    -------
+    Gram
+    """
+    edges = np.linspace(0, len(found.white), parts + 1).astype(int)
+    blocks = []
+    for a, b in zip(edges[:-1], edges[1:], strict=True):
+        white = np.moveaxis(found.white[a:b], 0, -3)
+        rows = white.reshape(*white.shape[:-3], -1, white.shape[-1])
+        blocks.append(np.swapaxes(rows, -1, -2) @ rows)
+    blocks = np.stack(blocks)
+    return Gram(blocks.sum(0), blocks, found.log_determinant.sum(0))
+
+
+def evidence(products, prior, centre=None):
+    """Log-evidence of a prior over that of θ = 0, and the posterior.
+
+    Parameters
+    ----------
+    products : (1 + p, 1 + p) array
+    prior : (p,) array
+        Standard deviations; those of 0 are left out.
+    centre : (p,) array, optional
+        Where the columns were linearised, in the same units: the prior is about 0, the columns about there.
+
+    Returns
+    -------
+    tuple of float, (p,) array, (p, p) array
+        Log-evidence, mean and covariance of θ.
+    """
+    on = np.flatnonzero(prior > 0.0)
+    G, g = products[1:, 1:], products[1:, 0]
+    shift = 0.0
+    if centre is not None and np.any(centre):
+        shift = centre @ g + 0.5 * centre @ G @ centre  # y + G centre instead of y
+        g = g + G @ centre
+    scale = prior[on]
+    inner = np.eye(on.size) + scale[:, None] * G[np.ix_(on, on)] * scale
+    L = np.linalg.cholesky(inner)
+    half = np.linalg.solve(L, scale * g[on])
+    Li = np.linalg.inv(L) * scale
+    mean, covariance = np.zeros(prior.size), np.zeros((prior.size, prior.size))
+    mean[on] = Li.T @ half
+    covariance[np.ix_(on, on)] = Li.T @ Li
+    return float(0.5 * half @ half - np.log(np.diag(L)).sum() - shift), mean, covariance

@@ -1,0 +1,272 @@
+"""A log as a linear problem: what each number, a little changed, would have done to the whitened innovations.
+
+About a motion near the measured one the ship is a linear system that varies in time. Everything vectorises over the
+rows of a log and over several logs; only the filter goes from row to row.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from shipcosim.diagnose.plant import Motion, motion_rates, shown
+
+STATES = 12
+"""x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3)."""
+_ACCELERATION, _SLOW = slice(6, 9), slice(9, 12)
+_SHARE = 0.2  # of a column's size, for differences
+_SLOW_STD = np.array([0.1, 0.1, np.radians(0.1)])
+_SLOW_TIME = np.array([240.0, 240.0, 60.0])
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Noise of a log; every entry an array whose leading axes are those of the logs.
+
+    Attributes
+    ----------
+    white : (..., 6) array
+        Standard deviation of the channels. [m, m, rad, m/s, m/s, rad/s]
+    jolt : (..., 3) array
+        White acceleration: what gusts and thrusters do that the model does not follow. [m/s^1.5, m/s^1.5, rad/s^1.5]
+    walk : (..., 3) array
+        Random walk of the unexplained acceleration. [m/s^2.5, m/s^2.5, rad/s^2.5]
+    """
+
+    white: Any
+    jolt: Any
+    walk: Any
+
+
+class Linear(NamedTuple):
+    """Deviations from a motion, by row: δ' = A δ + b - B θ, z = H δ + C θ; columns: b and z first, then B and C of each θ.
+
+    Attributes
+    ----------
+    transition : (n-1, ..., 12, 12) array
+    driven : (n-1, ..., 12, 1 + p) array
+        First column: by how much the model misses the next row of the motion.
+    output : (n, ..., 6, 12) array
+    seen : (n, ..., 6, 1 + p) array
+        First column: measured minus shown, 0 where nothing was measured.
+    whole : (n, ..., 6) bool array
+        Whether the channel was measured.
+    """
+
+    transition: np.ndarray
+    driven: np.ndarray
+    output: np.ndarray
+    seen: np.ndarray
+    whole: np.ndarray
+
+
+def advanced(motion, record, plant):
+    """The motion one row later, from each row but the last, by one Runge-Kutta step.
+
+    Parameters
+    ----------
+    motion : Motion
+        (..., n-1) arrays.
+    record : Record
+    plant : Plant
+
+    Returns
+    -------
+    Motion
+    """
+    h = record.step
+    here, half, there = (record.drivers(plant, share) for share in (0.0, 0.5, 1.0))
+
+    def moved(rates, by):
+        return Motion(*(value + by * rate for value, rate in zip(motion, rates, strict=True)))
+
+    k1 = motion_rates(motion, here, plant)
+    k2 = motion_rates(moved(k1, 0.5 * h), half, plant)
+    k3 = motion_rates(moved(k2, 0.5 * h), half, plant)
+    k4 = motion_rates(moved(k3, h), there, plant)
+    slopes = zip(motion, k1, k2, k3, k4, strict=True)
+    return Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
+
+
+def linearise(motion, record, plant, columns):
+    """The linear problem about a motion.
+
+    Parameters
+    ----------
+    motion : Motion
+        (..., n) arrays near what was measured.
+    record : Record
+    plant : Plant
+    columns : sequence of dict of str to float
+        What each θ turns: by how much each number is changed at θ = 1.
+
+    Returns
+    -------
+    Linear
+    """
+    lead = record.measured.shape[:-2]
+    n, p = record.time.size, len(columns)
+    start = Motion(*(value[..., :-1] for value in motion))
+    base, seen = advanced(start, record, plant), shown(motion, plant)
+    driven, out = np.zeros((n - 1, *lead, STATES, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
+    driven[..., :6, 0] = _rows_first(base) - _rows_first(Motion(*(value[..., 1:] for value in motion)))
+    missed = np.moveaxis(record.measured, -2, 0) - _rows_first(seen)
+    whole = np.isfinite(missed)
+    out[..., 0] = np.where(whole, missed, 0.0)
+    for j, turns in enumerate(columns, start=1):
+        up, down = (
+            plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
+            for share in (_SHARE, -_SHARE)
+        )
+        if any(not path.startswith("instruments.") or path.endswith("_lag") for path in turns):
+            driven[..., :6, j] = _slope(advanced(start, record, down), advanced(start, record, up))
+        else:
+            out[..., j] = _slope(shown(motion, up), shown(motion, down))
+    unknown = ~record.known[:-1]
+    driven[unknown] = 0.0
+    return Linear(
+        _transition(start, base, record, plant), driven, _output(motion, seen, plant), out * whole[..., None], whole
+    )
+
+
+def _slope(one, other):
+    """Change per unit of θ between two motions."""
+    return (_rows_first(one) - _rows_first(other)) / (2.0 * _SHARE)
+
+
+def _rows_first(motion):
+    """(..., n) arrays of a motion as (n, ..., 6)."""
+    shape = np.broadcast_shapes(*(np.shape(value) for value in motion))
+    stacked = np.stack([np.broadcast_to(value, shape) for value in motion], axis=-1)
+    return np.moveaxis(stacked, -2, 0)
+
+
+_SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
+
+
+def _transition(start, base, record, plant):
+    h = record.step
+    shape = _rows_first(base).shape
+    A = np.zeros((*shape[:-1], STATES, STATES))
+    A[..., range(STATES), range(STATES)] = 1.0
+    for name, small in _SMALL.items():
+        i = Motion._fields.index(name)
+        other = advanced(start._replace(**{name: getattr(start, name) + small}), record, plant)
+        A[..., :6, i] = (_rows_first(other) - _rows_first(base)) / small
+    for i in range(3):
+        A[..., :6, 6 + i] = 0.5 * h * (A[..., :6, 3 + i] + np.eye(6)[3 + i])
+    A[..., range(9, 12), range(9, 12)] = np.exp(-h / _SLOW_TIME)
+    return A
+
+
+def _output(motion, seen, plant):
+    rows = _rows_first(seen)
+    H = np.zeros((*rows.shape, STATES))
+    H[..., 0, 0] = H[..., 1, 1] = 1.0
+    for name, small in _SMALL.items():
+        i = Motion._fields.index(name)
+        other = shown(motion._replace(**{name: getattr(motion, name) + small}), plant)
+        H[..., i] = (_rows_first(other) - rows) / small
+    H[..., range(3), range(9, 12)] = 1.0
+    return H
+
+
+class Innovations(NamedTuple):
+    """Result of the filter.
+
+    Attributes
+    ----------
+    white : (n, ..., 6, 1 + p) array
+        Whitened innovations: of the log in the first column, of each θ in the others.
+    log_determinant : (n, ...) array
+        Of their covariance, per row.
+    motion : Motion or None
+        The smoothed motion, (..., n) arrays.
+    slow : (..., n, 6) array or None
+        Smoothed unexplained acceleration, and slow errors.
+    """
+
+    white: np.ndarray
+    log_determinant: np.ndarray
+    motion: Any = None
+    slow: Any = None
+
+
+def innovations(linear, noise, record, motion=None):
+    """Filter every column, and smooth the first if `motion` is given.
+
+    Parameters
+    ----------
+    linear : Linear
+    noise : Noise
+    record : Record
+    motion : Motion, optional
+        That the problem was linearised about.
+
+    Returns
+    -------
+    Innovations
+    """
+    A, B, H, Z, whole = linear
+    n, lead = Z.shape[0], np.broadcast_shapes(Z.shape[1:-2], np.shape(noise.white)[:-1])
+    Q, R = _process(noise, record.step), np.asarray(noise.white) ** 2
+    H = H * whole[..., None]
+    diagonal = np.eye(6)
+    x, P = np.zeros((*lead, STATES, Z.shape[-1])), _uncertain(noise, lead)
+    lost = _lost()
+    white, logdet = np.empty((n, *lead, *Z.shape[-2:])), np.empty((n, *lead))
+    kept = []
+    for k in range(n):
+        Hk = H[k]
+        PHt = P @ np.swapaxes(Hk, -1, -2)
+        L = np.linalg.cholesky(Hk @ PHt + np.where(whole[k], R, 1.0)[..., None] * diagonal)
+        Li = np.linalg.inv(L)
+        white[k] = w = Li @ (Z[k] - Hk @ x)
+        logdet[k] = 2.0 * np.log(np.diagonal(L, axis1=-2, axis2=-1)).sum(-1)
+        KL = PHt @ np.swapaxes(Li, -1, -2)
+        x = x + KL @ w
+        P = P - KL @ np.swapaxes(KL, -1, -2)
+        if motion is not None:
+            kept.append((x[..., 0], P))
+        if k < n - 1:
+            x = A[k] @ x + B[k]
+            P = A[k] @ P @ np.swapaxes(A[k], -1, -2) + (Q if record.known[k] else Q + lost)
+    if motion is None:
+        return Innovations(white, logdet)
+    return Innovations(white, logdet, *_smoothed(kept, A, B, Q, lost, record, motion))
+
+
+def _smoothed(kept, A, B, Q, lost, record, motion):
+    """Rauch-Tung-Striebel smoother of the first column."""
+    n = len(kept)
+    rows = [None] * n
+    rows[-1] = x = kept[-1][0]
+    for k in range(n - 2, -1, -1):
+        xf, P = kept[k]
+        ahead = A[k] @ P @ np.swapaxes(A[k], -1, -2) + (Q if record.known[k] else Q + lost)
+        gain = np.swapaxes(np.linalg.solve(ahead, A[k] @ P), -1, -2)
+        predicted = (A[k] @ xf[..., None])[..., 0] + B[k][..., 0]
+        rows[k] = x = xf + (gain @ (x - predicted)[..., None])[..., 0]
+    found = np.moveaxis(np.stack(rows), 0, -2)
+    return Motion(*(value + found[..., i] for i, value in enumerate(motion))), found[..., 6:]
+
+
+def _process(noise, h):
+    """Covariance of what happens over a step."""
+    jolt, walk = np.asarray(noise.jolt) ** 2 * h, np.asarray(noise.walk) ** 2 * h
+    place = jolt * h * h / 3.0 + 1e-10
+    slow = np.broadcast_to(_SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / _SLOW_TIME)), jolt.shape)
+    return np.concatenate([place, jolt, walk, slow], axis=-1)[..., None] * np.eye(STATES)
+
+
+def _uncertain(noise, lead):
+    """Covariance at the first row."""
+    walk = np.asarray(noise.walk) ** 2 * 600.0
+    white = np.asarray(noise.white) ** 2
+    first = np.concatenate([100.0 * white, walk, np.broadcast_to(_SLOW_STD**2, walk.shape)], axis=-1)
+    return np.broadcast_to(first, (*lead, STATES))[..., None] * np.eye(STATES)
+
+
+def _lost():
+    """What is added where nobody knows what drove the ship over a step."""
+    return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])

@@ -1,0 +1,327 @@
+"""Which causes explain a log: every cause is weighed, the likely ones are fitted, then a second is sought beside them."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.evidence import evidence, gram
+from shipcosim.diagnose.linear import innovations, linearise
+
+DIRECTIONS = 12
+ROUNDS = 5
+
+
+@dataclass(frozen=True)
+class Column:
+    """One θ.
+
+    Attributes
+    ----------
+    turns : dict of str to float
+        By how much it changes each number at θ = 1.
+    prior : float
+        Standard deviation of θ.
+    """
+
+    turns: dict
+    prior: float = 1.0
+
+
+@dataclass(frozen=True)
+class Case:
+    """A log with the ship that is to explain it, and where to start.
+
+    Attributes
+    ----------
+    record : Record
+    plant : Plant
+        With all causes neutral.
+    suspects : tuple of Suspect
+    noise : Noise
+    motion : Motion
+    base : Linear, optional
+        About the ship without a cause, with the columns of `basis`.
+    """
+
+    record: Any
+    plant: Any
+    suspects: tuple
+    noise: Any
+    motion: Any
+    base: Any = None
+
+    @property
+    def basis(self):
+        """All known numbers, and what every suspect is first sought by."""
+        return self.known(()) + [column for s in self.suspects for group in _probes(s) for column in group]
+
+    def base_of(self, columns):
+        """The problem about the ship without a cause, with these columns of the basis."""
+        places = {_key(column): i for i, column in enumerate(self.basis, start=1)}
+        wanted = [0, *(places[_key(column)] for column in columns)]
+        return self.base._replace(driven=self.base.driven[..., wanted], seen=self.base.seen[..., wanted])
+
+    def known(self, suspects):
+        """Columns of the numbers that are known within a tolerance, except those that these suspects turn."""
+        taken = {path for suspect in suspects for knob in suspect.knobs for path in knob.paths}
+        taken |= {path for suspect in self.suspects for path in suspect.effect.companions}
+        found = [Column({path: size}) for path, size in self.plant.tolerances.items() if path not in taken]
+        for suspect in self.suspects:
+            for knob in suspect.knobs if suspect.effect.law == "linear" else ():
+                listed = all(path in self.plant.tolerances for path in knob.paths)
+                if knob.tolerance > 0.0 and not listed and not taken & set(knob.paths):
+                    found.append(Column(dict.fromkeys(knob.paths, knob.tolerance)))
+        return found
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A set of causes fitted to a log.
+
+    Attributes
+    ----------
+    suspects : tuple of Suspect
+    values, std : dict of str to float
+        Of each number that they turn.
+    score : float
+        Log-evidence of the log with these causes, up to a constant of the log.
+    columns : list of Column
+        Of known numbers, then of the causes.
+    linear : Linear
+    products : Gram
+    theta, covariance : array
+        Posterior of the columns, causes about neutral.
+    plant : Plant
+    motion : Motion
+    """
+
+    suspects: tuple
+    values: dict
+    std: dict
+    score: float
+    columns: list
+    linear: Any
+    products: Any
+    theta: Any
+    covariance: Any
+    plant: Any
+    motion: Any
+
+    @property
+    def label(self):
+        return " + ".join(suspect.label for suspect in self.suspects) or "nothing"
+
+    @property
+    def left(self):
+        """θ that the columns still have to explain about this fit's ship: those of known numbers."""
+        return self.theta - _centre(self.columns, self.plant, self.neutral)
+
+    neutral: Any = None
+
+
+def prepared(case):
+    """The case with its base: every column of the basis, about the motion smoothed without a cause."""
+    alone = linearise(case.motion, case.record, case.plant, [])
+    motion = innovations(alone, case.noise, case.record, case.motion).motion
+    base = linearise(motion, case.record, case.plant, [column.turns for column in case.basis])
+    return replace(case, motion=motion, base=base)
+
+
+def joined(linear, known):
+    """A problem with columns of another in front of its own."""
+    driven = np.concatenate([linear.driven[..., :1], known.driven[..., 1:], linear.driven[..., 1:]], axis=-1)
+    seen = np.concatenate([linear.seen[..., :1], known.seen[..., 1:], linear.seen[..., 1:]], axis=-1)
+    return linear._replace(driven=driven, seen=seen)
+
+
+def _columns_of(extra, linear):
+    """Columns of one problem behind the first column of another."""
+    return {
+        name: np.concatenate([getattr(linear, name)[..., :1], getattr(extra, name)[..., 1:]], axis=-1)
+        for name in ("driven", "seen")
+    }
+
+
+def _key(column):
+    return tuple(sorted(column.turns.items()))
+
+
+def fitted(case, suspects=(), values=None, rounds=ROUNDS):
+    """Fit the parameters of some causes, with all known numbers within their tolerances.
+
+    Parameters
+    ----------
+    case : Case
+    suspects : tuple of Suspect
+    values : dict of str to float, optional
+        To start from.
+    rounds : int
+        Of linearisation.
+
+    Returns
+    -------
+    Fit
+    """
+    values, motion, found = dict(values or {}), case.motion, None
+    beside = [path for suspect in suspects for path in suspect.effect.companions]
+    own = [Column({path: case.plant.tolerances[path]}) for path in beside]
+    own += [Column(dict.fromkeys(knob.paths, knob.typical)) for s in suspects for knob in s.knobs]
+    known = case.known(suspects)
+    columns = known + own
+    knobs = [knob for suspect in suspects for knob in suspect.knobs]
+    for _ in range(rounds if suspects else 1):
+        plant = case.plant.with_values(values)
+        linear = joined(linearise(motion, case.record, plant, [column.turns for column in own]), case.base_of(known))
+        filtered = innovations(linear, case.noise, case.record, motion)
+        products = gram(filtered)
+        prior, centre = np.array([column.prior for column in columns]), _centre(columns, plant, case.plant)
+        score, theta, covariance = evidence(products.products, prior, centre)
+        at = dict(values)
+        found = Fit(
+            tuple(suspects),
+            at,
+            {},
+            score + float(products.free),
+            columns,
+            linear,
+            products,
+            theta,
+            covariance,
+            plant,
+            filtered.motion,
+            case.plant,
+        )
+        moved = 0.0
+        for knob, new, old in zip(
+            knobs, theta[len(theta) - len(knobs) :], centre[len(theta) - len(knobs) :], strict=True
+        ):
+            value = float(np.clip(knob.neutral + new * knob.typical, *knob.bounds))
+            values.update(dict.fromkeys(knob.paths, value))
+            moved = max(moved, abs((value - knob.neutral) / knob.typical - old))
+        motion = filtered.motion
+        if moved < 0.01:
+            break
+    deviations = np.sqrt(np.diag(found.covariance))[len(found.theta) - len(knobs) :]
+    found.std.update({k.paths[0]: float(d * k.typical) for k, d in zip(knobs, deviations, strict=True)})
+    return found
+
+
+def weighed(case, fit, only=None):
+    """Gain in log-evidence of each suspect beside a fit, linearised once.
+
+    Parameters
+    ----------
+    case : Case
+    fit : Fit
+    only : sequence of Suspect, optional
+
+    Returns
+    -------
+    list of (float, Suspect, dict of str to float)
+        Gain, suspect, first values of the numbers that it turns; best first.
+    """
+    wanted = [s for s in (only or case.suspects) if s not in fit.suspects]
+    groups = [(suspect, group) for suspect in wanted for group in _probes(suspect)]
+    added = [column for _, group in groups for column in group]
+    columns = fit.columns + added
+    linear = joined(fit.linear._replace(**_columns_of(case.base_of(added), fit.linear)), fit.linear)
+    products = gram(innovations(linear, case.noise, case.record)).products
+    base = len(fit.columns)
+    prior = np.array([column.prior for column in columns])
+    prior[base:] = 0.0
+    centre = np.zeros(len(columns))
+    centre[:base] = _centre(fit.columns, fit.plant, case.plant)
+    nothing, place, tries = evidence(products, prior, centre)[0], base, {}
+    for suspect, group in groups:
+        mine = np.arange(place, place + len(group))
+        place += len(group)
+        here = prior.copy()
+        here[mine] = 1.0
+        taken = {path for column in group for path in column.turns}
+        here[[i for i, column in enumerate(fit.columns) if taken & set(column.turns)]] = 0.0
+        score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
+        values = {}
+        for i, column in zip(mine, group, strict=True):
+            for path, size in column.turns.items():
+                values[path] = values.get(path, fit.plant.get(path)) + theta[i] * size
+        tries.setdefault(suspect.label, (suspect, []))[1].append((score - nothing, values))
+    found = [(*_together(scores, suspect), suspect) for suspect, scores in tries.values()]
+    return [(gain, suspect, values) for gain, values, suspect in sorted(found, key=lambda entry: -entry[0])]
+
+
+def _together(tries, suspect):
+    """Evidence of a suspect over all its directions, and the values of the best."""
+    scores = np.array([score for score, _ in tries])
+    best = int(scores.argmax())
+    values = tries[best][1]
+    if suspect.effect.law == "turning":
+        north, east = values.pop("water.current_north"), values.pop("water.current_east")
+        grown = values.pop("water.trend_north"), values.pop("water.trend_east")
+        names = [knob.paths[0] for knob in suspect.knobs]
+        values = dict(zip(names, (north, east, north + grown[0], east + grown[1]), strict=True))
+    return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
+
+
+def _probes(suspect):
+    """Groups of columns by which a suspect is first sought."""
+    knobs = suspect.knobs
+    if suspect.effect.law == "linear":
+        return [[Column(dict.fromkeys(knob.paths, knob.typical)) for knob in knobs]]
+    if suspect.effect.law == "turning":
+        names = ("current_north", "current_east", "trend_north", "trend_east")
+        return [[Column({f"water.{name}": knobs[0].typical}) for name in names]]
+    pair, size = (knobs[0].paths[0], knobs[1].paths[0]), knobs[0].typical
+    angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    return [[Column(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]
+
+
+def _centre(columns, plant, neutral):
+    """θ of the plant that the columns were linearised about; 0 for known numbers."""
+    found = np.zeros(len(columns))
+    for i, column in enumerate(columns):
+        path, size = next(iter(column.turns.items()))
+        found[i] = (plant.get(path) - neutral.get(path)) / size
+    return found
+
+
+def explain(case, *, most=2, likely=5, near=12.0, enough=5.0):
+    """The sets of causes that explain a log best.
+
+    Parameters
+    ----------
+    case : Case
+    most : int
+        Causes at once.
+    likely : int
+        Candidates that are fitted at each stage.
+    near : float
+        Candidates this far below the best are still fitted, or a seventh of its gain. [nats]
+    enough : float
+        What a further cause has to gain. [nats]
+
+    Returns
+    -------
+    list of Fit
+        All sets that were fitted, best first; the one without a cause among them.
+    """
+    nothing = fitted(case)
+    fits, front = [nothing], [nothing]
+    for _ in range(most):
+        found = {}
+        for fit in front:
+            gains = weighed(case, fit)
+            best = gains[0][0]
+            for gain, suspect, values in gains[:likely]:
+                if gain < max(best - max(near, best / 7.0), -2.0 if fit is nothing else enough - 3.0):
+                    break
+                suspects = (*fit.suspects, suspect)
+                key = frozenset(s.label for s in suspects)
+                if key not in found:
+                    found[key] = fitted(case, suspects, fit.values | values)
+        ranked = sorted(found.values(), key=lambda fit: -fit.score)
+        fits.extend(ranked)
+        front = [fit for fit in ranked[:2] if fit.score > ranked[0].score - near]
+        if not front or ranked[0].score < max(fit.score for fit in fits if fit not in ranked) + enough:
+            break
+    return sorted(fits, key=lambda fit: -fit.score)

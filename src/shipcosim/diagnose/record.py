@@ -1,0 +1,175 @@
+"""A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.plant import Drivers, Motion
+from shipcosim.errors import Problem, ShipcosimError
+
+CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
+_TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
+
+
+@dataclass(frozen=True)
+class Record:
+    """Measurements and drivers of one log, or of several of the same length with them on the first axis.
+
+    Attributes
+    ----------
+    time : (n,) array
+        Even. [s]
+    measured : (..., n, 6) array
+        `CHANNELS` in SI, heading unwrapped, NaN where there is none.
+    units : dict of str to tuple of two (..., n) arrays
+        Speed and direction of each thruster, direction unwrapped. [rev/s, rad]
+    wind : tuple of two (..., n) arrays, or None
+        Speed, and direction unwrapped. [m/s, rad]
+    known : (n,) bool array
+        Whether everything that drives the ship is known over the step that follows.
+    """
+
+    time: np.ndarray
+    measured: np.ndarray
+    units: dict
+    wind: Any
+    known: np.ndarray
+    remarks: tuple = field(default=())
+
+    @property
+    def step(self):
+        """Time from row to row. [s]"""
+        return float(self.time[1] - self.time[0])
+
+    def drivers(self, plant, share=0.0):
+        """What drives the ship at each row but the last, or a share of a step after it.
+
+        Late channels are taken that much later; where the navigation is late, all others are taken earlier.
+        """
+        lags = plant.parts["instruments"]
+        late = share * self.step - lags.navigation_lag
+        units = {
+            name: tuple(self._shifted(series, late + lags.thruster_lag) for series in pair)
+            for name, pair in self.units.items()
+        }
+        wind = (None, None) if self.wind is None else (self._shifted(s, late + lags.wind_lag) for s in self.wind)
+        return Drivers(self.time[:-1] + share * self.step, units, *wind)
+
+    def _shifted(self, series, seconds):
+        """A series that much later, linear between rows."""
+        rows = self.time.size
+        at = np.clip(np.arange(rows - 1) + seconds / self.step, 0.0, rows - 1.0)
+        low = np.minimum(at.astype(int), rows - 2)
+        share = at - low
+        return series[..., low] * (1.0 - share) + series[..., low + 1] * share
+
+
+def record_of(log, plant):
+    """Arrays of a repaired log.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        Evenly spaced, roles in the contract's units, NaN where there is no data.
+    plant : Plant
+
+    Returns
+    -------
+    Record
+        Its `remarks` say what is missing.
+
+    Raises
+    ------
+    ShipcosimError
+        Too little to diagnose.
+    """
+    rows = log.sizes["time"]
+    missing = [role for role in ("north", "east", "heading") if role not in log]
+    if missing or rows < 120:
+        found = f"no channel {', '.join(missing)}." if missing else f"{rows} rows."
+        right = "A diagnosis needs north, east and heading over at least two minutes, better forty."
+        raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
+    measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
+    measured[:, 2] = _unwrapped(measured[:, 2])
+    remarks, known, units = [], np.ones(rows, bool), {}
+    for name in plant.thrusters:
+        units[name], whole = _unit(log, name, plant, rows, remarks)
+        known &= whole
+    wind, whole = _wind(log, rows, remarks)
+    known &= whole
+    known[:-1] &= known[1:]
+    return Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
+
+
+def _column(log, role, rows):
+    return log[role].values.astype(float) if role in log else np.full(rows, np.nan)
+
+
+def _unit(log, name, plant, rows, remarks):
+    """Speed and direction of a thruster, and where they are known."""
+    speed, direction = _column(log, f"{name}_rpm", rows) / 60.0, _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
+    if f"{name}_rpm" not in log:
+        remarks.append(f"No speed of '{name}' in the log: taken to stand still; nothing about it can be identified.")
+        speed = np.zeros(rows)
+    if f"{name}_azimuth" not in log:
+        if name in plant.azimuths:
+            remarks.append(f"No direction of '{name}' in the log: taken to point ahead.")
+        direction = np.zeros(rows)
+    whole = np.isfinite(speed) & np.isfinite(direction)
+    return (_filled(speed), _filled(_unwrapped(direction))), whole
+
+
+def _wind(log, rows, remarks):
+    for speed, direction in (("wind_speed", "wind_from"), ("true_wind_speed", "true_wind_from")):
+        if speed in log and direction in log:
+            pair = _column(log, speed, rows), _unwrapped(_column(log, direction, rows) * np.pi / 180.0)
+            whole = np.isfinite(pair[0]) & np.isfinite(pair[1])
+            if whole.any():
+                return tuple(_filled(series) for series in pair), whole
+    remarks.append("No wind in the log: forces of the wind, of waves, of a current and of a line cannot be told apart.")
+    return None, np.ones(rows, bool)
+
+
+def _filled(series):
+    """The series with linear interpolation where it has no value."""
+    whole = np.isfinite(series)
+    if not whole.any():
+        return np.zeros_like(series)
+    return np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
+
+
+def _unwrapped(angle):
+    """An angle without jumps of a turn, across rows without a value too."""
+    whole = np.isfinite(angle)
+    found = angle.copy()
+    found[whole] = np.unwrap(angle[whole])
+    return found
+
+
+def first_motion(record, plant, smooth=4.0):
+    """A motion near the measured one, to start from: smoothed measurements, rates from positions where not measured.
+
+    Returns
+    -------
+    Motion
+        Of (..., n) arrays.
+    """
+    from scipy.ndimage import gaussian_filter1d
+
+    rows = np.arange(record.time.size)
+    width = max(smooth / record.step, 1.0)
+    flat = record.measured.reshape(-1, rows.size, 6)
+    out = np.empty_like(flat)
+    for one, into in zip(flat, out, strict=True):
+        for channel in range(6):
+            whole = np.isfinite(one[:, channel])
+            series = np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else None
+            into[:, channel] = np.nan if series is None else gaussian_filter1d(series, width, mode="nearest")
+    x, y, psi, u, v, r = np.moveaxis(out.reshape(record.measured.shape), -1, 0)
+    if np.isnan(r).any():
+        r = np.gradient(psi, record.step, axis=-1)
+    if np.isnan(u).any() or np.isnan(v).any():
+        north, east = np.gradient(x, record.step, axis=-1), np.gradient(y, record.step, axis=-1)
+        u, v = np.cos(psi) * north + np.sin(psi) * east, np.cos(psi) * east - np.sin(psi) * north
+    return Motion(x, y, psi, u, v, r)
