@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from .clock import generator
-from .maths import maximum, pi, sqrt
+from .maths import cos, maximum, pi, sqrt
 from .sinusoids import column, per_seed, tensors_if_any, total
 
 COMPONENTS = 60
@@ -67,7 +67,7 @@ def gust(t, mean_speed, seed):
         Gust along the mean wind. [m/s]
     """
     omega, phase = per_seed(_frequencies_and_phases, seed)
-    (wave,) = tensors_if_any((np.cos(omega * column(t) + phase),), mean_speed)
+    (wave,) = tensors_if_any((cos(omega * column(t) + phase),), mean_speed)
     return total(_amplitudes(mean_speed), wave)
 
 
@@ -96,7 +96,12 @@ def gust_std(mean_speed):
 
 
 def _amplitudes(mean_speed):
-    return _float_amplitudes(mean_speed) if isinstance(mean_speed, float) else _any_amplitudes(mean_speed)
+    """Of floats and arrays computed once while the mean does not change."""
+    if isinstance(mean_speed, float):
+        return _float_amplitudes(mean_speed)
+    if isinstance(mean_speed, np.ndarray):
+        return _array_amplitudes(mean_speed.astype(float).tobytes(), mean_speed.shape)
+    return _any_amplitudes(mean_speed)
 
 
 def _any_amplitudes(mean_speed):
@@ -106,6 +111,11 @@ def _any_amplitudes(mean_speed):
 
 
 _float_amplitudes = lru_cache(maxsize=64)(_any_amplitudes)
+
+
+@lru_cache(maxsize=4)
+def _array_amplitudes(content, shape):
+    return _any_amplitudes(np.frombuffer(content).reshape(shape))
 
 
 def _shape(frequency, mean_speed):

@@ -13,7 +13,7 @@ import numpy as np
 
 pi = math.pi
 _TINY = 1e-30
-_FEW = 256  # below so many elements, a call of NumPy costs more than what it computes
+_FEW = 256  # elements, below which a call of NumPy costs more than what it computes
 
 
 def _library(*values):
@@ -26,18 +26,22 @@ def _library(*values):
 
 def sin(x):
     """Sine of an angle in rad."""
-    return math.sin(x) if isinstance(x, float) else _library(x).sin(x)
+    if isinstance(x, float):
+        return math.sin(x)
+    return sincos(x)[0] if _many(x) else _library(x).sin(x)
 
 
 def cos(x):
     """Cosine of an angle in rad."""
-    return math.cos(x) if isinstance(x, float) else _library(x).cos(x)
+    if isinstance(x, float):
+        return math.cos(x)
+    return sincos(x)[1] if _many(x) else _library(x).cos(x)
 
 
 def sincos(x):
     """Sine and cosine of an angle in rad; together cheaper than each alone.
 
-    Of many angles at once they are 2t/(1 + t²) and (1 - t²)/(1 + t²) with t = tan(x/2): NumPy's tangent is vectorised,
+    Of many angles at once they are t u and u - 1 with t = tan(x/2) and u = 2/(1 + t²): NumPy's tangent is vectorised,
     its sine and cosine of doubles are not. They differ from those by some 1e-16.
 
     Parameters
@@ -51,15 +55,16 @@ def sincos(x):
     """
     if isinstance(x, float):
         return math.sin(x), math.cos(x)
-    library = _library(x)
-    if library is not np or np.size(x) < _FEW:
+    if not _many(x):
+        library = _library(x)
         return library.sin(x), library.cos(x)
     t = np.tan(0.5 * x)
-    square = t * t
-    scale = 1.0 / (1.0 + square)
-    t *= scale
-    square *= scale
-    return 2.0 * t, scale - square
+    u = t * t
+    u += 1.0
+    np.divide(2.0, u, out=u)
+    t *= u
+    u -= 1.0
+    return t, u
 
 
 def exp(x):
@@ -342,6 +347,11 @@ def substeps(h, longest):
     (1, 4)
     """
     return max(1, math.ceil(h / longest - 1e-9))
+
+
+def _many(x):
+    """Whether x is an array of so many elements that computing them costs more than a few calls of NumPy."""
+    return isinstance(x, np.ndarray) and x.size >= _FEW
 
 
 def _interp_tensor(torch, x, xs, ys):
