@@ -64,7 +64,7 @@ class Show(NamedTuple):
     """What the ship shows the others at one time, beside her state."""
 
     drift: tuple
-    motion: tuple
+    motion: tuple | None
     apparent_wind: tuple
     through_water: tuple
 
@@ -181,9 +181,10 @@ def step(t, h, state, inputs, *, system, design):
     ship = _moved(state, h, system)
     units = _driven(state, inputs, h, system)
     estimate, law, samples = _controlled(t, state, system, design)
+    sampled = samples_due(t + h, system.sensors.period) > samples_due(t, system.sensors.period)
     return LoopState(
         ship,
-        _show(t + h, ship, state.air, state.current, system, design),
+        _show(t + h, ship, state.air, state.current, system, design, sampled),
         means,
         air,
         current,
@@ -271,13 +272,16 @@ def _air(t, means, system):
     return environment.air_velocity(t, means, gust_scale=e.gust_scale, seed=e.seed)
 
 
-def _show(t, ship, air, current, system, design):
-    """What the ship shows at t, with the air and water she was given last."""
+def _show(t, ship, air, current, system, design, sampled=True):
+    """What the ship shows at t, with the air and water she was given last; motion in waves where it is sampled."""
     x, y, psi, u, v, _ = ship
-    hull = system.hull
-    drift, motion = waves.wave_response(
-        t, x, y, psi, u, v, design.sea, design.drift, length=hull.length, breadth=hull.breadth, draught=hull.draught
-    )
+    hull, motion = system.hull, None
+    if sampled:
+        drift, motion = waves.wave_response(
+            t, x, y, psi, u, v, design.sea, design.drift, length=hull.length, breadth=hull.breadth, draught=hull.draught
+        )
+    else:
+        drift = waves.drift(t, x, y, psi, design.sea, design.drift)
     return Show(drift, motion, apparent_wind(psi, u, v, *air), vessel.through_water(psi, u, v, *current))
 
 
@@ -343,7 +347,9 @@ def _controlled(t, state, system, design):
 
 
 def _truth(ship, show):
-    """What the sensors are shown: the ship in waves, and the apparent wind."""
+    """What the sensors are shown: the ship in waves, and the apparent wind; nothing where they take no sample."""
+    if show.motion is None:
+        return None
     return sensors.Truth(*(a + b for a, b in zip(ship, show.motion, strict=True)), *show.apparent_wind)
 
 
