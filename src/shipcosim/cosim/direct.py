@@ -5,6 +5,7 @@ turns lists back into C arrays. Here the same methods are called with the same v
 the start to storing a state, goes through the binary.
 """
 
+import struct
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -64,10 +65,11 @@ class Direct:
     def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """See `Slave2.getter`."""
         method, references = self._method("get", kind), _references(variables)
+        pack = struct.Struct(f"{len(variables)}{'d' if kind == 'Real' else 'i'}").pack_into  # quicker than buffer[:] =
 
         def get_all():
             try:
-                buffer[:] = method(references)
+                pack(buffer, 0, *method(references))
             except Exception as error:
                 return self._failed(error)
             return OK

@@ -11,6 +11,7 @@ import operator
 import os
 import traceback
 import weakref
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -44,8 +45,16 @@ class State(NamedTuple):
     content: tuple
 
 
+class _Found(NamedTuple):
+    """Names of variables, a fixed parameter among them or "", and what takes their values from a mapping as tuple."""
+
+    names: tuple
+    fixed: str
+    values: Callable
+
+
 class _Access(dict):
-    """Variables behind a call's value references: references -> (names, a fixed parameter among them or "")."""
+    """Variables behind a call's value references."""
 
     def __init__(self, variables, kind):
         super().__init__()
@@ -58,8 +67,17 @@ class _Access(dict):
                 raise FmuError(f"there is no {self.kind} variable with value reference {reference}")
             found.append(self.variables[reference])
         fixed = [variable.name for variable in found if variable.causality == "parameter" and not variable.tunable]
-        self[references] = tuple(variable.name for variable in found), fixed[0] if fixed else ""
+        names = tuple(variable.name for variable in found)
+        self[references] = _Found(names, fixed[0] if fixed else "", _getter(names))
         return self[references]
+
+
+def _getter(names):
+    """Function that takes the values of these names from a mapping, as a tuple."""
+    if len(names) == 1:
+        (name,) = names
+        return lambda values: (values[name],)
+    return operator.itemgetter(*names) if names else lambda values: ()
 
 
 def _guarded(method):
@@ -105,6 +123,7 @@ class Fmi2Slave:
             _Access(cls.variables, kind) for kind in ("Real", "Integer", "Boolean", "String")
         )
         cls._real_outputs = tuple(v.name for v in cls.variables if v.causality == "output" and v.type == "Real")
+        cls._real_output_values = staticmethod(_getter(cls._real_outputs))
         cls._starts = {variable.name: variable.start for variable in cls.variables}
 
     def __init__(self, instance_name="", *, resources="", **_):
@@ -147,51 +166,50 @@ class Fmi2Slave:
 
     @_guarded
     def set_real(self, references, values):
-        names, fixed = self._real[tuple(references)]
+        found = self._real[tuple(references)]
         if not math.isfinite(sum(values)):
-            self._check_finite(names, values)
-        self._set(names, fixed, values)
+            self._check_finite(found.names, values)
+        self._set(found, values)
 
     @_guarded
     def set_integer(self, references, values):
-        self._set(*self._integer[tuple(references)], values)
+        self._set(self._integer[tuple(references)], values)
 
     @_guarded
     def set_boolean(self, references, values):
-        self._set(*self._boolean[tuple(references)], values)
+        self._set(self._boolean[tuple(references)], values)
 
     @_guarded
     def set_string(self, references, values):
-        self._set(*self._string[tuple(references)], values)
+        self._set(self._string[tuple(references)], values)
 
     @_guarded
     def get_real(self, references):
-        return self._get(self._real[tuple(references)][0])
+        return list(self._get(self._real[tuple(references)]))
 
     @_guarded
     def get_integer(self, references):
-        names = self._integer[tuple(references)][0]
-        return [_integer(name, value) for name, value in zip(names, self._get(names), strict=True)]
+        found = self._integer[tuple(references)]
+        return [_integer(name, value) for name, value in zip(found.names, self._get(found), strict=True)]
 
     @_guarded
     def get_boolean(self, references):
-        return [bool(value) for value in self._get(self._boolean[tuple(references)][0])]
+        return [bool(value) for value in self._get(self._boolean[tuple(references)])]
 
     @_guarded
     def get_string(self, references):
-        return [str(value) for value in self._get(self._string[tuple(references)][0])]
+        return [str(value) for value in self._get(self._string[tuple(references)])]
 
-    def _set(self, names, fixed, values):
-        if fixed and self._initialised:
-            raise FmuError(f"parameter '{fixed}' is fixed, it can only be set before the run")
-        self.__dict__.update(zip(names, values, strict=True))
+    def _set(self, found, values):
+        if found.fixed and self._initialised:
+            raise FmuError(f"parameter '{found.fixed}' is fixed, it can only be set before the run")
+        self.__dict__.update(zip(found.names, values, strict=True))
         self._stale = self._initialising
 
-    def _get(self, names):
+    def _get(self, found):
         if self._stale:
             self._start()
-        values = self.__dict__
-        return [values[name] for name in names]
+        return found.values(self.__dict__)
 
     # state
 
@@ -271,7 +289,7 @@ class Fmi2Slave:
     def _check_outputs(self):
         values = self.__dict__
         try:
-            if math.isfinite(sum([values[name] for name in self._real_outputs])):
+            if math.isfinite(sum(self._real_output_values(values))):
                 return
         except (KeyError, TypeError, ValueError):
             pass
