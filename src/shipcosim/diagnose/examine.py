@@ -1,0 +1,54 @@
+"""Faults of a log that show in the log itself, before any physics: each with its channels and where it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.examine_labels import mislabelled
+from shipcosim.diagnose.examine_rows import gaps, outliers, wraps
+from shipcosim.diagnose.repair import inside, usable_rows
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.finding import Finding
+
+__all__ = ["examine"]
+
+
+def examine(log: xarray.Dataset) -> list[Finding]:
+    """Faults of the data, of kind ``"data"``, most certain first; none in a log that is right.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        As from `read_log`.
+    """
+    table = _arrays(log)
+    found = [*gaps(table), *wraps(table)]
+    table = _without(table, found)
+    labels, table = mislabelled(table)
+    return sorted([*found, *labels], key=lambda finding: -finding.probability)
+
+
+def _arrays(log):
+    """The log as a dict of arrays, rows in order of time."""
+    rows = usable_rows(log["time"].values)
+    table = {str(name): np.array(variable.values[rows], float) for name, variable in log.data_vars.items()}
+    return {"time": log["time"].values[rows], **table}
+
+
+def _without(table, found):
+    """The table with what is no measurement left out, and the heading without jumps."""
+    table = dict(table)
+    for role, bad in outliers(table).items():
+        table[role] = np.where(bad, np.nan, table[role])
+    for finding in found:
+        bad = inside(table["time"], finding.segments)
+        table |= {role: np.where(bad, np.nan, table[role]) for role in finding.channels if role in table}
+    if "heading" in table:
+        known = np.isfinite(table["heading"])
+        table["heading"][known] = np.degrees(np.unwrap(np.radians(table["heading"][known])))
+    return table

@@ -1,0 +1,170 @@
+"""Position against velocity and heading against rate: what is left between them, as white noise.
+
+The level between a position and the integral of the velocity wanders as the velocity's noise adds up, and is seen
+through the position's noise. A Kalman filter of that level leaves innovations that are white when the log is right;
+any change of the log that is linear goes through the same filter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+__all__ = ["Filter", "Motion", "filter_for", "heading_motion", "position_motion", "whiteness"]
+
+LONGEST_BRIDGE = 4.5  # usual steps across which a motion is integrated
+RATIOS = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 0.8, 1.6, 6.0, 50.0)  # of the variances: wander in a step over position
+WINDOWS = 24  # of a log, in which the noise is looked at
+LAGS = 12  # rows over which innovations may hang together
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A position of one or two axes, and the velocity that should be its rate.
+
+    Attributes
+    ----------
+    time : (n,) array
+        Of the rows where both are known. [s]
+    seen : (n, a) array
+        Position or heading. [m or deg]
+    velocity : (n, a) array
+        Rate of `seen` as logged. [m/s or deg/s]
+    starts : (n,) array of bool
+        Rows that cannot be compared with the one before.
+    """
+
+    time: np.ndarray
+    seen: np.ndarray
+    velocity: np.ndarray
+    starts: np.ndarray
+
+    def way(self, velocity: np.ndarray | None = None) -> np.ndarray:
+        """Integral of a velocity over the rows; a spline, since the trapezium loses a tenth of a wave of 6 s at 1 Hz."""
+        velocity = self.velocity if velocity is None else velocity
+        return CubicSpline(self.time, velocity, axis=0).antiderivative()(self.time)
+
+    @property
+    def level(self) -> np.ndarray:
+        """What is seen less the way made, (n, a)."""
+        return self.seen - self.way()
+
+
+def position_motion(log: dict, roles=("north", "east", "surge", "sway", "heading")) -> Motion | None:
+    """Positions against velocity turned by the heading; None where there is too little of them.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
+    """
+    rows = _known(log, roles)
+    if len(rows) < 30:
+        return None
+    north, east, surge, sway, heading = (log[role][rows] for role in roles)
+    cosine, sine = np.cos(np.radians(heading)), np.sin(np.radians(heading))
+    velocity = np.column_stack([cosine * surge - sine * sway, sine * surge + cosine * sway])
+    return _motion(log["time"][rows], np.column_stack([north, east]), velocity)
+
+
+def heading_motion(log: dict) -> Motion | None:
+    """Heading against the yaw rate; None where there is too little of them."""
+    rows = _known(log, ("heading", "yaw_rate"))
+    if len(rows) < 30:
+        return None
+    return _motion(log["time"][rows], log["heading"][rows, None], log["yaw_rate"][rows, None])
+
+
+def _known(log, roles):
+    if not all(role in log for role in roles):
+        return np.zeros(0, int)
+    return np.flatnonzero(np.all([np.isfinite(log[role]) for role in roles], axis=0))
+
+
+def _motion(time, seen, velocity):
+    steps = np.diff(time, prepend=-np.inf)
+    starts = steps > LONGEST_BRIDGE * np.median(steps[1:])
+    return Motion(time, seen, velocity, starts | _jumps(seen))
+
+
+def _jumps(seen):
+    """Rows at which a position leaps and stays there: another reference, rows lost, channels exchanged."""
+    change = np.diff(seen, axis=0, prepend=seen[:1])
+    leap = np.zeros(len(seen), bool)
+    for axis in range(seen.shape[1]):
+        change_here = change[:, axis]
+        around = np.array([np.roll(change_here, k) for k in (-3, -2, -1, 1, 2, 3)])
+        off = np.abs(change_here - np.median(around, axis=0))
+        leap |= off > 10.0 * (1.4826 * np.median(off) + 1e-9) + 3.0 * np.ptp(np.sort(around, axis=0)[1:-1], axis=0)
+    return leap
+
+
+@dataclass(frozen=True)
+class Filter:
+    """Kalman filter of a level: gains of each row and the standard deviation of the innovations."""
+
+    gains: np.ndarray
+    scale: np.ndarray
+    std: float = 1.0
+
+    def __call__(self, levels: np.ndarray) -> np.ndarray:
+        """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
+        shape = levels.shape
+        flat = levels.reshape(len(levels), -1)
+        innovations, state = np.zeros_like(flat), flat[0].copy()
+        for row, gain in enumerate(self.gains):
+            innovation = flat[row] - state
+            state = state + gain * innovation
+            innovations[row] = innovation
+        white = innovations / (self.std * self.scale)[:, None]
+        white[self.gains >= 1.0] = 0.0
+        return white.reshape(shape)
+
+
+def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]:
+    """For each of several levels (n, a, k) the filter under which its innovations are most likely.
+
+    The noise is taken from the calmer windows, so that a fault in a part of the log does not count as noise.
+    """
+    levels = motion.level[:, :, None] if levels is None else levels
+    drafts = [_filter(motion, ratio) for ratio in RATIOS]
+    stds, scores = np.zeros((len(drafts), levels.shape[2])), np.zeros((len(drafts), levels.shape[2]))
+    for number, draft in enumerate(drafts):
+        known = draft.gains < 1.0
+        stds[number], calm = _spreads(draft(levels)[known])
+        scores[number] = -calm - np.mean(np.log(draft.scale[known]))
+    best = np.argmax(scores, axis=0)
+    return [Filter(drafts[b].gains, drafts[b].scale, stds[b, k]) for k, b in enumerate(best)]
+
+
+def _filter(motion, ratio):
+    steps = np.diff(motion.time, prepend=motion.time[0])
+    steps = steps / np.median(steps[1:])
+    gains, scale, variance = np.ones(len(steps)), np.ones(len(steps)), 1.0
+    for row, (step, anew) in enumerate(zip(steps.tolist(), motion.starts.tolist(), strict=True)):
+        if row == 0 or anew:
+            variance = 1.0
+            continue
+        total = variance + ratio * step + 1.0
+        gains[row] = min((total - 1.0) / total, 1.0 - 1e-9)
+        scale[row] = total**0.5
+        variance = gains[row]
+    return Filter(gains, scale)
+
+
+def _spreads(white):
+    """Standard deviation in calm windows, and mean of its logarithm over the calmer ones, of (n, a, k): two of (k,)."""
+    count = max(1, min(WINDOWS, len(white) // 40))
+    spreads = np.array([1.4826 * np.median(np.abs(w), axis=(0, 1)) for w in np.array_split(white, count)])
+    spreads = np.sort(np.maximum(spreads, 1e-9), axis=0)
+    return np.quantile(spreads, 0.4, axis=0), np.mean(np.log(spreads[: max(1, int(0.6 * count))]), axis=0)
+
+
+def whiteness(white: np.ndarray) -> float:
+    """By how much evidence is to be divided because innovations (n, a) hang together; 1 if they are white."""
+    tame = np.clip(white, -4.0, 4.0)
+    power = np.mean(tame**2)
+    together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in range(1, LAGS + 1)]
+    return max(1.0, 1.0 + 2.0 * sum(share for share in together if share > 0.04))
