@@ -3,7 +3,7 @@
 import functools
 
 from .slave import Fmi2Slave
-from .variables import variables_of
+from .variables import leave_start_values, variables_of
 
 
 class Fmu(Fmi2Slave):
@@ -55,6 +55,7 @@ class Fmu(Fmi2Slave):
         taken = sorted({item.name for item in (*cls.variables, *cls.groups)} & set(dir(Fmu)))
         if taken:
             raise TypeError(f"{cls.__name__} names a variable {', '.join(taken)}, which the shell uses itself")
+        leave_start_values(cls)
         if "start" in vars(cls):
             cls.start = _with_fresh_groups(cls.start)
         super().__init_subclass__(**kwargs)
