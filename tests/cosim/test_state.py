@@ -10,11 +10,22 @@ import pytest
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import Snapshot, read_snapshot, simulate, write_snapshot
 from shipcosim.cosim.instances import Instances
+from shipcosim.cosim.part import set_start_values
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import Component, read_fmu, read_system, with_values
 
-FMUS = "allocator azimuth_thruster dp_controller environment predictor reference sensors tunnel_thruster vessel".split()
+FMUS = (
+    "allocator azimuth_thruster dp_controller drift_force earth_force environment instruments predictor reference "
+    "sensors tunnel_thruster varying_current vessel"
+).split()
+NOT_NEUTRAL = {
+    "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
+    "earth_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
+    "instruments": {"lag": 1.33},
+    "varying_current": {"north_end": 0.5},
+}
+"""FMU: parameters without which it does nothing."""
 H = 0.05
 
 
@@ -32,6 +43,8 @@ class Driven:
             for causality in ("input", "output")
         )
         self.slave = instances.of(Component(name, fmu))
+        changed = NOT_NEUTRAL.get(fmu.path.stem, {})
+        set_start_values(self.slave, [(fmu.variables[key], value) for key, value in changed.items()])
         self.starts = np.array([variable.start for variable in self.inputs])
         self.given, self.seen = self.starts.copy(), np.zeros(len(self.outputs))
         self.set = self.slave.setter("Real", self.inputs, self.given)
