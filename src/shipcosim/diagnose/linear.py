@@ -184,15 +184,18 @@ class Innovations(NamedTuple):
         The smoothed motion, (..., n) arrays.
     slow : (..., n, 6) array or None
         Smoothed unexplained acceleration, and slow errors.
+    filtered : tuple of (n, ..., 12) array and (n, ..., 12, 12) array, or None
+        Deviations of the first column at each row by what was known until then, and their covariance.
     """
 
     white: np.ndarray
     log_determinant: np.ndarray
     motion: Any = None
     slow: Any = None
+    filtered: Any = None
 
 
-def innovations(linear, noise, record, motion=None):
+def innovations(linear, noise, record, motion=None, *, keep=False):
     """Filter every column, and smooth the first if `motion` is given.
 
     Parameters
@@ -202,6 +205,8 @@ def innovations(linear, noise, record, motion=None):
     record : Record
     motion : Motion, optional
         That the problem was linearised about.
+    keep : bool
+        Whether the filtered deviations of the first column are wanted, instead of the smoothed ones.
 
     Returns
     -------
@@ -226,11 +231,13 @@ def innovations(linear, noise, record, motion=None):
         KL = PHt @ np.swapaxes(Li, -1, -2)
         x = x + KL @ w
         P = P - KL @ np.swapaxes(KL, -1, -2)
-        if motion is not None:
+        if keep or motion is not None:
             kept.append((x[..., 0], P))
         if k < n - 1:
             x = A[k] @ x + B[k]
             P = A[k] @ P @ np.swapaxes(A[k], -1, -2) + (Q if record.known[k] else Q + lost)
+    if keep:
+        return Innovations(white, logdet, filtered=tuple(np.stack(part) for part in zip(*kept, strict=True)))
     if motion is None:
         return Innovations(white, logdet)
     return Innovations(white, logdet, *_smoothed(kept, A, B, Q, lost, record, motion))
