@@ -25,7 +25,8 @@ def object_of(folder: Path, name: str):
     shell = sys.modules.get(f"{entry}_code.shipcosim.fmi.slave")
     reference = getattr(getattr(shell, "Fmi2Slave", None), "newest", None)
     made = reference() if reference is not None else None
-    return made if made is not None and made.instance_name == name else None
+    ours = made is not None and made.instance_name == name and hasattr(made, "real_setter")
+    return made if ours else None
 
 
 class Direct:
@@ -44,34 +45,56 @@ class Direct:
 
     def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """See `Slave2.setter`."""
-        method, references = self._method("set", kind), _references(variables)
+        if kind == "Real":
+            return self._reals_setter(_references(variables), buffer)
+        method, references = getattr(self._target, f"set_{kind.lower()}"), _references(variables)
 
         def set_all():
+            values = buffer.tolist()
             try:
-                method(references, buffer.tolist())
+                method(references, [value != 0 for value in values] if kind == "Boolean" else values)
             except Exception as error:
                 return self._failed(error)
             return OK
 
-        def set_flags():
-            try:
-                method(references, [value != 0 for value in buffer.tolist()])
-            except Exception as error:
-                return self._failed(error)
-            return OK
-
-        return set_flags if kind == "Boolean" else set_all
+        return set_all
 
     def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """See `Slave2.getter`."""
-        method, references = self._method("get", kind), _references(variables)
-        pack = struct.Struct(f"{len(variables)}{'d' if kind == 'Real' else 'i'}").pack_into  # quicker than buffer[:] =
+        if kind == "Real":
+            return self._reals_getter(_references(variables), buffer)
+        method, references = getattr(self._target, f"get_{kind.lower()}"), _references(variables)
 
         def get_all():
             try:
-                pack(buffer, 0, *method(references))
+                buffer[:] = method(references)
             except Exception as error:
                 return self._failed(error)
+            return OK
+
+        return get_all
+
+    def _reals_setter(self, references, buffer):
+        set_values, values_of = self._target.real_setter(references), buffer.tolist
+
+        def set_all():
+            try:
+                set_values(values_of())
+            except Exception as error:
+                return self._failed(self._target.failure(error))
+            return OK
+
+        return set_all
+
+    def _reals_getter(self, references, buffer):
+        get_values = self._target.real_getter(references)
+        pack = struct.Struct(f"{len(references)}d").pack_into  # quicker than buffer[:] =
+
+        def get_all():
+            try:
+                pack(buffer, 0, *get_values())
+            except Exception as error:
+                return self._failed(self._target.failure(error))
             return OK
 
         return get_all
@@ -90,9 +113,6 @@ class Direct:
             return OK
 
         return step
-
-    def _method(self, verb, kind):
-        return getattr(self._target, f"{verb}_{kind.lower()}")
 
     def _hand_over(self):
         for message in self._target.messages:

@@ -88,7 +88,7 @@ def _guarded(method):
         try:
             return method(self, *arguments)
         except BaseException as error:
-            raise self._failure(error) from None
+            raise self.failure(error) from None
 
     return call
 
@@ -200,11 +200,43 @@ class Fmi2Slave:
     def get_string(self, references):
         return [str(value) for value in self._get(self._string[tuple(references)])]
 
+    def real_setter(self, references):
+        """`set_real` for the same variables every time, for a master in this process that can call it by itself.
+
+        What goes wrong is raised as it is; `failure` turns it into what `set_real` raises. The same holds for
+        `real_getter`.
+        """
+        found, put = self._real[references], self.__dict__.update
+
+        def set_values(values):
+            if not math.isfinite(sum(values)):
+                self._check_finite(found.names, values)
+            if found.fixed and self._initialised:
+                self._refuse(found)
+            put(zip(found.names, values, strict=True))
+            self._stale = self._initialising
+
+        return set_values
+
+    def real_getter(self, references):
+        """`get_real` for the same variables every time; see `real_setter`."""
+        take, values = self._real[references].values, self.__dict__
+
+        def get_values():
+            if self._stale:
+                self._start()
+            return take(values)
+
+        return get_values
+
     def _set(self, found, values):
         if found.fixed and self._initialised:
-            raise FmuError(f"parameter '{found.fixed}' is fixed, it can only be set before the run")
+            self._refuse(found)
         self.__dict__.update(zip(found.names, values, strict=True))
         self._stale = self._initialising
+
+    def _refuse(self, found):
+        raise FmuError(f"parameter '{found.fixed}' is fixed, it can only be set before the run")
 
     def _get(self, found):
         if self._stale:
@@ -232,7 +264,7 @@ class Fmi2Slave:
         try:
             return state.to_bytes(stored.content, cls.__module__, cls._packages())
         except Exception as error:
-            raise stored.owner._failure(FmuError(f"the state cannot be stored: {error}")) from None
+            raise stored.owner.failure(FmuError(f"the state cannot be stored: {error}")) from None
 
     @classmethod
     def _fmu_state_from_bytes(cls, data):
@@ -264,7 +296,7 @@ class Fmi2Slave:
         text = f"{self.instance_name} at t = {self._time:.9g} s: {message}".replace("%", "%%")
         self.messages.append(Message(STATUSES.index(status), f"logStatus{status.capitalize()}", text))
 
-    def _failure(self, error):
+    def failure(self, error):
         """The error to raise instead: whose and when, what was logged before, the traceback below the shell."""
         text = str(error) if isinstance(error, FmuError) else f"exception\n{_traceback(error)}"
         text = f"{self.instance_name} at t = {self._time:.9g} s: {text}"
