@@ -7,6 +7,7 @@ import pytest
 
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.diagnose.effects import Effect, EffectParameter
 from shipcosim.diagnose.extension import extend
 from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.errors import ShipcosimError
@@ -316,6 +317,31 @@ def test_the_closed_loop_can_be_extended_too(root, fmus, tmp_path):
     assert extension.values["environment.current_speed"] == pytest.approx(hypot(0.3, 0.2))
     table = simulate(read_system(extension.ssp), Scenario(stop_time=1.0, step_size=0.05))
     assert np.isfinite(table["instruments.x_meas"]).all()
+
+
+def test_a_cause_of_the_users_own_is_carried_by_what_its_file_turns(system, tmp_path):
+    """A drift with a yaw arm and a lost motor, in one cause; what the ship does not have is said."""
+    numbers = {
+        "east": "water.drift_east",
+        "arm": "water.drift_yaw_arm",
+        "motor": "{thruster}.power_max",
+        "keel": "keel.x",
+    }
+    parameters = {name: EffectParameter(of=[path], typical=1.0, bounds=(0.0, 1.0)) for name, path in numbers.items()}
+    own = Effect(cause="own", sentence="", reference="", parameters=parameters)
+    finding = found("own", "port", east=(3.0, "kN"), arm=(-2.0, "m"), motor=(250.0, "kW"), keel=(1.0, "m"))
+    extension = extend(system, [finding], tmp_path, catalogue={"own": own})
+    assert extension.values == {
+        "own.north": 0.0, "own.east": 3000.0, "own.yaw_arm": -2.0, "port.power_max": 250e3
+    }  # fmt: skip
+    assert len(extension.remarks) == 1 and "no component 'keel'" in extension.remarks[0]
+
+
+def test_an_extended_system_can_be_extended(extended, tmp_path):
+    again = extend(extended("around").ssp, [*ABOARD, vector("tow", 1.0, 2.0, "N")], tmp_path)
+    values = read_system(again.ssp).components
+    assert values["tow"].start["north"] == -1500.0 and values["tow_2"].start["north"] == 1.0
+    assert values["instruments"].start["lever_x"] == 5.0 and values["vessel"].start["mass_scale"] == 1.15
 
 
 def test_a_system_without_a_ship_is_refused(tmp_path):

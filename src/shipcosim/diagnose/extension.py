@@ -141,10 +141,11 @@ def _surround(graft, finding, water):
         ends = [_pair(water, f"north_{end}", f"east_{end}", "m/s") for end in ("start", "end")]
         add_current(graft, finding, *ends)
     for prefix, fmu in _FORCES.items():
-        if {f"{prefix}_north", f"{prefix}_east"} & set(water):
-            north, east = _pair(water, f"{prefix}_north", f"{prefix}_east", "N")
-            at = _in(water["tow_x"], "m") if fmu == "earth_force" and "tow_x" in water else None
-            add_force(graft, finding, fmu, north, east, at)
+        own = {name.removeprefix(f"{prefix}_"): e for name, e in water.items() if name.startswith(f"{prefix}_")}
+        if own:
+            vector = _pair(own, "north", "east", "N")
+            others = {name: e for name, e in own.items() if name not in ("north", "east")}
+            add_force(graft, finding, fmu, *vector, others)
     return bool(water)
 
 

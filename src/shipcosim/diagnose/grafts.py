@@ -147,7 +147,7 @@ class Graft:
         return known.get(name, "s" if name.endswith("lag") else "1")
 
 
-def add_force(graft, finding, fmu, north, east, at=None):
+def add_force(graft, finding, fmu, north, east, others):
     """Insert a force of the earth's direction that acts on the ship.
 
     Parameters
@@ -159,8 +159,8 @@ def add_force(graft, finding, fmu, north, east, at=None):
         ``"earth_force"`` or ``"drift_force"``.
     north, east : Estimated
         [N]
-    at : Estimated, optional
-        Where it attacks, forward of the origin; the stern if not given. [m]
+    others : dict of str to Estimate
+        Further parameters of the FMU: where it attacks, which is the stern otherwise.
     """
     name = graft.insert(fmu, finding.cause)
     if not graft.load(name):
@@ -170,10 +170,12 @@ def add_force(graft, finding, fmu, north, east, at=None):
     graft.structure.connect(f"{graft.ship}.psi", f"{name}.psi")
     graft.put(finding, f"{name}.north", north, "N")
     graft.put(finding, f"{name}.east", east, "N")
-    if fmu == "earth_force":
+    for number, estimate in others.items():
+        graft.put_parameter(finding, name, number, estimate)
+    if fmu == "earth_force" and "x" not in others:
         length = graft.structure.parameters[f"{graft.ship}.length"]
-        at = at or Estimated(_STERN.get(length, -0.5 * length), None)
-        graft.put(finding, f"{name}.x", at, "m", note="point of attack, the stern if nobody says otherwise")
+        stern = Estimated(_STERN.get(length, -0.5 * length), None)
+        graft.put(finding, f"{name}.x", stern, "m", note="point of attack: the stern, assumed")
     if finding.onset is not None:
         graft.put(finding, f"{name}.onset_time", Estimated(finding.onset, None), "s")
         graft.put(finding, f"{name}.ramp_time", Estimated(RAMP, None), "s", note="assumed")
