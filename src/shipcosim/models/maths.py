@@ -55,9 +55,11 @@ def sincos(x):
     """
     if isinstance(x, float):
         return math.sin(x), math.cos(x)
-    if not _many(x):
+    if not isinstance(x, np.ndarray):
         library = _library(x)
         return library.sin(x), library.cos(x)
+    if x.size < _FEW:
+        return np.sin(x), np.cos(x)
     t = np.tan(0.5 * x)
     u = t * t
     u += 1.0

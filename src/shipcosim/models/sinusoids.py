@@ -7,6 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from .maths import _library
+
 
 def column(x):
     """x with a last axis for the components; a single number stays as it is."""
@@ -22,8 +24,10 @@ def total(a, b):
 
 def tensors_if_any(arrays, *values):
     """The arrays as tensors of the kind of the first tensor among the values; as they are where there is none."""
-    tensor = next((value for value in values if hasattr(value, "new_tensor")), None)
-    return arrays if tensor is None else tuple(tensor.new_tensor(array) for array in arrays)
+    if _library(*values) is np:
+        return arrays
+    tensor = next(value for value in values if hasattr(value, "new_tensor"))
+    return tuple(tensor.new_tensor(array) for array in arrays)
 
 
 def per_seed(draw, seed):

@@ -390,7 +390,8 @@ def _cumulative_energy(peak_enhancement):
 
 def _angle(t, x, y, waves):
     """Phase angle theta of each component, (..., n)."""
-    travelled = x * cos(waves.direction) + y * sin(waves.direction)
+    east, north = sincos(waves.direction)
+    travelled = x * north + y * east
     return waves.phase + waves.omega * column(t) - waves.wavenumber * column(travelled)
 
 
@@ -405,8 +406,7 @@ def _motion(c, s, psi, u, v, waves, length, breadth, draught):
     half_length, half_breadth, spread, turned = _hull_in(waves, length, breadth, draught)
     q = half_length * column(some_ahead)
     sin_q, cos_q = sincos(q)
-    sin_p, _ = sincos(half_breadth * column(some_across))
-    shift, turn = spread * sin_q * sin_p, turned * (sin_q - q * cos_q)
+    shift, turn = spread * sin_q * sin(half_breadth * column(some_across)), turned * (sin_q - q * cos_q)
     encounter = waves.omega - waves.wavenumber * column(u * ahead + v * across)
     per_shift, per_turn = 1.0 / (some_ahead * some_across), 6.0 / length * across / (some_ahead * some_ahead)
     along, along_dot = per_shift * total(shift, s), per_shift * total(shift, encounter * c)
@@ -488,7 +488,7 @@ def _not_zero(x):
 
 def _like(waves, *values):
     """The same waves as tensors, where one of the values is a tensor."""
-    if not isinstance(waves.omega, np.ndarray) or not any(hasattr(value, "new_tensor") for value in values):
+    if not isinstance(waves.omega, np.ndarray) or _library(*values) is np:
         return waves
     arrays = (waves.amplitude, waves.omega, waves.wavenumber, waves.phase, np.asarray(waves.direction))
     return Waves(*tensors_if_any(arrays, *values))
