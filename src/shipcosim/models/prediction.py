@@ -37,34 +37,41 @@ def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, h
     -----
     Midpoint rule, with the wind's load at the middle heading of each step.
     """
+    held = [thrust + wave for thrust, wave in zip(thrusters, drift, strict=True)]
+    motion = *vessel, *through_water(vessel.psi, vessel.u, vessel.v, *current)
     predictions, before = [], 0.0
     for horizon in horizons:
         steps = ceil((horizon - before) / longest_step)
         for _ in range(steps):
-            vessel = _advance(vessel, thrusters, drift, air, current, (horizon - before) / steps, hull=hull, wind=wind)
-        predictions.append(vessel)
+            motion = _advance(motion, held, air, current, (horizon - before) / steps, hull=hull, wind=wind)
+        predictions.append(Vessel(*motion[:6]))
         before = horizon
     return tuple(predictions)
 
 
-def _advance(vessel, thrusters, drift, air, current, h, *, hull, wind):
-    """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`."""
-    x, y, psi, u, v, r = vessel
+def _advance(motion, held, air, current, h, *, hull, wind):
+    """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`.
+
+    `motion` is x, y, psi, u, v, r and the velocity through the water, u_r and v_r.
+    """
+    x, y, psi, u, v, r, u_r, v_r = motion
     psi_mid = psi + 0.5 * h * r
-    weather = wind_loads(*apparent_wind(psi_mid, u, v, *air), wind=wind)
-    tau = [a + b + c for a, b, c in zip(thrusters, drift, weather, strict=True)]
-    u_r, v_r = through_water(psi, u, v, *current)
-    u_dot, v_dot, r_dot = accelerations(u_r, v_r, r, *tau, hull=hull)
+    wind_X, wind_Y, wind_N = wind_loads(*apparent_wind(psi_mid, u, v, *air), wind=wind)
+    X, Y, N = held[0] + wind_X, held[1] + wind_Y, held[2] + wind_N
+    u_dot, v_dot, r_dot = accelerations(u_r, v_r, r, X, Y, N, hull=hull)
     u_mid, v_mid, r_mid = u_r + 0.5 * h * u_dot, v_r + 0.5 * h * v_dot, r + 0.5 * h * r_dot
-    u_dot, v_dot, r_dot = accelerations(u_mid, v_mid, r_mid, *tau, hull=hull)
+    u_dot, v_dot, r_dot = accelerations(u_mid, v_mid, r_mid, X, Y, N, hull=hull)
     north, east = to_ned(psi_mid, u_mid, v_mid)
     psi = wrap(psi + h * r_mid)
     u_c, v_c = to_body(psi, *current)
-    return Vessel(
+    u_r, v_r = u_r + h * u_dot, v_r + h * v_dot
+    return (
         x + h * (north + current[0]),
         y + h * (east + current[1]),
         psi,
-        u_r + h * u_dot + u_c,
-        v_r + h * v_dot + v_c,
+        u_r + u_c,
+        v_r + v_c,
         r + h * r_dot,
+        u_r,
+        v_r,
     )
