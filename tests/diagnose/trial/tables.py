@@ -1,0 +1,251 @@
+"""The trial's table: rates with their 95 % intervals by kind of log, each cause's rate, and what was missed."""
+
+import math
+from collections import Counter, defaultdict
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .runs import KINDS
+from .scoring import score
+
+UNJUDGED = {"verdict": "error", "findings": []}
+Z = 1.959964
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the table.
+
+    Attributes
+    ----------
+    label : str
+    name : str
+        Of the set of logs.
+    targets : tuple of str
+        For trial, work and hold.
+    hit : callable
+        Of (result, score): whether it counts as a success, or None where it does not count at all.
+    cell : callable, optional
+        Of the list of (result, score) instead: the cell's text.
+    """
+
+    label: str
+    name: str
+    targets: tuple
+    hit: Any = None
+    cell: Any = None
+
+
+def rates(results, name, kind, hit):
+    """Successes and tries.
+
+    Parameters
+    ----------
+    results : list of dict
+        As `runs.run` gives them.
+    name, kind : str
+        Of the set and the kind of log that count.
+    hit : callable
+        As in `Row`.
+
+    Returns
+    -------
+    successes, tries : int
+    """
+    outcomes = [hit(*pair) for pair in _judged(results, name, kind)]
+    outcomes = [outcome for outcome in outcomes if outcome is not None]
+    return sum(outcomes), len(outcomes)
+
+
+def interval(successes, tries):
+    """Wilson's 95 % interval of a rate.
+
+    >>> [round(end, 3) for end in interval(98, 100)]
+    [0.93, 0.994]
+    """
+    rate, shrink = successes / tries, 1.0 + Z * Z / tries
+    centre = rate + Z * Z / (2 * tries)
+    half = Z * math.sqrt(rate * (1 - rate) / tries + Z * Z / (4 * tries * tries))
+    return max((centre - half) / shrink, 0.0), min((centre + half) / shrink, 1.0)
+
+
+def _judged(results, name, kind):
+    chosen = [result for result in results if result["set"] == name and result["kind"] == kind]
+    return [(r, score(r["answer"], r["diagnosis"] or UNJUDGED, r["span"])) for r in chosen]
+
+
+def _right(result, judged):
+    return judged.right
+
+
+def _precise(result, judged):
+    return judged.precise if judged.named else None
+
+
+def _alarm(result, judged):
+    return judged.alarm
+
+
+def _worse(result, judged):
+    gain = (result["diagnosis"] or UNJUDGED).get("gain")
+    return gain["after_m"] > gain["bias_observer_m"] if gain and judged.named else None
+
+
+def _two_sigma(pairs):
+    hits = [inside for _, judged in pairs if judged.right for inside in judged.within.values()]
+    return _cell(sum(hits), len(hits))
+
+
+def _error(pairs):
+    errors = [error for _, judged in pairs if judged.right for error in judged.errors.values()]
+    return f"{100 * np.median(errors):.1f} % ({len(errors)})" if errors else ""
+
+
+def _removed(pairs):
+    gains = [
+        result["diagnosis"]["gain"] for result, judged in pairs if judged.right and result["diagnosis"].get("gain")
+    ]
+    shares = [
+        (gain["bias_observer_m"] - gain["after_m"]) / (gain["bias_observer_m"] - gain["noise_floor_m"])
+        for gain in gains
+        if gain["bias_observer_m"] > gain["noise_floor_m"]
+    ]
+    return f"{100 * np.median(shares):.0f} % ({len(shares)})" if shares else ""
+
+
+def _seconds(pairs):
+    seconds = [result["seconds"] for result, _ in pairs]
+    return f"{np.median(seconds):.0f} s, at most {max(seconds):.0f} s" if seconds else ""
+
+
+ROWS = (
+    Row("right cause named", "one", ("98", "88", "as honest"), _right),
+    Row("right, or said not testable", "one", ("", "", ""), lambda r, s: s.right or (s.excused and not s.named)),
+    Row(
+        "in the reported set (before any manoeuvre)", "one", ("", "", ""), lambda r, s: s.contained if s.alarm else None
+    ),
+    Row("right when it names one", "one", ("99", "98", "95"), _precise),
+    Row("effects halved: right", "half", ("95", "", ""), _right),
+    Row("20 minutes of log: right", "short", ("95", "", ""), _right),
+    Row("with an onset: right", "onset", ("", "", ""), _right),
+    Row("false alarm on healthy data", "healthy", ("1", "2", "2"), _alarm),
+    Row("the same, a cause named", "healthy", ("1", "2", "2"), lambda r, s: s.named),
+    Row("not in the catalogue: unknown", "unknown", ("95", "75", "70"), _right),
+    Row("the same, a wrong name", "unknown", ("", "", ""), lambda r, s: s.named),
+    Row("two causes: both named, nothing else", "two", ("86", "60", ""), _right),
+    Row("two causes: right when it names", "two", ("", "", ""), _precise),
+    Row("faults of the data named", "data", ("", "", ""), _right),
+    Row("the same, with segment", "data", ("95", "95", "95"), lambda r, s: s.right and s.located),
+    Row("parameter error, median", "one", ("5", "7", ""), cell=_error),
+    Row("within two sigma", "one", ("90-97", "90-97", ""), cell=_two_sigma),
+    Row("error at 60 s removed beyond the bias observer, median", "one", ("95", "90", ""), cell=_removed),
+    Row("worse than the bias observer", "one", ("2", "2", "2"), _worse),
+    Row("twice the mismatch: right", "mismatch", ("", "", ""), _right),
+    Row("twice the mismatch: right when it names one", "mismatch", ("99", "98", "95"), _precise),
+    Row("twice the mismatch: false alarm on healthy data", "healthy_mismatch", ("", "", ""), _alarm),
+    Row("rough ship: right", "rough", ("", "", ""), _right),
+    Row("rough ship: right when it names one", "rough", ("99", "98", "95"), _precise),
+    Row("rough ship: false alarm on healthy data", "healthy_rough", ("", "", ""), _alarm),
+    Row("time", "one", ("30 s", "30 s", "60 s"), cell=_seconds),
+)
+
+
+def table(results):
+    """The whole table as Markdown.
+
+    Parameters
+    ----------
+    results : list of dict
+        As `runs.run` gives them.
+
+    Returns
+    -------
+    str
+    """
+    heads = [f"{kind} (wanted)" for kind in KINDS]
+    lines = ["| | " + " | ".join(heads) + " |", "|---|" + "---|" * len(KINDS)]
+    for row in ROWS:
+        cells = [_content(row, results, kind) for kind in KINDS]
+        if any(cells):
+            wanted = [
+                f" ({target})" if cell and target else "" for cell, target in zip(cells, row.targets, strict=True)
+            ]
+            lines.append(f"| {row.label} | " + " | ".join(map(str.__add__, cells, wanted)) + " |")
+    return "\n".join([_heading(results), "", *lines, "", *_causes(results), "", *_misses(results)])
+
+
+def _content(row, results, kind):
+    if row.cell:
+        return row.cell(_judged(results, row.name, kind))
+    return _cell(*rates(results, row.name, kind, row.hit))
+
+
+def _cell(successes, tries):
+    if not tries:
+        return ""
+    low, high = interval(successes, tries)
+    return f"{100 * successes / tries:.1f} % [{100 * low:.0f}, {100 * high:.0f}] of {tries}"
+
+
+def _heading(results):
+    seeds, versions = [result["seed"] for result in results], sorted({result["version"] for result in results})
+    errors = sum(result["error"] is not None for result in results)
+    return (
+        f"{len(results)} logs, seeds {min(seeds)} to {max(seeds)}, version {', '.join(versions)}; {errors} ended in an"
+        " error (counted as misses). Rates with Wilson's 95 % interval and the number of logs that count."
+    )
+
+
+def _causes(results):
+    """Rate of each cause in the set of single causes."""
+    counts = defaultdict(Counter)
+    for kind in KINDS:
+        for result, judged in _judged(results, "one", kind):
+            cause = result["answer"][0]["cause"]
+            counts[cause].update({f"{kind} all": 1, kind: int(judged.right)})
+    lines = ["| right, of single causes | " + " | ".join(KINDS) + " |", "|---|" + "---|" * len(KINDS)]
+    for cause in sorted(counts):
+        cells = [
+            f"{counts[cause][k]} of {counts[cause][f'{k} all']}" if counts[cause][f"{k} all"] else "" for k in KINDS
+        ]
+        lines.append(f"| `{cause}` | " + " | ".join(cells) + " |")
+    return lines
+
+
+def _misses(results):
+    """What was answered instead, how often, with the seeds."""
+    found = defaultdict(list)
+    for result in results:
+        judged = score(result["answer"], result["diagnosis"] or UNJUDGED, result["span"])
+        if not judged.right:
+            found[result["kind"], result["set"], hidden_name(result), answered_name(result)].append(result["seed"])
+    lines = ["| kind, set | hidden | answered | seeds |", "|---|---|---|---|"]
+    for (kind, name, hidden, answered), seeds in sorted(found.items()):
+        lines.append(f"| {kind}, {name} | {hidden} | {answered} | {', '.join(map(str, sorted(seeds)))} |")
+    return lines
+
+
+def hidden_name(result):
+    """What is hidden in a log, in words."""
+    return " + ".join(_words(answer) for answer in result["answer"]) or "nothing"
+
+
+def answered_name(result):
+    """What was answered, in words."""
+    diagnosis = result["diagnosis"]
+    if diagnosis is None:
+        return f"error: {result['error'][:80]}"
+    named = " + ".join(_words(finding) for finding in diagnosis["findings"])
+    beside = ", ".join(_words(candidate) for candidate in diagnosis.get("indistinguishable", [])[:4])
+    return " ".join(part for part in (diagnosis["verdict"], named, f"({beside})" if beside else "") if part)
+
+
+def _words(entry):
+    parts = [entry["cause"], entry["component"] or ""]
+    if entry["cause"] in ("frame", "sign", "channel_swap"):
+        parts.append("/".join(entry.get("channels", ())))
+    if entry["cause"] in ("unknown", "gap", "frame"):
+        parts.append(entry.get("note", "")[:30])
+    return " ".join(filter(None, parts)).replace("|", "/")

@@ -1,0 +1,135 @@
+"""Answers are judged as the definitions in `scoring` say, and runs can be taken up again."""
+
+import math
+
+import pytest
+from diagnose.trial import runs, tables
+from diagnose.trial.scoring import score
+
+SPAN = (0.0, 2400.0)
+HEALTHY = {"verdict": "consistent", "findings": []}
+
+
+def hidden(cause, component=None, parameters=(), segments=(), channels=(), onset=0.0):
+    return {
+        "cause": cause,
+        "component": component,
+        "parameters": dict(parameters),
+        "segments": segments,
+        "channels": channels,
+        "onset": onset,
+        "note": "",
+    }
+
+
+def found(cause, component=None, values=(), std=0.1, unit="1", **more):
+    values = {name: {"estimate": value, "std": std, "unit": unit} for name, value in dict(values).items()}
+    return {"cause": cause, "component": component, "parameters": values} | more
+
+
+def named(*findings, **more):
+    return {"verdict": "named", "findings": list(findings)} | more
+
+
+def test_a_healthy_log_wants_consistent_and_all_else_is_an_alarm():
+    assert score([], HEALTHY, SPAN).right and not score([], HEALTHY, SPAN).alarm
+    for verdict in ("unknown", "ambiguous"):
+        assert score([], {"verdict": verdict, "findings": []}, SPAN).alarm
+    judged = score([], named(found("mass")), SPAN)
+    assert judged.alarm and judged.named and not judged.right and not judged.precise
+
+
+def test_two_causes_want_both_and_nothing_else():
+    both = [hidden("mass"), hidden("tow")]
+    assert score(both, named(found("tow"), found("mass")), SPAN).right
+    one = score(both, named(found("tow")), SPAN)
+    assert one.precise and not one.right
+    three = score(both, named(found("tow"), found("mass"), found("drag")), SPAN)
+    assert not three.right and not three.precise
+
+
+def test_the_set_of_an_ambiguous_answer_must_hold_what_is_hidden():
+    ambiguous = {"verdict": "ambiguous", "findings": [], "indistinguishable": [found("tow"), found("wave_drift")]}
+    assert score([hidden("tow")], ambiguous, SPAN).contained
+    assert not score([hidden("tow")], ambiguous, SPAN).right
+    assert not score([hidden("current")], ambiguous, SPAN).contained
+
+
+def test_an_effect_outside_the_catalogue_wants_unknown():
+    assert score([hidden("unknown")], {"verdict": "unknown", "findings": []}, SPAN).right
+    assert not score([hidden("unknown")], named(found("mass")), SPAN).right
+    assert not score([hidden("unknown")], HEALTHY, SPAN).right
+
+
+def test_a_miss_is_excused_where_the_log_could_not_show_the_cause():
+    assert score([hidden("mass")], HEALTHY | {"not_testable": ["mass"]}, SPAN).excused
+    assert not score([hidden("mass")], HEALTHY | {"not_testable": ["drag"]}, SPAN).excused
+
+
+def test_an_error_is_relative_to_the_distance_from_neutral_and_a_vector_is_one():
+    judged = score([hidden("mass", parameters={"scale": 1.2})], named(found("mass", None, {"scale": 1.1})), SPAN)
+    assert judged.errors["mass"] == pytest.approx(0.5)
+    current = hidden("current", parameters={"north": 0.3, "east": 0.4})
+    judged = score([current], named(found("current", None, {"north": 0.3, "east": 0.35}, std=0.02, unit="m/s")), SPAN)
+    assert judged.errors["current"] == pytest.approx(0.1)
+    assert judged.within == {"current north": True, "current east": False}
+
+
+def test_an_estimate_in_another_unit_does_not_count():
+    offset = hidden("azimuth_offset", "port", {"offset": 6.0})
+    judged = score([offset], named(found("azimuth_offset", "port", {"offset": 6.0}, unit="rad")), SPAN)
+    assert math.isnan(judged.errors["azimuth_offset port"]) and not judged.within["azimuth_offset port offset"]
+
+
+@pytest.mark.parametrize(
+    ("cause", "channels", "answered", "same"),
+    [
+        ("sign", ("sway",), ("sway",), True),
+        ("sign", ("sway",), ("surge",), False),
+        ("frame", ("wind_speed", "wind_from"), ("wind_from",), True),
+        ("frame", ("wind_speed", "wind_from"), ("surge", "sway"), False),
+        ("channel_swap", ("port_rpm", "starboard_rpm"), ("starboard_rpm", "port_rpm"), True),
+        ("gap", ("north", "east"), ("time",), True),
+    ],
+)
+def test_channels_belong_to_the_name_where_they_tell_faults_apart(cause, channels, answered, same):
+    answer = named(found(cause, channels=answered, segments=[]))
+    assert score([hidden(cause, channels=channels)], answer, SPAN).right == same
+
+
+@pytest.mark.parametrize(
+    ("segments", "answered", "located"),
+    [
+        ([(500, 560)], [(505, 561)], True),
+        ([(500, 560)], [(540, 600)], False),
+        ([(500, 560)], [], False),
+        ([], [(10, 2390)], True),
+        ([(14, 16), (90, 92)], [(13, 17), (89, 93)], True),
+        ([(14, 16), (90, 92), (200, 202)], [(14, 16)], False),
+    ],
+)
+def test_a_fault_is_located_where_at_least_half_of_all_time_is_common(segments, answered, located):
+    judged = score([hidden("gap", segments=segments)], named(found("gap", segments=answered)), SPAN)
+    assert judged.right and judged.located == located
+
+
+def test_the_interval_of_a_rate_is_wilsons():
+    # Newcombe (1998), Statistics in Medicine 17, 857-872, table I: 81 of 263, method 3
+    assert tables.interval(81, 263) == pytest.approx((0.2553, 0.3662), abs=1e-4)
+
+
+def test_a_run_that_was_cut_off_is_taken_up_where_it_was(tmp_path, monkeypatch):
+    asked = []
+
+    def diagnosed(kind, name, seeds, **_):
+        asked.extend(seeds)
+        for seed in seeds:
+            yield {"kind": kind, "set": name, "seed": seed}
+
+    monkeypatch.setattr(runs, "diagnosed", diagnosed)
+    into, quiet = tmp_path / "results.jsonl", {"progress": lambda result: None}
+    runs.run(["hold"], ["healthy"], range(3), into, **quiet)
+    into.write_text(into.read_text()[:-20])
+    results = runs.run(["hold"], ["healthy"], range(4), into, **quiet)
+    assert asked == [0, 1, 2, 2, 3]
+    assert [result["seed"] for result in results] == [0, 1, 2, 3]
