@@ -119,7 +119,10 @@ def remembered(history, t, values, since):
 
 
 def recalled(history, t):
-    """What there was at a time: linear between entries, headings the shorter way, constant before and after.
+    """What there was at a time: linear between entries, headings the shorter way.
+
+    Before the first entry all is as there, behind the last it goes on as between the last two: an FMU that shows what
+    is true at the end of its step has been told what was true at its start.
 
     Parameters
     ----------
@@ -141,7 +144,7 @@ def recalled(history, t):
     """
     later = next((number for number, (time, _) in enumerate(history) if time >= t), len(history) - 1)
     (t_0, a), (t_1, b) = history[max(later - 1, 0)], history[later]
-    share = min(max((t - t_0) / (t_1 - t_0), 0.0), 1.0) if t_1 > t_0 else 1.0
+    share = max((t - t_0) / (t_1 - t_0), 0.0) if t_1 > t_0 else 1.0
     between = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
     between[2] = wrap(a.psi + share * wrap(b.psi - a.psi))
     return Shown(*between)
