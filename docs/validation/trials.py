@@ -313,7 +313,7 @@ def _draw_turns(turns):
         rate.set(xlabel="time [s]", xlim=(0.0, 160.0))
     axes[0, 0].set(ylabel="ahead [m]")
     axes[1, 0].set(ylabel="yaw rate [deg/s]")
-    axes[0, 0].legend(loc="center")
+    axes[1, 0].legend(*axes[0, 0].get_legend_handles_labels(), loc="lower right")
     save(figure, "turning_circles")
 
 
