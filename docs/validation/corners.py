@@ -188,11 +188,18 @@ def validate_steps():
 
 
 def _torque_at_the_start():
-    """Largest difference of a motor's torque between steps of 0.05 and 0.025 s over its range [%], when, and later."""
+    """Largest difference of a motor's torque between steps of 0.05 and 0.025 s over its range [%], and when [s]; the
+    same after the first second."""
     one, other = (run("gunnerus-33m9", {}, step, 0.05, first_leg=True)["starboard.torque"] for step in (0.05, 0.025))
     off = 100.0 * np.abs(one - other).values / np.ptp(other.values)
     time = one["time"].values
-    return {"torque": off.max(), "torque_time": time[off.argmax()], "torque_later": off[time > 1.0].max()}
+    first, later = off.argmax(), np.where(time > 1.0, off, 0.0).argmax()
+    return {
+        "torque": off[first],
+        "torque_time": time[first],
+        "torque_later": off[later],
+        "torque_later_time": time[later],
+    }
 
 
 def _differences(one, other):
