@@ -99,6 +99,16 @@ def test_a_scenario_runs_alone_and_with_what_is_added(system, tmp_path):
     assert sc.simulate(system, scenario, set={"ramp.rate": 0.0})["ramp.height"].values[-1] == 0.0
 
 
+def test_a_run_stops_keeps_its_state_and_continues_from_there(system, tmp_path):
+    course = {"stop_time": 12.0, "step_size": 0.5, "start_time": 10.0}
+    whole = sc.simulate(system, **course)
+    first = sc.simulate(system, until=11.0, store=tmp_path / "at11.state", **course)
+    rest = sc.simulate(system, resume=tmp_path / "at11.state", stop_time=12.0, step_size=0.5)
+    assert whole["time"].values.tolist() == [10.0, 10.5, 11.0, 11.5, 12.0]
+    assert first["ramp.height"].values.tolist() == whole["ramp.height"].values[:3].tolist()
+    assert rest["ramp.height"].values.tolist() == whole["ramp.height"].values[2:].tolist()
+
+
 def test_what_makes_no_sense_is_refused(system):
     assert "system is missing. Give a system or a scenario." in refused()
     assert "step_size is missing." in refused(system, stop_time=1.0)

@@ -52,6 +52,11 @@ def simulate(
     engine="fmpy",
     inputs=None,
     progress=None,
+    order="jacobi",
+    start_time=0.0,
+    until=None,
+    resume=None,
+    store=None,
 ):
     """Run a system and return the table of all signals.
 
@@ -67,8 +72,9 @@ def simulate(
         Start values by full name, in the FMUs' units.
     events : iterable of mapping
         As in a scenario file: ``{"time": 10.0, "override": {"vessel.tau_X_5": 1e4}}``.
-    engine, inputs, progress
-        As for `shipcosim.cosim.simulate`.
+    engine, inputs, progress, order, start_time, until, resume, store
+        As for `shipcosim.cosim.simulate`: `until` and `store` stop at a time and keep the state of the whole system,
+        `resume` continues from there.
 
     Returns
     -------
@@ -91,7 +97,8 @@ def simulate(
     keys = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
     keys = {name: value for name, value in keys.items() if value is not None}
     scenario = _scenario(scenario, system.experiment, keys | {"set": set or {}, "events": list(events)})
-    return cosim.simulate(system, scenario, engine=engine, inputs=inputs, progress=progress)
+    course = {"order": order, "start_time": start_time, "until": until, "resume": resume, "store": store}
+    return cosim.simulate(system, scenario, engine=engine, inputs=inputs, progress=progress, **course)
 
 
 def _scenario(given, experiment, keys):
