@@ -109,8 +109,8 @@ def linearise(motion, record, plant, columns):
     start = Motion(*(value[..., :-1] for value in motion))
     base, seen = advanced(start, record, plant), shown(motion, plant)
     driven, out = np.zeros((n - 1, *lead, STATES, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
-    driven[..., :6, 0] = _rows_first(base) - _rows_first(Motion(*(value[..., 1:] for value in motion)))
-    missed = np.moveaxis(record.measured, -2, 0) - _rows_first(seen)
+    driven[..., :6, 0] = rows_first(base) - rows_first(Motion(*(value[..., 1:] for value in motion)))
+    missed = np.moveaxis(record.measured, -2, 0) - rows_first(seen)
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
     for j, turns in enumerate(columns, start=1):
@@ -131,10 +131,10 @@ def linearise(motion, record, plant, columns):
 
 def _slope(one, other):
     """Change per unit of θ between two motions."""
-    return (_rows_first(one) - _rows_first(other)) / (2.0 * _SHARE)
+    return (rows_first(one) - rows_first(other)) / (2.0 * _SHARE)
 
 
-def _rows_first(motion):
+def rows_first(motion):
     """(..., n) arrays of a motion as (n, ..., 6)."""
     shape = np.broadcast_shapes(*(np.shape(value) for value in motion))
     stacked = np.stack([np.broadcast_to(value, shape) for value in motion], axis=-1)
@@ -146,13 +146,13 @@ _SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
 
 def _transition(start, base, record, plant):
     h = record.step
-    shape = _rows_first(base).shape
+    shape = rows_first(base).shape
     A = np.zeros((*shape[:-1], STATES, STATES))
     A[..., range(STATES), range(STATES)] = 1.0
     for name, small in _SMALL.items():
         i = Motion._fields.index(name)
         other = advanced(start._replace(**{name: getattr(start, name) + small}), record, plant)
-        A[..., :6, i] = (_rows_first(other) - _rows_first(base)) / small
+        A[..., :6, i] = (rows_first(other) - rows_first(base)) / small
     for i in range(3):
         A[..., :6, 6 + i] = 0.5 * h * (A[..., :6, 3 + i] + np.eye(6)[3 + i])
     A[..., range(9, 12), range(9, 12)] = np.exp(-h / _SLOW_TIME)
@@ -160,13 +160,13 @@ def _transition(start, base, record, plant):
 
 
 def _output(motion, seen, plant):
-    rows = _rows_first(seen)
+    rows = rows_first(seen)
     H = np.zeros((*rows.shape, STATES))
     H[..., 0, 0] = H[..., 1, 1] = 1.0
     for name, small in _SMALL.items():
         i = Motion._fields.index(name)
         other = shown(motion._replace(**{name: getattr(motion, name) + small}), plant)
-        H[..., i] = (_rows_first(other) - rows) / small
+        H[..., i] = (rows_first(other) - rows) / small
     H[..., range(3), range(9, 12)] = 1.0
     return H
 
@@ -184,8 +184,8 @@ class Innovations(NamedTuple):
         The smoothed motion, (..., n) arrays.
     slow : (..., n, 6) array or None
         Smoothed unexplained acceleration, and slow errors.
-    filtered : tuple of (n, ..., 12) array and (n, ..., 12, 12) array, or None
-        Deviations of the first column at each row by what was known until then, and their covariance.
+    filtered : (n, ..., 12) array or None
+        Deviations of the first column at each row by what was known until then.
     """
 
     white: np.ndarray
@@ -237,7 +237,7 @@ def innovations(linear, noise, record, motion=None, *, keep=False):
             x = A[k] @ x + B[k]
             P = A[k] @ P @ np.swapaxes(A[k], -1, -2) + (Q if record.known[k] else Q + lost)
     if keep:
-        return Innovations(white, logdet, filtered=tuple(np.stack(part) for part in zip(*kept, strict=True)))
+        return Innovations(white, logdet, filtered=np.stack([state for state, _ in kept]))
     if motion is None:
         return Innovations(white, logdet)
     return Innovations(white, logdet, *_smoothed(kept, A, B, Q, lost, record, motion))
