@@ -1,0 +1,299 @@
+"""What naming the cause is worth: how far predictions with each model are off, on rows that nothing was fitted on."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray
+
+from shipcosim.diagnose.heldout import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
+from shipcosim.diagnose.linear import Noise, linearise
+from shipcosim.diagnose.plant import Motion, shown
+from shipcosim.diagnose.predict import earth_fixed, missing, observed, predicted, replayable, restarted
+from shipcosim.diagnose.ranking import fitted
+
+MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
+_HELD = {"plain": "bias_observer", "extended": "extended_observer", "calibrated": None, "floor": None}
+CHANNELS = {"position": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
+_EARTH = tuple(("earth", time) for time in (10.0, 40.0, 160.0))  # s, within which an observer learns a force
+_BOTH = _EARTH + tuple(("body", time) for _, time in _EARTH)
+_BLOCK = 120.0  # s, two of the longest horizon, for the bootstrap
+_DRAWS = 1000
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """A model with what it knows at each row.
+
+    Attributes
+    ----------
+    record, plant : Record and Plant
+        As from `replayable`.
+    original : Plant
+        As it was before.
+    motion : Motion
+        By the rows until each row, (n,) arrays.
+    """
+
+    record: Any
+    plant: Any
+    original: Any
+    motion: Any
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Errors of predictions with each model.
+
+    Attributes
+    ----------
+    errors : xarray.Dataset
+        `CHANNELS` by ``model`` (`MODELS`), ``horizon`` [s] and ``segment``; coordinates of the segments as from
+        `conditions`.
+    fit : Fit
+        The causes, fitted on the training rows.
+    train : (n,) bool array
+        Rows that were fitted on.
+    rows : (s,) array of int
+        Where the segments start.
+    seen : Motion
+        What the predictions are measured against.
+    observers : dict of str to tuple of str and float
+        By model: frame of the force, and within what time it is learnt [s].
+    predictors : dict of str to Predictor
+        Of the models ``plain`` and ``extended``.
+    """
+
+    errors: Any
+    fit: Any
+    train: Any
+    rows: Any
+    seen: Any
+    observers: dict
+    predictors: dict
+
+
+def compare(case, fit, *, train=None):
+    """Predict with the plain model, a bias observer, the causes of a fit, and see how far each is off.
+
+    Parameters
+    ----------
+    case : Case
+        Prepared, of one log.
+    fit : Fit
+        To the whole log. Its causes are fitted again on the training rows.
+    train : (n,) bool array, optional
+        Rows to fit on; the first 65 %.
+
+    Returns
+    -------
+    Comparison or None
+        None where the other rows are too few or have too many gaps.
+    """
+    record = case.record
+    train = first_rows(record) if train is None else train
+    inside, rows = sorted_by(train, starts(record), record)
+    if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < _BLOCK:
+        return None
+    part = fitted(trained(case, train), fit.suspects, fit.values, rounds=3 if fit.suspects else 1)
+    seen = shown(fit.motion, fit.plant)
+    plants = {"plain": case.plant, "extended": part.plant, "calibrated": calibrated(part), "floor": calibrated(fit)}
+    models = _observed(case, fit.motion, seen, plants)
+    if not fit.suspects:
+        models["extended"] = models["plain"]
+    found, observers, predictors = {}, {}, {}
+    for name, held in _HELD.items():
+        model = models[name]
+        missed = model.missed(np.concatenate([inside[::2], rows]), seen, bool(held))
+        tuning = missed["position"][-1, :, :, : len(inside[::2])]
+        chosen = (tuning**2).mean(-1).argmin(-1)
+        for which, label in enumerate(filter(None, (name, held))):
+            mine = {channel: values[:, which, chosen[which], -len(rows) :] for channel, values in missed.items()}
+            found[label], observers[label] = mine, model.choices[chosen[which]]
+        motion = Motion(*(value[chosen[0]] for value in model.known.motion))
+        predictors[name] = Predictor(model.record, model.plant, plants[name], motion)
+    errors = xarray.Dataset(
+        {
+            channel: (
+                ("model", "horizon", "segment"),
+                np.stack([found[one][channel] for one in MODELS]),
+                {"units": unit},
+            )
+            for channel, unit in CHANNELS.items()
+        },
+        {"model": list(MODELS), "horizon": list(HORIZONS)} | conditions(record, seen, rows, train),
+    )
+    return Comparison(errors, part, train, rows, seen, observers, predictors)
+
+
+def calibrated(fit):
+    """The plant of a fit with every known number where the log would have it, within its tolerance."""
+    changes = zip(fit.columns, fit.left, strict=True)
+    moved = [(path, size * share) for column, share in changes for path, size in column.turns.items()]
+    return fit.plant.with_values({path: fit.plant.get(path) + by for path, by in moved})
+
+
+@dataclass(frozen=True)
+class _Model:
+    """A model, ready to predict, with what several observers knew about it."""
+
+    record: Any
+    plant: Any
+    choices: tuple
+    known: Any
+
+    def missed(self, rows, seen, holds):
+        """Errors of predictions from some rows, without a force and where it `holds` one with it besides.
+
+        By channel, (horizons, 1 or 2, observers, s) arrays.
+        """
+        shares = np.array([0.0, 1.0] if holds else [0.0])[:, None, None]
+        motion = Motion(*(value[:, rows] + 0.0 * shares for value in self.known.motion))
+        force = shares[..., None] * self.known.force[:, rows] if holds else None
+        earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
+        horizons = in_rows(self.record)
+        found = predicted(motion, rows, self.record, self.plant, horizons, force, earth=earth)
+        return missing(shown(found, self.plant), seen, (rows + np.array(horizons)[:, None])[:, None, None])
+
+
+def _observed(case, motion, seen, plants):
+    """Each plant with its observers, all run over the log at once."""
+    record, plain = case.record, case.base_of([])
+    extended = linearise(motion, record, plants["extended"], [])
+    about = {name: case.motion if name == "plain" else motion for name in plants}
+    linear = {"plain": plain, "extended": extended}
+    for name in ("calibrated", "floor"):
+        linear[name] = restarted(extended, motion, record, plants[name])
+    choices = {"plain": _BOTH, "extended": _EARTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
+    each = [(name, frame, time) for name in plants for frame, time in choices[name]]
+    problems = [
+        earth_fixed(linear[name], about[name], plants[name]) if frame == "earth" else linear[name]
+        for name, frame, _ in each
+    ]
+    noise = case.noise
+    noise = Noise(
+        np.stack([noise.white] * len(each)),
+        np.stack([noise.jolt] * len(each)),
+        np.stack([noise.jolt / time for _, _, time in each]),
+    )
+    known = observed(problems, noise, record, [about[n] for n, _, _ in each], [plants[n] for n, _, _ in each])
+    found = {}
+    for name, plant in plants.items():
+        mine = [i for i, (owner, _, _) in enumerate(each) if owner == name]
+        found[name] = _Model(*replayable(record, plant, seen), choices[name], known.of(mine))
+    return found
+
+
+def rms(errors, channel, model, horizon=HORIZONS[-1]):
+    """Root mean square over the segments of one error of one model."""
+    return float(np.sqrt((errors[channel].sel(model=model, horizon=horizon) ** 2).mean()))
+
+
+def baseline(comparison):
+    """The entry ``baseline`` of diagnosis.json: root mean square over the segments, of the plain model.
+
+    Parameters
+    ----------
+    comparison : Comparison
+
+    Returns
+    -------
+    dict
+    """
+    errors = comparison.errors
+    return {
+        "horizon_s": [int(time) for time in HORIZONS],
+        "position_error_m": [rms(errors, "position", "plain", time) for time in HORIZONS],
+        "heading_error_deg": [rms(errors, "heading", "plain", time) for time in HORIZONS],
+    }
+
+
+def gain(comparison, seed=1):
+    """The entry ``gain`` of diagnosis.json: root mean square position errors after 60 s.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    seed : int
+        Of the bootstrap.
+
+    Returns
+    -------
+    dict
+        ``share_of_explainable`` and ``ci95`` are None where there was nothing to explain.
+    """
+    squares = _squares(comparison.errors)
+    before, rival, after, floor = _roots(squares.mean(1))
+    share = _share(before, after, floor)
+    drawn = _roots(_resampled(squares, comparison.errors["start_time"].values, seed))
+    some = np.isfinite(share)
+    return {
+        "horizon_s": int(HORIZONS[-1]),
+        "before_m": float(before),
+        "bias_observer_m": float(rival),
+        "after_m": float(after),
+        "noise_floor_m": float(floor),
+        "share_of_explainable": float(share) if some else None,
+        "ci95": [float(q) for q in np.nanquantile(_share(*drawn[[0, 2, 3]]), (0.025, 0.975))] if some else None,
+    }
+
+
+def beyond_observer(comparison):
+    """Share of what the bias observer leaves of the explainable error that the extended model removes; or NaN."""
+    _, rival, after, floor = _roots(_squares(comparison.errors).mean(1))
+    return float(_share(rival, after, floor))
+
+
+def by_condition(errors, names, channel="position", horizon=HORIZONS[-1]):
+    """Root mean square errors of all models by conditions of the segments.
+
+    Parameters
+    ----------
+    errors : xarray.Dataset
+        Of a `Comparison`.
+    names : str
+        Coordinate of the segments, as ``"regime"`` or ``"heading_known"``.
+    channel : str
+    horizon : float
+        [s]
+
+    Returns
+    -------
+    dict of value to dict of str to float
+        By value and model; and ``"segments"``, how many there are.
+    """
+    found = {}
+    for value in np.unique(errors[names].values):
+        part = errors.isel(segment=np.flatnonzero(errors[names].values == value))
+        found[value.item()] = {model: rms(part, channel, model, horizon) for model in MODELS} | {
+            "segments": part.sizes["segment"]
+        }
+    return found
+
+
+def _squares(errors):
+    """Squares of position errors after the longest horizon: plain, bias observer, extended, floor; (4, s) array."""
+    return errors["position"].isel(horizon=-1).sel(model=["plain", "bias_observer", "extended", "floor"]).values ** 2
+
+
+def _roots(means):
+    """Roots of mean squares; no perfect model misses more than a model that there is."""
+    before, rival, after, floor = np.sqrt(means)
+    return np.stack([before, rival, after, np.minimum(floor, after)])
+
+
+def _share(before, after, floor):
+    """(before - after) / (before - floor), NaN where that is next to nothing."""
+    worth = before - floor
+    some = worth > 0.05 * before
+    return np.where(some, (before - after) / np.where(some, worth, 1.0), np.nan)
+
+
+def _resampled(squares, times, seed):
+    """Mean squares of draws of blocks, (4, draws) array."""
+    _, block = np.unique((times - times[0]) // _BLOCK, return_inverse=True)
+    blocks = block.max() + 1
+    sums = np.stack([np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))])
+    draws = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=_DRAWS)
+    drawn = sums @ draws.T
+    return drawn[:-1] / drawn[-1]
