@@ -66,20 +66,26 @@ def run(kinds, sets, seeds, into, *, tool=TOOL, jobs=1, minutes=None, progress=p
     done = {_key(result) for result in read_results(into)}
     version = _version()
     _end_line(into)
-    for batch in (seeds[i : i + BATCH] for i in range(0, len(seeds), BATCH)):
-        for kind, name in itertools.product(kinds, sets):
-            wanted = [seed for seed in batch if (kind, name, seed) not in done]
-            if not wanted or time.monotonic() > until:
-                continue
-            for result in diagnosed(kind, name, wanted, tool=tool, jobs=jobs):
-                with into.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps(result | {"version": version, "tool": tool}) + "\n")
-                progress(result)
+    with pool_of(jobs) as pool:
+        for batch in (seeds[i : i + BATCH] for i in range(0, len(seeds), BATCH)):
+            for kind, name in itertools.product(kinds, sets):
+                wanted = [seed for seed in batch if (kind, name, seed) not in done]
+                if not wanted or time.monotonic() > until:
+                    continue
+                for result in diagnosed(kind, name, wanted, tool=tool, pool=pool):
+                    with into.open("a", encoding="utf-8") as file:
+                        file.write(json.dumps(result | {"version": version, "tool": tool}) + "\n")
+                    progress(result)
     plan = set(itertools.product(kinds, sets, seeds))
     return [result for result in read_results(into) if _key(result) in plan]
 
 
-def diagnosed(kind, name, seeds, *, tool=TOOL, jobs=1):
+def pool_of(jobs):
+    """Processes for `diagnosed`; none for one job."""
+    return ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) if jobs > 1 else contextlib.nullcontext()
+
+
+def diagnosed(kind, name, seeds, *, tool=TOOL, pool=None):
     """Draw the logs of one kind and set, and diagnose each.
 
     Yields
@@ -93,7 +99,8 @@ def diagnosed(kind, name, seeds, *, tool=TOOL, jobs=1):
         paths = [str(Path(folder) / f"{kind}-{name}-{case.seed}.csv") for case in cases]
         for case, path in zip(cases, paths, strict=True):
             case.save(path)
-        for case, outcome in zip(cases, _outcomes(paths, tool, jobs), strict=True):
+        each = pool.map if pool else map
+        for case, outcome in zip(cases, each(outcome_of, paths, itertools.repeat(tool)), strict=True):
             times = case.log["time [s]"]
             yield {
                 "kind": kind,
@@ -104,14 +111,6 @@ def diagnosed(kind, name, seeds, *, tool=TOOL, jobs=1):
                 "span": [float(times.min()), float(times.max())],
                 **outcome,
             }
-
-
-def _outcomes(paths, tool, jobs):
-    if jobs == 1:
-        yield from (outcome_of(path, tool) for path in paths)
-        return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(outcome_of, paths, itertools.repeat(tool))
 
 
 def outcome_of(path, tool=TOOL):
