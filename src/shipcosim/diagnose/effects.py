@@ -59,6 +59,8 @@ class Effect(_Strict):
         An effect below this share of its typical size is not named.
     companions : list of str
         Numbers that are only known within their tolerance and only matter where this cause acts.
+    replaces : list of str
+        Numbers that this cause speaks for: their tolerance is left out where it acts.
     parameters : dict of str to EffectParameter
     """
 
@@ -69,6 +71,7 @@ class Effect(_Strict):
     law: Literal["linear", "vector", "turning"] = "linear"
     least: float = 0.2
     companions: list[str] = []
+    replaces: list[str] = []
     parameters: dict[str, EffectParameter]
 
 

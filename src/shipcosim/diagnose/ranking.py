@@ -9,7 +9,7 @@ from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.linear import innovations, linearise
 
 DIRECTIONS = 12
-ROUNDS = 5
+ROUNDS = 8
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Case:
     @property
     def basis(self):
         """All known numbers, and what every suspect is first sought by."""
-        return self.known(()) + [column for s in self.suspects for group in _probes(s) for column in group]
+        return self.known(()) + [column for s in self.suspects for group in probes(s) for column in group]
 
     def base_of(self, columns):
         """The problem about the ship without a cause, with these columns of the basis."""
@@ -65,6 +65,7 @@ class Case:
     def known(self, suspects):
         """Columns of the numbers that are known within a tolerance, except those that these suspects turn."""
         taken = {path for suspect in suspects for knob in suspect.knobs for path in knob.paths}
+        taken |= {path for suspect in suspects for path in suspect.effect.replaces}
         taken |= {path for suspect in self.suspects for path in suspect.effect.companions}
         found = [Column({path: size}) for path, size in self.plant.tolerances.items() if path not in taken]
         for suspect in self.suspects:
@@ -75,7 +76,7 @@ class Case:
         return found
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fit:
     """A set of causes fitted to a log.
 
@@ -122,8 +123,10 @@ class Fit:
 
 def prepared(case):
     """The case with its base: every column of the basis, about the motion smoothed without a cause."""
-    alone = linearise(case.motion, case.record, case.plant, [])
-    motion = innovations(alone, case.noise, case.record, case.motion).motion
+    motion = case.motion
+    for _ in range(3):
+        alone = linearise(motion, case.record, case.plant, [])
+        motion = innovations(alone, case.noise, case.record, motion).motion
     base = linearise(motion, case.record, case.plant, [column.turns for column in case.basis])
     return replace(case, motion=motion, base=base)
 
@@ -170,14 +173,14 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     known = case.known(suspects)
     columns = known + own
     knobs = [knob for suspect in suspects for knob in suspect.knobs]
-    for _ in range(rounds if suspects else 1):
+    for _ in range(rounds):
         plant = case.plant.with_values(values)
         linear = joined(linearise(motion, case.record, plant, [column.turns for column in own]), case.base_of(known))
         filtered = innovations(linear, case.noise, case.record, motion)
         products = gram(filtered)
         prior, centre = np.array([column.prior for column in columns]), _centre(columns, plant, case.plant)
         score, theta, covariance = evidence(products.products, prior, centre)
-        at = dict(values)
+        at, before = dict(values), found.score if found else -np.inf
         found = Fit(
             tuple(suspects),
             at,
@@ -200,7 +203,7 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
             values.update(dict.fromkeys(knob.paths, value))
             moved = max(moved, abs((value - knob.neutral) / knob.typical - old))
         motion = filtered.motion
-        if moved < 0.01:
+        if moved < 0.01 and abs(found.score - before) < 0.5:
             break
     deviations = np.sqrt(np.diag(found.covariance))[len(found.theta) - len(knobs) :]
     found.std.update({k.paths[0]: float(d * k.typical) for k, d in zip(knobs, deviations, strict=True)})
@@ -222,7 +225,7 @@ def weighed(case, fit, only=None):
         Gain, suspect, first values of the numbers that it turns; best first.
     """
     wanted = [s for s in (only or case.suspects) if s not in fit.suspects]
-    groups = [(suspect, group) for suspect in wanted for group in _probes(suspect)]
+    groups = [(suspect, group) for suspect in wanted for group in probes(suspect)]
     added = [column for _, group in groups for column in group]
     columns = fit.columns + added
     linear = joined(fit.linear._replace(**_columns_of(case.base_of(added), fit.linear)), fit.linear)
@@ -263,7 +266,7 @@ def _together(tries, suspect):
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
 
 
-def _probes(suspect):
+def probes(suspect):
     """Groups of columns by which a suspect is first sought."""
     knobs = suspect.knobs
     if suspect.effect.law == "linear":
@@ -285,7 +288,7 @@ def _centre(columns, plant, neutral):
     return found
 
 
-def explain(case, *, most=2, likely=5, near=12.0, enough=5.0):
+def explain(case, *, most=3, likely=5, near=12.0, enough=5.0):
     """The sets of causes that explain a log best.
 
     Parameters
@@ -306,22 +309,44 @@ def explain(case, *, most=2, likely=5, near=12.0, enough=5.0):
         All sets that were fitted, best first; the one without a cause among them.
     """
     nothing = fitted(case)
-    fits, front = [nothing], [nothing]
-    for _ in range(most):
-        found = {}
+    fits, front = {frozenset(): nothing}, [nothing]
+    for stage in range(most):
+        best = max(fit.score for fit in fits.values())
+        tried = {}
         for fit in front:
             gains = weighed(case, fit)
-            best = gains[0][0]
-            for gain, suspect, values in gains[:likely]:
-                if gain < max(best - max(near, best / 7.0), -2.0 if fit is nothing else enough - 3.0):
+            most_gain = gains[0][0]
+            for gain, suspect, values in gains[: likely if stage == 0 else 3]:
+                if gain < max(most_gain - max(near, most_gain / 7.0), -2.0 if stage == 0 else enough - 2.0):
                     break
                 suspects = (*fit.suspects, suspect)
-                key = frozenset(s.label for s in suspects)
-                if key not in found:
-                    found[key] = fitted(case, suspects, fit.values | values)
-        ranked = sorted(found.values(), key=lambda fit: -fit.score)
-        fits.extend(ranked)
-        front = [fit for fit in ranked[:2] if fit.score > ranked[0].score - near]
-        if not front or ranked[0].score < max(fit.score for fit in fits if fit not in ranked) + enough:
+                key = _names(suspects)
+                if key not in fits and key not in tried:
+                    tried[key] = fitted(case, suspects, fit.values | values)
+        fits |= tried
+        ranked = sorted(tried.values(), key=lambda fit: -fit.score)
+        front = [fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)]
+        if not front:
             break
-    return sorted(fits, key=lambda fit: -fit.score)
+    _simplify(case, fits)
+    return sorted(fits.values(), key=lambda fit: -fit.score)
+
+
+def _names(suspects):
+    return frozenset(suspect.label for suspect in suspects)
+
+
+def _simplify(case, fits):
+    """Fit the best set again without each of its causes, from the values that it has."""
+    while True:
+        best = max(fits.values(), key=lambda fit: fit.score)
+        new = False
+        for left in best.suspects if len(best.suspects) > 1 else ():
+            rest = tuple(suspect for suspect in best.suspects if suspect is not left)
+            values = {path: best.values[path] for s in rest for knob in s.knobs for path in knob.paths}
+            again = fitted(case, rest, values)
+            known = fits.get(_names(rest))
+            if known is None or again.score > known.score + 0.1:
+                fits[_names(rest)], new = again, True
+        if not new:
+            return

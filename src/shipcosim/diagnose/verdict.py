@@ -1,0 +1,167 @@
+"""From fitted sets of causes to a verdict: what may be named, how sure, and what cannot be told apart."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.evidence import evidence
+from shipcosim.diagnose.finding import Candidate, Estimate, Finding
+
+ENOUGH = 5.0
+"""What a cause must gain over the log without it. [nats]"""
+APART = 3.0
+"""Sets of causes closer than this cannot be told apart. [nats]"""
+TESTABLE = 8.0
+"""What a cause of typical size would have to gain, or this log could not have shown it. [nats]"""
+STRANGE = 12.0
+"""A force without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What the evidence says.
+
+    Attributes
+    ----------
+    verdict : str
+    fit : Fit
+        The set of causes that is taken to be there; may be empty.
+    findings : tuple of Finding
+    candidates, indistinguishable : tuple of Candidate
+    """
+
+    verdict: str
+    fit: Any
+    findings: tuple
+    candidates: tuple
+    indistinguishable: tuple
+
+
+def judge(case, fits, strange, margin=0.0):
+    """The verdict on a log.
+
+    Parameters
+    ----------
+    case : Case
+    fits : list of Fit
+        Of `explain`.
+    strange : callable
+        Gives the gain of nameless forces beside a fit, as `unexplained` does.
+    margin : float
+        What healthy logs like this one gain by chance. [nats]
+
+    Returns
+    -------
+    Judgement
+    """
+    nothing = next(fit for fit in fits if not fit.suspects)
+    bar = nothing.score + ENOUGH + margin
+    fair = [fit for fit in fits if not fit.suspects or (fit.score > bar and admissible(fit, fits, margin))]
+    best = max(fair, key=lambda fit: fit.score if fit.suspects else nothing.score + ENOUGH + margin)
+    scores = {fit: fit.score - (0.0 if fit.suspects else -ENOUGH) for fit in fair}
+    weights = _weights(list(scores.values()))
+    chances = dict(zip(scores, weights, strict=True))
+    candidates = _candidates(chances)
+    odd = max(strange(best).values())
+    if odd > STRANGE + margin and odd > 0.02 * (best.score - nothing.score):
+        return Judgement("unknown", best, (), candidates, ())
+    if not best.suspects:
+        return Judgement("consistent", best, (), candidates, ())
+    rivals = [fit for fit in fair if fit.suspects and fit is not best and fit.score > best.score - APART]
+    rivals = [fit for fit in rivals if not set(labels(best)) < set(labels(fit))]
+    findings = tuple(sorted((_finding(s, best, candidates) for s in best.suspects), key=lambda f: -f.probability))
+    if rivals:
+        named = {label for fit in (best, *rivals) for label in labels(fit)}
+        same = tuple(c for c in candidates if _label(c) in named)
+        shared = set(labels(best)).intersection(*(labels(fit) for fit in rivals))
+        findings = tuple(f for f in findings if _label(f) in shared)
+        return Judgement("ambiguous", best, findings, candidates, same)
+    return Judgement("named", best, findings, candidates, ())
+
+
+def labels(fit):
+    return [suspect.label for suspect in fit.suspects]
+
+
+def _label(entry):
+    return f"{entry.cause} of {entry.component}" if entry.component else entry.cause
+
+
+def admissible(fit, fits, margin):
+    """Whether each cause of a set is large enough to matter, within its bounds, and needed."""
+    for suspect in fit.suspects:
+        size = np.hypot.reduce([(fit.values[k.paths[0]] - k.neutral) / k.typical for k in suspect.knobs])
+        sure = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in suspect.knobs]) / np.sqrt(len(suspect.knobs))
+        at_bound = any(
+            fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in suspect.knobs
+        )
+        if size < suspect.effect.least or size < 3.0 * sure or at_bound:
+            return False
+        rest = frozenset(s.label for s in fit.suspects if s is not suspect)
+        without = [other.score for other in fits if frozenset(labels(other)) == rest]
+        if without and fit.score < max(without) + ENOUGH + margin:
+            return False
+    return True
+
+
+def _weights(scores):
+    scores = np.array(scores)
+    weights = np.exp(np.clip(scores - scores.max(), -700.0, 0.0))
+    return weights / weights.sum()
+
+
+def _candidates(chances):
+    """Each cause with the probability of all sets that it is in, most likely first."""
+    found = {}
+    for fit, chance in chances.items():
+        for suspect in fit.suspects:
+            key = suspect.cause, suspect.component
+            found[key] = found.get(key, 0.0) + float(chance)
+    ranked = sorted(found.items(), key=lambda entry: -entry[1])
+    return tuple(Candidate(*key, min(chance, 0.99)) for key, chance in ranked if chance > 1e-3)
+
+
+def _finding(suspect, fit, candidates):
+    parameters = {
+        k.name: Estimate(fit.values[k.paths[0]] * k.factor, abs(fit.std[k.paths[0]] * k.factor), k.unit)
+        for k in suspect.knobs
+    }
+    chance = next(
+        (c.probability for c in candidates if (c.cause, c.component) == (suspect.cause, suspect.component)), 0
+    )
+    return Finding(suspect.cause, suspect.component, "physics", chance, parameters)
+
+
+def not_testable(case, products, columns, groups):
+    """Causes that would have gained too little to be seen in this log, had they had their typical size.
+
+    Parameters
+    ----------
+    case : Case
+    products : array
+        Of the known numbers and all suspects' first columns.
+    columns : list of Column
+    groups : list of (Suspect, indices)
+
+    Returns
+    -------
+    tuple of str
+        Names of causes, none of whose places could have shown it.
+    """
+    seen = {}
+    known = np.array([column.prior for column in columns])
+    for _, places in groups:
+        known[list(places)] = 0.0
+    for suspect, places in groups:
+        prior = known.copy()
+        prior[list(places)] = 1.0
+        taken = {path for i in places for path in columns[i].turns}
+        prior[[i for i, c in enumerate(columns) if i not in places and taken & set(c.turns)]] = 0.0
+        blank = products.copy()
+        blank[0, :] = blank[:, 0] = 0.0
+        covariance = evidence(blank, prior)[2][np.ix_(places, places)]
+        gains = 0.5 * (1.0 / np.diag(covariance) - 1.0)
+        gain = float(np.max(gains)) - 0.5 * float(np.log1p(2.0 * np.max(gains)))
+        seen[suspect.cause] = max(seen.get(suspect.cause, -np.inf), gain)
+    return tuple(cause for cause, gain in sorted(seen.items()) if gain < TESTABLE)
