@@ -18,7 +18,7 @@ import shipcosim
 from .scoring import DATA_FAULTS
 
 KINDS = ("trial", "work", "hold")
-TOOL = "shipcosim.diagnose.run:diagnose"
+TOOL = "diagnose.trial.tools:ours"
 BATCH = 16
 SETS = {
     "one": {},
@@ -119,8 +119,7 @@ def outcome_of(path, tool=TOOL):
     diagnose = getattr(importlib.import_module(module), function)
     start, diagnosis, error = time.monotonic(), None, None
     try:
-        found = diagnose(path)
-        diagnosis = json.loads(json.dumps(getattr(found, "diagnosis", found).as_json(), default=float))
+        diagnosis = json.loads(json.dumps(diagnose(path).as_json(), default=float))
     except Exception as failure:  # whatever it is, the trial goes on and counts it as a miss
         error = f"{type(failure).__name__}: {failure}"
     return {"diagnosis": diagnosis, "error": error, "seconds": round(time.monotonic() - start, 2)}
