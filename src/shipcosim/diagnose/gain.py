@@ -189,18 +189,18 @@ def rms(errors, channel, model, horizon=HORIZONS[-1]):
     return float(np.sqrt((errors[channel].sel(model=model, horizon=horizon) ** 2).mean()))
 
 
-def baseline(comparison):
+def baseline(errors):
     """The entry ``baseline`` of diagnosis.json: root mean square over the segments, of the plain model.
 
     Parameters
     ----------
-    comparison : Comparison
+    errors : xarray.Dataset
+        Of a `Comparison`, or from `simulated`.
 
     Returns
     -------
     dict
     """
-    errors = comparison.errors
     return {
         "horizon_s": [int(time) for time in HORIZONS],
         "position_error_m": [rms(errors, "position", "plain", time) for time in HORIZONS],
@@ -208,12 +208,13 @@ def baseline(comparison):
     }
 
 
-def gain(comparison, seed=1):
+def gain(errors, seed=1):
     """The entry ``gain`` of diagnosis.json: root mean square position errors after 60 s.
 
     Parameters
     ----------
-    comparison : Comparison
+    errors : xarray.Dataset
+        Of a `Comparison`, or from `simulated`.
     seed : int
         Of the bootstrap.
 
@@ -222,10 +223,10 @@ def gain(comparison, seed=1):
     dict
         ``share_of_explainable`` and ``ci95`` are None where there was nothing to explain.
     """
-    squares = _squares(comparison.errors)
+    squares = _squares(errors)
     before, rival, after, floor = _roots(squares.mean(1))
     share = _share(before, after, floor)
-    drawn = _roots(_resampled(squares, comparison.errors["start_time"].values, seed))
+    drawn = _roots(_resampled(squares, errors["start_time"].values, seed))
     some = np.isfinite(share)
     return {
         "horizon_s": int(HORIZONS[-1]),
@@ -238,9 +239,9 @@ def gain(comparison, seed=1):
     }
 
 
-def beyond_observer(comparison):
+def beyond_observer(errors):
     """Share of what the bias observer leaves of the explainable error that the extended model removes; or NaN."""
-    _, rival, after, floor = _roots(_squares(comparison.errors).mean(1))
+    _, rival, after, floor = _roots(_squares(errors).mean(1))
     return float(_share(rival, after, floor))
 
 
