@@ -3,9 +3,9 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models import waves
 from shipcosim.models.clock import tidy_time
-from shipcosim.models.hull import HullParameters, hull_loads
+from shipcosim.models.hull import HullParameters
 from shipcosim.models.maths import wrap
-from shipcosim.models.vessel import DriftParameters, nu_dot, step, through_water
+from shipcosim.models.vessel import DriftParameters, at_present, step
 from shipcosim.models.vessel import Vessel as State
 from shipcosim.models.wind import WindParameters, apparent_wind, wind_loads
 
@@ -130,9 +130,9 @@ class Vessel(Fmu):
         self.x_wave, self.y_wave, self.psi_wave, self.u_wave, self.v_wave, self.r_wave = motion
 
     def _write(self):
-        tau, hull = self._loads(), self.hull
+        tau = self._loads()
         self.x, self.y, self.psi, self.u, self.v, self.r = ship = self.state
-        current = self.current_north, self.current_east
-        self.u_r, self.v_r = through_water(ship.psi, ship.u, ship.v, *current)
-        self.u_dot, self.v_dot, self.r_dot = nu_dot(ship, *tau, *current, hull=hull)
-        self.tau_hull_X, self.tau_hull_Y, self.tau_hull_N = hull_loads(self.u_r, self.v_r, ship.r, hull=hull)
+        water, rates, loads = at_present(ship, *tau, self.current_north, self.current_east, hull=self.hull)
+        self.u_r, self.v_r = water
+        self.u_dot, self.v_dot, self.r_dot = rates
+        self.tau_hull_X, self.tau_hull_Y, self.tau_hull_N = loads

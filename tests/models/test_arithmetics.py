@@ -132,7 +132,10 @@ CASES = [
     *(Case(load, WATER, constants=dict(hull=SHORT)) for load, _ in hull.CONTRIBUTIONS.values()),
     Case(vessel.accelerations, [(*w, 1e3, -2e3, 3e4) for w in WATER], constants=dict(hull=LONG)),
     Case(vessel.through_water, [(0.4, 1.0, -0.2, 0.3, 0.1), (-3.0, 0.0, 0.2, -0.3, 0.1)]),
-    Case(vessel.nu_dot, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(hull=SHORT)),
+    *(
+        Case(function, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(hull=SHORT))
+        for function in (vessel.nu_dot, vessel.at_present)
+    ),
     Case(vessel.step, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(h=0.5, hull=SHORT)),
     Case(wind.apparent_wind, [(0.4, 1.0, -0.2, -8.0, 3.0), (-3.0, 0.0, 0.2, 5.0, 6.0)]),
     *(

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from .hull import hull_loads
-from .kinematics import eta_dot, to_body
+from .kinematics import to_body, to_ned
 from .load_tables import DRIFT_33M9
-from .maths import rk4, substeps, wrap
+from .maths import substeps, wrap
 from .quantity import quantity
 
 _LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
@@ -69,17 +69,37 @@ def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
         State at the end.
     """
 
-    def rates(x, y, psi, u_r, v_r, r):
-        return *eta_dot(psi, u_r, v_r, r), *accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, hull=hull)
-
     u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
-    state = vessel.x, vessel.y, vessel.psi, u_r, v_r, vessel.r
+    x, y, psi, r = vessel.x + h * current_north, vessel.y + h * current_east, vessel.psi, vessel.r
     parts = substeps(h, _LONGEST_SUBSTEP)
     for _ in range(parts):
-        state = rk4(rates, state, h / parts)
-    x, y, psi, u_r, v_r, r = state
+        x, y, psi, u_r, v_r, r = _part(x, y, psi, u_r, v_r, r, (tau_X, tau_Y, tau_N), h / parts, hull)
     u_c, v_c = to_body(psi, current_north, current_east)
-    return Vessel(x + h * current_north, y + h * current_east, wrap(psi), u_r + u_c, v_r + v_c, r)
+    return Vessel(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
+
+
+def _part(x, y, psi, u, v, r, tau, h, hull):
+    """A Runge-Kutta step as `maths.rk4`, in the frame of the water, without its loops: half as long in floats."""
+    half, sixth = 0.5 * h, h / 6.0
+    u1, v1, r1 = accelerations(u, v, r, *tau, hull=hull)
+    ub, vb, rb = u + half * u1, v + half * v1, r + half * r1
+    u2, v2, r2 = accelerations(ub, vb, rb, *tau, hull=hull)
+    uc, vc, rc = u + half * u2, v + half * v2, r + half * r2
+    u3, v3, r3 = accelerations(uc, vc, rc, *tau, hull=hull)
+    ud, vd, rd = u + h * u3, v + h * v3, r + h * r3
+    u4, v4, r4 = accelerations(ud, vd, rd, *tau, hull=hull)
+    x1, y1 = to_ned(psi, u, v)
+    x2, y2 = to_ned(psi + half * r, ub, vb)
+    x3, y3 = to_ned(psi + half * rb, uc, vc)
+    x4, y4 = to_ned(psi + h * rc, ud, vd)
+    return (
+        x + sixth * (x1 + 2.0 * (x2 + x3) + x4),
+        y + sixth * (y1 + 2.0 * (y2 + y3) + y4),
+        psi + sixth * (r + 2.0 * (rb + rc) + rd),
+        u + sixth * (u1 + 2.0 * (u2 + u3) + u4),
+        v + sixth * (v1 + 2.0 * (v2 + v3) + v4),
+        r + sixth * (r1 + 2.0 * (r2 + r3) + r4),
+    )
 
 
 def accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, *, hull):
@@ -99,7 +119,12 @@ def accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, *, hull):
     tuple of three, like u_r
         Rates of u_r, v_r, r in body axes. [m/s2, m/s2, rad/s2]
     """
-    X, Y, N = hull_loads(u_r, v_r, r, hull=hull)
+    return _accelerations(hull_loads(u_r, v_r, r, hull=hull), u_r, v_r, r, tau_X, tau_Y, tau_N, hull)
+
+
+def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
+    """`accelerations` with the hull's loads as they are."""
+    X, Y, N = loads
     m, xg = hull.rigid_body[0], hull.centre_of_gravity_x
     X = X + tau_X + m * r * (v_r + xg * r)
     Y = Y + tau_Y - m * r * u_r
@@ -146,6 +171,21 @@ def nu_dot(vessel, tau_X, tau_Y, tau_N, current_north, current_east, *, hull):
     tuple of three, like the state
         Rates of u, v, r in body axes. [m/s2, m/s2, rad/s2]
     """
+    return at_present(vessel, tau_X, tau_Y, tau_N, current_north, current_east, hull=hull)[1]
+
+
+def at_present(vessel, tau_X, tau_Y, tau_N, current_north, current_east, *, hull):
+    """What follows from state and loads at one time.
+
+    Parameters as `step`.
+
+    Returns
+    -------
+    tuple of tuples
+        Velocity through the water u_r, v_r; rates as of `nu_dot`; loads of the water on the hull as `hull_loads`.
+    """
     u_c, v_c = to_body(vessel.psi, current_north, current_east)
-    u_dot, v_dot, r_dot = accelerations(vessel.u - u_c, vessel.v - v_c, vessel.r, tau_X, tau_Y, tau_N, hull=hull)
-    return u_dot + vessel.r * v_c, v_dot - vessel.r * u_c, r_dot
+    u_r, v_r, r = vessel.u - u_c, vessel.v - v_c, vessel.r
+    loads = hull_loads(u_r, v_r, r, hull=hull)
+    u_dot, v_dot, r_dot = _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull)
+    return (u_r, v_r), (u_dot + r * v_c, v_dot - r * u_c, r_dot), loads
