@@ -113,20 +113,31 @@ def linearise(motion, record, plant, columns):
     missed = np.moveaxis(record.measured, -2, 0) - rows_first(seen)
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
+    middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
     for j, turns in enumerate(columns, start=1):
         up, down = (
             plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
             for share in (_SHARE, -_SHARE)
         )
         if any(not path.startswith("instruments.") or path.endswith("_lag") for path in turns):
-            driven[..., :6, j] = _slope(advanced(start, record, down), advanced(start, record, up))
+            rates = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
+            driven[..., :6, j] = _over_a_step(_slope(*rates), middle.psi, record.step)
         else:
             out[..., j] = _slope(shown(motion, up), shown(motion, down))
     unknown = ~record.known[:-1]
     driven[unknown] = 0.0
     return Linear(
-        _transition(start, base, record, plant), driven, _output(motion, seen, plant), out * whole[..., None], whole
+        _transition(middle, record, plant), driven, _output(motion, seen, plant), out * whole[..., None], whole
     )
+
+
+def _over_a_step(rates, psi, h):
+    """What constant extra accelerations do over a step: (n, ..., 6) rates of the velocities to changes of the motion."""
+    by = h * rates
+    c, s = np.moveaxis(np.cos(psi), -1, 0), np.moveaxis(np.sin(psi), -1, 0)
+    u, v = 0.5 * h * by[..., 3], 0.5 * h * by[..., 4]
+    by[..., 0], by[..., 1], by[..., 2] = c * u - s * v, s * u + c * v, 0.5 * h * by[..., 5]
+    return by
 
 
 def _slope(one, other):
@@ -144,17 +155,18 @@ def rows_first(motion):
 _SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
 
 
-def _transition(start, base, record, plant):
-    h = record.step
-    shape = rows_first(base).shape
-    A = np.zeros((*shape[:-1], STATES, STATES))
-    A[..., range(STATES), range(STATES)] = 1.0
+def _transition(middle, record, plant):
+    """Transition over a step, to second order, about the middle of the step."""
+    h, drivers = record.step, record.drivers(plant, 0.5)
+    here = rows_first(motion_rates(middle, drivers, plant))
+    J = np.zeros((*here.shape[:-1], 6, 6))
     for name, small in _SMALL.items():
-        i = Motion._fields.index(name)
-        other = advanced(start._replace(**{name: getattr(start, name) + small}), record, plant)
-        A[..., :6, i] = (rows_first(other) - rows_first(base)) / small
-    for i in range(3):
-        A[..., :6, 6 + i] = 0.5 * h * (A[..., :6, 3 + i] + np.eye(6)[3 + i])
+        moved = middle._replace(**{name: getattr(middle, name) + small})
+        J[..., Motion._fields.index(name)] = (rows_first(motion_rates(moved, drivers, plant)) - here) / small
+    A = np.zeros((*here.shape[:-1], STATES, STATES))
+    A[..., :6, :6] = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
+    A[..., :6, 6:9] = 0.5 * h * (A[..., :6, 3:6] + np.eye(6)[:, 3:])
+    A[..., range(6, 9), range(6, 9)] = 1.0
     A[..., range(9, 12), range(9, 12)] = np.exp(-h / _SLOW_TIME)
     return A
 
