@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.examine_clock import wrong_clock
 from shipcosim.diagnose.examine_labels import mislabelled
 from shipcosim.diagnose.examine_rows import gaps, outliers, wraps
-from shipcosim.diagnose.repair import inside, usable_rows
+from shipcosim.diagnose.examine_wind import mislabelled_wind
+from shipcosim.diagnose.tables import inside, usable_rows
 
 if TYPE_CHECKING:
     import xarray
@@ -30,7 +32,8 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     found = [*gaps(table), *wraps(table)]
     table = _without(table, found)
     labels, table = mislabelled(table)
-    return sorted([*found, *labels], key=lambda finding: -finding.probability)
+    found += [*labels, *mislabelled_wind(table), *wrong_clock(table)]
+    return sorted(found, key=lambda finding: -finding.probability)
 
 
 def _arrays(log):

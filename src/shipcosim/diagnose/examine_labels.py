@@ -12,16 +12,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import HEADING_LABELS, POSITION_LABELS, Mislabel, mislabel_of
-from shipcosim.diagnose.motion import Filter, Motion, filter_for, heading_motion, position_motion, whiteness
-from shipcosim.diagnose.repair import inside
+from shipcosim.diagnose.mislabels import HEADING_LABELS, POSITION_LABELS, Mislabel, mislabel_of, undone
+from shipcosim.diagnose.motion import (
+    Filter,
+    Motion,
+    filter_for,
+    heading_motion,
+    is_clear,
+    position_motion,
+    whiteness,
+)
 
-__all__ = ["mislabelled", "undone"]
+__all__ = ["best_segment", "in_segment", "mislabelled"]
 
 LEAST_GAIN = 14.0  # nats, of the whole log
 SEGMENT_COST = 10.0  # nats, for the choice of both ends
 CLIP = 5.0  # standard deviations beyond which an innovation counts no more
-NEAR, FAR = 0.3, 0.35  # slopes nearer to 1 than this agree, farther off they do not
+NEAR, FAR, SURE = 0.3, 0.35, 0.2  # slopes nearer to 1 than this agree, farther off they do not; largest deviation
 SHORTEST = 60.0  # [s] of a segment
 REACH = 25  # rows on both sides in which an end of a segment is sought
 
@@ -54,12 +61,6 @@ def mislabelled(log: dict) -> tuple[list[Finding], dict]:
     return found, log
 
 
-def undone(log: dict, mislabel: Mislabel, segments) -> dict:
-    """The log with a mislabel undone in some segments, or throughout."""
-    changed, here = mislabel.undo(log), inside(log["time"], segments)
-    return log | {role: np.where(here, values, log[role]) for role, values in changed.items()}
-
-
 def _best(log, motion_of, labels):
     """The mislabel that explains most and explains it well, with its finding; None where there is none."""
     plain = motion_of(log)
@@ -75,7 +76,7 @@ def _best(log, motion_of, labels):
         suspect = _located(plain.time, likely[:, number] - likely[:, 0], label)
         if suspect is None:
             continue
-        rough = whiteness(_inside(filters[number](levels[:, :, number]), plain.time, suspect.segment))
+        rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, suspect.segment))
         suspect = _Suspect(label, suspect.gain / rough, suspect.segment)
         if suspect.gain > LEAST_GAIN and _explains(plain, others[number - 1], filters[number], suspect):
             suspects.append(suspect)
@@ -93,46 +94,64 @@ def _log_likelihood(whitener: Filter, level):
 
 
 def _located(time, gains, label):
-    """Where a suspect gains most: throughout, or in the segment that gains more than the cost of choosing it."""
+    gain, segment = best_segment(time, gains)
+    return _Suspect(label, gain, segment) if gain > 0.0 else None
+
+
+def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, tuple[float, float] | None]:
+    """Where gains of rows add up to most: in all (None), or in a segment, less the cost of choosing it.
+
+    Parameters
+    ----------
+    time, gains : (n,) arrays
+        Of each row. [s, nats]
+    """
     total = np.r_[0.0, np.cumsum(gains)]
     lowest = np.minimum.accumulate(total)
     last = int(np.argmax(total - lowest))
     first = int(np.argmin(total[: last + 1]))
-    whole, part = total[-1], total[last] - total[first] - SEGMENT_COST
-    if whole >= part:
-        return _Suspect(label, whole, None) if whole > 0.0 else None
-    if last <= first or time[last - 1] - time[first] < SHORTEST:
-        return None
-    return _Suspect(label, part, (float(time[first]), float(time[last - 1])))
+    part = total[last] - total[first] - SEGMENT_COST
+    if total[-1] >= part or last <= first or time[last - 1] - time[first] < SHORTEST:
+        return float(total[-1]), None
+    return float(part), (float(time[first]), float(time[last - 1]))
 
 
-def _inside(values, time, segment):
-    if segment is None:
-        return values
-    return values[(time >= segment[0]) & (time <= segment[1])]
+def in_segment(values: np.ndarray, time: np.ndarray, segment: tuple[float, float] | None) -> np.ndarray:
+    """The rows within a segment; all if there is none."""
+    return values if segment is None else values[(time >= segment[0]) & (time <= segment[1])]
 
 
 def _explains(plain: Motion, other: Motion, whitener: Filter, suspect) -> bool:
-    """Whether the way seen is the way told under the suspect, and is not as labelled."""
-    under = _slopes(other, whitener, suspect.segment)
-    given = _slopes(plain, whitener, suspect.segment)
-    near = [abs(slope - 1.0) < max(NEAR, 3.0 * std) for slope, std in under]
-    sure = [std < 0.2 for _, std in under]
-    far = [abs(slope - 1.0) > FAR and abs(slope - 1.0) > 4.0 * std for slope, std in given]
-    return all(near) and any(sure) and any(far)
+    """Whether the way seen is the way told under the suspect, and is not as labelled.
+
+    Noise in the velocity makes slopes too small, for a ship that hardly moves by half. That leaves signs and swapped
+    channels clear, but not units.
+    """
+    channels, is_unit = suspect.mislabel.channels, suspect.mislabel.scale is not None
+    under = _slopes(other, channels, whitener, suspect.segment)
+    given = _slopes(plain, channels, whitener, suspect.segment)
+    lowest, highest = (1.0 - NEAR, 1.0 + NEAR) if is_unit else (0.3, 1.7)
+    if is_unit and not is_clear(other, whitener, suspect.segment):
+        return False
+    near = [lowest < slope < highest or abs(slope - 1.0) < 2.0 * std for slope, std in under]
+    sure = [std < SURE for _, std in under]
+    apart = [
+        abs(was - now) > max(FAR, 4.0 * std) and abs(was - 1.0) > abs(now - 1.0)
+        for (was, std), (now, _) in zip(given, under, strict=True)
+    ]
+    return all(near) and any(a and s for a, s in zip(apart, sure, strict=True))
 
 
-def _slopes(motion: Motion, whitener: Filter, segment):
-    """Slope of the way seen on the way told along each axis, with standard deviation."""
-    slopes = []
-    white_seen, white_way = whitener(motion.seen), whitener(motion.way())
-    for axis in range(motion.seen.shape[1]):
-        y, x = (_inside(white[:, axis], motion.time, segment) for white in (white_seen, white_way))
-        energy = max(float(x @ x), 1e-12)
-        slope = float(x @ y) / energy
-        rest = np.clip(y - slope * x, -CLIP, CLIP)
-        slopes.append((slope, float(np.sqrt(np.mean(rest**2) / energy)) + 1e-6))
-    return slopes
+def _slopes(motion: Motion, channels, whitener: Filter, segment):
+    """Slope of the way seen on the slow way told by each channel, with standard deviation."""
+    ways = [motion.way(motion.slow(motion.parts[role])) for role in channels]
+    white = whitener(np.stack([motion.seen, *ways], axis=2))
+    white = in_segment(white, motion.time, segment).reshape(-1, 1 + len(ways))
+    y, x = white[:, 0], white[:, 1:]
+    spread = np.linalg.pinv(x.T @ x + 1e-9 * np.eye(len(ways)))
+    slopes = spread @ (x.T @ y)
+    rest = np.clip(y - x @ slopes, -CLIP, CLIP)
+    return list(zip(slopes.tolist(), np.sqrt(np.mean(rest**2) * np.diag(spread)).tolist(), strict=True))
 
 
 def _refined(log, motion_of, whitener, best):

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["HEADING_LABELS", "MISLABELS", "POSITION_LABELS", "WIND_LABELS", "Mislabel", "mislabel_of"]
+from shipcosim.diagnose.tables import inside
+
+__all__ = ["HEADING_LABELS", "MISLABELS", "POSITION_LABELS", "WIND_LABELS", "Mislabel", "mislabel_of", "undone"]
 
 KNOT = 1852.0 / 3600.0  # m/s
 
@@ -97,7 +99,9 @@ WIND_LABELS = (
     _negative("wind_from"),
     Mislabel("frame", ("wind_from",), "wind_from is counted from north, not from the bow", _from_bow),
     Mislabel("frame", WIND, "the wind is the wind over ground, not the apparent wind", _apparent),
-    Mislabel("frame", WIND, "the wind is the wind over ground, from north, not the apparent wind", _apparent_from_north),
+    Mislabel(
+        "frame", WIND, "the wind is the wind over ground, from north, not the apparent wind", _apparent_from_north
+    ),
     _in_unit(("wind_speed",), KNOT, "wind_speed is in kn, not m/s"),
     _in_unit(("wind_speed",), 1.0 / KNOT, "wind_speed is in m/s, not kn"),
 )
@@ -107,3 +111,9 @@ MISLABELS = (*HEADING_LABELS, *POSITION_LABELS, *WIND_LABELS)
 def mislabel_of(finding) -> Mislabel | None:
     """The mislabel that a finding names by its note; None where the finding is another fault."""
     return next((m for m in MISLABELS if (m.cause, m.sentence) == (finding.cause, finding.note)), None)
+
+
+def undone(log: dict, mislabel: Mislabel, segments) -> dict:
+    """The log, a dict of arrays by role with `time`, with a mislabel undone in some segments, or throughout."""
+    changed, here = mislabel.undo(log), inside(log["time"], segments)
+    return log | {role: np.where(here, values, log[role]) for role, values in changed.items()}

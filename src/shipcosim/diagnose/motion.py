@@ -11,11 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.linalg import solve_banded
+from scipy.ndimage import gaussian_filter1d
 
-__all__ = ["Filter", "Motion", "filter_for", "heading_motion", "position_motion", "whiteness"]
+__all__ = ["Filter", "Motion", "filter_for", "heading_motion", "is_clear", "position_motion", "whiteness"]
 
 LONGEST_BRIDGE = 4.5  # usual steps across which a motion is integrated
-RATIOS = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 0.8, 1.6, 6.0, 50.0)  # of the variances: wander in a step over position
+RATIOS = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 0.8, 1.6, 6.0, 50.0)  # variance of wander over noise
+SLOW = 4.0  # [s] of a bell over which noise and waves are averaged out
+CLEAR = 4.0  # slow motion over its noise, from which on its size can be judged
 WINDOWS = 24  # of a log, in which the noise is looked at
 LAGS = 12  # rows over which innovations may hang together
 
@@ -32,6 +36,8 @@ class Motion:
         Position or heading. [m or deg]
     velocity : (n, a) array
         Rate of `seen` as logged. [m/s or deg/s]
+    parts : dict of (n, a) arrays
+        What each channel of the log has in the velocity, by role.
     starts : (n,) array of bool
         Rows that cannot be compared with the one before.
     """
@@ -39,12 +45,17 @@ class Motion:
     time: np.ndarray
     seen: np.ndarray
     velocity: np.ndarray
+    parts: dict[str, np.ndarray]
     starts: np.ndarray
 
     def way(self, velocity: np.ndarray | None = None) -> np.ndarray:
-        """Integral of a velocity over the rows; a spline, since the trapezium loses a tenth of a wave of 6 s at 1 Hz."""
+        """Integral of a velocity; a spline, since the trapezium loses a tenth of a wave of 6 s at 1 Hz."""
         velocity = self.velocity if velocity is None else velocity
         return CubicSpline(self.time, velocity, axis=0).antiderivative()(self.time)
+
+    def slow(self, velocity: np.ndarray) -> np.ndarray:
+        """A velocity without its noise and waves."""
+        return gaussian_filter1d(velocity, SLOW / np.median(np.diff(self.time)), axis=0)
 
     @property
     def level(self) -> np.ndarray:
@@ -52,7 +63,7 @@ class Motion:
         return self.seen - self.way()
 
 
-def position_motion(log: dict, roles=("north", "east", "surge", "sway", "heading")) -> Motion | None:
+def position_motion(log: dict) -> Motion | None:
     """Positions against velocity turned by the heading; None where there is too little of them.
 
     Parameters
@@ -60,13 +71,17 @@ def position_motion(log: dict, roles=("north", "east", "surge", "sway", "heading
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
     """
+    roles = ("north", "east", "surge", "sway", "heading")
     rows = _known(log, roles)
     if len(rows) < 30:
         return None
     north, east, surge, sway, heading = (log[role][rows] for role in roles)
     cosine, sine = np.cos(np.radians(heading)), np.sin(np.radians(heading))
-    velocity = np.column_stack([cosine * surge - sine * sway, sine * surge + cosine * sway])
-    return _motion(log["time"][rows], np.column_stack([north, east]), velocity)
+    ahead, aside = np.column_stack([cosine * surge, sine * surge]), np.column_stack([-sine * sway, cosine * sway])
+    velocity, none = ahead + aside, np.zeros(len(rows))
+    axes = {"north": np.column_stack([velocity[:, 0], none]), "east": np.column_stack([none, velocity[:, 1]])}
+    parts = {"surge": ahead, "sway": aside, **axes}
+    return _motion(log["time"][rows], np.column_stack([north, east]), velocity, parts)
 
 
 def heading_motion(log: dict) -> Motion | None:
@@ -74,7 +89,8 @@ def heading_motion(log: dict) -> Motion | None:
     rows = _known(log, ("heading", "yaw_rate"))
     if len(rows) < 30:
         return None
-    return _motion(log["time"][rows], log["heading"][rows, None], log["yaw_rate"][rows, None])
+    rate = log["yaw_rate"][rows, None]
+    return _motion(log["time"][rows], log["heading"][rows, None], rate, {"yaw_rate": rate})
 
 
 def _known(log, roles):
@@ -83,10 +99,10 @@ def _known(log, roles):
     return np.flatnonzero(np.all([np.isfinite(log[role]) for role in roles], axis=0))
 
 
-def _motion(time, seen, velocity):
+def _motion(time, seen, velocity, parts):
     steps = np.diff(time, prepend=-np.inf)
     starts = steps > LONGEST_BRIDGE * np.median(steps[1:])
-    return Motion(time, seen, velocity, starts | _jumps(seen))
+    return Motion(time, seen, velocity, parts, starts | _jumps(seen))
 
 
 def _jumps(seen):
@@ -111,16 +127,14 @@ class Filter:
 
     def __call__(self, levels: np.ndarray) -> np.ndarray:
         """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
-        shape = levels.shape
         flat = levels.reshape(len(levels), -1)
-        innovations, state = np.zeros_like(flat), flat[0].copy()
-        for row, gain in enumerate(self.gains):
-            innovation = flat[row] - state
-            state = state + gain * innovation
-            innovations[row] = innovation
+        bands = np.ones((2, len(flat)))  # of predicted[k + 1] - (1 - gain[k]) predicted[k] = gain[k] level[k]
+        bands[1, :-1] = self.gains[:-1] - 1.0
+        driven = np.vstack([flat[:1], self.gains[:-1, None] * flat[:-1]])
+        innovations = flat - solve_banded((1, 0), bands, driven, check_finite=False)
         white = innovations / (self.std * self.scale)[:, None]
         white[self.gains >= 1.0] = 0.0
-        return white.reshape(shape)
+        return white.reshape(levels.shape)
 
 
 def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]:
@@ -168,3 +182,13 @@ def whiteness(white: np.ndarray) -> float:
     power = np.mean(tame**2)
     together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in range(1, LAGS + 1)]
     return max(1.0, 1.0 + 2.0 * sum(share for share in together if share > 0.04))
+
+
+def is_clear(motion: Motion, whitener: Filter, segment: tuple[float, float] | None = None) -> bool:
+    """Whether the ship moves so much that the noise of its velocity hardly makes slopes on it too small."""
+    time, moving = motion.time, whitener.gains < 1.0
+    inner = slice(None) if segment is None else (time >= segment[0]) & (time <= segment[1])
+    slow = motion.slow(motion.velocity)[inner]
+    gain, std = np.median(whitener.gains[moving]), whitener.std * np.median(whitener.scale[moving])
+    wander = (gain * std) ** 2 / np.median(np.diff(time))
+    return bool(np.mean(slow**2) > CLEAR**2 * wander / (2.0 * np.sqrt(np.pi) * SLOW))

@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.examine_rows import outliers
+from shipcosim.diagnose.mislabels import mislabel_of, undone
 from shipcosim.diagnose.roles import role_of
+from shipcosim.diagnose.tables import inside, usable_rows, usual_step
 from shipcosim.series import make_table
 
 if TYPE_CHECKING:
@@ -14,9 +17,10 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.finding import Finding
 
-__all__ = ["inside", "repaired", "usable_rows"]
+__all__ = ["repaired"]
 
 HOLE = 1.5  # over the usual spacing: rows are missing between
+CUT_OUT = ("gap", "heading_wrap")
 
 
 def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Dataset:
@@ -42,8 +46,9 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
     log = log.isel(time=usable_rows(log["time"].values))
     logged = log["time"].values
     step = usual_step(logged)
-    time = logged.copy()
+    time = _true_time(logged, findings)
     channels = {str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()}
+    channels = _put_right(logged, channels, findings)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
     place = _Place(time, grid, np.diff(logged) > HOLE * step)
     columns = [
@@ -55,23 +60,31 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
     return table.assign_coords(logged_time=("time", np.interp(grid, time, logged), origin))
 
 
-def usable_rows(time: np.ndarray) -> np.ndarray:
-    """Rows in order of time, without those that have no time or one that was there already: (k,) indices."""
-    rows = np.flatnonzero(np.isfinite(time))
-    rows = rows[np.argsort(time[rows], kind="stable")]
-    return rows[np.diff(time[rows], prepend=-np.inf) > 0.0]
+def _true_time(logged, findings):
+    """Times of the rows by a clock that runs right, from the same start."""
+    rates = np.ones(len(logged) - 1)
+    for finding in findings:
+        if finding.cause == "clock":
+            here = inside(logged[1:], finding.segments) & inside(logged[:-1], finding.segments)
+            rates[here] = finding.parameters["rate"].estimate
+    return logged[0] + np.r_[0.0, np.cumsum(rates * np.diff(logged))]
 
 
-def usual_step(time: np.ndarray) -> float:
-    """Median step of increasing times, without the last digits of rounding. [s]"""
-    return float(f"{np.median(np.diff(time)):.9g}")
-
-
-def inside(time: np.ndarray, segments) -> np.ndarray:
-    """Which times are in one of the segments; all where there is none, (n,) array of bool."""
-    if not segments:
-        return np.ones(len(time), bool)
-    return np.any([(time >= first) & (time <= last) for first, last in segments], axis=0)
+def _put_right(time, channels, findings):
+    """Channels with labels put right, then with outliers and all that is no measurement cut out."""
+    channels = dict(channels)
+    for finding in findings:
+        mislabel = mislabel_of(finding)
+        if mislabel is not None:
+            channels = undone({"time": time, **channels}, mislabel, finding.segments)
+            channels.pop("time")
+    for role, bad in outliers(channels).items():
+        channels[role] = np.where(bad, np.nan, channels[role])
+    for finding in findings:
+        if finding.cause in CUT_OUT:
+            bad = inside(time, finding.segments)
+            channels |= {role: np.where(bad, np.nan, channels[role]) for role in finding.channels if role in channels}
+    return channels
 
 
 def _is_angle(name):

@@ -1,0 +1,24 @@
+"""Rows of a log: which are usable, how far apart they are, which lie in some segments."""
+
+import numpy as np
+
+__all__ = ["inside", "usable_rows", "usual_step"]
+
+
+def usable_rows(time: np.ndarray) -> np.ndarray:
+    """Rows in order of time, without those that have no time or one that was there already: (k,) indices."""
+    rows = np.flatnonzero(np.isfinite(time))
+    rows = rows[np.argsort(time[rows], kind="stable")]
+    return rows[np.diff(time[rows], prepend=-np.inf) > 0.0]
+
+
+def usual_step(time: np.ndarray) -> float:
+    """Median step of increasing times, without the last digits of rounding. [s]"""
+    return float(f"{np.median(np.diff(time)):.9g}")
+
+
+def inside(time: np.ndarray, segments) -> np.ndarray:
+    """Which times are in one of the segments; all where there is none, (n,) array of bool."""
+    if not segments:
+        return np.ones(len(time), bool)
+    return np.any([(time >= first) & (time <= last) for first, last in segments], axis=0)
