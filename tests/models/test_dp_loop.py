@@ -127,12 +127,14 @@ def test_array_form_follows_the_fmus_stepped_one_by_one(fmus):
 
 
 def test_variation_runs_as_if_it_were_alone():
-    events = [(0.0, WIND_8), (5.0, dict(tunnel_failed=np.array([False, True])))]
-    both = simulate(with_seeds([3, 8], **MODERATE), events, variations=2, stop_time=20.0)
+    """Beside enough others for the arithmetic of large arrays, which is another one than that of a single ship."""
+    seeds = [3, 8, *range(20, 28)]
+    events = [(0.0, WIND_8), (5.0, dict(tunnel_failed=np.arange(len(seeds)) == 1))]
+    many = simulate(with_seeds(seeds, **MODERATE), events, variations=len(seeds), stop_time=20.0)
     events = [(0.0, WIND_8), (5.0, dict(tunnel_failed=True))]
     alone = simulate(with_seeds([8], **MODERATE), events, variations=1, stop_time=20.0)
     for name in set(alone) - {"time"}:
-        np.testing.assert_allclose(both[name][:, 1], alone[name][:, 0], rtol=1e-9, atol=1e-9, err_msg=name)
+        np.testing.assert_allclose(many[name][:, 1], alone[name][:, 0], rtol=1e-9, atol=1e-9, err_msg=name)
 
 
 def test_ship_is_held_in_moderate_weather():
