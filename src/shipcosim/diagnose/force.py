@@ -29,7 +29,7 @@ def missing_force(case, plant, motion, *, learning=_LEARNING):
     xarray.Dataset
         Over ``time``, NaN where what drove the ship is not known: ``surge``, ``sway`` [N], ``yaw`` [N.m]; ``north``,
         ``east`` [N]; by thruster ``NAME_along``, the part in the direction of its positive thrust, and ``NAME_across``,
-        clockwise of it [N]. For plots against them: ``heading``, ``wind_from`` relative to the bow as logged [deg],
+        clockwise of it [N]. For plots against them: ``heading``, ``wind_from`` relative to the bow [deg],
         ``speed`` over ground [m/s].
     """
     record = case.record
@@ -56,7 +56,8 @@ def _in_frames(surge, sway, yaw, motion, record, plant):
     columns["heading"] = np.degrees(motion.psi) % 360.0, "deg", "heading"
     columns["speed"] = np.hypot(motion.u, motion.v), "m/s", "speed over ground"
     if record.wind is not None:
-        columns["wind_from"] = np.degrees(record.wind[1]) % 360.0, "deg", "direction of the wind as logged"
+        bow = motion.psi if plant.wind_is_true else 0.0
+        columns["wind_from"] = np.degrees(record.wind[1] - bow) % 360.0, "deg", "direction of the wind from the bow"
     about = {"units": "s", "long_name": "time"}
     variables = {n: ("time", v, {"units": u, "long_name": text}) for n, (v, u, text) in columns.items()}
     return xarray.Dataset(variables, {"time": ("time", record.time, about)})

@@ -121,7 +121,7 @@ def compare(case, fit, *, train=None):
             )
             for channel, unit in CHANNELS.items()
         },
-        {"model": list(MODELS), "horizon": list(HORIZONS)} | conditions(record, seen, rows, train),
+        {"model": list(MODELS), "horizon": list(HORIZONS)} | conditions(record, seen, rows, train, case.plant),
     )
     return Comparison(errors, part, train, rows, seen, observers, predictors)
 

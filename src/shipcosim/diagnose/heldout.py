@@ -16,6 +16,7 @@ _SETTLED = 120.0  # s, after which observers have learnt
 _NEAR = 2.0  # s, within which a measurement has to be where a prediction ends
 _TURNING = np.radians(15.0)  # within a prediction
 _MOVING = 0.25  # m/s on the average
+_IDLE = 0.05  # of the largest speed of a thruster in the log
 
 
 def first_rows(record, share=TRAINED):
@@ -121,7 +122,7 @@ def trained(case, train):
     return replace(case, record=cut, motion=Motion(*(value[:n] for value in case.motion)), base=linear)
 
 
-def conditions(record, seen, rows, train):
+def conditions(record, seen, rows, train, plant):
     """What the ship did in each prediction, as coordinates of its segment.
 
     Parameters
@@ -132,26 +133,34 @@ def conditions(record, seen, rows, train):
     rows : (s,) array of int
         Starts.
     train : (n,) bool array
+    plant : Plant
+        Says which wind the log has.
 
     Returns
     -------
     dict
-        ``start_time``, ``regime`` (holding, moving, turning), ``start_heading``, ``heading_known``: whether training
-        rows have a heading within 15 deg; ``wind_from``, relative to the bow, as logged.
+        ``start_time``, ``regime`` (drifting without thrust, turning, moving, holding), ``start_heading``,
+        ``heading_known``: whether training rows have a heading within 15 deg; ``wind_from``, of the logged wind from
+        the bow.
     """
     spans = rows[:, None] + np.arange(in_rows(record)[-1] + 1)
     way = np.hypot(np.diff(seen.x[spans], axis=1), np.diff(seen.y[spans], axis=1)).sum(1)
     turn = np.ptp(seen.psi[spans], axis=1)
-    regime = np.where(turn > _TURNING, "turning", np.where(way > _MOVING * HORIZONS[-1], "moving", "holding"))
+    speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
+    idle = np.all([(n[spans] < _IDLE * n.max()).all(1) for n in speeds], axis=0)
+    regime = np.select(
+        [idle, turn > _TURNING, way > _MOVING * HORIZONS[-1]], ["drifting", "turning", "moving"], "holding"
+    )
     heading = np.degrees(seen.psi[rows]) % 360.0
-    used = np.bincount((np.degrees(seen.psi[train]) % 360.0).astype(int), minlength=360) > 0
+    used = np.bincount(np.degrees(seen.psi[train]).astype(int) % 360, minlength=360) > 0
     near = np.convolve(np.concatenate([used[-15:], used, used[:15]]), np.ones(31), "valid") > 0.0
     found = {
         "start_time": ("segment", record.time[rows], {"units": "s", "long_name": "where the prediction starts"}),
         "regime": ("segment", regime),
         "start_heading": ("segment", heading, {"units": "deg"}),
-        "heading_known": ("segment", near[heading.astype(int)]),
+        "heading_known": ("segment", near[heading.astype(int) % 360]),
     }
     if record.wind is not None:
-        found["wind_from"] = ("segment", np.degrees(record.wind[1][rows]) % 360.0, {"units": "deg"})
+        bow = seen.psi[rows] if plant.wind_is_true else 0.0
+        found["wind_from"] = ("segment", np.degrees(record.wind[1][rows] - bow) % 360.0, {"units": "deg"})
     return found
