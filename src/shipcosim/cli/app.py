@@ -237,14 +237,20 @@ def compare(
 @command
 def check(
     files: Annotated[list[str], typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .toml .csv .nc")],
+    channels: Annotated[
+        Path | None, typer.Option("--channels", metavar="X.toml", help="Channel file of measured data.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Report as JSON.")] = False,
     debug: Debug = False,
 ):
-    """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables."""
+    """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables.
+
+    A table whose columns are named by roles, or one with a channel file, is measured data: it is examined for faults.
+    """
     from shipcosim.cli.checks import check_any, variables_in
     from shipcosim.cli.console import print_report, print_variables
 
-    reports = {file: check_any(file) for file in files}
+    reports = {file: check_any(file, channels) for file in files}
     print_report(reports, as_json)
     for variables in () if as_json else filter(None, map(variables_in, files)):
         print_variables(variables)

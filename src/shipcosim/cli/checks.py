@@ -7,16 +7,19 @@ import numpy as np
 from shipcosim.cli.project import built_fmus, find_project
 from shipcosim.errors import Problem, ShipcosimError
 
-TABLES = (".csv", ".csv.gz", ".nc")
+TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 
 
-def check_any(file):
+def check_any(file, channels=None):
     """Problems of a file; nothing is run and no binary loaded.
 
     Parameters
     ----------
     file : str
-        A scenario (.toml), a table (.csv, .csv.gz, .nc), or a file of a system (see `shipcosim.ssp.check_file`).
+        A scenario (.toml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a system (see
+        `shipcosim.ssp.check_file`).
+    channels : path, optional
+        Channel file of tables that are measured data.
 
     Returns
     -------
@@ -34,7 +37,7 @@ def check_any(file):
         if path.suffix == ".toml":
             return check_scenario_file(path)
         if path.name.endswith(TABLES):
-            return check_table(path)
+            return check_log(path, channels) if channels or _is_log(path) else check_table(path)
         return _check_system_file(file, path)
     except ShipcosimError as error:
         return error.problems
@@ -67,6 +70,33 @@ def check_scenario_file(path):
     except ShipcosimError as error:
         problems = error.problems
     return [*problems, *check_scenario(scenario, system)]
+
+
+def _is_log(path):
+    """Whether a table has a column of the navigation, by its role, so that it reads as measured data."""
+    from shipcosim.diagnose.roles import NAVIGATION
+    from shipcosim.series import read_columns
+
+    columns = read_columns(path)
+    return "time" in columns and not {*NAVIGATION, "latitude"}.isdisjoint(columns)
+
+
+def check_log(path, channels=None):
+    """Faults of measured data as errors; what is ordinary in a log and handled, as remarks."""
+    from shipcosim.diagnose.examine import examine
+    from shipcosim.diagnose.log import read_log
+    from shipcosim.diagnose.remarks import remarks
+
+    log = read_log(path, channels)
+    problems = [Problem(str(path), said, severity="remark") for said in remarks(log)]
+    for finding in examine(log):
+        shown = [f"{first:g} to {last:g} s" for first, last in finding.segments[:3]]
+        more = f" and {len(finding.segments) - 3} more" if len(finding.segments) > 3 else ""
+        where = f"{path}, {', '.join(finding.channels[:3])}{', ...' if len(finding.channels) > 3 else ''}"
+        values = "".join(f", {name} {e.estimate:.3g}" for name, e in finding.parameters.items())
+        found = f"{finding.cause}{values}: {finding.note}, {', '.join(shown) + more or 'throughout'}."
+        problems.append(Problem(where, found, f"Probability {finding.probability:.2f}."))
+    return problems
 
 
 def check_table(path):

@@ -8,8 +8,10 @@ import numpy as np
 
 from shipcosim.diagnose.examine_clock import wrong_clock
 from shipcosim.diagnose.examine_labels import mislabelled
+from shipcosim.diagnose.examine_rate import silent_rate
 from shipcosim.diagnose.examine_rows import gaps, outliers, wraps
 from shipcosim.diagnose.examine_wind import mislabelled_wind
+from shipcosim.diagnose.mislabels import mislabel_of, undone
 from shipcosim.diagnose.tables import inside, usable_rows
 
 if TYPE_CHECKING:
@@ -31,8 +33,10 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     table = _arrays(log)
     found = [*gaps(table), *wraps(table)]
     table = _without(table, found)
+    quiet = silent_rate(table)
+    table = undone(table, mislabel_of(quiet[0]), quiet[0].segments) if quiet else table
     labels, table = mislabelled(table)
-    found += [*labels, *mislabelled_wind(table), *wrong_clock(table)]
+    found += [*quiet, *labels, *mislabelled_wind(table), *wrong_clock(table)]
     return sorted(found, key=lambda finding: -finding.probability)
 
 

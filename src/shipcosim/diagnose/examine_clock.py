@@ -24,6 +24,7 @@ LARGEST_SHARE = 0.5  # of the log: longer is a scale, not a segment
 REACH = 30  # rows about an end, in which it is sought
 MOST = 4  # segments
 CLIP = 5.0
+ROUGHEST = 3.5  # innovations that hang together more, after all that was found, say nothing about a clock
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,8 @@ def wrong_clock(log: dict) -> list[Finding]:
             break
         segments.append(segment)
         sides = [_explained(side, segment) for side in sides]
+    if max(whiteness(side.rest) for side in sides) > ROUGHEST:
+        return []
     sure = [s for s in segments if _is_said_by_both(s)]
     alike = [s for s in segments if s not in sure and _is_like(s, sure)]
     return _findings([*sure, *alike])

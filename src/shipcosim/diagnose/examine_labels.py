@@ -26,7 +26,7 @@ from shipcosim.diagnose.motion import (
 __all__ = ["best_segment", "in_segment", "mislabelled"]
 
 LEAST_GAIN = 14.0  # nats, of the whole log
-SEGMENT_COST = 10.0  # nats, for the choice of both ends
+SEGMENT_COST = 16.0  # nats, for the choice of both ends
 CLIP = 5.0  # standard deviations beyond which an innovation counts no more
 NEAR, FAR, SURE = 0.3, 0.35, 0.2  # slopes nearer to 1 than this agree, farther off they do not; largest deviation
 SHORTEST = 60.0  # [s] of a segment

@@ -15,6 +15,8 @@ SHORTEST_GAP = 10.0  # [s] below it is an ordinary dropout
 FEWEST_ROWS = 5
 CHANCE = 1e-7  # of a run that long anywhere in the log
 LONGEST_WRAP = 6  # samples
+LEAP, FEWEST_LEAPS = 5.0, 3  # times the way told, rows: a single leap can be another reference
+LEAPING = "the ship leaps many times faster than she goes"
 NO_ROWS, NO_VALUES, HELD, STRAIGHT = (
     "there are no rows",
     "there are no values",
@@ -50,7 +52,25 @@ def gaps(log: dict) -> list[Finding]:
         for run in _flat_runs(log, tuple(role for role in group if role in log)):
             if not any(_overlap(run, known) for known in everywhere):
                 found.append(_finding(time, run))
+    found += [_finding(time, run) for run in _leaps(log)]
     return _joined(found)
+
+
+def _leaps(log):
+    """Rows between which the ship would go many times faster than she does: lost rows, drawn together or over."""
+    roles = ("north", "east", "surge", "sway")
+    if not all(role in log for role in roles):
+        return
+    north, east, surge, sway = (log[role] for role in roles)
+    steps, speed = np.diff(log["time"]), np.hypot(surge, sway)
+    went = np.hypot(np.diff(north), np.diff(east))
+    told = np.maximum(speed[1:], speed[:-1]) * steps
+    usual = np.nanquantile(np.abs(went - told), 0.9) if np.isfinite(went - told).any() else np.inf
+    with np.errstate(invalid="ignore"):
+        leaping = went > LEAP * (told + usual)
+    for first, last in runs(leaping):
+        if last - first >= FEWEST_LEAPS:
+            yield _Run(int(first), int(last), roles[:2] + ("heading",), LEAPING)
 
 
 def _missing(log):

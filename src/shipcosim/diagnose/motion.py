@@ -113,7 +113,7 @@ def _jumps(seen):
         change_here = change[:, axis]
         around = np.array([np.roll(change_here, k) for k in (-3, -2, -1, 1, 2, 3)])
         off = np.abs(change_here - np.median(around, axis=0))
-        leap |= off > 10.0 * (1.4826 * np.median(off) + 1e-9) + 3.0 * np.ptp(np.sort(around, axis=0)[1:-1], axis=0)
+        leap |= off > 5.0 * np.quantile(off, 0.95) + 3.0 * np.ptp(np.sort(around, axis=0)[1:-1], axis=0) + 1e-9
     return leap
 
 
@@ -143,7 +143,7 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     The noise is taken from the calmer windows, so that a fault in a part of the log does not count as noise.
     """
     levels = motion.level[:, :, None] if levels is None else levels
-    drafts = [_filter(motion, ratio) for ratio in RATIOS]
+    drafts = _filters(motion)
     stds, scores = np.zeros((len(drafts), levels.shape[2])), np.zeros((len(drafts), levels.shape[2]))
     for number, draft in enumerate(drafts):
         known = draft.gains < 1.0
@@ -153,19 +153,20 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     return [Filter(drafts[b].gains, drafts[b].scale, stds[b, k]) for k, b in enumerate(best)]
 
 
-def _filter(motion, ratio):
+def _filters(motion):
+    """A filter for each of the ratios."""
     steps = np.diff(motion.time, prepend=motion.time[0])
     steps = steps / np.median(steps[1:])
-    gains, scale, variance = np.ones(len(steps)), np.ones(len(steps)), 1.0
+    ratios, variance = np.array(RATIOS), np.ones(len(RATIOS))
+    gains, scale = np.ones((len(steps), len(RATIOS))), np.ones((len(steps), len(RATIOS)))
     for row, (step, anew) in enumerate(zip(steps.tolist(), motion.starts.tolist(), strict=True)):
         if row == 0 or anew:
-            variance = 1.0
+            variance = np.ones(len(RATIOS))
             continue
-        total = variance + ratio * step + 1.0
-        gains[row] = min((total - 1.0) / total, 1.0 - 1e-9)
-        scale[row] = total**0.5
-        variance = gains[row]
-    return Filter(gains, scale)
+        total = variance + ratios * step + 1.0
+        variance = np.minimum(1.0 - 1.0 / total, 1.0 - 1e-9)
+        gains[row], scale[row] = variance, total
+    return [Filter(gains[:, k], np.sqrt(scale[:, k])) for k in range(len(RATIOS))]
 
 
 def _spreads(white):
