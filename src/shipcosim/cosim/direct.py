@@ -8,6 +8,7 @@ the start to storing a state, goes through the binary.
 import struct
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -64,10 +65,11 @@ class Direct:
         if kind == "Real":
             return self._reals_getter(_references(variables), buffer)
         method, references = getattr(self._target, f"get_{kind.lower()}"), _references(variables)
+        pack = _packer(buffer, "i")
 
         def get_all():
             try:
-                buffer[:] = method(references)
+                pack(*method(references))
             except Exception as error:
                 return self._failed(error)
             return OK
@@ -87,12 +89,11 @@ class Direct:
         return set_all
 
     def _reals_getter(self, references, buffer):
-        get_values = self._target.real_getter(references)
-        pack = struct.Struct(f"{len(references)}d").pack_into  # quicker than buffer[:] =
+        get_values, pack = self._target.real_getter(references), _packer(buffer, "d")
 
         def get_all():
             try:
-                pack(buffer, 0, *get_values())
+                pack(*get_values())
             except Exception as error:
                 return self._failed(self._target.failure(error))
             return OK
@@ -122,6 +123,11 @@ class Direct:
     def _failed(self, error):
         self._tell(FATAL, str(error))
         return FATAL
+
+
+def _packer(buffer, code):
+    """Function that writes its arguments into a buffer, quicker than ``buffer[:] = arguments``."""
+    return partial(struct.Struct(f"{len(buffer)}{code}").pack_into, buffer, 0)
 
 
 def _references(variables):
