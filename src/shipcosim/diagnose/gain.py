@@ -17,6 +17,7 @@ _HELD = {"plain": "bias_observer", "extended": "extended_observer", "calibrated"
 CHANNELS = {"position": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
 _EARTH = tuple(("earth", time) for time in (10.0, 40.0, 160.0))  # s, within which an observer learns a force
 _BOTH = _EARTH + tuple(("body", time) for _, time in _EARTH)
+_FADES = (0.0, 1.0 / 40.0)  # 1/s, rates at which the force of a bias observer fades in a prediction
 _BLOCK = 120.0  # s, two of the longest horizon, for the bootstrap
 _DRAWS = 1000
 
@@ -58,8 +59,9 @@ class Comparison:
         Where the segments start.
     seen : Motion
         What the predictions are measured against.
-    observers : dict of str to tuple of str and float
-        By model: frame of the force, and within what time it is learnt [s].
+    observers : dict of str to tuple of str, float and float or None
+        By model, what did best on the training rows: frame of the force, within what time it is learnt [s], at what
+        rate it fades in the prediction [1/s], None where only its start is used.
     predictors : dict of str to Predictor
         Of the models ``plain`` and ``extended``.
     """
@@ -103,27 +105,34 @@ def compare(case, fit, *, train=None):
         models["extended"] = models["plain"]
     found, observers, predictors = {}, {}, {}
     for name, held in _HELD.items():
-        model = models[name]
-        missed = model.missed(np.concatenate([inside[::2], rows]), seen, bool(held))
-        tuning = missed["position"][-1, :, :, : len(inside[::2])]
-        chosen = (tuning**2).mean(-1).argmin(-1)
-        for which, label in enumerate(filter(None, (name, held))):
-            mine = {channel: values[:, which, chosen[which], -len(rows) :] for channel, values in missed.items()}
-            found[label], observers[label] = mine, model.choices[chosen[which]]
-        motion = Motion(*(value[chosen[0]] for value in model.known.motion))
-        predictors[name] = Predictor(model.record, model.plant, plants[name], motion)
-    errors = xarray.Dataset(
-        {
-            channel: (
-                ("model", "horizon", "segment"),
-                np.stack([found[one][channel] for one in MODELS]),
-                {"units": unit},
-            )
-            for channel, unit in CHANNELS.items()
-        },
-        {"model": list(MODELS), "horizon": list(HORIZONS)} | conditions(record, seen, rows, train, case.plant),
-    )
-    return Comparison(errors, part, train, rows, seen, observers, predictors)
+        judged = _judged(models[name], inside[::2], rows, seen, held is not None)
+        for label, (errors, observer, _) in zip((name, held), judged, strict=False):
+            found[label], observers[label] = errors, observer
+        predictors[name] = models[name].predictor(judged[0][-1], plants[name])
+    variables = {
+        channel: (("model", "horizon", "segment"), np.stack([found[one][channel] for one in MODELS]), {"units": unit})
+        for channel, unit in CHANNELS.items()
+    }
+    coordinates = {"model": list(MODELS), "horizon": list(HORIZONS)}
+    coordinates |= conditions(record, seen, rows, train, case.plant)
+    return Comparison(xarray.Dataset(variables, coordinates), part, train, rows, seen, observers, predictors)
+
+
+def _judged(model, inside, rows, seen, holds):
+    """Errors on the held-out rows with the observer that is best on the training rows: without a force, and with it.
+
+    Returns
+    -------
+    list of tuple of dict, tuple and int
+        Errors by channel, the observer as in `Comparison`, its number.
+    """
+    missed, found = model.missed(np.concatenate([inside, rows]), seen, holds), []
+    tuning = (missed["position"][-1, ..., : len(inside)] ** 2).mean(-1)
+    for some in (slice(0, 1), slice(1, None)) if holds else (slice(0, 1),):
+        fade, number = np.unravel_index(tuning[some].argmin(), tuning[some].shape)
+        errors = {channel: values[:, some][:, fade, number, len(inside) :] for channel, values in missed.items()}
+        found.append((errors, (*model.choices[number], _FADES[fade] if some.start else None), number))
+    return found
 
 
 def calibrated(fit):
@@ -142,17 +151,22 @@ class _Model:
     choices: tuple
     known: Any
 
-    def missed(self, rows, seen, holds):
-        """Errors of predictions from some rows, without a force and where it `holds` one with it besides.
+    def predictor(self, number, original):
+        """The model with what one of its observers knew."""
+        return Predictor(self.record, self.plant, original, Motion(*(value[number] for value in self.known.motion)))
 
-        By channel, (horizons, 1 or 2, observers, s) arrays.
+    def missed(self, rows, seen, holds):
+        """Errors of predictions from some rows, without a force and where it `holds` one by each of `_FADES`.
+
+        By channel, (horizons, 1 or 1 + fades, observers, s) arrays.
         """
-        shares = np.array([0.0, 1.0] if holds else [0.0])[:, None, None]
+        shares = np.array([0.0] + [1.0] * len(_FADES) if holds else [0.0])[:, None, None]
+        fades = np.array([0.0, *_FADES])[: len(shares), None, None]
         motion = Motion(*(value[:, rows] + 0.0 * shares for value in self.known.motion))
         force = shares[..., None] * self.known.force[:, rows] if holds else None
         earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
         horizons = in_rows(self.record)
-        found = predicted(motion, rows, self.record, self.plant, horizons, force, earth=earth)
+        found = predicted(motion, rows, self.record, self.plant, horizons, force, earth=earth, fades=fades)
         return missing(shown(found, self.plant), seen, (rows + np.array(horizons)[:, None])[:, None, None])
 
 

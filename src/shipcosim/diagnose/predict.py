@@ -153,7 +153,7 @@ def observed(problems, noise, record, motions, plants):
     return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
 
 
-def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True):
+def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True, fades=0.0):
     """Where the ship is taken to be, from some rows on, by what drove her.
 
     Parameters
@@ -171,6 +171,8 @@ def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True):
         A load besides, in body axes at the start, that is held. [N, N, N.m]
     earth : bool or array that can be broadcast
         Whether it is held in the earth's frame, else in the ship's.
+    fades : float or array that can be broadcast
+        Rate at which it fades, 0 where it lasts. [1/s]
 
     Returns
     -------
@@ -178,14 +180,14 @@ def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True):
         Of (len(horizons), ..., s) arrays.
     """
     drivers = [record.drivers(plant, share) for share in (0.0, 0.5, 1.0)]
-    load = _held(motion, force, earth)
+    load = _held(motion, force, earth, fades)
     h, kept = record.step, []
     for k in range(horizons[-1]):
         here, half, there = (_at(one, rows + k) for one in drivers)
-        k1 = _rates(motion, here, plant, load)
-        k2 = _rates(_moved(motion, k1, 0.5 * h), half, plant, load)
-        k3 = _rates(_moved(motion, k2, 0.5 * h), half, plant, load)
-        k4 = _rates(_moved(motion, k3, h), there, plant, load)
+        k1 = _rates(motion, here, plant, load(k * h))
+        k2 = _rates(_moved(motion, k1, 0.5 * h), half, plant, load(k * h + 0.5 * h))
+        k3 = _rates(_moved(motion, k2, 0.5 * h), half, plant, load(k * h + 0.5 * h))
+        k4 = _rates(_moved(motion, k3, h), there, plant, load(k * h + h))
         slopes = zip(motion, k1, k2, k3, k4, strict=True)
         motion = Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
         if k + 1 in horizons:
@@ -193,13 +195,17 @@ def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True):
     return Motion(*(np.stack(channel) for channel in zip(*kept, strict=True)))
 
 
-def _held(motion, force, earth):
-    """Function from a heading to the load that is held."""
+def _held(motion, force, earth, fades):
+    """Function from a time to the function from a heading to the load that is held."""
     if force is None:
-        return lambda psi: (0.0, 0.0, 0.0)
-    X, Y, N = np.moveaxis(force, -1, 0)
-    start = motion.psi
-    return lambda psi: (*to_body(np.where(earth, psi - start, 0.0), X, Y), N)
+        return lambda time: lambda psi: (0.0, 0.0, 0.0)
+    axes, start = np.moveaxis(force, -1, 0), motion.psi
+
+    def load(time):
+        X, Y, N = np.exp(-fades * time) * axes
+        return lambda psi: (*to_body(np.where(earth, psi - start, 0.0), X, Y), N)
+
+    return load
 
 
 def _rates(motion, drivers, plant, load):
