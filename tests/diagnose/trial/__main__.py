@@ -7,10 +7,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from diagnose.trial import runs, scoring, tables
+from diagnose.trial import comparison, runs, scoring, tables
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGE, BEGIN, END = ROOT / "docs" / "diagnosis-trial.md", "<!-- table: begin -->", "<!-- table: end -->"
+PAGE = ROOT / "docs" / "diagnosis-trial.md"
 FIRST_SEED = 5000  # of the trial; below 1000 is for developing
 
 
@@ -30,6 +30,10 @@ def main(arguments=None):
     showing.add_argument("results", type=Path, nargs="*", default=[ROOT / "results" / "trial.jsonl"])
     showing.add_argument("--write", action="store_true", help="into docs/diagnosis-trial.md too, between its markers")
     showing.set_defaults(call=_table)
+    beside = commands.add_parser("rivals", help="print the rates of several tools on the same logs")
+    beside.add_argument("results", type=Path, nargs="+")
+    beside.add_argument("--write", action="store_true", help="into docs/diagnosis-trial.md too, between its markers")
+    beside.set_defaults(call=_rivals)
     options = parser.parse_args(arguments)
     options.call(options)
 
@@ -57,15 +61,27 @@ def _show(result):
 
 
 def _table(options):
-    found = [result for path in options.results for result in runs.read_results(path)]
+    _tell(tables.table(_found(options.results)), "table", options.write)
+
+
+def _rivals(options):
+    _tell(comparison.comparison(_found(options.results)), "rivals", options.write)
+
+
+def _found(paths):
+    found = [result for path in paths for result in runs.read_results(path)]
     if not found:
-        sys.exit(f"no results in {options.results}")
-    text = tables.table(found)
+        sys.exit(f"no results in {', '.join(map(str, paths))}")
+    return found
+
+
+def _tell(text, name, write):
     print(text)
-    if options.write:
+    if write:
+        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
         page = PAGE.read_text(encoding="utf-8")
-        before, after = page.split(BEGIN)[0], page.split(END)[1]
-        PAGE.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
+        before, after = page.split(begin)[0], page.split(end)[1]
+        PAGE.write_text(f"{before}{begin}\n{text}\n{end}{after}", encoding="utf-8")
 
 
 def _range(text):

@@ -167,7 +167,7 @@ def table(results):
     heads = [f"{kind} (wanted)" for kind in KINDS]
     lines = ["| | " + " | ".join(heads) + " |", "|---|" + "---|" * len(KINDS)]
     for row in ROWS:
-        cells = [_content(row, results, kind) for kind in KINDS]
+        cells = [content(row, results, kind) for kind in KINDS]
         if any(cells):
             wanted = [
                 f" ({target})" if cell and target else "" for cell, target in zip(cells, row.targets, strict=True)
@@ -176,7 +176,8 @@ def table(results):
     return "\n".join([_heading(results), "", *lines, "", *_causes(results), "", *_misses(results)])
 
 
-def _content(row, results, kind):
+def content(row, results, kind):
+    """A cell of the table: of a `Row` and a kind of log; empty where no log counts."""
     if row.cell:
         return row.cell(_judged(results, row.name, kind))
     return _cell(*rates(results, row.name, kind, row.hit))
