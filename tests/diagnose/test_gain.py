@@ -20,14 +20,20 @@ from shipcosim.diagnose.predict import observed, predicted, replayable
 from shipcosim.diagnose.ranking import Case, fitted, prepared, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
-from shipcosim.ssp import read_system
+from shipcosim.diagnose.replays import Replayed, simulated
+from shipcosim.ssp import read_system, with_values
 
 CONTRACT = {"horizon_s", "before_m", "bias_observer_m", "after_m", "noise_floor_m", "share_of_explainable", "ci95"}
 
 
 @pytest.fixture(scope="module")
-def plant(root):
-    return plant_of(read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)]))
+def system(root):
+    return read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)])
+
+
+@pytest.fixture(scope="module")
+def plant(system):
+    return plant_of(system)
 
 
 @pytest.fixture(scope="module")
@@ -112,6 +118,25 @@ def test_conditions_share_the_segments_among_them(loss):
     squares = sum(part["segments"] * part["plain"] ** 2 for part in parts.values())
     assert np.sqrt(squares / loss.errors.sizes["segment"]) == pytest.approx(rms(loss.errors, "position", "plain"))
     assert set(loss.errors["model"].values) == set(MODELS)
+
+
+def test_as_a_co_simulation_the_gain_is_the_same(loss, system):
+    runs = []
+    found = simulated(
+        loss,
+        Replayed(system),
+        Replayed(with_values(system, loss.fit.values)),
+        most=4,
+        progress=lambda done, of: runs.append((done, of)),
+    )
+    assert runs == [(done, 8) for done in range(1, 9)]
+    assert float(found["difference"].max()) < 0.15
+    same = loss.errors.sel(segment=np.isin(loss.errors["start_time"], found["start_time"]))
+    for model in ("plain", "extended"):
+        assert rms(found, "position", model) == pytest.approx(rms(same, "position", model), abs=0.1)
+        assert rms(found, "position", model) != rms(same, "position", model)
+    assert rms(found, "position", "bias_observer") == rms(same, "position", "bias_observer")
+    assert gain(found)["after_m"] < gain(found)["before_m"]
 
 
 def test_held_out_rows_have_no_say_in_the_parameters(diagnosed):
