@@ -23,7 +23,8 @@ BLOCKS, SHORTEST_BLOCK, FEWEST_BLOCKS = 160, 12.0, 3  # [1, s, 1]
 LARGEST_SHARE = 0.5  # of the log: longer is a scale, not a segment
 REACH = 30  # rows about an end, in which it is sought
 MOST = 4  # segments
-CLIP = 5.0
+CLIP = 25.0  # standard deviations beyond which an innovation counts no more
+UNSURE = 0.03  # of ρ - 1, for what the ends of segments and the scale of the whole log leave open
 ROUGHEST = 3.5  # innovations that hang together more, after all that was found, say nothing about a clock
 
 
@@ -211,7 +212,8 @@ def _findings(segments):
         rate = 1.0 + float(weight @ [s.value for s in same] / weight.sum())
         spans = tuple(sorted((s.first, s.last) for s in same))
         probability = float(0.98 / (1.0 + np.exp(-lead.gain)))
-        rates = {"rate": Estimate(rate, float(weight.sum() ** -0.5), "1")}
+        std = float(np.hypot(weight.sum() ** -0.5, UNSURE * abs(rate - 1.0)))
+        rates = {"rate": Estimate(rate, std, "1")}
         note = "positions and headings go at another rate than speeds and yaw rates say"
         found.append(Finding("clock", None, "data", probability, rates, spans, ("time",), note=note))
     return found

@@ -53,7 +53,7 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     levels = np.stack([wind - slow for wind in winds.values()], axis=2)
     filters = dict(zip(winds, filter_for(motion, levels), strict=True))
     frame, segment, gain = _frame(time, winds, slow, filters)
-    return _finding(time, winds[frame], slow, filters[frame], frame, segment, gain)
+    return _finding(time, winds[frame], motion.slow(winds[frame]), slow, filters[frame], frame, segment, gain)
 
 
 def _axes(vector):
@@ -95,11 +95,11 @@ def _steadiness(wind, time, segment):
     return float(np.hypot(*wind.mean(axis=0)) / np.hypot(*wind.T).mean())
 
 
-def _finding(time, wind, slow, whitener: Filter, frame, segment, gain):
+def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     """The mislabel that the slope on the ship's velocity leaves over."""
     y, x = whitener(wind), whitener(slow)
     if frame == BOW:
-        return _unit(time, y, x)
+        return _unit(time, y, x, whitener(smooth))
     slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
     kinds = SLOPES[frame]
     weights = {kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12 for kind, b in kinds.items()}
@@ -107,7 +107,7 @@ def _finding(time, wind, slow, whitener: Filter, frame, segment, gain):
     return [_named(LABEL[frame, kind], segment, gain, weights[kind] / sum(weights.values()))]
 
 
-def _unit(time, y, x):
+def _unit(time, y, x, smooth):
     """Another unit, or the wind over ground with its direction from the bow, if the slope clearly says so."""
     found = []
     for kind, b in SLOPES[BOW].items():
@@ -117,7 +117,9 @@ def _unit(time, y, x):
         if kind == "apparent" or gain / rough < LEAST_GAIN:
             continue
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
-        if abs(slope - b) < max(NEAR * b, 0.2) and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 4.0 * std:
+        also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
+        near = all(abs(one - b) < max(NEAR * b, 0.2) for one in (slope, also))
+        if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 4.0 * std:
             found.append(_named(LABEL[BOW, kind], segment, gain / rough, 1.0))
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 

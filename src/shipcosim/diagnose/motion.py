@@ -178,11 +178,16 @@ def _spreads(white):
 
 
 def whiteness(white: np.ndarray) -> float:
-    """By how much evidence is to be divided because innovations (n, a) hang together; 1 if they are white."""
+    """By how much to divide evidence because innovations (n, a) hang together, in the median window; 1 if white."""
+    count = max(1, min(WINDOWS, len(white) // 80))
+    return float(np.median([_togetherness(window) for window in np.array_split(white, count)]))
+
+
+def _togetherness(white):
     tame = np.clip(white, -4.0, 4.0)
-    power = np.mean(tame**2)
+    power = np.mean(tame**2) + 1e-12
     together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in range(1, LAGS + 1)]
-    return max(1.0, 1.0 + 2.0 * sum(share for share in together if share > 0.04))
+    return max(1.0, 1.0 + 2.0 * sum(together))
 
 
 def is_clear(motion: Motion, whitener: Filter, segment: tuple[float, float] | None = None) -> bool:
