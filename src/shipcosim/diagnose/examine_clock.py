@@ -17,8 +17,9 @@ __all__ = ["wrong_clock"]
 
 SLAB = 0.25  # typical size of ρ - 1
 SCALE_SLAB = {1: 0.03, 2: 0.1}  # of a scale of the whole log, by number of axes: of the yaw rate, of the velocity
-LEAST_GAIN = 4.0  # nats, after the cost of choosing the segment
+LEAST_GAIN = 8.0  # nats, after the cost of choosing the segment
 TOLERANCE = 0.05  # of ρ, below which it is no fault
+PLAUSIBLE = 0.65, 1.5  # ρ; noise alone, where a ship hardly moves, looks like a clock of a half
 BLOCKS, SHORTEST_BLOCK, FEWEST_BLOCKS = 160, 12.0, 3  # [1, s, 1]
 LARGEST_SHARE = 0.5  # of the log: longer is a scale, not a segment
 REACH = 30  # rows about an end, in which it is sought
@@ -187,7 +188,8 @@ def _alone(side, first, last):
 def _is_said_by_both(segment):
     """Whether positions and headings both say so, by about the same rate: a single side can have a fault of its own."""
     telling = [value / segment.value > 0.4 and abs(value) > 2.5 * std for value, std in segment.apart]
-    return len(telling) == 2 and all(telling) and _agree(segment.apart, segment.value)
+    plausible = PLAUSIBLE[0] < 1.0 + segment.value < PLAUSIBLE[1]
+    return plausible and len(telling) == 2 and all(telling) and _agree(segment.apart, segment.value)
 
 
 def _is_like(segment, sure):
