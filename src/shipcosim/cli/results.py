@@ -39,7 +39,7 @@ def save(table, folder, stem, *, scenario, system, verdicts=()):
     from shipcosim.series import write_table
 
     page = "report.html" if stem == "result" else f"{stem}.html"
-    with _staged(Path(folder)) as stage:
+    with staged(Path(folder)) as stage:
         for suffix in (".nc", ".csv"):
             write_table(table, stage / f"{stem}{suffix}")
         write_report(table, stage / page, scenario=scenario, verdicts=verdicts, system=system)
@@ -82,7 +82,7 @@ def _complaints(folder, must_exist=False):
 
 
 @contextmanager
-def _staged(folder):
+def staged(folder):
     """A folder whose files move into `folder` at the end, unless something fails."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
