@@ -16,7 +16,7 @@ from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.noise import first_noise
 from shipcosim.diagnose.plant import Motion, plant_of
-from shipcosim.diagnose.predict import observed, predicted, replayable
+from shipcosim.diagnose.predict import observed, predicted, reference, replayable, restarted
 from shipcosim.diagnose.ranking import Case, fitted, prepared, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
@@ -149,6 +149,26 @@ def test_held_out_rows_have_no_say_in_the_parameters(diagnosed):
     honest, untouched = (fitted(trained(one, train), fit.suspects, fit.values, rounds=1) for one in (case, other))
     assert honest.score == untouched.score and np.array_equal(honest.theta, untouched.theta)
     assert honest.std != fit.std
+
+
+def test_the_reference_favours_no_model(diagnosed):
+    case, fit, _ = diagnosed("tow")
+    found = []
+    for plant, motion in ((case.plant, case.motion), (fit.plant, fit.motion)):
+        linear = linearise(motion, case.record, plant, [])
+        found.append(reference(linear, motion, case.noise, case.record, plant))
+    one, other = found
+    assert np.sqrt(np.mean((one.x - other.x) ** 2 + (one.y - other.y) ** 2)) < 0.05
+    assert np.hypot(case.motion.x - fit.motion.x, case.motion.y - fit.motion.y).max() > 0.3  # what it must not inherit
+
+
+def test_a_problem_restarted_for_another_ship_is_hers(diagnosed):
+    case, _, _ = diagnosed("thrust_loss")
+    other = case.plant.with_values({"vessel.mass_scale": 1.02, "instruments.lever_x": 0.5, "port.thrust_loss": 0.05})
+    own, theirs = (linearise(case.motion, case.record, plant, []) for plant in (other, case.plant))
+    found = restarted(theirs, case.motion, case.record, other)
+    assert np.allclose(found.driven, own.driven, atol=1e-12) and np.allclose(found.seen, own.seen, atol=1e-12)
+    assert not np.allclose(found.driven, theirs.driven) and not np.allclose(found.seen, theirs.seen)
 
 
 def test_observers_know_nothing_of_later_rows(diagnosed):

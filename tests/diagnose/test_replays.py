@@ -14,6 +14,7 @@ from shipcosim.diagnose.predict import replayable, true_motion
 from shipcosim.diagnose.record import Record
 from shipcosim.diagnose.replays import Replayed, driving_table, in_array_form, replayed
 from shipcosim.errors import ShipcosimError
+from shipcosim.models.wind import apparent_wind
 from shipcosim.ssp import read_system, with_values
 
 ROWS = np.array([20, 130])
@@ -144,8 +145,6 @@ def test_parameters_by_a_set_of_values_do_as_an_extension(plant, log, system):
 def test_wind_over_ground_meets_the_moving_ship_as_logged(plant, log):
     model = predictor(log, plant)
     drivers = model.record.drivers(model.plant)
-    from shipcosim.models.wind import apparent_wind
-
     north, east = (-drivers.wind_speed * part(drivers.wind_from) for part in (np.cos, np.sin))
     ship = Motion(*(value[:-1] for value in model.motion))
     speed, direction = apparent_wind(ship.psi, ship.u, ship.v, north, east)
@@ -161,3 +160,13 @@ def test_a_thruster_that_no_input_feeds_is_named(system, plant, log):
     )
     with pytest.raises(ShipcosimError, match="tunnel"):
         driving_table(fewer, predictor(log, plant), 0.1)
+
+
+def test_a_propeller_that_cannot_turn_needs_no_input_for_its_direction(system, plant, log):
+    fixed = replace(log, units=log.units | {"port": (log.units["port"][0], np.full(TIME.size, 0.1))})
+    without = replace(system, connections=tuple(c for c in system.connections if c.target != ("port", "azimuth_in")))
+    model = predictor(fixed, plant)
+    table, states = driving_table(without, model, 0.1)
+    assert "port_azimuth" not in table and states["port.azimuth_in"] == 0.1
+    found, array = replayed(Replayed(without), model, ROWS[:1]), in_array_form(model, ROWS[:1])
+    assert np.hypot(found.x - array.x, found.y - array.y).max() < 0.1

@@ -9,7 +9,7 @@ import xarray
 from shipcosim.diagnose.heldout import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
 from shipcosim.diagnose.linear import Noise, linearise
 from shipcosim.diagnose.plant import Motion, shown
-from shipcosim.diagnose.predict import earth_fixed, missing, observed, predicted, replayable, restarted
+from shipcosim.diagnose.predict import earth_fixed, missing, observed, predicted, reference, replayable, restarted
 from shipcosim.diagnose.ranking import fitted
 
 MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
@@ -83,7 +83,7 @@ def compare(case, fit, *, train=None):
     case : Case
         Prepared, of one log.
     fit : Fit
-        To the whole log. Its causes are fitted again on the training rows.
+        To the whole log. Its causes are fitted again on the training rows; near its motion is the reference.
     train : (n,) bool array, optional
         Rows to fit on; the first 65 %.
 
@@ -98,9 +98,10 @@ def compare(case, fit, *, train=None):
     if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < _BLOCK:
         return None
     part = fitted(trained(case, train), fit.suspects, fit.values, rounds=3 if fit.suspects else 1)
-    seen = shown(fit.motion, fit.plant)
+    linear = linearise(fit.motion, record, fit.plant, [])
+    seen = reference(linear, fit.motion, case.noise, record, fit.plant)
     plants = {"plain": case.plant, "extended": part.plant, "calibrated": calibrated(part), "floor": calibrated(fit)}
-    models = _observed(case, fit.motion, seen, plants)
+    models = _observed(case, linear, fit.motion, seen, plants)
     if not fit.suspects:
         models["extended"] = models["plain"]
     found, observers, predictors = {}, {}, {}
@@ -170,14 +171,12 @@ class _Model:
         return missing(shown(found, self.plant), seen, (rows + np.array(horizons)[:, None])[:, None, None])
 
 
-def _observed(case, motion, seen, plants):
+def _observed(case, about_fit, motion, seen, plants):
     """Each plant with its observers, all run over the log at once."""
-    record, plain = case.record, case.base_of([])
-    extended = linearise(motion, record, plants["extended"], [])
+    record = case.record
     about = {name: case.motion if name == "plain" else motion for name in plants}
-    linear = {"plain": plain, "extended": extended}
-    for name in ("calibrated", "floor"):
-        linear[name] = restarted(extended, motion, record, plants[name])
+    linear = {name: restarted(about_fit, motion, record, plant) for name, plant in plants.items()}
+    linear["plain"] = case.base_of([])
     choices = {"plain": _BOTH, "extended": _EARTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
     each = [(name, frame, time) for name in plants for frame, time in choices[name]]
     problems = [

@@ -5,13 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.linear import Linear, advanced, innovations, rows_first
-from shipcosim.diagnose.plant import Motion, motion_rates
+from shipcosim.diagnose.linear import Linear, Noise, advanced, innovations, rows_first
+from shipcosim.diagnose.plant import Motion, motion_rates, shown
 from shipcosim.models.instruments import motion_of
 from shipcosim.models.kinematics import to_body, to_ned
 
 _LAGS = ("instruments.navigation_lag", "instruments.thruster_lag", "instruments.wind_lag")
 _FORCE = slice(6, 9)
+_FREE = 3.0  # times the jolts, and seconds in which the force changes: the model moves the reference by some 2 cm then
 
 
 @dataclass(frozen=True)
@@ -112,10 +113,32 @@ def restarted(linear, motion, record, plant):
     """The problem of a plant that differs little from the one that was linearised, about the same motion."""
     ahead = advanced(Motion(*(value[:-1] for value in motion)), record, plant)
     driven = np.zeros((*linear.driven.shape[:-1], 1))
-    driven[:, :6, 0] = (rows_first(ahead) - rows_first(Motion(*(value[1:] for value in motion)))) * record.known[
-        :-1, None
-    ]
-    return linear._replace(driven=driven)
+    driven[:, :6, 0] = rows_first(ahead) - rows_first(Motion(*(value[1:] for value in motion)))
+    driven *= record.known[:-1, None, None]
+    seen = np.where(linear.whole, record.measured - rows_first(shown(motion, plant)), 0.0)
+    return linear._replace(driven=driven, seen=seen[..., None])
+
+
+def reference(linear, motion, noise, record, plant):
+    """What the instruments show without their noise, whatever the model: smoothed with a force that is free to change.
+
+    Parameters
+    ----------
+    linear : Linear
+        Of one log.
+    motion : Motion
+        That it was linearised about.
+    noise : Noise
+    record : Record
+    plant : Plant
+
+    Returns
+    -------
+    Motion
+        (n,) arrays.
+    """
+    jolt = _FREE * noise.jolt
+    return shown(innovations(linear, Noise(noise.white, jolt, jolt / _FREE), record, motion).motion, plant)
 
 
 def stacked(problems):

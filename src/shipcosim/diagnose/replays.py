@@ -167,18 +167,24 @@ def driving_table(system, predictor, step_size, lag=0.0):
     Raises
     ------
     ShipcosimError
-        With every thruster that no input feeds.
+        With every variable of a thruster that no input feeds, although the log changes it.
     """
     record, plant = predictor.record, predictor.plant
     columns, states, problems = [], {}, []
     for name, (speed, direction) in record.units.items():
         states[f"{name}.replay"] = True
-        columns.append((_input(system, name, "rpm_in"), 60.0 * speed, "rpm", ""))
+        given = {"rpm_in": (60.0 * speed, "rpm")}
         if name in plant.azimuths:
-            columns.append((_input(system, name, "azimuth_in"), direction, "rad", ""))
-        if any(column[0] is None for column in columns[-2:]):
-            found = f"no input of the system feeds the logged speed or direction of '{name}'."
-            problems.append(Problem(system.file, found, f"Connect inputs to {name}.rpm_in and {name}.azimuth_in."))
+            given["azimuth_in"] = direction, "rad"
+        for variable, (values, unit) in given.items():
+            fed = _input(system, name, variable)
+            if fed:
+                columns.append((fed, values, unit, ""))
+            elif np.ptp(values) == 0.0 and not _connected(system, name, variable):
+                states[f"{name}.{variable}"] = values[0]
+            else:
+                found = f"no input of the system feeds '{name}.{variable}', which the log has."
+                problems.append(Problem(system.file, found, "Connect an input of the system to it."))
     if problems:
         raise ShipcosimError(problems)
     weather, calm = _weather(system, plant.vessel, record)
@@ -194,6 +200,10 @@ def _input(system, component, variable):
     """Input of the system that feeds a variable; None where there is none."""
     feeding = (c.source for c in system.connections if c.target == (component, variable))
     return next((name for owner, name in feeding if owner is None), None)
+
+
+def _connected(system, component, variable):
+    return any(c.target == (component, variable) for c in system.connections)
 
 
 def _weather(system, ship, record):
