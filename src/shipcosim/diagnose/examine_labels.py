@@ -7,7 +7,7 @@ data: where it is said to be, the way seen must be about the way told under it, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,10 +22,12 @@ from shipcosim.diagnose.motion import (
     position_motion,
     whiteness,
 )
+from shipcosim.diagnose.tables import inside
 
 __all__ = ["best_segment", "in_segment", "mislabelled"]
 
 LEAST_GAIN = 14.0  # nats, of the whole log
+CLEAR_GAIN = 100.0  # nats, from which on a frame may differ from another by less than its slopes
 SEGMENT_COST = 16.0  # nats, for the choice of both ends
 CLIP = 5.0  # standard deviations beyond which an innovation counts no more
 NEAR, FAR, SURE = 0.3, 0.35, 0.2  # slopes nearer to 1 than this agree, farther off they do not; largest deviation
@@ -35,11 +37,12 @@ REACH = 25  # rows on both sides in which an end of a segment is sought
 
 @dataclass(frozen=True)
 class _Suspect:
-    """A mislabel, the evidence for it and where it is."""
+    """A mislabel, the evidence for it, where it is, and by how much its innovations hang together."""
 
     mislabel: Mislabel
     gain: float
     segment: tuple[float, float] | None
+    rough: float
 
 
 def mislabelled(log: dict) -> tuple[list[Finding], dict]:
@@ -73,29 +76,35 @@ def _best(log, motion_of, labels):
     likely = np.stack([_log_likelihood(f, levels[:, :, k]) for k, f in enumerate(filters)], axis=1)
     suspects = []
     for number, label in enumerate(labels, start=1):
-        suspect = _located(plain.time, likely[:, number] - likely[:, 0], label)
-        if suspect is None:
-            continue
-        rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, suspect.segment))
-        suspect = _Suspect(label, suspect.gain / rough, suspect.segment)
-        if suspect.gain > LEAST_GAIN and _explains(plain, others[number - 1], filters[number], suspect):
+        gain, segment = best_segment(plain.time, likely[:, number] - likely[:, 0])
+        rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, segment))
+        suspect = _Suspect(label, gain, segment, rough)
+        if gain / rough > LEAST_GAIN and _explains(plain, others[number - 1], filters[number], suspect):
             suspects.append(suspect)
     if not suspects:
         return None
     best = max(suspects, key=lambda suspect: suspect.gain)
     whitener = filters[1 + labels.index(best.mislabel)]
+    if best.mislabel.scale is not None and _is_alike(log, best):
+        best = replace(best, segment=None)
     return _finding(_refined(log, motion_of, whitener, best), best, suspects)
+
+
+def _is_alike(log, suspect):
+    """Whether the channels are as noisy outside a segment as inside, so that their unit is the same there."""
+    if suspect.segment is None:
+        return False
+    here = inside(log["time"][2:], [suspect.segment])
+    bends = np.mean([np.abs(np.diff(log[role], n=2)) for role in suspect.mislabel.channels], axis=0)
+    if (~here).sum() < 10:
+        return True
+    return bool(0.7 < np.nanmean(bends[~here]) / (np.nanmean(bends[here]) + 1e-12) < 1.4)
 
 
 def _log_likelihood(whitener: Filter, level):
     """Of each row, with single rows counting only so much."""
     white = np.clip(whitener(level), -CLIP, CLIP)
     return -np.sum(0.5 * white**2 + np.log(whitener.std * whitener.scale)[:, None], axis=1)
-
-
-def _located(time, gains, label):
-    gain, segment = best_segment(time, gains)
-    return _Suspect(label, gain, segment) if gain > 0.0 else None
 
 
 def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, tuple[float, float] | None]:
@@ -139,7 +148,8 @@ def _explains(plain: Motion, other: Motion, whitener: Filter, suspect) -> bool:
         abs(was - now) > max(FAR, 4.0 * std) and abs(was - 1.0) > abs(now - 1.0)
         for (was, std), (now, _) in zip(given, under, strict=True)
     ]
-    return all(near) and any(a and s for a, s in zip(apart, sure, strict=True))
+    clear = suspect.gain > CLEAR_GAIN and suspect.rough < 1.5 and all(sure)
+    return all(near) and (clear or any(a and s for a, s in zip(apart, sure, strict=True)))
 
 
 def _slopes(motion: Motion, channels, whitener: Filter, segment):
@@ -167,8 +177,9 @@ def _refined(log, motion_of, whitener, best):
 
 
 def _finding(segment, best, suspects):
-    others = [s.gain - best.gain for s in suspects if s is not best]
-    probability = float(1.0 / (1.0 + np.exp(LEAST_GAIN - 6.0 - best.gain) + np.sum(np.exp(others))))
+    rough = max(s.rough for s in suspects)
+    others = [(s.gain - best.gain) / rough for s in suspects if s is not best]
+    probability = float(1.0 / (1.0 + np.exp(LEAST_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others))))
     segments = (segment,) if segment else ()
     label = best.mislabel
     return Finding(label.cause, None, "data", probability, {}, segments, label.channels, note=label.sentence)
