@@ -12,8 +12,9 @@ from shipcosim.diagnose.motion import Filter, Motion, filter_for, whiteness
 __all__ = ["mislabelled_wind"]
 
 ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
+LEAST_GAIN_WHOLE = 5.0  # nats, of a unit of the whole log, among three
 AVERAGING = 8.0  # [s] of a bell over the ship's velocity; wind sensors average, and waves shake the mast
-NEAR, SURE = 0.3, 0.15  # of the slope of the wind on the ship's velocity: agreement, largest deviation
+NEAR, SURE = 0.3, 0.18  # of the slope of the wind on the ship's velocity: agreement, largest deviation
 STEADIER = 0.08  # by which the steadiness of the wind must grow; so the ship must have turned
 BOW, MIRRORED, NORTH = "from the bow", "mirrored", "from north"
 SLOPES = {BOW: {"apparent": 1.0, "kn": 1852.0 / 3600.0, "m/s": 3600.0 / 1852.0, "over ground": 0.0}}
@@ -114,13 +115,13 @@ def _unit(time, y, x, smooth):
         gains = 0.5 * np.sum(np.clip(y - x, -CLIP, CLIP) ** 2 - np.clip(y - b * x, -CLIP, CLIP) ** 2, axis=1)
         gain, segment = best_segment(time, gains)
         rough = whiteness(in_segment(y - b * x, time, segment))
-        if kind == "apparent" or gain / rough < LEAST_GAIN:
+        if kind == "apparent" or gain / rough < (LEAST_GAIN if segment else LEAST_GAIN_WHOLE):
             continue
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
         near = all(abs(one - b) < max(NEAR * b, 0.2) for one in (slope, also))
-        if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 4.0 * std:
-            found.append(_named(LABEL[BOW, kind], segment, gain / rough, 1.0))
+        if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
+            found.append(_named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0))
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 
 
