@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.series import conversion, make_table, read_table, write_file, write_table
+from shipcosim.series import conversion, make_table, read_columns, read_table, write_file, write_table
 
 
 @pytest.fixture
@@ -156,3 +156,29 @@ def test_temperatures_convert_with_an_offset():
 def test_units_that_do_not_convert_are_an_error(unit_from, unit_to, said):
     with pytest.raises(ShipcosimError, match=said):
         conversion(unit_from, unit_to)
+
+
+def test_columns_stand_as_in_the_file_whatever_they_are_called(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("when,x [kn],,note,on\n2022-10-27 08:00:00,1,7,a,true\n2022-10-27 08:00:01.5,,8,,false\n")
+    columns = read_columns(path)
+    assert {name: unit for name, (_, unit) in columns.items()} == {"when": "s", "x": "kn", "": "", "note": "", "on": ""}
+    assert columns["when"][0].tolist() == [0.0, 1.5] and columns["on"][0].tolist() == [1.0, 0.0]
+    assert columns["x"][0][0] == 1.0 and math.isnan(columns["x"][0][1])
+    assert columns["note"][0].dtype == object and columns["note"][0][0] == "a"
+
+
+def test_parquet_is_read_like_csv(table, tmp_path):
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    write_table(table, tmp_path / "t.csv")
+    pyarrow.parquet.write_table(pyarrow.csv.read_csv(tmp_path / "t.csv"), tmp_path / "t.parquet")
+    assert read_table(tmp_path / "t.parquet").identical(read_table(tmp_path / "t.csv"))
+    assert read_columns(tmp_path / "t.parquet").keys() == read_columns(tmp_path / "t.csv").keys()
+
+
+def test_a_column_that_is_there_twice_is_an_error(tmp_path):
+    (tmp_path / "t.csv").write_text("time,x,x\n0,1,2\n")
+    with pytest.raises(ShipcosimError, match="column 'x': is there twice"):
+        read_columns(tmp_path / "t.csv")
