@@ -1,6 +1,6 @@
 """The project's diagnosis beside its rivals, on the same logs."""
 
-from .runs import KINDS
+from .runs import KINDS, key
 from .tables import ROWS, content
 
 LABELS = {
@@ -25,16 +25,12 @@ def comparison(results):
     """
     by_tool = {tool: [r for r in results if r["tool"] == tool] for tool in LABELS}
     by_tool = {tool: found for tool, found in by_tool.items() if found}
-    common = set.intersection(*({_log(r) for r in found} for found in by_tool.values()))
+    common = set.intersection(*({key(r) for r in found} for found in by_tool.values()))
     lines = ["| | " + " | ".join(LABELS[tool] for tool in by_tool) + " |", "|---|" + "---|" * len(by_tool)]
     for row in ROWS:
         for kind in KINDS if row.name in NAMES else ():
-            mine = [[r for r in found if _log(r) in common] for found in by_tool.values()]
+            mine = [[r for r in found if key(r) in common] for found in by_tool.values()]
             cells = [content(row, found, kind) for found in mine]
             if any(cells):
                 lines.append(f"| {kind}, {row.label} | " + " | ".join(cells) + " |")
     return f"{len(common)} logs.\n\n" + "\n".join(lines)
-
-
-def _log(result):
-    return result["kind"], result["set"], result["seed"]

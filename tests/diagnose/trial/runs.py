@@ -63,7 +63,7 @@ def run(kinds, sets, seeds, into, *, tool=TOOL, jobs=1, minutes=None, progress=p
     """
     into, until = Path(into), time.monotonic() + 60.0 * (minutes or 1e9)
     into.parent.mkdir(parents=True, exist_ok=True)
-    done = {_key(result) for result in read_results(into)}
+    done = {key(result) for result in read_results(into)}
     version = _version()
     _end_line(into)
     with pool_of(jobs) as pool:
@@ -77,7 +77,7 @@ def run(kinds, sets, seeds, into, *, tool=TOOL, jobs=1, minutes=None, progress=p
                         file.write(json.dumps(result | {"version": version, "tool": tool}) + "\n")
                     progress(result)
     plan = set(itertools.product(kinds, sets, seeds))
-    return [result for result in read_results(into) if _key(result) in plan]
+    return [result for result in read_results(into) if key(result) in plan]
 
 
 def pool_of(jobs):
@@ -136,7 +136,8 @@ def read_results(path):
     return found
 
 
-def _key(result):
+def key(result):
+    """Kind, set and seed of a result."""
     return result["kind"], result["set"], result["seed"]
 
 

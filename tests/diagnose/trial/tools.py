@@ -19,3 +19,15 @@ def ours(path):
     from shipcosim.diagnose.run import diagnose
 
     return diagnose(path, system())[0]
+
+
+def with_gain(path):
+    """The same with its gain, in the array form."""
+    from dataclasses import replace
+
+    from shipcosim.diagnose.gain import compare, gain
+    from shipcosim.diagnose.run import diagnose
+
+    diagnosis, details = diagnose(path, system())
+    found = compare(details.case, details.fit) if diagnosis.verdict == "named" else None
+    return replace(diagnosis, gain=gain(found.errors)) if found else diagnosis
