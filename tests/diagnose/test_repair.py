@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.repair import repaired
+from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table
 
 
@@ -43,3 +45,27 @@ def test_an_uneven_log_is_interpolated_and_headings_the_short_way_round():
 
 def test_headings_are_between_0_and_360():
     assert repaired(log_of([0, 1, 2], heading=[-10, 360, 725]))["heading"].values.tolist() == [350.0, 0.0, 5.0]
+
+
+def test_a_stamp_years_away_is_refused_instead_of_filled_up_to():
+    with pytest.raises(ShipcosimError, match="2 s is followed by 1.6e\\+09 s"):
+        repaired(log_of([0, 1, 2, 1.6e9], surge=[1, 2, 3, 4]))
+
+
+def test_findings_are_undone_in_their_segments_only():
+    time = np.arange(100.0)
+    sign = Finding("sign", None, "data", 1.0, {}, ((20.0, 40.0),), ("surge",), note="surge has the other sign")
+    gap = Finding("gap", None, "data", 1.0, {}, ((60.0, 70.0),), ("surge",))
+    surge = repaired(log_of(time, surge=time + 1.0), [sign, gap])["surge"].values
+    assert surge[19:42].tolist() == [20.0, *(-(time[20:41] + 1.0)), 42.0]
+    assert np.isnan(surge).nonzero()[0].tolist() == list(range(60, 71))
+
+
+def test_a_clock_is_undone_and_says_where_in_the_log_a_row_was():
+    time = np.arange(100.0)
+    rate = {"rate": Estimate(0.5, 0.01, "1")}
+    clock = Finding("clock", None, "data", 1.0, rate, ((20.0, 40.0),), ("time",))
+    again = repaired(log_of(time, north=time), [clock])
+    assert again["time"].values[-1] == 89.0
+    assert again["north"].values[[20, 25, 30, 31]].tolist() == [20.0, 30.0, 40.0, 41.0]
+    assert again["logged_time"].values[[20, 25, 30, 31]].tolist() == [20.0, 30.0, 40.0, 41.0]

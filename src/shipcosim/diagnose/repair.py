@@ -10,6 +10,7 @@ from shipcosim.diagnose.examine_rows import outliers
 from shipcosim.diagnose.mislabels import mislabel_of, undone
 from shipcosim.diagnose.roles import role_of
 from shipcosim.diagnose.tables import inside, usable_rows, usual_step
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["repaired"]
 
 HOLE = 1.5  # over the usual spacing: rows are missing between
+LONGEST = 50.0  # times as long as its rows: some of its stamps are wrong
 CUT_OUT = ("gap", "heading_wrap")
 
 
@@ -42,6 +44,11 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
     xarray.Dataset
         At the median step of the log, from its first time on. NaN where there is no data; headings in [0, 360).
         The coordinate `logged_time` says where in the log a row stands. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If the times span fifty times what the rows can fill.
     """
     log = log.isel(time=usable_rows(log["time"].values))
     logged = log["time"].values
@@ -49,6 +56,7 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
     time = _true_time(logged, findings)
     channels = {str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()}
     channels = _put_right(logged, channels, findings)
+    _check_span(time, step)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
     place = _Place(time, grid, np.diff(logged) > HOLE * step)
     columns = [
@@ -58,6 +66,14 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
     table = make_table(grid, columns, log.attrs)
     origin = {"units": "s", "long_name": "time as logged"}
     return table.assign_coords(logged_time=("time", np.interp(grid, time, logged), origin))
+
+
+def _check_span(time, step):
+    """A stamp far off all others would make a log of years."""
+    if time[-1] - time[0] > LONGEST * step * len(time):
+        row = int(np.argmax(np.diff(time)))
+        found = f"{time[row]:g} s is followed by {time[row + 1]:g} s, with a usual step of {step:g} s."
+        raise ShipcosimError(Problem("time", found, "Leave out the rows whose times are wrong, or cut the log there."))
 
 
 def _true_time(logged, findings):
