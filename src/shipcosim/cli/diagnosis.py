@@ -91,21 +91,22 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
     project = find_project(Path(given.partition("#")[0]))
     fmus = [build_stale(project)] if project else []
     ship = read_system(given, fmus=fmus)
-    with _progress() as link, staged(folder) as stage:
+    with _progress() as link:
         link(LINKS[0])
-        diagnosis, details = diagnose(data, ship, channels, effects)
-        story = Story(diagnosis, details, Path(data).name, ship)
+        with _named_by(data):
+            diagnosis, details = diagnose(data, ship, channels, effects)
         link(LINKS[1])
-        story = _with_errors(story)
-        link(LINKS[2])
-        story = _extended(story, given, stage, _about(data, details), effects, fmus)
-        link(LINKS[3])
-        story = _simulated(story, given, effects, fmus, link)
-        link(LINKS[4])
-        text = json.dumps(story.diagnosis.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
-        (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
-        write_diagnosis(story, stage / "report.html")
-        written = {path.name for path in stage.iterdir()}
+        story = _with_errors(Story(diagnosis, details, Path(data).name, ship))
+        with staged(folder) as stage:
+            link(LINKS[2])
+            story = _extended(story, given, stage, _about(data, details), effects, fmus)
+            link(LINKS[3])
+            story = _simulated(story, given, effects, fmus, link)
+            link(LINKS[4])
+            text = json.dumps(story.diagnosis.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
+            (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
+            write_diagnosis(story, stage / "report.html")
+            written = {path.name for path in stage.iterdir()}
     for name in set(FILES) - written:  # of an earlier diagnosis
         (folder / name).unlink(missing_ok=True)
     if story.extension is not None:
@@ -123,6 +124,16 @@ def _check_inputs(data, channels, effects):
         problems.append(Problem(str(effects), "There is no such folder of causes.", "Give the path of one."))
     if problems:
         raise ShipcosimError(problems)
+
+
+@contextmanager
+def _named_by(data):
+    """Errors of the log carry the name of its file."""
+    try:
+        yield
+    except ShipcosimError as error:
+        problems = [replace(p, where=str(data)) if p.where == "log" else p for p in error.problems]
+        raise ShipcosimError(problems) from error
 
 
 def _about(data, details):
@@ -271,8 +282,9 @@ def print_diagnosis(story, folder, as_json):
     sections += [("Errors", figures if figures.rows else None)]
     silent = ", ".join(title(name).lower() for name in diagnosis.not_testable)
     sections += [("This log could not have shown", Text(silent) if silent else None)]
-    sections += [("Remarks", Text("\n".join(story.remarks), style="yellow") if story.remarks else None)]
-    sections += [("What to do next", Text("\n".join(f"- {s}" for s in next_steps(diagnosis, story.extension))))]
+    sections += [("Remarks", Text("\n".join(story.notes), style="yellow") if story.notes else None)]
+    extended = str(shown_path(story.extension.ssp)) if story.extension is not None else None
+    sections += [("What to do next", Text("\n".join(f"- {s}" for s in next_steps(diagnosis, extended))))]
     for heading, content in sections:
         if content is not None:
             console.print()

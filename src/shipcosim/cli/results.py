@@ -2,7 +2,7 @@
 
 import os
 import tempfile
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -84,6 +84,7 @@ def _complaints(folder, must_exist=False):
 @contextmanager
 def staged(folder):
     """A folder whose files move into `folder` at the end, unless something fails."""
+    was_there = folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as name:
@@ -94,7 +95,12 @@ def staged(folder):
                 raise ShipcosimError([_at_home(problem, stage, folder) for problem in error.problems]) from error
             for file in stage.iterdir():
                 os.replace(file, folder / file.name)
-    except OSError as error:
+    except BaseException as error:
+        if not was_there:
+            with suppress(OSError):
+                folder.rmdir()
+        if not isinstance(error, OSError):
+            raise
         raise ShipcosimError(
             Problem(str(folder), f"Results cannot be written here: {error.strerror}.", "Choose another --out.")
         ) from error

@@ -8,6 +8,7 @@ from string import Template
 from typing import Any
 
 import shipcosim
+from shipcosim.diagnose.remarks import remarks
 from shipcosim.report import diagnosis_parts as parts
 from shipcosim.report.diagnosis_sections import (
     causes_section,
@@ -67,6 +68,12 @@ class Story:
         return {suspect.cause: suspect.effect for suspect in self.details.case.suspects}
 
     @property
+    def notes(self):
+        """What is not as a log should be and was handled, what could not be known, what did not work."""
+        details = self.details
+        return [*remarks(details.log), *details.case.record.remarks, *self.remarks]
+
+    @property
     def errors(self):
         """Errors of predictions: as co-simulations where those were run."""
         if self.simulated is not None:
@@ -97,10 +104,11 @@ def render(story):
     made = [section(story, figures) for section in _SECTIONS.values()]
     word, sentence = outcome(story.diagnosis, story.effects)
     title = f"Diagnosis of {story.source}"
+    extended = story.extension.ssp.name if story.extension is not None else None
     summary = [
         parts.verdict(story.diagnosis.verdict, word, sentence),
         parts.key_figures(key_figures(story.diagnosis)),
-        parts.next_steps(next_steps(story.diagnosis, story.extension)),
+        parts.next_steps(next_steps(story.diagnosis, extended)),
     ]
     return Template(_asset("diagnosis.html")).substitute(
         title=escape(title),

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from shipcosim.diagnose.remarks import remarks as noted
 from shipcosim.report import diagnosis_causes as causes
 from shipcosim.report import diagnosis_error as error
 from shipcosim.report import diagnosis_parts as parts
@@ -24,9 +23,9 @@ def data_section(story, figures):
         if faults
         else "Position, velocity, heading and rate of turn agree with each other, and so do the clocks."
     )
-    remarks = [*noted(details.log), *details.case.record.remarks, *story.remarks]
+    notes = list(story.notes)
     if unused := details.log.attrs.get("unused_columns"):
-        remarks.append(f"Columns without a role are not used: {', '.join(map(str, unused))}.")
+        notes.append(f"Columns without a role are not used: {', '.join(map(str, unused))}.")
     panels = [track_panel(details.clean), *log_panels(details.log, details.clean, story.diagnosis.findings)]
     head = ["Fault", "Channels", "Where", "What", "Done about it"]
     return parts.section(
@@ -34,7 +33,7 @@ def data_section(story, figures):
         "1 Is the log right?",
         parts.lead(text),
         parts.table(head, rows),
-        parts.listed(remarks),
+        parts.listed(notes),
         figures.grid(panels),
     )
 

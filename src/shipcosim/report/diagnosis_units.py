@@ -23,22 +23,22 @@ def plus_minus(estimate, absolute=False):
     return f"{value} ± {std} {unit}".rstrip().replace(" °", "°")
 
 
-def amount(estimate, absolute=False):
-    """Value, standard deviation and unit of an estimate, as texts.
+def amount(estimate, absolute=False, largest=0.0):
+    """Value, standard deviation and unit of an estimate, as texts; `largest` decides on the unit if it is larger.
 
     Returns
     -------
     tuple of three str
     """
-    unit, factor = _scaled(estimate)
+    unit, factor = _scaled(estimate, max(abs(estimate.estimate), largest))
     value, std = factor * estimate.estimate, factor * estimate.std
     digits = _digits(std, value)
     value = abs(value) if absolute else value
     return f"{value:.{digits}f}".replace("-", "−"), f"{std:.{digits}f}", unit
 
 
-def _scaled(estimate):
-    if estimate.unit in LARGE and abs(estimate.estimate) >= 1000.0:
+def _scaled(estimate, size):
+    if estimate.unit in LARGE and size >= 1000.0:
         return LARGE[estimate.unit]
     return {"deg": "°"}.get(estimate.unit, SHOWN.get(estimate.unit, estimate.unit)), 1.0
 

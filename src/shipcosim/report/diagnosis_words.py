@@ -194,14 +194,14 @@ def _listed(texts, last="and"):
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} {last} {texts[-1]}"
 
 
-def next_steps(diagnosis, extension=None):
+def next_steps(diagnosis, extended=None):
     """What to do now.
 
     Parameters
     ----------
     diagnosis : Diagnosis
-    extension : Extension, optional
-        Where the causes were put into the system.
+    extended : str, optional
+        Path of the extended system.
 
     Returns
     -------
@@ -216,10 +216,12 @@ def next_steps(diagnosis, extension=None):
     if diagnosis.verdict == "ambiguous":
         steps.append(_manoeuvre(diagnosis.prescription))
     if diagnosis.verdict == "unknown":
-        steps.append("See below over what heading, wind and time the missing force goes, and what it could be.")
+        steps.append(
+            "Look on the page how the missing force goes with time, heading and wind."
+        )
         steps.append("If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md).")
-    if extension is not None:
-        steps.append(f"Simulate with the cause in the system: shipcosim simulate {extension.ssp.name}")
+    if extended:
+        steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable:
         names = _listed([title(name).lower() for name in diagnosis.not_testable], "or")
         steps.append(f"This log says nothing about {names}, present or not.")
@@ -236,7 +238,10 @@ def _manoeuvre(prescription):
 
 def estimate_rows(finding):
     """Name, value with standard deviation and unit of each parameter, as texts."""
-    return [(name.replace("_", " "), *amount(estimate)) for name, estimate in finding.parameters.items()]
+    largest = {}
+    for estimate in finding.parameters.values():
+        largest[estimate.unit] = max(abs(estimate.estimate), largest.get(estimate.unit, 0.0))
+    return [(n.replace("_", " "), *amount(e, largest=largest[e.unit])) for n, e in finding.parameters.items()]
 
 
 def where(finding):
