@@ -41,7 +41,7 @@ def diagnosed(plant, tmp_path_factory):
     """Function from a hidden cause to the case with only that suspect, its fit, and the truth's parameters."""
 
     @cache
-    def of(cause, healthy=False, kind="trial", seed=2003, minutes=20):
+    def of(cause, healthy=False, kind="trial", seed=2003, minutes=16):
         hidden = draw(kind, seed, among=[cause], minutes=minutes)
         path = tmp_path_factory.mktemp("log") / "log.csv"
         (hidden.twin() if healthy else hidden).save(path)
@@ -62,8 +62,12 @@ def diagnosed(plant, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def loss(diagnosed):
-    case, fit, _ = diagnosed("thrust_loss")
-    return compare(case, fit)
+    return compare(*diagnosed("thrust_loss")[:2])
+
+
+@pytest.fixture(scope="module")
+def twin(diagnosed):
+    return compare(*diagnosed("thrust_loss", healthy=True)[:2])
 
 
 def test_a_named_cause_takes_most_of_the_explainable_error_away(loss):
@@ -75,18 +79,14 @@ def test_a_named_cause_takes_most_of_the_explainable_error_away(loss):
     assert 0.0 < low < found["share_of_explainable"] < high <= 1.0
 
 
-def test_a_healthy_log_gains_nothing(diagnosed):
-    case, fit, _ = diagnosed("thrust_loss", healthy=True)
-    comparison = compare(case, fit)
-    found = gain(comparison.errors)
+def test_a_healthy_log_gains_nothing(loss, twin):
+    found = gain(twin.errors)
     assert found["after_m"] == found["before_m"]
     assert found["share_of_explainable"] == 0.0 and found["ci95"] == [0.0, 0.0]
-    faulty = gain(compare(*diagnosed("thrust_loss")[:2]).errors)
-    assert found["before_m"] < 0.5 * faulty["before_m"]
+    assert found["before_m"] < 0.5 * gain(loss.errors)["before_m"]
 
 
-def test_with_the_cause_named_the_ship_is_as_predictable_as_her_healthy_twin(loss, diagnosed):
-    twin = compare(*diagnosed("thrust_loss", healthy=True)[:2])
+def test_with_the_cause_named_the_ship_is_as_predictable_as_her_healthy_twin(loss, twin):
     assert rms(loss.errors, "position", "extended") < 1.3 * rms(twin.errors, "position", "plain")
 
 
