@@ -98,20 +98,23 @@ def strange_panel(strange):
     )
 
 
-def whiteness(case, fit):
+def whiteness(case, fit, as_it_is=False):
     """Autocorrelation of the whitened innovations that a fit leaves.
 
     Parameters
     ----------
     case : Case
     fit : Fit
+    as_it_is : bool
+        Without moving known numbers within their tolerances.
 
     Returns
     -------
     (LAGS, 6) array
         From a lag of one row on; NaN for a channel that was not measured.
     """
-    white = innovations(explained(fit.linear, fit.left), case.noise, case.record).white[..., 0]
+    theta = 0.0 * fit.left if as_it_is else fit.left
+    white = innovations(explained(fit.linear, theta), case.noise, case.record).white[..., 0]
     white = np.where(fit.linear.whole, white, np.nan)
     found = np.full((LAGS, white.shape[1]), np.nan)
     for channel, values in enumerate(white.T):

@@ -85,7 +85,7 @@ def causes_section(story, figures):
     content.append(figures.grid(panels))
     if details.strange:
         content.append(figures.grid([causes.strange_panel(details.strange)]))
-    shown = {"Before: the plain model": causes.whiteness(case, nothing)}
+    shown = {"Before: the plain model": causes.whiteness(case, nothing, as_it_is=True)}
     if fit.suspects:
         shown["After: with the causes"] = causes.whiteness(case, fit)
     highest = max([0.2, *(float(np.nanmax(np.abs(found), initial=0.0)) for found in shown.values())])

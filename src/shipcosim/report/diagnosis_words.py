@@ -216,9 +216,7 @@ def next_steps(diagnosis, extended=None):
     if diagnosis.verdict == "ambiguous":
         steps.append(_manoeuvre(diagnosis.prescription))
     if diagnosis.verdict == "unknown":
-        steps.append(
-            "Look on the page how the missing force goes with time, heading and wind."
-        )
+        steps.append("Look on the page how the missing force goes with time, heading and wind.")
         steps.append("If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md).")
     if extended:
         steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
