@@ -1,7 +1,8 @@
 """Evidence for a cause: how much likelier a log is if its parameters may be as large as they typically are.
 
-The whitened innovations are y = G θ + w. Every number of the ship is known within its tolerance, θ ~ N(0, spike²); a cause
-that is present has θ ~ N(0, 1) in units of its typical size (slab). So small errors of known coefficients are no cause.
+The whitened innovations are y = G θ + w. Every number of the ship is known within its tolerance, θ ~ N(0, spike²); a
+cause that is present has θ ~ N(0, 1) in units of its typical size (slab). So small errors of known coefficients are no
+cause.
 """
 
 from dataclasses import dataclass

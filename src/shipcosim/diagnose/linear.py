@@ -39,7 +39,7 @@ class Noise:
 
 
 class Linear(NamedTuple):
-    """Deviations from a motion, by row: δ' = A δ + b - B θ, z = H δ + C θ; columns: b and z first, then B and C of each θ.
+    """Deviations from a motion, by row: δ' = A δ + b - B θ, z = H δ + C θ; columns: b and z, then B and C of each θ.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ def linearise(motion, record, plant, columns):
 
 
 def _over_a_step(rates, psi, h):
-    """What constant extra accelerations do over a step: (n, ..., 6) rates of the velocities to changes of the motion."""
+    """What constant extra accelerations do over a step: (n, ..., 6) rates to changes of the motion."""
     by = h * rates
     c, s = np.moveaxis(np.cos(psi), -1, 0), np.moveaxis(np.sin(psi), -1, 0)
     u, v = 0.5 * h * by[..., 3], 0.5 * h * by[..., 4]
@@ -243,6 +243,7 @@ def innovations(linear, noise, record, motion=None, *, keep=False):
         KL = PHt @ np.swapaxes(Li, -1, -2)
         x = x + KL @ w
         P = P - KL @ np.swapaxes(KL, -1, -2)
+        P = 0.5 * (P + np.swapaxes(P, -1, -2))
         if keep or motion is not None:
             kept.append((x[..., 0], P))
         if k < n - 1:

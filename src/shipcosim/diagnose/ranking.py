@@ -1,4 +1,4 @@
-"""Which causes explain a log: every cause is weighed, the likely ones are fitted, then a second is sought beside them."""
+"""Which causes explain a log: every cause is weighed, the likely ones are fitted, others are sought beside them."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -42,6 +42,8 @@ class Case:
     motion : Motion
     base : Linear, optional
         About the ship without a cause, with the columns of `basis`.
+    known_of : tuple of Suspect, optional
+        Suspects whose numbers are known within a tolerance, where those are more than `suspects`.
     """
 
     record: Any
@@ -50,6 +52,7 @@ class Case:
     noise: Any
     motion: Any
     base: Any = None
+    known_of: tuple = ()
 
     @property
     def basis(self):
@@ -66,9 +69,10 @@ class Case:
         """Columns of the numbers that are known within a tolerance, except those that these suspects turn."""
         taken = {path for suspect in suspects for knob in suspect.knobs for path in knob.paths}
         taken |= {path for suspect in suspects for path in suspect.effect.replaces}
-        taken |= {path for suspect in self.suspects for path in suspect.effect.companions}
+        everyone = self.known_of or self.suspects
+        taken |= {path for suspect in everyone for path in suspect.effect.companions}
         found = [Column({path: size}) for path, size in self.plant.tolerances.items() if path not in taken]
-        for suspect in self.suspects:
+        for suspect in everyone:
             for knob in suspect.knobs if suspect.effect.law == "linear" else ():
                 listed = all(path in self.plant.tolerances for path in knob.paths)
                 if knob.tolerance > 0.0 and not listed and not taken & set(knob.paths):
@@ -121,10 +125,10 @@ class Fit:
     neutral: Any = None
 
 
-def prepared(case):
+def prepared(case, rounds=3):
     """The case with its base: every column of the basis, about the motion smoothed without a cause."""
     motion = case.motion
-    for _ in range(3):
+    for _ in range(rounds):
         alone = linearise(motion, case.record, case.plant, [])
         motion = innovations(alone, case.noise, case.record, motion).motion
     base = linearise(motion, case.record, case.plant, [column.turns for column in case.basis])
@@ -225,32 +229,52 @@ def weighed(case, fit, only=None):
         Gain, suspect, first values of the numbers that it turns; best first.
     """
     wanted = [s for s in (only or case.suspects) if s not in fit.suspects]
-    groups = [(suspect, group) for suspect in wanted for group in probes(suspect)]
-    added = [column for _, group in groups for column in group]
-    columns = fit.columns + added
+    added = [column for suspect in wanted for group in probes(suspect) for column in group]
     linear = joined(fit.linear._replace(**_columns_of(case.base_of(added), fit.linear)), fit.linear)
     products = gram(innovations(linear, case.noise, case.record)).products
-    base = len(fit.columns)
-    prior = np.array([column.prior for column in columns])
-    prior[base:] = 0.0
-    centre = np.zeros(len(columns))
-    centre[:base] = _centre(fit.columns, fit.plant, case.plant)
-    nothing, place, tries = evidence(products, prior, centre)[0], base, {}
-    for suspect, group in groups:
-        mine = np.arange(place, place + len(group))
-        place += len(group)
-        here = prior.copy()
-        here[mine] = 1.0
-        taken = {path for column in group for path in column.turns}
-        here[[i for i, column in enumerate(fit.columns) if taken & set(column.turns)]] = 0.0
-        score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
-        values = {}
-        for i, column in zip(mine, group, strict=True):
-            for path, size in column.turns.items():
-                values[path] = values.get(path, fit.plant.get(path)) + theta[i] * size
-        tries.setdefault(suspect.label, (suspect, []))[1].append((score - nothing, values))
-    found = [(*_together(scores, suspect), suspect) for suspect, scores in tries.values()]
-    return [(gain, suspect, values) for gain, values, suspect in sorted(found, key=lambda entry: -entry[0])]
+    return gains(products, fit.columns, _centre(fit.columns, fit.plant, case.plant), wanted, fit.plant)
+
+
+def gains(products, columns, centre, wanted, plant):
+    """Gain in log-evidence of suspects, from the inner products of the log with some columns and with their probes.
+
+    Parameters
+    ----------
+    products : (1 + p, 1 + p) array
+        The log, then `columns`, then the probes of each wanted suspect in turn.
+    columns : list of Column
+    centre : array
+        θ of these columns that they were linearised about.
+    wanted : sequence of Suspect
+    plant : Plant
+        That they were linearised about.
+
+    Returns
+    -------
+    list of (float, Suspect, dict of str to float)
+        As `weighed`.
+    """
+    base = len(columns)
+    prior = np.concatenate([[column.prior for column in columns], np.zeros(len(products) - 1 - base)])
+    centre = np.concatenate([centre, np.zeros(prior.size - base)])
+    nothing, place, found = evidence(products, prior, centre)[0], base, []
+    for suspect in wanted:
+        tries = []
+        for group in probes(suspect):
+            here = prior.copy()
+            here[place : place + len(group)] = 1.0
+            taken = {path for column in group for path in column.turns} | set(suspect.effect.replaces)
+            here[[i for i, column in enumerate(columns) if taken & set(column.turns)]] = 0.0
+            score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
+            values = {}
+            for column, share in zip(group, theta[place : place + len(group)], strict=True):
+                for path, size in column.turns.items():
+                    values[path] = values.get(path, plant.get(path)) + share * size
+            tries.append((score - nothing, values))
+            place += len(group)
+        gain, values = _together(tries, suspect)
+        found.append((gain, suspect, values))
+    return sorted(found, key=lambda entry: -entry[0])
 
 
 def _together(tries, suspect):

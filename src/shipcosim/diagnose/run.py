@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from shipcosim.diagnose.drivers import suspected
 from shipcosim.diagnose.effects import read_catalogue, suspects
 from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.examine import examine
@@ -14,12 +15,15 @@ from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.nameless import unexplained
 from shipcosim.diagnose.noise import first_noise, tuned
+from shipcosim.diagnose.null import null_gains
 from shipcosim.diagnose.plant import plant_of
 from shipcosim.diagnose.ranking import Case, explain, fitted, prepared, probes, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
-from shipcosim.diagnose.verdict import judge, not_testable
+from shipcosim.diagnose.verdict import gained, judge, not_testable
 
+_FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
+_SURE = 100.0  # nats, far above what any healthy log gained
 _MOST_WALK = 3e-5  # m/s2.5: some 400 N on Gunnerus in ten minutes
 
 
@@ -37,7 +41,9 @@ class Details:
     fit : Fit
         The set of causes that the verdict rests on; empty where nothing is named.
     strange : dict of str to float
-        Gain of nameless forces beside it, by kind. [nats]
+        Gain of errors without a name beside it, by kind. [nats]
+    chance : dict of str to float
+        What its causes gain on healthy logs like this one; empty where they gain far more anyway. [nats]
     """
 
     log: Any
@@ -46,6 +52,7 @@ class Details:
     fits: list
     fit: Any
     strange: dict
+    chance: dict
 
 
 def diagnose(data, system, channels=None, effects=None):
@@ -75,15 +82,25 @@ def diagnose(data, system, channels=None, effects=None):
         log = read_log(data, channels)
         faults = examine(log)
         clean = repaired(log, faults)
-        case = prepare(clean, plant_of(system), read_catalogue(effects))
+        plant, catalogue = plant_of(system), read_catalogue(effects)
+        case = prepare(clean, plant, catalogue)
         fits = explain(case)
+        for _ in range(2 if fits[0].suspects else 0):
+            better = _with_right_drivers(clean, case, fits, plant, catalogue)
+            if better is None:
+                break
+            fault, clean, case, fits = better
+            faults.append(fault)
         strange = {}
 
         def beside(fit):
             strange.update(unexplained(case, fit))
             return strange
 
-        judgement = judge(case, fits, beside)
+        judgement = judge(fits, beside)
+        chance = _by_chance(case, judgement.fit, fits)
+        if chance:
+            judgement = judge(fits, beside, chance)
         verdict = "named" if faults and judgement.verdict == "consistent" else judgement.verdict
         diagnosis = Diagnosis(
             verdict,
@@ -92,10 +109,28 @@ def diagnose(data, system, channels=None, effects=None):
             judgement.indistinguishable,
             _not_testable(case, fits),
         )
-        return diagnosis, Details(log, clean, case, fits, judgement.fit, strange)
+        return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
 
 
-def prepare(clean, plant, catalogue):
+def _by_chance(case, fit, fits):
+    """What the causes of a fit gain on healthy logs like this one, where that could matter; mean and three deviations."""
+    if not any(gained(suspect, fit, fits) < _SURE for suspect in fit.suspects):
+        return {}
+    found = null_gains(case, fit.motion, fit.suspects)
+    return {label: float(max(values.mean() + 3.0 * values.std(), values.max())) for label, values in found.items()}
+
+
+def _with_right_drivers(clean, case, fits, plant, catalogue):
+    """The likeliest fault of thrusters' or the wind's channels, and all with it put right; None if there is none."""
+    for _, fault, right in suspected(clean, case)[:2]:
+        again = prepare(right, plant, catalogue, case.noise)
+        better = explain(again)
+        if better[0].score > fits[0].score + _FAULT:
+            return fault, right, again, better
+    return None
+
+
+def prepare(clean, plant, catalogue, noise=None):
     """The case of a repaired log: noise tuned beside whatever explains it best at first sight.
 
     Parameters
@@ -103,6 +138,8 @@ def prepare(clean, plant, catalogue):
     clean : xarray.Dataset
     plant : Plant
     catalogue : dict of str to Effect
+    noise : Noise, optional
+        Where it is known already.
 
     Returns
     -------
@@ -111,14 +148,16 @@ def prepare(clean, plant, catalogue):
     plant = replace(plant, span=(float(clean["time"][0]), float(clean["time"][-1])))
     plant = replace(plant, wind_is_true="wind_speed" not in clean and "true_wind_speed" in clean)
     record, length = record_of(clean, plant), plant.parts["hull"].length
-    noise = first_noise(record, length)
-    case = prepared(Case(record, plant, tuple(suspects(catalogue, plant)), noise, first_motion(record, plant)))
+    start = first_noise(record, length) if noise is None else noise
+    case = prepared(Case(record, plant, tuple(suspects(catalogue, plant)), start, first_motion(record, plant)))
+    if noise is not None:
+        return case
     fit = fitted(case)
     gain, suspect, values = weighed(case, fit)[0]
     if gain > 3.0:
         fit = fitted(case, (suspect,), values)
     most = _MOST_WALK * np.array([1.0, 1.0, 4.0 / length])
-    noise = tuned(noise, fit.linear, record, fit.left, most_walk=most)
+    noise = tuned(start, fit.linear, record, fit.left, most_walk=most)
     return prepared(replace(case, noise=noise))
 
 

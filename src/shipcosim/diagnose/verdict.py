@@ -14,8 +14,9 @@ APART = 3.0
 """Sets of causes closer than this cannot be told apart. [nats]"""
 TESTABLE = 8.0
 """What a cause of typical size would have to gain, or this log could not have shown it. [nats]"""
-STRANGE = 12.0
-"""A force without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
+STRANGE = 6.0
+"""An error without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
+_ROUGH = 0.02  # of the gain of large causes, whose laws are never that exact
 
 
 @dataclass(frozen=True)
@@ -38,33 +39,29 @@ class Judgement:
     indistinguishable: tuple
 
 
-def judge(case, fits, strange, margin=0.0):
+def judge(fits, strange, chance=None):
     """The verdict on a log.
 
     Parameters
     ----------
-    case : Case
     fits : list of Fit
         Of `explain`.
     strange : callable
         Gives the gain of nameless forces beside a fit, as `unexplained` does.
-    margin : float
-        What healthy logs like this one gain by chance. [nats]
+    chance : dict of str to float, optional
+        What each suspect gains on healthy logs like this one, by label. [nats]
 
     Returns
     -------
     Judgement
     """
     nothing = next(fit for fit in fits if not fit.suspects)
-    bar = nothing.score + ENOUGH + margin
-    fair = [fit for fit in fits if not fit.suspects or (fit.score > bar and admissible(fit, fits, margin))]
-    best = max(fair, key=lambda fit: fit.score if fit.suspects else nothing.score + ENOUGH + margin)
-    scores = {fit: fit.score - (0.0 if fit.suspects else -ENOUGH) for fit in fair}
-    weights = _weights(list(scores.values()))
-    chances = dict(zip(scores, weights, strict=True))
-    candidates = _candidates(chances)
+    fair = [fit for fit in fits if not fit.suspects or admissible(fit, fits, chance or {})]
+    best = max(fair, key=lambda fit: fit.score)
+    scores = [fit.score if fit.suspects else fit.score + ENOUGH for fit in fair]
+    candidates = _candidates(dict(zip(fair, _weights(scores), strict=True)))
     odd = max(strange(best).values())
-    if odd > STRANGE + margin and odd > 0.02 * (best.score - nothing.score):
+    if odd > max(STRANGE, _ROUGH * (best.score - nothing.score)):
         return Judgement("unknown", best, (), candidates, ())
     if not best.suspects:
         return Judgement("consistent", best, (), candidates, ())
@@ -88,8 +85,8 @@ def _label(entry):
     return f"{entry.cause} of {entry.component}" if entry.component else entry.cause
 
 
-def admissible(fit, fits, margin):
-    """Whether each cause of a set is large enough to matter, within its bounds, and needed."""
+def admissible(fit, fits, chance):
+    """Whether each cause of a set is large enough to matter, within its bounds, and gains more than by chance."""
     for suspect in fit.suspects:
         size = np.hypot.reduce([(fit.values[k.paths[0]] - k.neutral) / k.typical for k in suspect.knobs])
         sure = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in suspect.knobs]) / np.sqrt(len(suspect.knobs))
@@ -98,11 +95,16 @@ def admissible(fit, fits, margin):
         )
         if size < suspect.effect.least or size < 3.0 * sure or at_bound:
             return False
-        rest = frozenset(s.label for s in fit.suspects if s is not suspect)
-        without = [other.score for other in fits if frozenset(labels(other)) == rest]
-        if without and fit.score < max(without) + ENOUGH + margin:
+        if gained(suspect, fit, fits) < ENOUGH + max(chance.get(suspect.label, 0.0), 0.0):
             return False
     return True
+
+
+def gained(suspect, fit, fits):
+    """What a cause gains in a set, against the set without it. [nats]"""
+    rest = frozenset(s.label for s in fit.suspects if s is not suspect)
+    without = [other.score for other in fits if frozenset(labels(other)) == rest]
+    return fit.score - max(without, default=-np.inf)
 
 
 def _weights(scores):

@@ -1,0 +1,108 @@
+"""Channels of thrusters and wind that are not what they are labelled: only the ship's answer can tell.
+
+Each way in which they could be wrong is undone, over all the log, and the likelihood row by row compared with that of
+the log as it is: where the difference adds up most is the segment in which they are wrong.
+"""
+
+from itertools import combinations
+
+import numpy as np
+
+from shipcosim.diagnose.evidence import evidence, gram
+from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.linear import innovations, linearise
+from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, undone
+from shipcosim.diagnose.record import record_of
+
+_SHORTEST = 60.0  # s
+_WHOLE = 0.85  # of the log
+
+
+def suspected(clean, case):
+    """Drivers that could be wrong, likeliest first.
+
+    Parameters
+    ----------
+    clean : xarray.Dataset
+        Repaired log.
+    case : Case
+        Of it.
+
+    Returns
+    -------
+    list of (float, Finding, xarray.Dataset)
+        Gain in log-likelihood [nats], what would be wrong, and the log with it put right.
+    """
+    base, found = _by_row(case, case.record), []
+    for mislabel in _mislabels(clean, case.plant):
+        gain = _by_row(case, record_of(_put_right(clean, mislabel, ()), case.plant)) - base
+        first, last, total = _best_run(gain, round(_SHORTEST / case.record.step))
+        if total > 10.0:
+            time = clean["time"].values
+            whole = last - first > _WHOLE * time.size
+            segments = () if whole else ((float(time[first]), float(time[last])),)
+            finding = Finding(
+                mislabel.cause, None, "data", 0.99, {}, segments, mislabel.channels, note=mislabel.sentence
+            )
+            found.append((total, finding, _put_right(clean, mislabel, segments)))
+    return sorted(found, key=lambda entry: -entry[0])
+
+
+def _mislabels(clean, plant):
+    """Every way in which channels of thrusters and wind could be wrong."""
+    found = []
+    for one, other in combinations(plant.thrusters, 2):
+        pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "azimuth")]
+        pairs = [pair for pair in pairs if pair[0] in clean and pair[1] in clean]
+        if type(plant.parts[one]) is type(plant.parts[other]):
+            for group in [pairs] if len(pairs) == 1 else [pairs, pairs[1:]]:
+                found.append(_swapped(group)) if group else None
+    for name in plant.thrusters:
+        found += [_negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in clean]
+    if "wind_from" in clean:
+        found.append(_negative("wind_from"))
+        found += [m for m in WIND_LABELS if all(c in clean for c in (*m.channels, "heading", "surge", "sway"))]
+    return found
+
+
+def _swapped(pairs):
+    def undo(log):
+        return {a: log[b] for a, b in pairs} | {b: log[a] for a, b in pairs}
+
+    channels = tuple(role for side in zip(*pairs, strict=True) for role in side)
+    names = " and ".join(" with ".join(pair) for pair in pairs)
+    return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
+
+
+def _negative(role):
+    return Mislabel("sign", (role,), f"{role} has the other sign", lambda log: {role: -log[role]})
+
+
+def _put_right(clean, mislabel, segments):
+    """The log with a fault of labels undone, in segments or everywhere."""
+    table = {"time": clean["time"].values} | {str(name): clean[name].values for name in clean.data_vars}
+    fixed = undone(table, mislabel, segments)
+    return clean.assign({role: clean[role].copy(data=fixed[role]) for role in mislabel.channels})
+
+
+def _by_row(case, record):
+    """Log-likelihood of each row, known numbers fitted within their tolerances."""
+    columns = case.known(())
+    linear = linearise(case.motion, record, case.plant, [column.turns for column in columns])
+    found = innovations(linear, case.noise, record)
+    theta = evidence(gram(found).products, np.ones(len(columns)))[1]
+    left = found.white[..., 0] - found.white[..., 1:] @ theta
+    return -0.5 * ((left**2).sum(-1) + found.log_determinant)
+
+
+def _best_run(gain, least):
+    """First and last row of the run of at least `least` rows whose gains add up to most, and the sum."""
+    total = np.concatenate([[0.0], np.cumsum(gain)])
+    lowest, first, best = 0, 0, (0, 0, -np.inf)
+    for last in range(least, gain.size + 1):
+        if total[last - least] < total[lowest]:
+            lowest = last - least
+        first = lowest
+        if total[last] - total[first] > best[2]:
+            best = (first, last - 1, float(total[last] - total[first]))
+    return best
