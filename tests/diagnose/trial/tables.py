@@ -122,7 +122,7 @@ def _seconds(pairs):
 
 ROWS = (
     Row("right cause named", "one", ("98", "88", "as honest"), _right),
-    Row("right, or said not testable", "one", ("", "", ""), lambda r, s: s.right or (s.excused and not s.named)),
+    Row("right, or said not testable", "one", ("", "", ""), lambda r, s: s.right or (s.excused and not s.alarm)),
     Row(
         "in the reported set (before any manoeuvre)", "one", ("", "", ""), lambda r, s: s.contained if s.alarm else None
     ),
