@@ -55,7 +55,7 @@ class Details:
     chance: dict
 
 
-def diagnose(data, system, channels=None, effects=None):
+def diagnose(data, system, channels=None, effects=None, progress=None):
     """Diagnose a log.
 
     Parameters
@@ -68,6 +68,8 @@ def diagnose(data, system, channels=None, effects=None):
         Channel file.
     effects : path, optional
         Folder with further causes.
+    progress : callable, optional
+        Called with what is being done, in words.
 
     Returns
     -------
@@ -78,11 +80,14 @@ def diagnose(data, system, channels=None, effects=None):
     ShipcosimError
         Data, system or causes that cannot be used.
     """
+    say = progress or (lambda _: None)
     with threadpool_limits(1):  # many small matrices: threads would only wait for each other
+        say("is the log right?")
         log = read_log(data, channels)
         faults = examine(log)
         clean = repaired(log, faults)
         plant, catalogue = plant_of(system), read_catalogue(effects)
+        say("which causes explain it?")
         case = prepare(clean, plant, catalogue)
         fits = explain(case)
         for _ in range(2 if fits[0].suspects else 0):
@@ -91,6 +96,7 @@ def diagnose(data, system, channels=None, effects=None):
                 break
             fault, clean, case, fits = better
             faults.append(fault)
+        say("what do healthy ships look like?")
         strange = {}
 
         def beside(fit):
