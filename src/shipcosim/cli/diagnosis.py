@@ -13,7 +13,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 DEFAULT_SYSTEM = "gunnerus_open"
 FILES = ("diagnosis.json", "report.html", "extended.ssp", "extended.ssv")
 LINKS = (
-    "1 of 5: is the log right, and which causes explain it",
+    "1 of 5",
     "2 of 5: what does the simulation get wrong",
     "3 of 5: extending the system",
     "4 of 5: the gain, by co-simulation",
@@ -94,7 +94,8 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
     with _progress() as link:
         link(LINKS[0])
         with _named_by(data):
-            diagnosis, details = diagnose(data, ship, channels, effects)
+            say = lambda doing: link(f"{LINKS[0]}: {doing}")  # noqa: E731
+            diagnosis, details = diagnose(data, ship, channels, effects, say)
         link(LINKS[1])
         story = _with_errors(Story(diagnosis, details, Path(data).name, ship))
         with staged(folder) as stage:

@@ -69,9 +69,15 @@ class Story:
 
     @property
     def notes(self):
-        """What is not as a log should be and was handled, what could not be known, what did not work."""
-        details = self.details
-        return [*remarks(details.log), *details.case.record.remarks, *self.remarks]
+        """What could not be known from this log, and what did not work."""
+        return [*self.details.case.record.remarks, *self.remarks]
+
+    @property
+    def handled(self):
+        """What is ordinary in a log and was handled without being a fault."""
+        log = self.details.log
+        unused = ", ".join(map(str, log.attrs.get("unused_columns", ())))
+        return [*remarks(log), *([f"Columns without a role are not used: {unused}."] if unused else [])]
 
     @property
     def errors(self):

@@ -125,7 +125,7 @@ def whiteness(case, fit, as_it_is=False):
     return found
 
 
-def whiteness_panel(heading, correlation, step, rows, highest):
+def whiteness_panel(heading, correlation, step, rows, between):
     """Autocorrelation of all channels over the lag, with the band of white noise."""
     lag = step * np.arange(1, LAGS + 1)
     traces = [
@@ -135,7 +135,7 @@ def whiteness_panel(heading, correlation, step, rows, highest):
     ]
     band = {"type": "rect", "x0": 0, "x1": 1, "xref": "paper", "y0": -2 / np.sqrt(rows), "y1": 2 / np.sqrt(rows)}
     shape = {**band, "layer": "below", "fillcolor": "@band", "line": {"width": 0}}
-    axes = {"xaxis": TIME, "yaxis": {"range": [-1.05 * highest, 1.05 * highest]}}
+    axes = {"xaxis": TIME, "yaxis": {"range": between}}
     note = "Autocorrelation of the whitened innovations; inside the band they are as white as noise."
     return panel(f"White? {heading}", "", traces, note, shapes=[shape], **axes)
 

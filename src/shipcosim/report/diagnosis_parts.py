@@ -51,6 +51,11 @@ def listed(texts):
     return f"<ul>{''.join(f'<li>{escape(text)}</li>' for text in texts)}</ul>" if texts else ""
 
 
+def folded(title, texts):
+    """Remarks to unfold."""
+    return f"<details><summary>{escape(title)} ({len(texts)})</summary>{listed(texts)}</details>" if texts else ""
+
+
 def table(head, rows, tight=()):
     """A table that scrolls by itself where it is too wide; columns in `tight` do not wrap."""
     if not rows:

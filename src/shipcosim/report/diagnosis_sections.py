@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from shipcosim.diagnose.verdict import gained
 from shipcosim.report import diagnosis_causes as causes
 from shipcosim.report import diagnosis_error as error
 from shipcosim.report import diagnosis_parts as parts
@@ -23,9 +24,6 @@ def data_section(story, figures):
         if faults
         else "Position, velocity, heading and rate of turn agree with each other, and so do the clocks."
     )
-    notes = list(story.notes)
-    if unused := details.log.attrs.get("unused_columns"):
-        notes.append(f"Columns without a role are not used: {', '.join(map(str, unused))}.")
     panels = [track_panel(details.clean), *log_panels(details.log, details.clean, story.diagnosis.findings)]
     head = ["Fault", "Channels", "Where", "What", "Done about it"]
     return parts.section(
@@ -33,8 +31,9 @@ def data_section(story, figures):
         "1 Is the log right?",
         parts.lead(text),
         parts.table(head, rows),
-        parts.listed(notes),
+        parts.listed(story.notes),
         figures.grid(panels),
+        parts.folded("Ordinary, and handled", story.handled),
     )
 
 
@@ -79,7 +78,7 @@ def causes_section(story, figures):
         "Every cause of the catalogue, alone and with others, was fitted to the whole log, while every coefficient of "
         "the ship stayed free within its tolerance."
     )
-    content = [parts.lead(text), _estimates(story)]
+    content = [parts.lead(text), _estimates(story), _stands_out(story)]
     panels = [causes.evidence_panel(details.fits, fit)] if len(details.fits) > 1 else []
     panels += [causes.estimate_panel(fit)] if fit.suspects else []
     content.append(figures.grid(panels))
@@ -88,9 +87,10 @@ def causes_section(story, figures):
     shown = {"Before: the plain model": causes.whiteness(case, nothing, as_it_is=True)}
     if fit.suspects:
         shown["After: with the causes"] = causes.whiteness(case, fit)
-    highest = max([0.2, *(float(np.nanmax(np.abs(found), initial=0.0)) for found in shown.values())])
+    low, high = (pick(list(shown.values())) for pick in (np.nanmin, np.nanmax))
+    between = [min(-0.2, 1.05 * float(low)), max(0.2, 1.05 * float(high))]
     step, rows = case.record.step, case.record.time.size
-    panels = [causes.whiteness_panel(name, found, step, rows, highest) for name, found in shown.items()]
+    panels = [causes.whiteness_panel(name, found, step, rows, between) for name, found in shown.items()]
     content.append(figures.grid(panels))
     content.append(_alike(diagnosis))
     if diagnosis.not_testable:
@@ -108,6 +108,20 @@ def _estimates(story):
                 chance = f"{100 * finding.probability:.0f} %"
                 rows.append((title(finding.cause, finding.component), name, value, f"± {std}", unit, chance))
     return parts.table(["Cause", "Parameter", "Estimate", "Std", "Unit", "Probability"], rows, tight=range(1, 6))
+
+
+def _stands_out(story):
+    """What each cause gains, beside what it gains by chance on healthy ships."""
+    details = story.details
+    rows = []
+    for suspect in details.fit.suspects:
+        chance = details.chance.get(suspect.label)
+        by_chance = "far above what healthy ships show" if chance is None else f"up to {plain(chance, 2)} nats"
+        rows.append(
+            (title(suspect.cause, suspect.component), plain(gained(suspect, details.fit, details.fits)), by_chance)
+        )
+    head = ["Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track"]
+    return parts.table(head, rows, tight=(1,))
 
 
 def _alike(diagnosis):
