@@ -114,6 +114,8 @@ def linearise(motion, record, plant, columns):
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
     middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
+    transition = _transition(middle, record, plant)
+    over_a_step = 0.5 * record.step * (transition[..., :6, :6] + np.eye(6))
     for j, turns in enumerate(columns, start=1):
         up, down = (
             plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
@@ -121,23 +123,12 @@ def linearise(motion, record, plant, columns):
         )
         if any(not path.startswith("instruments.") or path.endswith("_lag") for path in turns):
             rates = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
-            driven[..., :6, j] = _over_a_step(_slope(*rates), middle.psi, record.step)
+            driven[..., :6, j] = (over_a_step @ _slope(*rates)[..., None])[..., 0]
         else:
             out[..., j] = _slope(shown(motion, up), shown(motion, down))
     unknown = ~record.known[:-1]
     driven[unknown] = 0.0
-    return Linear(
-        _transition(middle, record, plant), driven, _output(motion, seen, plant), out * whole[..., None], whole
-    )
-
-
-def _over_a_step(rates, psi, h):
-    """What constant extra accelerations do over a step: (n, ..., 6) rates to changes of the motion."""
-    by = h * rates
-    c, s = np.moveaxis(np.cos(psi), -1, 0), np.moveaxis(np.sin(psi), -1, 0)
-    u, v = 0.5 * h * by[..., 3], 0.5 * h * by[..., 4]
-    by[..., 0], by[..., 1], by[..., 2] = c * u - s * v, s * u + c * v, 0.5 * h * by[..., 5]
-    return by
+    return Linear(transition, driven, _output(motion, seen, plant), out * whole[..., None], whole)
 
 
 def _slope(one, other):
