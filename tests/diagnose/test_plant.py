@@ -73,7 +73,7 @@ def drivers(table, rows=slice(None)):
 
 
 def test_forces_are_those_of_the_fmus(sailed):
-    """Thrusters put out a step later what the ship's motion made of them; the neighbour's channel a step later still."""
+    """Thrusters put out a step later what the ship's motion makes of them, the neighbour's channel another later."""
     table, plant = sailed
     found = loads(motion(table), drivers(table), plant)
     for name in plant.thrusters:

@@ -1,4 +1,4 @@
-"""A log as arrays: even, in SI, with nothing made up where nothing is known, and late channels put where they belong."""
+"""A log as arrays: even, in SI, nothing made up where nothing is known, late channels put where they belong."""
 
 from dataclasses import replace
 
