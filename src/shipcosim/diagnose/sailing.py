@@ -1,0 +1,180 @@
+"""Ships that keep to a track under a DP, many at once, in array form.
+
+Feedback is what a bridge would add to thrusters that are already told something: the logged speeds and directions, or
+those of a planned manoeuvre.
+"""
+
+import numpy as np
+
+from shipcosim.diagnose.plant import Drivers, Motion, motion_rates
+from shipcosim.models.thruster import AzimuthParameters
+
+_FREQUENCY = 0.5  # rad/s times the square root of the length in m over gravity, of the DP: 0.09 rad/s on Gunnerus
+_DAMPING = 0.8
+_INTEGRAL = 0.1  # of the frequency
+_ACROSS = 0.2  # how readily a unit turns, against how readily it changes its speed
+_ANSWER = 4.0  # s, until the thrusters of a ship of 33.9 m do as told; others by the root of their length
+
+
+def sailed(ships, count, track, record, dp, *, jolts=None, free=None):
+    """Motion and thrusters of ships that a DP brings along a track.
+
+    Parameters
+    ----------
+    ships : Plant
+        The real ships; its numbers may be (m,) arrays.
+    count : int
+        Number of ships m.
+    track : Motion
+        (n,) or (m, n) arrays.
+    record : Record
+        What the thrusters are told anyway, (n,) or (m, n) arrays, and the wind.
+    dp : Dp
+    jolts : (n, 3, m) array, optional
+        Changes of velocity at each row. [m/s, m/s, rad/s]
+    free : (n,) or (m, n) bool array, optional
+        Where the DP is off.
+
+    Returns
+    -------
+    tuple of Motion, dict of str to tuple of two arrays
+        Motion, and speed and direction by thruster; (m, n) arrays.
+    """
+    h, n = record.step, record.time.size
+    base = [record.drivers(ships, share) for share in (0.0, 0.5)]
+    ship = Motion(*(np.zeros(count) + value[..., 0] for value in track))
+    integral, told = np.zeros((3, count)), {name: np.zeros((2, count)) for name in ships.thrusters}
+    rows, units = [], {name: [] for name in ships.thrusters}
+    for k in range(n):
+        rows.append(ship)
+        load, new = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
+        if free is not None:
+            load, new = np.where(free[..., k], 0.0, load), np.where(free[..., k], integral, new)
+        integral = new
+        told = dp.answer(told, load, record, k)
+        for name, pair in dp.speeds(told, record, k).items():
+            units[name].append(pair)
+        if k < n - 1:
+            ship = _moved(ship, base, k, {name: series[-1] for name, series in units.items()}, ships, h)
+            if jolts is not None:
+                ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
+    motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
+    series = {name: tuple(np.stack(s, axis=-1) for s in zip(*pairs, strict=True)) for name, pairs in units.items()}
+    return motion, series
+
+
+def _moved(ship, base, k, units, plant, h):
+    """The ships a step later, by the middle of the step."""
+
+    def at(drivers):
+        wind = (None, None) if drivers.wind_speed is None else (drivers.wind_speed[..., k], drivers.wind_from[..., k])
+        return Drivers(drivers.time[k], units, *wind)
+
+    first = motion_rates(ship, at(base[0]), plant)
+    middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(ship, first, strict=True)))
+    rates = motion_rates(middle, at(base[1]), plant)
+    return Motion(*(value + h * rate for value, rate in zip(ship, rates, strict=True)))
+
+
+class Dp:
+    """Proportional, derivative and slow integral action, shared out to the thrusters that the ship has.
+
+    Parameters
+    ----------
+    plant : Plant
+        The ship as the DP knows her.
+    h : float
+        Step. [s]
+    fixed : collection of str
+        Azimuth thrusters that cannot turn.
+    """
+
+    def __init__(self, plant, h, fixed=()):
+        hull = plant.parts["hull"]
+        self.h, self.plant, self.fixed = h, plant, fixed
+        self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
+        self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
+        self.mass = np.array([hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66])
+        self.most = 0.05 * self.mass * np.array([1.0, 1.0, 4.0 / hull.length])
+
+    def load(self, ship, want, integral):
+        """Load that brings the ships back to the track, in their body frames; and the integral action."""
+        c, s = np.cos(ship.psi), np.sin(ship.psi)
+        dx, dy = want.x - ship.x, want.y - ship.y
+        error = np.stack([c * dx + s * dy, c * dy - s * dx, want.psi - ship.psi])
+        rate = np.stack([want.u - ship.u, want.v - ship.v, want.r - ship.r])
+        w = self.frequency
+        integral = integral + self.h * _INTEGRAL * w * w * w * error
+        wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
+        return np.clip(wanted, -self.most[:, None], self.most[:, None]), integral
+
+    def answer(self, told, load, record, k):
+        """Change of each thruster's force along and across its axis, after a step."""
+        forces = self.shared(load, {name: record.units[name][1][..., k] for name in told})
+        share = min(self.h / self.delay, 1.0)
+        return {name: value + share * (forces[name] - value) for name, value in told.items()}
+
+    def shared(self, load, azimuths, left=()):
+        """A load on the ship as forces along and across the axes of her thrusters.
+
+        Parameters
+        ----------
+        load : (3, m) array
+        azimuths : dict of str to float or (m,) array
+            Where each thruster points.
+        left : collection of str
+            Thrusters that take no part.
+
+        Returns
+        -------
+        dict of str to (2, m) array
+            [N]
+        """
+        columns, places = [], []
+        for name, azimuth in azimuths.items():
+            unit = self.plant.parts[name]
+            turns = isinstance(unit, AzimuthParameters)
+            angle = (azimuth if turns else 0.5 * np.pi) + np.zeros(np.shape(azimuth))
+            for i in range(2 if turns and name not in self.fixed else 1):
+                c, s = np.cos(angle + 0.5 * np.pi * i), np.sin(angle + 0.5 * np.pi * i)
+                ease = 0.0 if name in left else _ACROSS if i else 1.0
+                columns.append(ease * np.stack([c, s, unit.x * s - getattr(unit, "y", 0.0) * c], axis=-1))
+                places.append((name, i, ease))
+        scale = np.array([1.0, 1.0, 4.0 / self.plant.parts["hull"].length])
+        B = scale[:, None] * np.stack(np.broadcast_arrays(*columns), axis=-1)
+        Bt = np.swapaxes(B, -1, -2)
+        inner = np.linalg.solve(B @ Bt + 1e-2 * np.eye(3), (scale[:, None] * load).T[..., None])
+        forces = (Bt @ inner)[..., 0].T
+        found = {name: np.zeros((2, load.shape[1])) for name in azimuths}
+        for (name, i, ease), force in zip(places, forces, strict=True):
+            found[name][i] = ease * force
+        return found
+
+    def speeds(self, told, record, k):
+        """Speed and direction of each thruster: those that it is told anyway, changed by what the DP adds."""
+        found = {}
+        for name, (along, across) in told.items():
+            unit, n, azimuth = self.plant.parts[name], record.units[name][0][..., k], record.units[name][1][..., k]
+            size, most = self.force(name, n) + along, unit.rpm_max / 60.0
+            turn = 0.0
+            if isinstance(unit, AzimuthParameters):
+                # a unit that hardly pushes cannot be told by its direction: it keeps it
+                turn = np.clip(across / np.maximum(np.abs(size), 0.02 * self.force(name, most)), -0.5, 0.5)
+            found[name] = np.clip(self.speed(name, size), -most, most), azimuth + turn * np.sign(size)
+        return found
+
+    def force(self, name, n):
+        """Bollard thrust of a thruster at a speed in rev/s. [N]"""
+        ahead, astern = self._bollard(name)
+        return np.where(n >= 0, ahead, astern) * n * np.abs(n)
+
+    def speed(self, name, force):
+        """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
+        ahead, astern = self._bollard(name)
+        return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, ahead, astern))
+
+    def _bollard(self, name):
+        unit = self.plant.parts[name]
+        if isinstance(unit, AzimuthParameters):
+            return unit.bollard[:2]
+        return (3600.0 * unit.thrust_coefficient,) * 2
