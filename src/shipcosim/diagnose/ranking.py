@@ -142,12 +142,12 @@ def joined(linear, known):
     return linear._replace(driven=driven, seen=seen)
 
 
-def _columns_of(extra, linear):
-    """Columns of one problem behind the first column of another."""
-    return {
-        name: np.concatenate([getattr(linear, name)[..., :1], getattr(extra, name)[..., 1:]], axis=-1)
-        for name in ("driven", "seen")
-    }
+def beside(linear, extra):
+    """A problem with the columns of another behind its own."""
+    return linear._replace(
+        driven=np.concatenate([linear.driven, extra.driven[..., 1:]], axis=-1),
+        seen=np.concatenate([linear.seen, extra.seen[..., 1:]], axis=-1),
+    )
 
 
 def _key(column):
@@ -230,7 +230,7 @@ def weighed(case, fit, only=None):
     """
     wanted = [s for s in (only or case.suspects) if s not in fit.suspects]
     added = [column for suspect in wanted for group in probes(suspect) for column in group]
-    linear = joined(fit.linear._replace(**_columns_of(case.base_of(added), fit.linear)), fit.linear)
+    linear = beside(fit.linear, case.base_of(added))
     products = gram(innovations(linear, case.noise, case.record)).products
     return gains(products, fit.columns, _centre(fit.columns, fit.plant, case.plant), wanted, fit.plant)
 

@@ -16,11 +16,12 @@ from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.nameless import unexplained
 from shipcosim.diagnose.noise import first_noise, tuned
 from shipcosim.diagnose.null import null_gains
+from shipcosim.diagnose.onset import from_onset
 from shipcosim.diagnose.plant import plant_of
 from shipcosim.diagnose.ranking import Case, explain, fitted, prepared, probes, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
-from shipcosim.diagnose.verdict import gained, judge, not_testable
+from shipcosim.diagnose.verdict import STRANGE, gained, judge, not_testable
 
 _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
 _SURE = 100.0  # nats, far above what any healthy log gained
@@ -97,6 +98,11 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
             fault, clean, case, fits = better
             faults.append(fault)
         say("what do healthy ships look like?")
+        began = None
+        if fits[0].suspects or max(unexplained(case, fits[0]).values()) > STRANGE:
+            later = from_onset(clean, case, fits, lambda part: prepare(part, plant, catalogue, case.noise))
+            if later is not None:
+                began, clean, case, fits = later
         strange = {}
 
         def beside(fit):
@@ -110,7 +116,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         verdict = "named" if faults and judgement.verdict == "consistent" else judgement.verdict
         diagnosis = Diagnosis(
             verdict,
-            (*faults, *judgement.findings),
+            (*faults, *(replace(finding, onset=began) for finding in judgement.findings)),
             judgement.candidates,
             judgement.indistinguishable,
             _not_testable(case, fits),
@@ -119,7 +125,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
 
 
 def _by_chance(case, fit, fits):
-    """What the causes of a fit gain on healthy logs like this one, where that could matter; mean and three deviations."""
+    """What causes gain on healthy logs like this one, where that could matter: mean and three deviations."""
     if not any(gained(suspect, fit, fits) < _SURE for suspect in fit.suspects):
         return {}
     found = null_gains(case, fit.motion, fit.suspects)
