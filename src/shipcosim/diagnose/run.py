@@ -18,6 +18,7 @@ from shipcosim.diagnose.noise import first_noise, tuned
 from shipcosim.diagnose.null import null_gains
 from shipcosim.diagnose.onset import from_onset
 from shipcosim.diagnose.plant import plant_of
+from shipcosim.diagnose.prescription import prescribe
 from shipcosim.diagnose.ranking import Case, explain, fitted, prepared, probes, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
@@ -120,6 +121,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
             judgement.candidates,
             judgement.indistinguishable,
             _not_testable(case, fits),
+            prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals else None,
         )
         return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
 

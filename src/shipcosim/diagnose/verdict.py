@@ -30,6 +30,8 @@ class Judgement:
         The set of causes that is taken to be there; may be empty.
     findings : tuple of Finding
     candidates, indistinguishable : tuple of Candidate
+    rivals : tuple of Fit
+        Sets that cannot be told from `fit`.
     """
 
     verdict: str
@@ -37,6 +39,7 @@ class Judgement:
     findings: tuple
     candidates: tuple
     indistinguishable: tuple
+    rivals: tuple = ()
 
 
 def judge(fits, strange, chance=None):
@@ -73,7 +76,7 @@ def judge(fits, strange, chance=None):
         same = tuple(c for c in candidates if _label(c) in named)
         shared = set(labels(best)).intersection(*(labels(fit) for fit in rivals))
         findings = tuple(f for f in findings if _label(f) in shared)
-        return Judgement("ambiguous", best, findings, candidates, same)
+        return Judgement("ambiguous", best, findings, candidates, same, tuple(rivals))
     return Judgement("named", best, findings, candidates, ())
 
 
