@@ -32,9 +32,10 @@ def first_noise(record, length):
     Noise
     """
     third = np.diff(record.measured, 3, axis=-2)
-    white = np.sqrt(np.nanmedian(third**2, axis=-2) / 0.455 / 20.0)
+    silent = ~np.isfinite(third).any(axis=-2, keepdims=True)
+    white = np.sqrt(np.nanmedian(np.where(silent, 0.0, third**2), axis=-2) / 0.455 / 20.0)
     least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])
-    white = np.where(np.isfinite(white), np.maximum(white, least), 1.0)
+    white = np.where(silent[..., 0, :], 1.0, np.maximum(white, least))
     turning = 4.0 / length  # 1/m, from accelerations to those in yaw
     return Noise(white, np.array([1e-3, 1e-3, 1e-3 * turning]), np.array([1e-5, 1e-5, 1e-5 * turning]))
 
