@@ -250,22 +250,10 @@ def test_a_level_alone_is_filtered_as_in_the_textbook():
         x, P = x + P / S * (level[k] - x), P - P * P / S + Q
 
 
-def drawn(seed, linear, noise, record):
-    """Measurements drawn from the model itself, as the problem's first column."""
-    random, n = np.random.default_rng(seed), record.time.size
-    root = np.sqrt(np.diag(_process(noise, record.step)))
-    x, rows = np.linalg.cholesky(_uncertain(noise, ())) @ random.standard_normal(STATES), []
-    for k in range(n):
-        rows.append(linear.output[k] @ x + noise.white * random.standard_normal(6))
-        if k < n - 1:
-            x = linear.transition[k] @ x + root * random.standard_normal(STATES)
-    return linear._replace(driven=np.zeros((n - 1, STATES, 1)), seen=np.stack(rows)[..., None])
-
-
 def test_innovations_of_what_the_model_draws_are_white_and_of_unit_variance():
     """Five deviations: 361 rows leave 0.07 in a variance and 0.05 in a correlation."""
     record, _, _, linear = about()
-    white = innovations(drawn(6, linear, NOISE, record), NOISE, record).white[..., 0]
+    white = innovations(twin.drawn(6, linear, NOISE, record), NOISE, record).white[..., 0]
     assert np.abs((white**2).mean(0) - 1.0).max() < 0.35
     assert (white**2).mean() == pytest.approx(1.0, abs=0.15)
     for lag in (1, 2, 5):

@@ -10,9 +10,14 @@ from pathlib import Path
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
+from threadpoolctl import threadpool_limits
 
 from shipcosim.cli.project import build_stale
+from shipcosim.diagnose.effects import read_catalogue
+from shipcosim.diagnose.linear import STATES, _process, _uncertain
 from shipcosim.diagnose.plant import Drivers, Motion, motion_rates, plant_of, shown
+from shipcosim.diagnose.ranking import explain
+from shipcosim.diagnose.run import prepare
 from shipcosim.models.wind import apparent_wind
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system
@@ -136,3 +141,36 @@ def _scaled():
 def logs(minutes=6.0, seed=0):
     """One log for each of `PLANTED`."""
     return sailed(PLANTED, minutes, seed)
+
+
+def explained(log):
+    """A log as a case, and what explains it, best first."""
+    with threadpool_limits(1):  # small matrices: threads would only wait for each other
+        case = prepare(log, plant(), read_catalogue())
+        return case, explain(case)
+
+
+@cache
+def of(name):
+    """The same for a log of `PLANTED`."""
+    return explained(logs()[name])
+
+
+def case(name):
+    return of(name)[0]
+
+
+def fits(name):
+    return of(name)[1]
+
+
+def drawn(seed, linear, noise, record):
+    """A linear problem whose log is drawn from itself."""
+    random, n = np.random.default_rng(seed), record.time.size
+    root = np.sqrt(np.diag(_process(noise, record.step)))
+    x, rows = np.linalg.cholesky(_uncertain(noise, ())) @ random.standard_normal(STATES), []
+    for k in range(n):
+        rows.append(linear.output[k] @ x + noise.white * random.standard_normal(6))
+        if k < n - 1:
+            x = linear.transition[k] @ x + root * random.standard_normal(STATES)
+    return linear._replace(driven=np.zeros((n - 1, STATES, 1)), seen=np.stack(rows)[..., None])
