@@ -284,7 +284,8 @@ def print_diagnosis(story, folder, as_json):
     silent = ", ".join(title(name).lower() for name in diagnosis.not_testable)
     sections += [("This log could not have shown", Text(silent) if silent else None)]
     sections += [("Remarks", Text("\n".join(story.notes), style="yellow") if story.notes else None)]
-    extended = str(shown_path(story.extension.ssp)) if story.extension is not None else None
+    extension = story.extension
+    extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
     sections += [("What to do next", Text("\n".join(f"- {s}" for s in next_steps(diagnosis, extended))))]
     for heading, content in sections:
         if content is not None:

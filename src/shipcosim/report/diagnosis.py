@@ -110,7 +110,7 @@ def render(story):
     made = [section(story, figures) for section in _SECTIONS.values()]
     word, sentence = outcome(story.diagnosis, story.effects)
     title = f"Diagnosis of {story.source}"
-    extended = story.extension.ssp.name if story.extension is not None else None
+    extended = story.extension.ssp.name if story.extension is not None and story.extension.values else None
     summary = [
         parts.verdict(story.diagnosis.verdict, word, sentence),
         parts.key_figures(key_figures(story.diagnosis)),

@@ -56,9 +56,8 @@ def log_panels(log, clean, findings):
         there = [c for c in channels if c in raw]
         if not there:
             continue
-        traces = []
-        for k, channel in enumerate(there):
-            traces += _traces(raw, used, channel, COLOURS[k % len(COLOURS)], unit)
+        pairs = [_traces(raw, used, channel, COLOURS[k % len(COLOURS)], unit) for k, channel in enumerate(there)]
+        traces = [trace for pair in pairs for trace in pair[:-1]] + [pair[-1] for pair in pairs]
         shapes = [shape for fault in faults if _concerns(fault, there) for shape in _shades(fault, raw)]
         panels.append(panel(title, unit, traces, shapes=shapes, xaxis=TIME))
     return panels

@@ -78,6 +78,9 @@ def causes_section(story, figures):
         "Every cause of the catalogue, alone and with others, was fitted to the whole log, while every coefficient of "
         "the ship stayed free within its tolerance."
     )
+    began = sorted({f.onset for f in diagnosis.findings if f.onset is not None})
+    if began:
+        text += f" What is wrong began at {began[0]:.0f} s: rows before are healthy, what follows is of those after."
     content = [parts.lead(text), _estimates(story), _stands_out(story)]
     panels = [causes.evidence_panel(details.fits, fit)] if len(details.fits) > 1 else []
     panels += [causes.estimate_panel(fit)] if fit.suspects else []
@@ -152,6 +155,9 @@ def extension_section(story, figures):
         for name, value in extension.values.items()
     ]
     inserted = ", ".join(extension.components)
+    if not extension.values:
+        text = "The cause is one of the log: its channels are to be corrected, the system stays as it is."
+        return parts.section("extension", "4 The extended system", parts.lead(text), parts.listed(extension.remarks))
     content = [
         parts.lead(
             f"The named causes, and nothing else, are in {extension.ssv.name}, which {extension.ssp.name} has bound."

@@ -201,7 +201,7 @@ def next_steps(diagnosis, extended=None):
     ----------
     diagnosis : Diagnosis
     extended : str, optional
-        Path of the extended system.
+        Path of the extended system, where something in it is other than it was.
 
     Returns
     -------
