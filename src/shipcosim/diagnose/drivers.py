@@ -38,7 +38,7 @@ def suspected(clean, case):
         gain = _by_row(case, record_of(_put_right(clean, mislabel, ()), case.plant)) - base
         first, last, total = _best_run(gain, round(_SHORTEST / case.record.step))
         if total > 10.0:
-            time = clean["time"].values
+            time = case.record.time
             whole = last - first > _WHOLE * time.size
             segments = () if whole else ((float(time[first]), float(time[last])),)
             finding = Finding(
@@ -86,13 +86,13 @@ def _put_right(clean, mislabel, segments):
 
 
 def _by_row(case, record):
-    """Log-likelihood of each row, known numbers fitted within their tolerances."""
+    """Log-likelihood of each row, known numbers fitted within their tolerances; what that takes is shared by all rows."""
     columns = case.known(())
     linear = linearise(case.motion, record, case.plant, [column.turns for column in columns])
     found = innovations(linear, case.noise, record)
     theta = evidence(gram(found).products, np.ones(len(columns)))[1]
     left = found.white[..., 0] - found.white[..., 1:] @ theta
-    return -0.5 * ((left**2).sum(-1) + found.log_determinant)
+    return -0.5 * ((left**2).sum(-1) + found.log_determinant + theta @ theta / len(left))
 
 
 def _best_run(gain, least):

@@ -22,8 +22,8 @@ def begun(case, fits):
 
     Returns
     -------
-    int or None
-        Row; None where nothing is gained by an onset.
+    float or None
+        Time [s]; None where nothing is gained by an onset.
     """
     nothing = next(fit for fit in fits if not fit.suspects)
     suspects = [suspect for suspect in case.suspects if suspect.effect.law != "turning"]
@@ -45,7 +45,8 @@ def begun(case, fits):
         later = max(evidence(after, prior)[0] for prior in priors)
         gains.append(healthy + later - max(evidence(throughout, prior)[0] for prior in (none, *priors)))
     best = int(np.argmax(gains))
-    return round((3 + best) / parts * case.record.time.size) if gains[best] > _WORTH else None
+    row = round((3 + best) / parts * case.record.time.size)
+    return float(case.record.time[row]) if gains[best] > _WORTH else None
 
 
 def from_onset(clean, case, fits, prepare):
@@ -66,12 +67,13 @@ def from_onset(clean, case, fits, prepare):
     tuple of float, xarray.Dataset, Case, list of Fit, or None
         Time of the onset [s], and the later rows with their case and fits.
     """
-    row = begun(case, fits)
-    if row is None:
+    time = begun(case, fits)
+    if time is None:
         return None
+    row = int(np.searchsorted(clean["time"].values, time))
     earlier, later = clean.isel(time=slice(0, row)), clean.isel(time=slice(row, None))
     healthy, after = fitted(prepare(earlier)), prepare(later)
     found = explain(after)
     if healthy.score + found[0].score < fits[0].score + 2.0 * _WORTH:
         return None
-    return float(clean["time"][row]), later, after, found
+    return time, later, after, found

@@ -97,6 +97,8 @@ class Fit:
     products : Gram
     theta, covariance : array
         Posterior of the columns, causes about neutral.
+    centre : array
+        θ that they were linearised about.
     plant : Plant
     motion : Motion
     """
@@ -110,6 +112,7 @@ class Fit:
     products: Any
     theta: Any
     covariance: Any
+    centre: Any
     plant: Any
     motion: Any
 
@@ -120,9 +123,7 @@ class Fit:
     @property
     def left(self):
         """θ that the columns still have to explain about this fit's ship: those of known numbers."""
-        return self.theta - _centre(self.columns, self.plant, self.neutral)
-
-    neutral: Any = None
+        return self.theta - self.centre
 
 
 def prepared(case, rounds=3):
@@ -170,47 +171,46 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     -------
     Fit
     """
-    values, motion, found = dict(values or {}), case.motion, None
-    beside = [path for suspect in suspects for path in suspect.effect.companions]
-    own = [Column({path: case.plant.tolerances[path]}) for path in beside]
-    own += [Column(dict.fromkeys(knob.paths, knob.typical)) for s in suspects for knob in s.knobs]
-    known = case.known(suspects)
-    columns = known + own
-    knobs = [knob for suspect in suspects for knob in suspect.knobs]
+    values, motion, fit = dict(values or {}), case.motion, None
+    known, own = case.known(suspects), _own(case, suspects)
     for _ in range(rounds):
         plant = case.plant.with_values(values)
         linear = joined(linearise(motion, case.record, plant, [column.turns for column in own]), case.base_of(known))
-        filtered = innovations(linear, case.noise, case.record, motion)
-        products = gram(filtered)
-        prior, centre = np.array([column.prior for column in columns]), _centre(columns, plant, case.plant)
-        score, theta, covariance = evidence(products.products, prior, centre)
-        at, before = dict(values), found.score if found else -np.inf
-        found = Fit(
-            tuple(suspects),
-            at,
-            {},
-            score + float(products.free),
-            columns,
-            linear,
-            products,
-            theta,
-            covariance,
-            plant,
-            filtered.motion,
-            case.plant,
-        )
-        moved = 0.0
-        for knob, new, old in zip(
-            knobs, theta[len(theta) - len(knobs) :], centre[len(theta) - len(knobs) :], strict=True
-        ):
-            value = float(np.clip(knob.neutral + new * knob.typical, *knob.bounds))
-            values.update(dict.fromkeys(knob.paths, value))
-            moved = max(moved, abs((value - knob.neutral) / knob.typical - old))
-        motion = filtered.motion
-        if moved < 0.01 and abs(found.score - before) < 0.5:
+        last, fit = fit, _posterior(case, suspects, values, known + own, linear, plant, motion)
+        motion, values = fit.motion, _next(fit)
+        moved = [abs(values[k.paths[0]] - fit.plant.get(k.paths[0])) / k.typical for s in suspects for k in s.knobs]
+        if max(moved, default=0.0) < 0.01 and last and abs(fit.score - last.score) < 0.5:
             break
-    deviations = np.sqrt(np.diag(found.covariance))[len(found.theta) - len(knobs) :]
-    found.std.update({k.paths[0]: float(d * k.typical) for k, d in zip(knobs, deviations, strict=True)})
+    return fit
+
+
+def _own(case, suspects):
+    """Columns of suspects, what is only known within a tolerance about them first."""
+    about = [path for suspect in suspects for path in suspect.effect.companions]
+    found = [Column({path: case.plant.tolerances[path]}) for path in about]
+    return found + [Column(dict.fromkeys(knob.paths, knob.typical)) for s in suspects for knob in s.knobs]
+
+
+def _posterior(case, suspects, values, columns, linear, plant, motion):
+    """The fit about some values."""
+    filtered = innovations(linear, case.noise, case.record, motion)
+    products, centre = gram(filtered), _centre(columns, plant, case.plant)
+    prior = np.array([column.prior for column in columns])
+    score, theta, covariance = evidence(products.products, prior, centre)
+    score += float(products.free)
+    values, knobs = dict(values), [knob for suspect in suspects for knob in suspect.knobs]
+    deviations = np.sqrt(np.diag(covariance))[theta.size - len(knobs) :]
+    std = {knob.paths[0]: float(d * knob.typical) for knob, d in zip(knobs, deviations, strict=True)}
+    rest = (columns, linear, products, theta, covariance, centre, plant, filtered.motion)
+    return Fit(tuple(suspects), values, std, score, *rest)
+
+
+def _next(fit):
+    """Values of the numbers at the posterior's mean, within their bounds."""
+    knobs = [knob for suspect in fit.suspects for knob in suspect.knobs]
+    found = dict(fit.values)
+    for knob, theta in zip(knobs, fit.theta[fit.theta.size - len(knobs) :], strict=True):
+        found.update(dict.fromkeys(knob.paths, float(np.clip(knob.neutral + theta * knob.typical, *knob.bounds))))
     return found
 
 
@@ -232,7 +232,7 @@ def weighed(case, fit, only=None):
     added = [column for suspect in wanted for group in probes(suspect) for column in group]
     linear = beside(fit.linear, case.base_of(added))
     products = gram(innovations(linear, case.noise, case.record)).products
-    return gains(products, fit.columns, _centre(fit.columns, fit.plant, case.plant), wanted, fit.plant)
+    return gains(products, fit.columns, fit.centre, wanted, fit.plant)
 
 
 def gains(products, columns, centre, wanted, plant):

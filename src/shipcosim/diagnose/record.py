@@ -8,6 +8,7 @@ import numpy as np
 from shipcosim.diagnose.plant import Drivers, Motion
 from shipcosim.errors import Problem, ShipcosimError
 
+_SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s on Gunnerus
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
@@ -99,7 +100,25 @@ def record_of(log, plant):
     wind, whole = _wind(log, rows, remarks)
     known &= whole
     known[:-1] &= known[1:]
-    return Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
+    record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
+    slow = _SLOW_ENOUGH * np.sqrt(plant.parts["hull"].length)
+    return _thinned(record, max(int(slow / record.step + 1e-6), 1))
+
+
+def _thinned(record, rows):
+    """The record with every so many rows averaged into one."""
+    if rows == 1:
+        return record
+
+    def mean(series):
+        whole = series[: len(series) // rows * rows].reshape(-1, rows, *series.shape[1:])
+        count = np.isfinite(whole).sum(1)
+        return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
+
+    units = {name: tuple(mean(series) for series in pair) for name, pair in record.units.items()}
+    wind = record.wind and tuple(mean(series) for series in record.wind)
+    known = mean(record.known.astype(float)) == 1.0
+    return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
 
 
 def _column(log, role, rows):
