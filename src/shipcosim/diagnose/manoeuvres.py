@@ -127,24 +127,29 @@ def _pulses(name, T, forces):
 
 
 def _sweeps(plant, T, azimuths, force):
-    """Each azimuth thruster turns its slipstream across its nearest neighbour; the others hold the ship."""
+    """Each azimuth thruster turns its slipstream across its nearest neighbour, which pushes ahead or astern.
+
+    A neighbour that held the ship against it would have its own slipstream in the first: equal losses, no net load.
+    """
     pushes, start = [], 0.5 * T
     for name in azimuths:
         here = plant.parts[name]
-        dx, dy = here.neighbour_x - here.x, here.neighbour_y - here.y
-        if len(azimuths) > 1 and np.hypot(dx, dy) > 0.0:
-            at = np.arctan2(dy, dx) + np.pi  # thrust away from the neighbour, slipstream towards it
-            pushes.append(Push(name, start, start + 2.0 * T, force, (at - 0.4 * np.pi, at + 0.4 * np.pi)))
-            start += 2.5 * T
-    if not pushes:
-        return []
-    return [
-        Manoeuvre(
-            "sweep of each azimuth thruster's slipstream across its neighbour",
-            _legs(T, (start / T, 0, 0, 0)),
-            tuple(pushes),
-        )
+        near = next((o for o in azimuths if _is_at(plant.parts[o], here.neighbour_x, here.neighbour_y)), None)
+        if near not in (None, name):
+            at = np.arctan2(here.y - here.neighbour_y, here.x - here.neighbour_x)  # away from the neighbour
+            ahead = 0.0 if len(pushes) % 4 == 0 else np.pi  # and astern the next time: the ship comes to rest
+            span = np.pi / 3.0 if ahead == 0.0 else -np.pi / 3.0
+            pushes.append(Push(name, start, start + 0.8 * T, force, (at - span, at + span)))
+            pushes.append(Push(near, start, start + 0.8 * T, force, (ahead, ahead)))
+            start += T
+    legs = _legs(T, (start / T + 0.75, 0, 0, 0))
+    return [Manoeuvre("sweep of each azimuth thruster's slipstream across its neighbour", legs, tuple(pushes))][
+        : len(pushes)
     ]
+
+
+def _is_at(unit, x, y):
+    return np.hypot(unit.x - x, unit.y - y) < 1e-6
 
 
 def step_for(plant):
@@ -153,7 +158,7 @@ def step_for(plant):
 
 
 def planned(manoeuvres, dp, start, wind):
-    """Tracks, thruster settings and where the DP is off, of several manoeuvres side by side.
+    """Tracks, thruster settings and where the DP has no say over them, of several manoeuvres side by side.
 
     Parameters
     ----------
@@ -167,8 +172,8 @@ def planned(manoeuvres, dp, start, wind):
 
     Returns
     -------
-    tuple of Motion, Record, (c, n) bool array
-        (c, n) arrays. The shorter end with keeping the place.
+    tuple of Motion, Record, dict of str to (c, n) bool array
+        (c, n) arrays; by thruster, where it does as planned. The shorter end with keeping the place.
     """
     rows = max(rows_of(one, dp.h) for one in manoeuvres)
     time = dp.h * np.arange(rows)
@@ -181,7 +186,12 @@ def planned(manoeuvres, dp, start, wind):
     units = {name: tuple(np.stack(s) for s in zip(*(plan[name] for plan in plans), strict=True)) for name in plans[0]}
     blank = np.full((len(manoeuvres), rows, 6), np.nan)
     record = Record(start[0] + time, blank, units, series, np.ones(rows, bool))
-    return track, record, np.stack([_inside(one.free, time) for one in manoeuvres])
+    held = {name: np.stack([_held(one, name, time) for one in manoeuvres]) for name in units}
+    return track, record, held
+
+
+def _held(manoeuvre, name, time):
+    return _inside((*manoeuvre.free, *((p.start, p.end) for p in manoeuvre.pushes if p.thruster == name)), time)
 
 
 def rows_of(manoeuvre, step):
@@ -210,7 +220,6 @@ def _inside(spans, time):
 def _thrusters(manoeuvre, time, track, start, wind, dp):
     """Speed and direction of each thruster by the plan. [rev/s, rad]"""
     plant, free, alone = dp.plant, _inside(manoeuvre.free, time), {}
-    axes = {name: np.zeros(time.size) for name in plant.thrusters}
     for push in manoeuvre.pushes:
         inside = _inside(((push.start, push.end),), time)
         share = np.clip((time - push.start) / (push.end - push.start), 0.0, 1.0)
@@ -224,7 +233,8 @@ def _thrusters(manoeuvre, time, track, start, wind, dp):
         for name in left:
             inside, force, azimuth = next(push for push in alone[name] if push[0][rows].all())
             rest = rest - _load_of(name, force, azimuth[rows], plant)
-        for name, forces in dp.shared(rest, {name: axis[rows] for name, axis in axes.items()}, left).items():
+        axes_here = {name: np.zeros(rows.size) for name in plant.thrusters}
+        for name, forces in dp.shared(rest, axes_here, dict.fromkeys(left, True)).items():
             wishes[name][:, rows] = np.where(free[rows], 0.0, forces + (0.0 if left else apart[name][:, None]))
     return {name: _setting(name, wishes[name], alone.get(name, ()), time, dp) for name in plant.thrusters}
 

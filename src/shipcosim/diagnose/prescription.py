@@ -176,7 +176,7 @@ def _sailings(case, plants, manoeuvres):
     start = float(case.record.time[-1]), *(float(value[-1]) for value in case.motion[:3])
     wind = true_wind(case.record, case.motion, case.plant)
     dp = Dp(_in_true_wind(case.plant), step_for(case.plant), cannot_turn(case.record, case.plant))
-    track, record, free = planned(manoeuvres, dp, start, wind)
+    track, record, held = planned(manoeuvres, dp, start, wind)
     motions, records, through = [], [], []
     many, ships = len(manoeuvres), _abreast(plants, start[0], len(manoeuvres))
     times = (len(plants), 1)
@@ -185,8 +185,9 @@ def _sailings(case, plants, manoeuvres):
         units={name: tuple(np.tile(series, times) for series in pair) for name, pair in record.units.items()},
         wind=None if record.wind is None else tuple(np.tile(series, times) for series in record.wind),
     )
+    held = {name: np.tile(where, times) for name, where in held.items()}
     tracks = Motion(*(np.tile(value, times) for value in track))
-    sailing, units = sailed(ships, many * len(plants), tracks, side_by_side, dp, free=np.tile(free, times))
+    sailing, units = sailed(ships, many * len(plants), tracks, side_by_side, dp, held=held)
     for i in range(len(plants)):
         part = slice(i * many, (i + 1) * many)
         motions.append(Motion(*(value[part] for value in sailing)))
@@ -224,7 +225,9 @@ def _through(motion, track, manoeuvres, dp):
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
     for i, one in enumerate(manoeuvres):
         rows = slice(0, rows_of(one, dp.h))
-        found.append((off[i, rows] < (_ROOM if one.free else _ASTRAY)).all() and (far[i, rows] < _ROOM).all())
+        found.append(
+            (off[i, rows] < (_ROOM if one.free or one.pushes else _ASTRAY)).all() and (far[i, rows] < _ROOM).all()
+        )
     return np.array(found)
 
 
@@ -249,8 +252,8 @@ def testability(plant, suspects, noise, manoeuvres, wind=None):
     longest = 60.0 * max(one.minutes for one in manoeuvres)
     plant, noise = replace(_in_true_wind(plant), span=(0.0, longest)), sized(noise, step_for(plant))
     dp = Dp(plant, step_for(plant))
-    track, record, free = planned(manoeuvres, dp, (0.0, 0.0, 0.0, 0.0), wind)
-    motion, units = sailed(plant, len(manoeuvres), track, record, dp, free=free)
+    track, record, held = planned(manoeuvres, dp, (0.0, 0.0, 0.0, 0.0), wind)
+    motion, units = sailed(plant, len(manoeuvres), track, record, dp, held=held)
     record = replace(record, units=units, measured=_shown(motion, plant))
     known = Case(record, plant, tuple(suspects), noise, motion).known(())
     groups = [(suspect, group) for suspect in suspects for group in probes(suspect)]

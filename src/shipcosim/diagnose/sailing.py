@@ -16,7 +16,7 @@ _ACROSS = 0.2  # how readily a unit turns, against how readily it changes its sp
 _ANSWER = 4.0  # s, until the thrusters of a ship of 33.9 m do as told; others by the root of their length
 
 
-def sailed(ships, count, track, record, dp, *, jolts=None, free=None):
+def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
     """Motion and thrusters of ships that a DP brings along a track.
 
     Parameters
@@ -32,8 +32,8 @@ def sailed(ships, count, track, record, dp, *, jolts=None, free=None):
     dp : Dp
     jolts : (n, 3, m) array, optional
         Changes of velocity at each row. [m/s, m/s, rad/s]
-    free : (n,) or (m, n) bool array, optional
-        Where the DP is off.
+    held : dict of str to (n,) or (m, n) bool array, optional
+        Where the DP has no say over a thruster.
 
     Returns
     -------
@@ -47,11 +47,8 @@ def sailed(ships, count, track, record, dp, *, jolts=None, free=None):
     rows, units = [], {name: [] for name in ships.thrusters}
     for k in range(n):
         rows.append(ship)
-        load, new = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
-        if free is not None:
-            load, new = np.where(free[..., k], 0.0, load), np.where(free[..., k], integral, new)
-        integral = new
-        told = dp.answer(told, load, record, k)
+        load, integral = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
+        told = dp.answer(told, load, record, k, {name: where[..., k] for name, where in (held or {}).items()})
         for name, pair in dp.speeds(told, record, k).items():
             units[name].append(pair)
         if k < n - 1:
@@ -108,13 +105,13 @@ class Dp:
         wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
         return np.clip(wanted, -self.most[:, None], self.most[:, None]), integral
 
-    def answer(self, told, load, record, k):
+    def answer(self, told, load, record, k, held):
         """Change of each thruster's force along and across its axis, after a step."""
-        forces = self.shared(load, {name: record.units[name][1][..., k] for name in told})
+        forces = self.shared(load, {name: record.units[name][1][..., k] for name in told}, held)
         share = min(self.h / self.delay, 1.0)
         return {name: value + share * (forces[name] - value) for name, value in told.items()}
 
-    def shared(self, load, azimuths, left=()):
+    def shared(self, load, azimuths, held):
         """A load on the ship as forces along and across the axes of her thrusters.
 
         Parameters
@@ -122,7 +119,7 @@ class Dp:
         load : (3, m) array
         azimuths : dict of str to float or (m,) array
             Where each thruster points.
-        left : collection of str
+        held : dict of str to bool or (m,) bool array
             Thrusters that take no part.
 
         Returns
@@ -137,8 +134,8 @@ class Dp:
             angle = (azimuth if turns else 0.5 * np.pi) + np.zeros(np.shape(azimuth))
             for i in range(2 if turns and name not in self.fixed else 1):
                 c, s = np.cos(angle + 0.5 * np.pi * i), np.sin(angle + 0.5 * np.pi * i)
-                ease = 0.0 if name in left else _ACROSS if i else 1.0
-                columns.append(ease * np.stack([c, s, unit.x * s - getattr(unit, "y", 0.0) * c], axis=-1))
+                ease = np.where(held.get(name, False), 0.0, _ACROSS if i else 1.0)
+                columns.append(ease[..., None] * np.stack([c, s, unit.x * s - getattr(unit, "y", 0.0) * c], axis=-1))
                 places.append((name, i, ease))
         scale = np.array([1.0, 1.0, 4.0 / self.plant.parts["hull"].length])
         B = scale[:, None] * np.stack(np.broadcast_arrays(*columns), axis=-1)
