@@ -246,3 +246,9 @@ def test_before_sailing_a_cause_shows_where_it_acts():
     assert best["drag"] == best["velocity_scale"] == "steps in surge"
     assert best["wave_drift"] == best["wind_scale"] == "full circle"
     assert found["reverse_loss"][3] < 1.0 < CLEAR < found["reverse_loss"][0]
+
+
+def test_the_page_lists_the_library(root):
+    page = (root / "docs" / "manoeuvres.md").read_text(encoding="utf-8")
+    for i, one in enumerate(library(case().plant), start=1):
+        assert f"| {i} | {one.name} | {one.minutes:g} |" in page
