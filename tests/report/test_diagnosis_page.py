@@ -10,12 +10,13 @@ import xarray as xr
 from truth import draw
 
 from shipcosim.cli.project import build_stale
-from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.finding import Candidate, Diagnosis, Finding, Prescription
 from shipcosim.diagnose.force import missing_force
 from shipcosim.diagnose.gain import baseline, compare, gain
+from shipcosim.diagnose.manoeuvres import Manoeuvre, library
 from shipcosim.diagnose.run import diagnose
 from shipcosim.report.diagnosis import Story, render, write_diagnosis
-from shipcosim.report.diagnosis_causes import not_testable_rows, whiteness
+from shipcosim.report.diagnosis_causes import manoeuvre_rows, not_testable_rows, whiteness
 from shipcosim.report.diagnosis_data import log_panels, track_panel
 from shipcosim.report.diagnosis_error import error_panels, error_table, force_panels
 from shipcosim.ssp import read_system
@@ -144,6 +145,34 @@ def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(story):
     ((name, sentence, why),) = not_testable_rows(case, ["reverse_loss"])
     astern = max(np.mean(case.record.units[unit][0] < 0.0) for unit in case.plant.azimuths)
     assert name == "Reverse loss" and "astern" in sentence and f"{100 * astern:.0f} %" in why
+
+
+def test_manoeuvre_is_told_step_by_step_from_start_to_end(story):
+    plant = story.details.case.plant
+    for manoeuvre in library(plant):
+        rows = manoeuvre_rows(manoeuvre)
+        assert rows[0][0].startswith("0–") and all(doing for _, doing in rows)
+        assert max(int(re.search(r"–(\d+) s", when).group(1)) for when, _ in rows) == round(60 * manoeuvre.minutes)
+        assert all(any(push.thruster in doing for _, doing in rows) for push in manoeuvre.pushes)
+
+
+def test_box_is_told_with_its_corners():
+    box = Manoeuvre("box", ((90.0, 30.0, 0.0, 0.0), (90.0, 30.0, 30.0, 0.0), (60.0, 30.0, 30.0, np.pi / 2)))
+    assert manoeuvre_rows(box) == [
+        ("0–90 s", "move to 30 m ahead"),
+        ("90–180 s", "move to 30 m ahead and 30 m to starboard"),
+        ("180–240 s", "turn to 90° clockwise of the first heading"),
+    ]
+
+
+def test_ambiguous_log_shows_what_to_sail(story):
+    alike = Candidate("mass", None, 0.6), Candidate("drag", None, 0.4)
+    manoeuvre = library(story.details.case.plant)[0]
+    sail = Prescription(manoeuvre.name, manoeuvre.minutes, (("mass", "drag"),))
+    ambiguous = Diagnosis("ambiguous", candidates=alike, indistinguishable=alike, prescription=sail)
+    text = render(replace(story, diagnosis=ambiguous))
+    assert f"To sail and log: {manoeuvre.name}" in text and "It tells mass from drag." in text
+    assert "hold position and heading" in text
 
 
 # the page

@@ -6,7 +6,7 @@ from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.noise import explained
 from shipcosim.diagnose.verdict import ENOUGH, STRANGE
 from shipcosim.report.diagnosis_data import TIME, line, panel, rounded
-from shipcosim.report.diagnosis_units import plain
+from shipcosim.report.diagnosis_units import plain, span
 from shipcosim.report.diagnosis_words import title
 
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
@@ -138,6 +138,46 @@ def whiteness_panel(heading, correlation, step, rows, between):
     axes = {"xaxis": TIME, "yaxis": {"range": between}}
     note = "Autocorrelation of the whitened innovations; inside the band they are as white as noise."
     return panel(f"White? {heading}", "", traces, note, shapes=[shape], **axes)
+
+
+def manoeuvre_rows(manoeuvre):
+    """What to sail: from when to when, and what the ship or a thruster does, in order of time.
+
+    Parameters
+    ----------
+    manoeuvre : Manoeuvre
+        Of the diagnosis' library.
+
+    Returns
+    -------
+    list of (str, str)
+    """
+    found, start, before = [], 0.0, (0.0, 0.0, 0.0)
+    for duration, *there in manoeuvre.legs:
+        found.append((start, start + duration, _leg(tuple(there), before)))
+        start, before = start + duration, tuple(there)
+    for push in manoeuvre.pushes:
+        angles = [round(float(np.degrees(angle))) for angle in push.azimuth]
+        towards = f" turned from {angles[0]} to {angles[1]}° off the bow" if angles[0] != angles[1] else ""
+        force = f"{'−' * (push.force < 0.0)}{plain(abs(push.force) / 1e3, 2)} kN"
+        doing = f"{push.thruster} pushes with {force} along its axis, the others hold the ship"
+        found.append((push.start, push.end, doing + towards))
+    found += [(a, min(b, start), "DP off, thrusters idle, the ship drifts") for a, b in manoeuvre.free]
+    return [(span(a, b), doing) for a, b, doing in sorted(found, key=lambda entry: entry[:2])]
+
+
+def _leg(there, before):
+    """A leg in words: where the ship goes, seen from where and how she lay at the start."""
+    if there == before:
+        return "hold position and heading"
+    ahead, across, turned = there
+    words = [f"{abs(ahead):.0f} m {'ahead' if ahead > 0.0 else 'astern'}"] if ahead else []
+    words += [f"{abs(across):.0f} m to {'starboard' if across > 0.0 else 'port'}"] if across else []
+    moved = there[:2] != before[:2]
+    text = f"move to {' and '.join(words) or 'the start'}" if moved else ""
+    if turned != before[2]:
+        text += f"{', ' if text else ''}turn to {np.degrees(turned):.0f}° clockwise of the first heading"
+    return text
 
 
 def not_testable_rows(case, names):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from shipcosim.diagnose.manoeuvres import cannot_turn, library
 from shipcosim.diagnose.verdict import gained
 from shipcosim.report import diagnosis_causes as causes
 from shipcosim.report import diagnosis_error as error
@@ -96,6 +97,7 @@ def causes_section(story, figures):
     panels = [causes.whiteness_panel(name, found, step, rows, between) for name, found in shown.items()]
     content.append(figures.grid(panels))
     content.append(_alike(diagnosis))
+    content.append(_to_sail(diagnosis.prescription, case))
     if diagnosis.not_testable:
         content.append(parts.subheading("What this log could not have shown"))
         rows = causes.not_testable_rows(case, diagnosis.not_testable)
@@ -125,6 +127,18 @@ def _stands_out(story):
         )
     head = ["Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track"]
     return parts.table(head, rows, tight=(1,))
+
+
+def _to_sail(prescription, case):
+    """The prescribed manoeuvre step by step."""
+    known = library(case.plant, cannot_turn(case.record, case.plant)) if prescription else ()
+    manoeuvre = next((one for one in known if one.name == prescription.manoeuvre), None)
+    if manoeuvre is None:
+        return ""
+    heading = f"To sail and log: {manoeuvre.name}, {prescription.minutes:g} minutes"
+    pairs = [f"It tells {a} from {b}.".replace("_", " ") for a, b in prescription.separates]
+    rows = causes.manoeuvre_rows(manoeuvre)
+    return parts.subheading(heading) + parts.listed(pairs) + parts.table(["When", "What"], rows, tight=(0,))
 
 
 def _alike(diagnosis):
