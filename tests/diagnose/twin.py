@@ -143,10 +143,16 @@ def logs(minutes=6.0, seed=0):
     return sailed(PLANTED, minutes, seed)
 
 
+def ready(log):
+    """A log as a case."""
+    with threadpool_limits(1):  # small matrices: threads would only wait for each other
+        return prepare(log, plant(), read_catalogue())
+
+
 def explained(log):
     """A log as a case, and what explains it, best first."""
-    with threadpool_limits(1):  # small matrices: threads would only wait for each other
-        case = prepare(log, plant(), read_catalogue())
+    with threadpool_limits(1):
+        case = ready(log)
         return case, explain(case)
 
 
