@@ -154,13 +154,14 @@ def manoeuvre_rows(manoeuvre):
     """
     found, start, before = [], 0.0, (0.0, 0.0, 0.0)
     for duration, *there in manoeuvre.legs:
-        found.append((start, start + duration, _leg(tuple(there), before)))
+        if not any(a <= start and start + duration <= b for a, b in manoeuvre.free):
+            found.append((start, start + duration, _leg(tuple(there), before)))
         start, before = start + duration, tuple(there)
     for push in manoeuvre.pushes:
         angles = [round(float(np.degrees(angle))) for angle in push.azimuth]
-        towards = f" turned from {angles[0]} to {angles[1]}° off the bow" if angles[0] != angles[1] else ""
+        towards = f", turned from {angles[0]} to {angles[1]}° off the bow" if angles[0] != angles[1] else ""
         force = f"{'−' * (push.force < 0.0)}{plain(abs(push.force) / 1e3, 2)} kN"
-        doing = f"{push.thruster} pushes with {force} along its axis, the others hold the ship"
+        doing = f"{push.thruster} pushes with {force} along its axis"
         found.append((push.start, push.end, doing + towards))
     found += [(a, min(b, start), "DP off, thrusters idle, the ship drifts") for a, b in manoeuvre.free]
     return [(span(a, b), doing) for a, b, doing in sorted(found, key=lambda entry: entry[:2])]

@@ -138,7 +138,13 @@ def _to_sail(prescription, case):
     heading = f"To sail and log: {manoeuvre.name}, {prescription.minutes:g} minutes"
     pairs = [f"It tells {a} from {b}.".replace("_", " ") for a, b in prescription.separates]
     rows = causes.manoeuvre_rows(manoeuvre)
-    return parts.subheading(heading) + parts.listed(pairs) + parts.table(["When", "What"], rows, tight=(0,))
+    seen = "Seen from where the ship was and how she lay at the start. The DP leaves a thruster alone that pushes."
+    return (
+        parts.subheading(heading)
+        + parts.lead(seen)
+        + parts.listed(pairs)
+        + parts.table(["When", "What"], rows, tight=(0,))
+    )
 
 
 def _alike(diagnosis):
