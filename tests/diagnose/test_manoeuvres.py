@@ -14,9 +14,10 @@ from shipcosim.diagnose.manoeuvres import LONGEST, Manoeuvre, cannot_turn, libra
 from shipcosim.diagnose.plant import Motion, Plant, plant_of
 from shipcosim.diagnose.prescription import CLEAR, prescribe, separations
 from shipcosim.diagnose.prescription import testability as nats_of
-from shipcosim.diagnose.ranking import Case, Column
-from shipcosim.diagnose.record import Record
+from shipcosim.diagnose.ranking import Case, Column, explain, prepared
+from shipcosim.diagnose.record import Record, first_motion
 from shipcosim.diagnose.sailing import Dp, sailed
+from shipcosim.diagnose.verdict import judge
 from shipcosim.models.wind import apparent_wind
 
 NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]))
@@ -89,7 +90,7 @@ def test_current_and_wave_drift_are_separated_by_turning():
     assert keep < CLEAR < min(turn, circle)
     assert turn > 3.0 * keep
     told = prescribe(case(), current, [drift], [KEEP, pick("turn by 90"), pick("full circle")])
-    assert (told.manoeuvre, told.minutes) == ("turn by 90 deg and hold", 4.0)
+    assert (told.manoeuvre, told.minutes) == ("turn by 90 deg and hold", 4.0)  # the circle takes seven minutes
     assert told.separates == (("current", "wave_drift"),)
 
 
@@ -246,6 +247,39 @@ def test_before_sailing_a_cause_shows_where_it_acts():
     assert best["drag"] == best["velocity_scale"] == "steps in surge"
     assert best["wave_drift"] == best["wind_scale"] == "full circle"
     assert found["reverse_loss"][3] < 1.0 < CLEAR < found["reverse_loss"][0]
+
+
+def logged(values, manoeuvre=None, seed=1, minutes=8.0):
+    """A ship with some values keeps her place, and then sails a manoeuvre; her log and what she is taken for."""
+    before, plant = 60.0 * minutes, replace(case().plant, span=(0.0, 60.0 * minutes))
+    after = manoeuvre or Manoeuvre("nothing", ())
+    pushes = tuple(replace(p, start=p.start + before, end=p.end + before) for p in after.pushes)
+    free = tuple((a + before, b + before) for a, b in after.free)
+    one = Manoeuvre("both", ((before, 0.0, 0.0, 0.0), *after.legs), pushes, free)
+    dp, random = Dp(plant, 1.0), np.random.default_rng(seed)
+    track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
+    jolts = random.standard_normal((record.time.size, 3, 1)) * NOISE.jolt[:, None]
+    motion, units = sailed(plant.with_values(values), 1, track, record, dp, jolts=jolts, held=held)
+    measured = np.stack([v[0] for v in motion], -1) + NOISE.white * random.standard_normal((record.time.size, 6))
+    units = {name: tuple(series[0] for series in pair) for name, pair in units.items()}
+    record = replace(record, measured=measured, units=units, wind=tuple(series[0] for series in record.wind))
+    names = {"current", "wave_drift", "tow", "wind_scale", "thrust_loss of port"}
+    asked = tuple(suspect for suspect in case().suspects if suspect.label in names)
+    return prepared(Case(record, plant, asked, NOISE, first_motion(record, plant)))
+
+
+@pytest.mark.slow
+def test_a_log_that_cannot_tell_drift_from_current_can_after_the_prescribed_manoeuvre():
+    drift = {"water.drift_east": -1500.0}
+    one = logged(drift)
+    before = judge(explain(one), lambda fit: {"": 0.0})
+    assert before.verdict == "ambiguous"
+    assert {"current", "wave_drift"} <= {candidate.cause for candidate in before.indistinguishable}
+    told = prescribe(one, before.fit, before.rivals)
+    sent = next(m for m in library(one.plant) if m.name == told.manoeuvre)
+    after = judge(explain(logged(drift, sent)), lambda fit: {"": 0.0})
+    assert after.verdict == "named"
+    assert [finding.cause for finding in after.findings] == ["wave_drift"]
 
 
 def test_the_page_lists_the_library(root):

@@ -21,12 +21,16 @@ A difference expected to be d varies with a standard deviation of sqrt(2 d): at 
 3 nats ahead, the distance at which causes are told apart, in 94 of 100 logs, and more than 3 behind in 1 of 500.
 """
 _MOST = 4  # rivals that are compared
+_ABOUT = 1.5  # times the shortest: about as short
 _ASTRAY = 1.0  # lengths that a ship may be off her track
 _ROOM = 3.0  # lengths that a ship may get away from where she started
 
 
 def prescribe(case, fit, rivals, manoeuvres=None):
-    """The shortest manoeuvre that is expected to tell a fit and its rivals apart.
+    """A manoeuvre that is expected to tell a fit and its rivals apart.
+
+    Of those that separate all pairs, one of the shortest; among manoeuvres about as short the one with most nats per
+    minute for its closest pair.
 
     Parameters
     ----------
@@ -55,7 +59,9 @@ def prescribe(case, fit, rivals, manoeuvres=None):
     if not count.max(initial=0):
         return None
     minutes = np.array([one.minutes for one in manoeuvres])
-    best = min(np.flatnonzero(count == count.max()), key=lambda i: (minutes[i], -least[i] / minutes[i]))
+    able = np.flatnonzero(count == count.max())
+    short = able[minutes[able] <= _ABOUT * minutes[able].min()]
+    best = max(short, key=lambda i: least[i] / minutes[i])
     names = [_differing(fits[a], fits[b]) for a, b in pairs]
     separates = tuple(name for name, value in zip(names, told[best], strict=True) if value >= CLEAR)
     return Prescription(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
