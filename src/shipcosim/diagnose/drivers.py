@@ -86,13 +86,13 @@ def _put_right(clean, mislabel, segments):
 
 
 def _by_row(case, record):
-    """Log-likelihood of each row, known numbers fitted within their tolerances; what that takes is shared by all rows."""
+    """Log-likelihood of each row, known numbers fitted within their tolerances."""
     columns = case.known(())
     linear = linearise(case.motion, record, case.plant, [column.turns for column in columns])
     found = innovations(linear, case.noise, record)
     theta = evidence(gram(found).products, np.ones(len(columns)))[1]
     left = found.white[..., 0] - found.white[..., 1:] @ theta
-    return -0.5 * ((left**2).sum(-1) + found.log_determinant + theta @ theta / len(left))
+    return -0.5 * ((left**2).sum(-1) + found.log_determinant)
 
 
 def _best_run(gain, least):
