@@ -209,6 +209,15 @@ def test_a_ship_that_cannot_hold_her_place_is_not_sent():
     assert prescribe(case(), flood, [other], [KEEP]) is None
 
 
+def test_a_ship_that_her_dp_cannot_steer_gets_lost_and_not_infinite():
+    plant = case().plant
+    light = plant.with_values({"vessel.mass": 2e3, "vessel.A11": 1e3, "vessel.A22": 1e3, "vessel.inertia_yaw": 1e4})
+    light = light.with_values({"vessel.A66": 1e4, "vessel.A26": 0.0, "vessel.A62": 0.0})
+    _, motion, _ = sailing(pick("pulses"), (20.0, 0.5), light)
+    assert np.isfinite(np.stack(motion)).all()
+    assert np.abs(motion.u).max() <= np.sqrt(9.81 * 33.9)
+
+
 def test_fixed_propellers_are_not_asked_to_turn():
     one = case()
     ahead = {name: (n, 0.0 * azimuth) for name, (n, azimuth) in one.record.units.items()}

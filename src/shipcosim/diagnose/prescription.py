@@ -22,7 +22,7 @@ A difference expected to be d varies with a standard deviation of sqrt(2 d): at 
 """
 _MOST = 4  # rivals that are compared
 _ABOUT = 1.5  # times the shortest: about as short
-_ASTRAY = 1.0  # lengths that a ship may be off her track
+_ASTRAY = 0.5  # lengths that a ship may be off her track
 _ROOM = 3.0  # lengths that a ship may get away from where she started
 
 

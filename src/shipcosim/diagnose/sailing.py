@@ -55,6 +55,7 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
             ship = _moved(ship, base, k, {name: series[-1] for name, series in units.items()}, ships, h)
             if jolts is not None:
                 ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
+            ship = dp.bounded(ship)
     motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
     series = {name: tuple(np.stack(s, axis=-1) for s in zip(*pairs, strict=True)) for name, pairs in units.items()}
     return motion, series
@@ -93,6 +94,12 @@ class Dp:
         self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
         self.mass = np.array([hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66])
         self.most = 0.05 * self.mass * np.array([1.0, 1.0, 4.0 / hull.length])
+
+    def bounded(self, ship):
+        """The ships no faster than any ship is: one that a DP of this kind cannot steer gets lost, not infinite."""
+        most = np.sqrt(9.81 * self.plant.parts["hull"].length)
+        u, v, r = (np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.plant.parts["hull"].length))
+        return ship._replace(u=u, v=v, r=r / self.plant.parts["hull"].length)
 
     def load(self, ship, want, integral):
         """Load that brings the ships back to the track, in their body frames; and the integral action."""
