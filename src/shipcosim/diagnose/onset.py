@@ -44,6 +44,8 @@ def begun(case, fits):
         healthy, throughout = evidence(before, none)[0], before + after
         later = max(evidence(after, prior)[0] for prior in priors)
         gains.append(healthy + later - max(evidence(throughout, prior)[0] for prior in (none, *priors)))
+    if not gains:  # too short to be parted
+        return None
     best = int(np.argmax(gains))
     row = round((3 + best) / parts * case.record.time.size)
     return float(case.record.time[row]) if gains[best] > _WORTH else None
