@@ -291,6 +291,12 @@ def test_a_log_that_cannot_tell_drift_from_current_can_after_the_prescribed_mano
     assert [finding.cause for finding in after.findings] == ["wave_drift"]
 
 
+def test_before_sailing_nothing_is_said_of_weather_that_the_ship_cannot_hold_against():
+    suspect = [suspect for suspect in case().suspects if suspect.label == "wind_scale"]
+    gale = nats_of(case().plant, suspect, NOISE, [pick("turn by 90")], (45.0, 1.5))
+    assert np.isnan(gale["wind_scale"]).all()
+
+
 def test_the_page_lists_the_library(root):
     page = (root / "docs" / "manoeuvres.md").read_text(encoding="utf-8")
     for i, one in enumerate(library(case().plant), start=1):

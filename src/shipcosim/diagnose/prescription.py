@@ -231,9 +231,8 @@ def _through(motion, track, manoeuvres, dp):
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
     for i, one in enumerate(manoeuvres):
         rows = slice(0, rows_of(one, dp.h))
-        found.append(
-            (off[i, rows] < (_ROOM if one.free or one.pushes else _ASTRAY)).all() and (far[i, rows] < _ROOM).all()
-        )
+        near = _ROOM if one.free or one.pushes else _ASTRAY
+        found.append((off[i, rows] < near).all() and (far[i, rows] < _ROOM).all())
     return np.array(found)
 
 
@@ -272,7 +271,7 @@ def testability(plant, suspects, noise, manoeuvres, wind=None):
         products, place = _products(white[: rows_of(one, record.step), i]), len(known)
         for suspect, group in groups:
             seen = _shows(products, columns, range(place, place + len(group)), len(known))
-            found[suspect.label][i] = min(found[suspect.label][i], seen if through[i] else np.nan)
+            found[suspect.label][i] = np.minimum(found[suspect.label][i], seen if through[i] else np.nan)
             place += len(group)
     return found
 
