@@ -93,7 +93,7 @@ def _frame(time, winds, slow, filters):
 def _steadiness(wind, time, segment):
     """Length of the mean vector over the mean length: 1 for a steady wind, less if it turns with the ship."""
     wind = in_segment(wind, time, segment)
-    return float(np.hypot(*wind.mean(axis=0)) / np.hypot(*wind.T).mean())
+    return float(np.hypot(*wind.mean(axis=0)) / max(np.hypot(*wind.T).mean(), 1e-9))
 
 
 def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
