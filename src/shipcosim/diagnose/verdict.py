@@ -16,6 +16,8 @@ TESTABLE = 8.0
 """What a cause of typical size would have to gain, or this log could not have shown it. [nats]"""
 STRANGE = 6.0
 """An error without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
+MOST = 2
+"""Causes at once that are named. Where a third is needed, something that nobody knows is likelier than three at once."""
 _ROUGH = 0.02  # of the gain of large causes, whose laws are never that exact
 
 
@@ -64,7 +66,7 @@ def judge(fits, strange, chance=None):
     scores = [fit.score if fit.suspects else fit.score + ENOUGH for fit in fair]
     candidates = _candidates(dict(zip(fair, _weights(scores), strict=True)))
     odd = max(strange(best).values())
-    if odd > max(STRANGE, _ROUGH * (best.score - nothing.score)):
+    if len(best.suspects) > MOST or odd > max(STRANGE, _ROUGH * (best.score - nothing.score)):
         return Judgement("unknown", best, (), candidates, ())
     if not best.suspects:
         return Judgement("consistent", best, (), candidates, ())
