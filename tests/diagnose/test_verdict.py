@@ -129,6 +129,12 @@ def test_a_vectors_size_counts_not_each_of_its_components():
     assert named(verdict(fit(40.0, "current", current_east=0.0))) == [("current", None)]
 
 
+def test_three_causes_at_once_are_rather_one_that_nobody_knows():
+    pairs = (("mass", "drag"), 70.0), (("mass", "tow"), 70.0), (("drag", "tow"), 70.0)
+    fits = [fit(score, *labels) for labels, score in pairs]
+    assert verdict(*fits, fit(100.0, "mass", "drag", "tow")).verdict == "unknown"
+
+
 def test_gain_of_a_cause_is_over_the_best_set_without_it():
     fits = [fit(0.0), fit(40.0, "mass"), fit(25.0, "drag"), fit(52.0, "mass", "drag")]
     assert gained(EVERYONE["drag"], fits[3], fits) == 12.0 and gained(EVERYONE["mass"], fits[3], fits) == 27.0
