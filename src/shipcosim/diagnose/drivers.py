@@ -14,6 +14,8 @@ from shipcosim.diagnose.linear import innovations, linearise
 from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, undone
 from shipcosim.diagnose.record import record_of
 
+__all__ = ["suspected"]
+
 _SHORTEST = 60.0  # s
 _WHOLE = 0.85  # of the log
 

@@ -11,6 +11,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 
+__all__ = ["Effect", "EffectParameter", "Knob", "Suspect", "read_catalogue", "suspects"]
+
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)

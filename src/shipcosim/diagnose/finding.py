@@ -2,6 +2,8 @@
 
 from dataclasses import asdict, dataclass, field
 
+__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "Prescription"]
+
 SCHEMA = "shipcosim-diagnosis/1"
 
 

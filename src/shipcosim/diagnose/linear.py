@@ -11,6 +11,8 @@ import numpy as np
 
 from shipcosim.diagnose.plant import Motion, motion_rates, shown
 
+__all__ = ["STATES", "Innovations", "Linear", "Noise", "advanced", "innovations", "linearise", "rows_first"]
+
 STATES = 12
 """x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3)."""
 _ACCELERATION, _SLOW = slice(6, 9), slice(9, 12)

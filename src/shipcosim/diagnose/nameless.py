@@ -6,6 +6,8 @@ from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.linear import STATES, innovations
 from shipcosim.diagnose.plant import shown
 
+__all__ = ["HATS", "PERIODS", "unexplained"]
+
 HATS = 8
 PERIODS = 28
 _SIZE = 1e-3  # m/s2, of a force that matters; 500 N on 500 t

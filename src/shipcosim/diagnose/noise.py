@@ -4,6 +4,8 @@ import numpy as np
 
 from shipcosim.diagnose.linear import Linear, Noise, innovations
 
+__all__ = ["explained", "first_noise", "tuned"]
+
 _GROUPS = (
     ("white", (0, 1)),
     ("white", (2,)),

@@ -16,6 +16,8 @@ from shipcosim.diagnose.ranking import gains, prepared, probes
 from shipcosim.diagnose.record import Record, first_motion
 from shipcosim.diagnose.sailing import Dp, sailed
 
+__all__ = ["healthy_records", "null_gains"]
+
 _SLOW_STD, _SLOW_TIME = np.array([0.1, 0.1, np.radians(0.1)]), np.array([240.0, 240.0, 60.0])
 
 

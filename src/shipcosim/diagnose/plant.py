@@ -21,6 +21,19 @@ from shipcosim.models.thruster import AzimuthParameters, TunnelParameters
 from shipcosim.models.vessel import accelerations
 from shipcosim.models.wind import WindParameters
 
+__all__ = [
+    "Drivers",
+    "Instruments",
+    "Motion",
+    "Plant",
+    "Water",
+    "current_at",
+    "loads",
+    "motion_rates",
+    "plant_of",
+    "shown",
+]
+
 _NEUTRAL = "neutral"
 
 

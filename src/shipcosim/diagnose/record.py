@@ -8,6 +8,8 @@ import numpy as np
 from shipcosim.diagnose.plant import Drivers, Motion
 from shipcosim.errors import Problem, ShipcosimError
 
+__all__ = ["CHANNELS", "Record", "first_motion", "record_of"]
+
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s on Gunnerus
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)

@@ -19,10 +19,12 @@ from shipcosim.diagnose.null import null_gains
 from shipcosim.diagnose.onset import from_onset
 from shipcosim.diagnose.plant import plant_of
 from shipcosim.diagnose.prescription import prescribe
-from shipcosim.diagnose.ranking import Case, explain, fitted, prepared, probes, weighed
+from shipcosim.diagnose.ranking import Case, at_first_sight, explain, fitted, prepared, probes, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
-from shipcosim.diagnose.verdict import STRANGE, gained, judge, not_testable
+from shipcosim.diagnose.verdict import MOST, STRANGE, gained, judge, not_testable
+
+__all__ = ["Details", "diagnose", "prepare"]
 
 _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
 _SURE = 100.0  # nats, far above what any healthy log gained
@@ -138,10 +140,17 @@ def _with_right_drivers(clean, case, fits, plant, catalogue):
     """The likeliest fault of thrusters' or the wind's channels, and all with it put right; None if there is none."""
     for _, fault, right in suspected(clean, case)[:2]:
         again = prepare(right, plant, catalogue, case.noise)
+        if at_first_sight(again) < fits[0].score:
+            continue
         better = explain(again)
-        if better[0].score > fits[0].score + _FAULT:
+        if better[0].score > fits[0].score + _FAULT and _is_explained(again, better[0]):
             return fault, right, again, better
     return None
+
+
+def _is_explained(case, fit):
+    """Whether nothing without a name is left beside a fit."""
+    return len(fit.suspects) <= MOST and max(unexplained(case, fit).values()) < STRANGE
 
 
 def prepare(clean, plant, catalogue, noise=None):

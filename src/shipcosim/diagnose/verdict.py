@@ -8,6 +8,20 @@ import numpy as np
 from shipcosim.diagnose.evidence import evidence
 from shipcosim.diagnose.finding import Candidate, Estimate, Finding
 
+__all__ = [
+    "APART",
+    "ENOUGH",
+    "MOST",
+    "STRANGE",
+    "TESTABLE",
+    "Judgement",
+    "admissible",
+    "gained",
+    "judge",
+    "labels",
+    "not_testable",
+]
+
 ENOUGH = 5.0
 """What a cause must gain over the log without it. [nats]"""
 APART = 3.0
@@ -17,7 +31,7 @@ TESTABLE = 8.0
 STRANGE = 6.0
 """An error without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
 MOST = 2
-"""Causes at once that are named. Where a third is needed, something that nobody knows is likelier than three at once."""
+"""Causes at once that are named. Where a third is needed, one that nobody knows is likelier than three at once."""
 _ROUGH = 0.02  # of the gain of large causes, whose laws are never that exact
 
 
