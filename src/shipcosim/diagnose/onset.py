@@ -4,7 +4,7 @@ import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.linear import innovations
-from shipcosim.diagnose.ranking import beside, explain, fitted, probes
+from shipcosim.diagnose.ranking import at_first_sight, beside, explain, fitted, probes
 
 _BLOCK = 60.0  # s
 _BLIND = 2  # blocks after an onset, in which the filter still answers to it
@@ -75,6 +75,8 @@ def from_onset(clean, case, fits, prepare):
     row = int(np.searchsorted(clean["time"].values, time))
     earlier, later = clean.isel(time=slice(0, row)), clean.isel(time=slice(row, None))
     healthy, after = fitted(prepare(earlier)), prepare(later)
+    if healthy.score + at_first_sight(after) < fits[0].score:
+        return None
     found = explain(after)
     if healthy.score + found[0].score < fits[0].score + 2.0 * _WORTH:
         return None

@@ -11,6 +11,7 @@ from shipcosim.models.instruments import motion_of
 from shipcosim.models.kinematics import to_body, to_ned
 
 _LAGS = ("instruments.navigation_lag", "instruments.thruster_lag", "instruments.wind_lag")
+_FASTEST, _FASTEST_TURN = 20.0, 0.5  # m/s, rad/s
 _FORCE = slice(6, 9)
 _FREE = 3.0  # times the jolts, and seconds in which the force changes: the model moves the reference by some 2 cm then
 
@@ -212,7 +213,7 @@ def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True, 
         k3 = _rates(_moved(motion, k2, 0.5 * h), half, plant, load(k * h + 0.5 * h))
         k4 = _rates(_moved(motion, k3, h), there, plant, load(k * h + h))
         slopes = zip(motion, k1, k2, k3, k4, strict=True)
-        motion = Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
+        motion = _bounded(Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes)))
         if k + 1 in horizons:
             kept.append(motion)
     return Motion(*(np.stack(channel) for channel in zip(*kept, strict=True)))
@@ -237,6 +238,12 @@ def _rates(motion, drivers, plant, load):
 
 def _moved(motion, rates, by):
     return Motion(*(value + by * rate for value, rate in zip(motion, rates, strict=True)))
+
+
+def _bounded(motion):
+    """A motion no faster than any ship, so that a prediction that runs away stays a number."""
+    u, v = np.clip(motion.u, -_FASTEST, _FASTEST), np.clip(motion.v, -_FASTEST, _FASTEST)
+    return motion._replace(u=u, v=v, r=np.clip(motion.r, -_FASTEST_TURN, _FASTEST_TURN))
 
 
 def _at(drivers, rows):

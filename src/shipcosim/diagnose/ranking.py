@@ -9,7 +9,7 @@ from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.linear import innovations, linearise
 
 DIRECTIONS = 12
-ROUNDS = 8
+ROUNDS = 5
 
 
 @dataclass(frozen=True)
@@ -172,14 +172,14 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     Fit
     """
     values, motion, fit = dict(values or {}), case.motion, None
-    known, own = case.known(suspects), _own(case, suspects)
+    columns = case.known(suspects) + _own(case, suspects)
     for _ in range(rounds):
         plant = case.plant.with_values(values)
-        linear = joined(linearise(motion, case.record, plant, [column.turns for column in own]), case.base_of(known))
-        last, fit = fit, _posterior(case, suspects, values, known + own, linear, plant, motion)
+        linear = linearise(motion, case.record, plant, [column.turns for column in columns])
+        last, fit = fit, _posterior(case, suspects, values, columns, linear, plant, motion)
         motion, values = fit.motion, _next(fit)
         moved = [abs(values[k.paths[0]] - fit.plant.get(k.paths[0])) / k.typical for s in suspects for k in s.knobs]
-        if max(moved, default=0.0) < 0.01 and last and abs(fit.score - last.score) < 0.5:
+        if max(moved, default=0.0) < 0.02 and last and abs(fit.score - last.score) < 1.0:
             break
     return fit
 
@@ -312,7 +312,7 @@ def _centre(columns, plant, neutral):
     return found
 
 
-def explain(case, *, most=3, likely=5, near=12.0, enough=5.0):
+def explain(case, *, most=3, likely=4, near=12.0, enough=5.0):
     """The sets of causes that explain a log best.
 
     Parameters
@@ -340,7 +340,7 @@ def explain(case, *, most=3, likely=5, near=12.0, enough=5.0):
         for fit in front:
             gains = weighed(case, fit)
             most_gain = gains[0][0]
-            for gain, suspect, values in gains[: likely if stage == 0 else 3]:
+            for gain, suspect, values in gains[: likely if stage == 0 else 2]:
                 if gain < max(most_gain - max(near, most_gain / 7.0), -2.0 if stage == 0 else enough - 2.0):
                     break
                 suspects = (*fit.suspects, suspect)
@@ -354,6 +354,12 @@ def explain(case, *, most=3, likely=5, near=12.0, enough=5.0):
             break
     _simplify(case, fits)
     return sorted(fits.values(), key=lambda fit: -fit.score)
+
+
+def at_first_sight(case):
+    """Evidence of a log with its likeliest cause, linearised once."""
+    nothing = fitted(case)
+    return nothing.score + max(weighed(case, nothing)[0][0], 0.0)
 
 
 def _names(suspects):

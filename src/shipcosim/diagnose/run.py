@@ -27,6 +27,9 @@ from shipcosim.diagnose.verdict import MOST, STRANGE, gained, judge, not_testabl
 __all__ = ["Details", "diagnose", "prepare"]
 
 _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
+_LIKE_WIND = ("wind_scale", "wind_direction", "wave_drift", "tow")  # steady forces, from the earth or the air
+_WITHOUT_WIND = 40.0  # nats more that a cause has to gain where the wind could be it (assumed)
+_GUSTS = 10.0  # times as fast may an unexplained force walk where nobody knows the wind
 _SURE = 100.0  # nats, far above what any healthy log gained
 _MOST_WALK = 3e-5  # m/s2.5: some 400 N on Gunnerus in ten minutes
 
@@ -110,11 +113,14 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
 
         def beside(fit):
             strange.update(unexplained(case, fit))
-            return strange
+            unknown_wind = case.record.wind is None  # a force that nobody explains is then no surprise
+            return {kind: gain for kind, gain in strange.items() if kind == "in a channel" or not unknown_wind}
 
-        judgement = judge(fits, beside)
-        chance = _by_chance(case, judgement.fit, fits)
-        if chance:
+        chance = {suspect.label: _WITHOUT_WIND for suspect in case.suspects if case.record.wind is None}
+        judgement = judge(fits, beside, chance)
+        more = _by_chance(case, judgement.fit, fits)
+        if more:
+            chance = {label: chance.get(label, 0.0) + gain for label, gain in more.items()}
             judgement = judge(fits, beside, chance)
         verdict = "named" if faults and judgement.verdict == "consistent" else judgement.verdict
         diagnosis = Diagnosis(
@@ -122,7 +128,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
             (*faults, *(replace(finding, onset=began) for finding in judgement.findings)),
             judgement.candidates,
             judgement.indistinguishable,
-            _not_testable(case, fits),
+            tuple(sorted({*_not_testable(case, fits), *_hidden(catalogue, case)})),
             prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals else None,
         )
         return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
@@ -171,8 +177,13 @@ def prepare(clean, plant, catalogue, noise=None):
     plant = replace(plant, span=(float(clean["time"][0]), float(clean["time"][-1])))
     plant = replace(plant, wind_is_true="wind_speed" not in clean and "true_wind_speed" in clean)
     record, length = record_of(clean, plant), plant.parts["hull"].length
+    everyone = suspects(catalogue, plant)
+    hidden = unidentifiable(everyone, record, clean)
+    if record.wind is None:
+        plant = replace(plant, tolerances=plant.tolerances | _unknown_wind(everyone))
+    wanted = tuple(suspect for suspect in everyone if suspect not in hidden)
     start = first_noise(record, length) if noise is None else noise
-    case = prepared(Case(record, plant, tuple(suspects(catalogue, plant)), start, first_motion(record, plant)))
+    case = prepared(Case(record, plant, wanted, start, first_motion(record, plant)))
     if noise is not None:
         return case
     fit = fitted(case)
@@ -180,8 +191,38 @@ def prepare(clean, plant, catalogue, noise=None):
     if gain > 3.0:
         fit = fitted(case, (suspect,), values)
     most = _MOST_WALK * np.array([1.0, 1.0, 4.0 / length])
+    most *= 1.0 if record.wind is not None else _GUSTS
     noise = tuned(start, fit.linear, record, fit.left, most_walk=most)
     return prepared(replace(case, noise=noise))
+
+
+def unidentifiable(everyone, record, clean):
+    """Suspects that a log without some channels cannot show: of wind and what acts like it, of silent thrusters.
+
+    Parameters
+    ----------
+    everyone : sequence of Suspect
+    record : Record
+    clean : xarray.Dataset
+
+    Returns
+    -------
+    list of Suspect
+    """
+    silent = [name for name in record.units if f"{name}_rpm" not in clean]
+    return [s for s in everyone if s.component in silent or (record.wind is None and s.cause in _LIKE_WIND)]
+
+
+def _hidden(catalogue, case):
+    """Causes that are suspected nowhere."""
+    there = {suspect.cause for suspect in case.suspects}
+    return [suspect.cause for suspect in suspects(catalogue, case.plant) if suspect.cause not in there]
+
+
+def _unknown_wind(everyone):
+    """Tolerance of a force over ground, where nobody knows the wind."""
+    knobs = [knob for suspect in everyone if suspect.cause == "tow" for knob in suspect.knobs]
+    return {path: knob.typical for knob in knobs for path in knob.paths}
 
 
 def _not_testable(case, fits):

@@ -145,7 +145,10 @@ def _candidates(chances):
 
 def _finding(suspect, fit, candidates):
     parameters = {
-        k.name: Estimate(fit.values[k.paths[0]] * k.factor, abs(fit.std[k.paths[0]] * k.factor), k.unit)
+        # of the log, and of a model that knows no number better than within its tolerance
+        k.name: Estimate(
+            fit.values[k.paths[0]] * k.factor, float(abs(np.hypot(fit.std[k.paths[0]], k.tolerance) * k.factor)), k.unit
+        )
         for k in suspect.knobs
     }
     chance = next(
