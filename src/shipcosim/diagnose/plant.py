@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.surroundings import Instruments, Water
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models import thruster, wind
 from shipcosim.models.current import varying_current
@@ -16,7 +17,6 @@ from shipcosim.models.earth import drift_force, earth_force
 from shipcosim.models.hull import HullParameters
 from shipcosim.models.kinematics import to_body, to_ned
 from shipcosim.models.maths import cos, sin, wrap
-from shipcosim.models.quantity import quantity
 from shipcosim.models.thruster import AzimuthParameters, TunnelParameters
 from shipcosim.models.vessel import accelerations
 from shipcosim.models.wind import WindParameters
@@ -33,52 +33,6 @@ __all__ = [
     "plant_of",
     "shown",
 ]
-
-_NEUTRAL = "neutral"
-
-
-@dataclass(frozen=True)
-class Water:
-    """What moves the water, and what else pulls at the ship from the earth."""
-
-    current_north: float = quantity(0.0, "m/s", "current towards north", _NEUTRAL)
-    current_east: float = quantity(0.0, "m/s", "current towards east", _NEUTRAL)
-    north_start: float = quantity(0.0, "m/s", "varying current towards north, first row", _NEUTRAL)
-    east_start: float = quantity(0.0, "m/s", "varying current towards east, first row", _NEUTRAL)
-    north_end: float = quantity(0.0, "m/s", "varying current towards north, last row", _NEUTRAL)
-    east_end: float = quantity(0.0, "m/s", "varying current towards east, last row", _NEUTRAL)
-    trend_north: float = quantity(0.0, "m/s", "what a current towards north grows by from first to last row", _NEUTRAL)
-    trend_east: float = quantity(0.0, "m/s", "what a current towards east grows by from first to last row", _NEUTRAL)
-    drift_north: float = quantity(0.0, "N", "mean wave drift on the beam, towards north", _NEUTRAL)
-    drift_east: float = quantity(0.0, "N", "mean wave drift on the beam, towards east", _NEUTRAL)
-    drift_surge_share: float = quantity(
-        1.0 / 3.0, "1", "wave drift in surge over that on the beam", "VERES, 33.9 m hull", tolerance=0.1
-    )
-    drift_yaw_arm: float = quantity(
-        -1.5,
-        "m",
-        "yaw moment of the drift at quartering over the force on the beam",
-        "VERES, 33.9 m hull",
-        tolerance=0.5,
-    )
-    tow_north: float = quantity(0.0, "N", "pull of a line towards north", _NEUTRAL)
-    tow_east: float = quantity(0.0, "N", "pull of a line towards east", _NEUTRAL)
-    tow_x: float = quantity(-17.0, "m", "where the line is made fast", "the stern")
-
-
-@dataclass(frozen=True)
-class Instruments:
-    """What is between the ship and her log."""
-
-    heading_bias: float = quantity(0.0, "rad", "measured heading minus the true one", _NEUTRAL)
-    lever_x: float = quantity(0.0, "m", "antenna forward of the origin", _NEUTRAL)
-    lever_y: float = quantity(0.0, "m", "antenna to starboard of the origin", _NEUTRAL)
-    velocity_scale: float = quantity(1.0, "1", "logged over true velocity", _NEUTRAL)
-    navigation_lag: float = quantity(0.0, "s", "by how much the navigation's channels are late", _NEUTRAL)
-    thruster_lag: float = quantity(0.0, "s", "by how much the thrusters' channels are late", _NEUTRAL)
-    wind_lag: float = quantity(
-        1.25, "s", "half the time over which the wind sensor averages", "2 to 3 s", tolerance=0.3
-    )
 
 
 class Motion(NamedTuple):

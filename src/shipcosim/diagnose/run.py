@@ -28,6 +28,7 @@ __all__ = ["Details", "diagnose", "prepare"]
 
 _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
 _LIKE_WIND = ("wind_scale", "wind_direction", "wave_drift", "tow")  # steady forces, from the earth or the air
+_FAULTS = 2  # of the drivers' channels, at most
 _WITHOUT_WIND = 40.0  # nats more that a cause has to gain where the wind could be it (assumed)
 _GUSTS = 10.0  # times as fast may an unexplained force walk where nobody knows the wind
 _SURE = 100.0  # nats, far above what any healthy log gained
@@ -97,31 +98,10 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         say("which causes explain it?")
         case = prepare(clean, plant, catalogue)
         fits = explain(case)
-        for _ in range(2 if fits[0].suspects else 0):
-            better = _with_right_drivers(clean, case, fits, plant, catalogue)
-            if better is None:
-                break
-            fault, clean, case, fits = better
-            faults.append(fault)
+        clean, case, fits, more, began = _looked_closer(clean, case, fits, plant, catalogue)
+        faults += more
         say("what do healthy ships look like?")
-        began = None
-        if fits[0].suspects or max(unexplained(case, fits[0]).values()) > STRANGE:
-            later = from_onset(clean, case, fits, lambda part: prepare(part, plant, catalogue, case.noise))
-            if later is not None:
-                began, clean, case, fits = later
-        strange = {}
-
-        def beside(fit):
-            strange.update(unexplained(case, fit))
-            unknown_wind = case.record.wind is None  # a force that nobody explains is then no surprise
-            return {kind: gain for kind, gain in strange.items() if kind == "in a channel" or not unknown_wind}
-
-        chance = {suspect.label: _WITHOUT_WIND for suspect in case.suspects if case.record.wind is None}
-        judgement = judge(fits, beside, chance)
-        more = _by_chance(case, judgement.fit, fits)
-        if more:
-            chance = {label: chance.get(label, 0.0) + gain for label, gain in more.items()}
-            judgement = judge(fits, beside, chance)
+        judgement, strange, chance = _judged(case, fits)
         verdict = "named" if faults and judgement.verdict == "consistent" else judgement.verdict
         diagnosis = Diagnosis(
             verdict,
@@ -132,6 +112,51 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
             prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals else None,
         )
         return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
+
+
+def _looked_closer(clean, case, fits, plant, catalogue):
+    """Where something is wrong: whether channels of the drivers are wrong instead, or it began during the log.
+
+    Returns
+    -------
+    tuple
+        Log, case and fits with that put right; faults of the data; time from which on causes act, or None. [s]
+    """
+    faults, began = [], None
+    while len(faults) < _FAULTS and not _is_healthy(case, fits[0]):
+        better = _with_right_drivers(clean, case, fits, plant, catalogue)
+        if better is None:
+            break
+        fault, clean, case, fits = better
+        faults.append(fault)
+    if not _is_healthy(case, fits[0]):
+        later = from_onset(clean, case, fits, lambda part: prepare(part, plant, catalogue, case.noise))
+        if later is not None:
+            began, clean, case, fits = later
+    return clean, case, fits, faults, began
+
+
+def _is_healthy(case, fit):
+    """Whether neither a cause nor an error without a name is in sight."""
+    return not fit.suspects and max(unexplained(case, fit).values()) < STRANGE
+
+
+def _judged(case, fits):
+    """The verdict, errors without a name beside it, and what its causes would have gained by chance."""
+    strange, unknown_wind = {}, case.record.wind is None
+
+    def beside(fit):
+        strange.update(unexplained(case, fit))
+        # where nobody knows the wind, a force that nobody explains is no surprise
+        return {kind: gain for kind, gain in strange.items() if kind == "in a channel" or not unknown_wind}
+
+    chance = {suspect.label: _WITHOUT_WIND for suspect in case.suspects if unknown_wind}
+    judgement = judge(fits, beside, chance)
+    more = _by_chance(case, judgement.fit, fits)
+    if more:
+        chance = {label: chance.get(label, 0.0) + gain for label, gain in more.items()}
+        judgement = judge(fits, beside, chance)
+    return judgement, strange, chance
 
 
 def _by_chance(case, fit, fits):
