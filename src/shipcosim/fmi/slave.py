@@ -353,9 +353,13 @@ def _integer(name, value):
 
 
 def _traceback(error):
-    """Traceback as Python prints it, without the shell's frames, files named from the FMU's own folder."""
+    """Traceback as Python prints it, without frames of host and shell, files named from the FMU's own folder."""
     trace = error.__traceback__
-    while trace.tb_next and trace.tb_frame.f_code.co_filename.startswith(SHELL):
+    while trace.tb_next and not _is_fmus_own(trace.tb_frame.f_code.co_filename):
         trace = trace.tb_next
     lines = "".join(traceback.format_exception(type(error), error, trace)).rstrip()
     return lines.replace(str(CODE) + os.sep, "")
+
+
+def _is_fmus_own(file):
+    return file.startswith(str(CODE)) and not file.startswith(SHELL)
