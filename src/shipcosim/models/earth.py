@@ -59,7 +59,7 @@ def onset(t, *, onset_time, ramp_time):
 
     Examples
     --------
-    >>> [onset(t, onset_time=100.0, ramp_time=20.0) for t in (99.0, 105.0, 130.0)]
+    >>> [round(onset(t, onset_time=100.0, ramp_time=20.0), 6) for t in (99.0, 105.0, 130.0)]
     [0.0, 0.25, 1.0]
     >>> [onset(t, onset_time=100.0, ramp_time=0.0) for t in (99.0, 100.0)]
     [0.0, 1.0]

@@ -39,4 +39,4 @@ def slipstream_share(x, y, azimuth, rpm, *, width):
     """
     towards = where(rpm > 0.0, azimuth + pi, azimuth)
     angle = wrap(atan2(y, x) - towards) / width
-    return where(rpm == 0.0, 0.0 * angle, exp(-angle * angle))
+    return where(rpm == 0.0, 0.0 * abs(angle), exp(-angle * angle))
