@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.linear import innovations, linearise
-from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, undone
+from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, negative, undone
 from shipcosim.diagnose.record import record_of
 
 __all__ = ["suspected"]
@@ -57,13 +57,13 @@ def _mislabels(clean, plant):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in clean and pair[1] in clean]
         if type(plant.parts[one]) is type(plant.parts[other]):
-            for group in [pairs] if len(pairs) == 1 else [pairs, pairs[1:]]:
-                found.append(_swapped(group)) if group else None
+            found += [_swapped(group) for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]]) if group]
     for name in plant.thrusters:
-        found += [_negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in clean]
+        found += [negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in clean]
     if "wind_from" in clean:
-        found.append(_negative("wind_from"))
-        found += [m for m in WIND_LABELS if all(c in clean for c in (*m.channels, "heading", "surge", "sway"))]
+        motion = all(role in clean for role in ("heading", "surge", "sway"))
+        labels = WIND_LABELS if motion else (negative("wind_from"),)
+        found += [label for label in labels if all(role in clean for role in label.channels)]
     return found
 
 
@@ -74,10 +74,6 @@ def _swapped(pairs):
     channels = tuple(role for side in zip(*pairs, strict=True) for role in side)
     names = " and ".join(" with ".join(pair) for pair in pairs)
     return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
-
-
-def _negative(role):
-    return Mislabel("sign", (role,), f"{role} has the other sign", lambda log: {role: -log[role]})
 
 
 def _put_right(clean, mislabel, segments):

@@ -8,6 +8,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from shipcosim.diagnose.finding import label_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 
@@ -118,7 +119,7 @@ class Suspect:
     @property
     def label(self):
         """``thrust_loss of port``."""
-        return f"{self.cause} of {self.component}" if self.component else self.cause
+        return label_of(self.cause, self.component)
 
 
 def read_catalogue(folder=None):

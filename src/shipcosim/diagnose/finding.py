@@ -2,9 +2,14 @@
 
 from dataclasses import asdict, dataclass, field
 
-__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "Prescription"]
+__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "Prescription", "label_of"]
 
 SCHEMA = "shipcosim-diagnosis/1"
+
+
+def label_of(cause, component):
+    """A cause with its place, in words: ``thrust_loss of port``."""
+    return f"{cause} of {component}" if component else cause
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,11 @@ class Finding:
     onset: float | None = None
     note: str = ""
 
+    @property
+    def label(self) -> str:
+        """``thrust_loss of port``."""
+        return label_of(self.cause, self.component)
+
     def as_json(self) -> dict:
         """The finding as an entry of diagnosis.json; what does not apply is left out."""
         entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}
@@ -73,6 +83,11 @@ class Candidate:
     cause: str
     component: str | None
     probability: float
+
+    @property
+    def label(self) -> str:
+        """``thrust_loss of port``."""
+        return label_of(self.cause, self.component)
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import shipcosim
+from shipcosim.diagnose.surroundings import stern_of
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.models.hull import HullParameters
 from shipcosim.models.instruments import InstrumentParameters, Shown
 from shipcosim.series import conversion
 from shipcosim.ssp import parameter
@@ -16,7 +16,6 @@ from shipcosim.ssp.edit import built_fmus
 RAMP = 30.0
 """Time over which something grows after its onset, assumed. [s]"""
 
-_STERN = {HullParameters().length: -17.0}
 _AXES = ("X", "Y", "N")
 
 
@@ -73,7 +72,7 @@ class Graft:
 
     def remark(self, finding, what):
         """Say what is not as a finding has it."""
-        self.remarks.append(f"{_label(finding)}: {what}.")
+        self.remarks.append(f"{finding.label}: {what}.")
 
     def thrusters(self, variable="rpm_in"):
         """Components that load the ship and have a variable."""
@@ -174,7 +173,7 @@ def add_force(graft, finding, fmu, north, east, others):
         graft.put_parameter(finding, name, number, estimate)
     if fmu == "earth_force" and "x" not in others:
         length = graft.structure.parameters[f"{graft.ship}.length"]
-        stern = Estimated(_STERN.get(length, -0.5 * length), None)
+        stern = Estimated(stern_of(length), None)
         graft.put(finding, f"{name}.x", stern, "m", note="point of attack: the stern, assumed")
     if finding.onset is not None:
         graft.put(finding, f"{name}.onset_time", Estimated(finding.onset, None), "s")
@@ -325,13 +324,9 @@ def _release(graft, input_name):
         graft.structure.disconnect(input_name)
 
 
-def _label(finding):
-    return f"{finding.cause} of {finding.component}" if finding.component else finding.cause
-
-
 def _origin(finding, log):
     """Where a value comes from, for the set."""
     sizes = ", ".join(f"{name} {e.estimate:.4g} ± {e.std:.2g} {e.unit}" for name, e in finding.parameters.items())
     source = Path(str(log["source"])).name if log.get("source") else "a log"
     digest = f", SHA-256 {log['sha256']}" if log.get("sha256") else ""
-    return f"{_label(finding)}, named with probability {finding.probability:.2f}: {sizes}; from {source}{digest}"
+    return f"{finding.label}, named with probability {finding.probability:.2f}: {sizes}; from {source}{digest}"

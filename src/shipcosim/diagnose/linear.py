@@ -11,14 +11,27 @@ import numpy as np
 
 from shipcosim.diagnose.plant import Motion, motion_rates, shown
 
-__all__ = ["STATES", "Innovations", "Linear", "Noise", "advanced", "innovations", "linearise", "rows_first"]
+__all__ = [
+    "SLOW_STD",
+    "SLOW_TIME",
+    "STATES",
+    "Innovations",
+    "Linear",
+    "Noise",
+    "advanced",
+    "beside",
+    "innovations",
+    "linearise",
+    "rows_first",
+    "with_columns",
+]
 
 STATES = 12
 """x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3)."""
-_ACCELERATION, _SLOW = slice(6, 9), slice(9, 12)
 _SHARE = 0.2  # of a column's size, for differences
-_SLOW_STD = np.array([0.1, 0.1, np.radians(0.1)])
-_SLOW_TIME = np.array([240.0, 240.0, 60.0])
+SLOW_STD = np.array([0.1, 0.1, np.radians(0.1)])
+SLOW_TIME = np.array([240.0, 240.0, 60.0])
+"""Slow errors of position and heading, stationary standard deviation [m, m, rad] and correlation time [s]."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +73,18 @@ class Linear(NamedTuple):
     output: np.ndarray
     seen: np.ndarray
     whole: np.ndarray
+
+
+def with_columns(linear, driven, seen):
+    """The problem with further columns behind its own, (n-1, ..., 12, p) and (n, ..., 6, p) arrays."""
+    return linear._replace(
+        driven=np.concatenate([linear.driven, driven], axis=-1), seen=np.concatenate([linear.seen, seen], axis=-1)
+    )
+
+
+def beside(linear, extra):
+    """A problem with the columns of another behind its own."""
+    return with_columns(linear, extra.driven[..., 1:], extra.seen[..., 1:])
 
 
 def advanced(motion, record, plant):
@@ -160,7 +185,7 @@ def _transition(middle, record, plant):
     A[..., :6, :6] = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
     A[..., :6, 6:9] = 0.5 * h * (A[..., :6, 3:6] + np.eye(6)[:, 3:])
     A[..., range(6, 9), range(6, 9)] = 1.0
-    A[..., range(9, 12), range(9, 12)] = np.exp(-h / _SLOW_TIME)
+    A[..., range(9, 12), range(9, 12)] = np.exp(-h / SLOW_TIME)
     return A
 
 
@@ -268,7 +293,7 @@ def _process(noise, h):
     """Covariance of what happens over a step."""
     jolt, walk = np.asarray(noise.jolt) ** 2 * h, np.asarray(noise.walk) ** 2 * h
     place = jolt * h * h / 3.0 + 1e-10
-    slow = np.broadcast_to(_SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / _SLOW_TIME)), jolt.shape)
+    slow = np.broadcast_to(SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / SLOW_TIME)), jolt.shape)
     return np.concatenate([place, jolt, walk, slow], axis=-1)[..., None] * np.eye(STATES)
 
 
@@ -276,7 +301,7 @@ def _uncertain(noise, lead):
     """Covariance at the first row."""
     walk = np.asarray(noise.walk) ** 2 * 600.0
     white = np.asarray(noise.white) ** 2
-    first = np.concatenate([100.0 * white, walk, np.broadcast_to(_SLOW_STD**2, walk.shape)], axis=-1)
+    first = np.concatenate([100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape)], axis=-1)
     return np.broadcast_to(first, (*lead, STATES))[..., None] * np.eye(STATES)
 
 

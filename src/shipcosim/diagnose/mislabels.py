@@ -9,7 +9,16 @@ import numpy as np
 
 from shipcosim.diagnose.tables import inside
 
-__all__ = ["HEADING_LABELS", "MISLABELS", "POSITION_LABELS", "WIND_LABELS", "Mislabel", "mislabel_of", "undone"]
+__all__ = [
+    "HEADING_LABELS",
+    "MISLABELS",
+    "POSITION_LABELS",
+    "WIND_LABELS",
+    "Mislabel",
+    "mislabel_of",
+    "negative",
+    "undone",
+]
 
 KNOT = 1852.0 / 3600.0  # m/s
 
@@ -39,7 +48,8 @@ class Mislabel:
     scale: float | None = None
 
 
-def _negative(role):
+def negative(role):
+    """A channel with the other sign."""
     return Mislabel("sign", (role,), f"{role} has the other sign", lambda log: {role: -log[role]})
 
 
@@ -82,7 +92,7 @@ def _apparent_from_north(log):
 VELOCITY, WIND = ("surge", "sway"), ("wind_speed", "wind_from")
 
 HEADING_LABELS = (
-    _negative("yaw_rate"),
+    negative("yaw_rate"),
     _in_unit(("yaw_rate",), float(np.degrees(1.0)), "yaw_rate is in rad/s, not deg/s"),
     _in_unit(("yaw_rate",), float(np.radians(1.0)), "yaw_rate is in deg/s, not rad/s"),
     _in_unit(("yaw_rate",), 1.0 / 60.0, "yaw_rate is in deg/min, not deg/s"),
@@ -90,13 +100,13 @@ HEADING_LABELS = (
 POSITION_LABELS = (
     _swapped("north", "east"),
     _swapped("surge", "sway"),
-    *(_negative(role) for role in ("north", "east", "surge", "sway")),
+    *(negative(role) for role in ("north", "east", "surge", "sway")),
     Mislabel("frame", VELOCITY, "surge and sway are the velocity towards north and east", _body_velocity),
     _in_unit(VELOCITY, KNOT, "surge and sway are in kn, not m/s"),
     _in_unit(VELOCITY, 1.0 / KNOT, "surge and sway are in m/s, not kn"),
 )
 WIND_LABELS = (
-    _negative("wind_from"),
+    negative("wind_from"),
     Mislabel("frame", ("wind_from",), "wind_from is counted from north, not from the bow", _from_bow),
     Mislabel("frame", WIND, "the wind is the wind over ground, not the apparent wind", _apparent),
     Mislabel(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.linear import STATES, innovations
+from shipcosim.diagnose.linear import STATES, innovations, with_columns
 from shipcosim.diagnose.plant import shown
 
 __all__ = ["HATS", "PERIODS", "unexplained"]
@@ -101,6 +101,4 @@ def _with(linear, accelerations, channels, case):
     driven[:, 3:6] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
     driven = np.concatenate([driven, np.zeros((n - 1, STATES, channels.shape[-1]))], axis=-1)
     seen = np.concatenate([np.zeros((n, 6, accelerations.shape[-1])), channels], axis=-1)
-    return linear._replace(
-        driven=np.concatenate([linear.driven, driven], axis=-1), seen=np.concatenate([linear.seen, seen], axis=-1)
-    )
+    return with_columns(linear, driven, seen)

@@ -10,15 +10,13 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.diagnose.evidence import gram
-from shipcosim.diagnose.linear import innovations
+from shipcosim.diagnose.linear import SLOW_STD, SLOW_TIME, innovations
 from shipcosim.diagnose.plant import shown
 from shipcosim.diagnose.ranking import gains, prepared, probes
 from shipcosim.diagnose.record import Record, first_motion
 from shipcosim.diagnose.sailing import Dp, sailed
 
 __all__ = ["healthy_records", "null_gains"]
-
-_SLOW_STD, _SLOW_TIME = np.array([0.1, 0.1, np.radians(0.1)]), np.array([240.0, 240.0, 60.0])
 
 
 def null_gains(case, motion, wanted, *, count=50, seed=0, batch=10):
@@ -101,10 +99,10 @@ def _logged(motion, units, plant, case, rng):
     record, (count, n) = case.record, motion.x.shape
     measured = np.stack([value.T for value in shown(motion, case.plant)], axis=-1)  # (n, m, 6)
     measured += rng.standard_normal(measured.shape) * np.asarray(case.noise.white)
-    keep = np.exp(-record.step / _SLOW_TIME)
-    slow = _SLOW_STD * rng.standard_normal((count, 3))
+    keep = np.exp(-record.step / SLOW_TIME)
+    slow = SLOW_STD * rng.standard_normal((count, 3))
     for k in range(n):
         measured[k, :, :3] += slow
-        slow = keep * slow + np.sqrt(1.0 - keep**2) * _SLOW_STD * rng.standard_normal((count, 3))
+        slow = keep * slow + np.sqrt(1.0 - keep**2) * SLOW_STD * rng.standard_normal((count, 3))
     measured = np.where(np.isfinite(record.measured)[:, None, :], measured, np.nan)
     return Record(record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.linear import innovations
-from shipcosim.diagnose.ranking import at_first_sight, beside, explain, fitted, probes
+from shipcosim.diagnose.linear import beside, innovations
+from shipcosim.diagnose.ranking import at_first_sight, explain, fitted, probes, without_causes
 
 _BLOCK = 60.0  # s
 _BLIND = 2  # blocks after an onset, in which the filter still answers to it
@@ -25,7 +25,7 @@ def begun(case, fits):
     float or None
         Time [s]; None where nothing is gained by an onset.
     """
-    nothing = next(fit for fit in fits if not fit.suspects)
+    nothing = without_causes(fits)
     suspects = [suspect for suspect in case.suspects if suspect.effect.law != "turning"]
     groups = [group for suspect in suspects for group in probes(suspect)]
     linear = beside(nothing.linear, case.base_of([column for group in groups for column in group]))

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from shipcosim.diagnose.surroundings import Instruments, Water
+from shipcosim.diagnose.surroundings import Instruments, Water, stern_of
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.models import thruster, wind
+from shipcosim.models import instruments, thruster, wind
 from shipcosim.models.current import varying_current
 from shipcosim.models.earth import drift_force, earth_force
 from shipcosim.models.hull import HullParameters
@@ -191,7 +191,7 @@ def plant_of(system):
                 for name in strangers
             ]
         )
-    water = Water(tow_x=-0.5 * parts["hull"].length) if parts["hull"].length != HullParameters().length else Water()
+    water = Water(tow_x=stern_of(parts["hull"].length))
     parts = _neighbours_placed(parts) | {"water": water, "instruments": Instruments()}
     return Plant(parts, ship.name, _tolerances(system, parts, ship.name))
 
@@ -334,7 +334,7 @@ def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0)):
 
 
 def shown(motion, plant):
-    """What the instruments show of a motion, without noise.
+    """What the instruments show of a motion, without noise, heading not wrapped.
 
     Position and velocity are the antenna's; surge and sway are its velocity over ground resolved with the measured
     heading.
@@ -349,10 +349,5 @@ def shown(motion, plant):
     Motion
     """
     i = plant.parts["instruments"]
-    c, s = cos(motion.psi), sin(motion.psi)
-    x = motion.x + c * i.lever_x - s * i.lever_y
-    y = motion.y + s * i.lever_x + c * i.lever_y
-    u, v = motion.u - motion.r * i.lever_y, motion.v + motion.r * i.lever_x
-    cb, sb = np.cos(i.heading_bias), np.sin(i.heading_bias)
-    u, v = cb * u + sb * v, cb * v - sb * u
-    return Motion(x, y, motion.psi + i.heading_bias, i.velocity_scale * u, i.velocity_scale * v, motion.r)
+    errors = {name: getattr(i, name) for name in ("heading_bias", "lever_x", "lever_y", "velocity_scale")}
+    return Motion(*instruments.shown(*motion, **errors))._replace(psi=motion.psi + i.heading_bias)

@@ -8,10 +8,10 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.evidence import evidence
 from shipcosim.diagnose.finding import Prescription
-from shipcosim.diagnose.linear import innovations, linearise, rows_first
+from shipcosim.diagnose.linear import beside, innovations, linearise, rows_first
 from shipcosim.diagnose.manoeuvres import cannot_turn, library, planned, rows_of, sized, step_for, true_wind
 from shipcosim.diagnose.plant import Motion, current_at, shown
-from shipcosim.diagnose.ranking import Case, joined, probes
+from shipcosim.diagnose.ranking import Case, probes
 from shipcosim.diagnose.sailing import Dp, sailed
 
 CLEAR = 10.0
@@ -153,13 +153,13 @@ def _key(column):
 
 def _beside(fit, plant, motion, record, right, tolerated, known):
     """The problem of a fit on a motion by another truth: what it misses more than the truth, and all its columns."""
-    places = {_key(column): i for i, column in enumerate(known, start=1)}
-    own = [column for column in fit.columns if _key(column) not in places]
+    shared = [_key(column) for column in known]
+    own = [column for column in fit.columns if _key(column) not in shared]
     mine = linearise(motion, record, plant, [column.turns for column in own])
     mine.driven[..., 0] -= right.driven[..., 0]
     mine.seen[..., 0] -= right.seen[..., 0]
-    both = joined(mine, tolerated)  # missed, all known, own
-    order = {_key(column): 1 + len(known) + i for i, column in enumerate(own)} | places
+    both = beside(mine, tolerated)  # missed, own, all known
+    order = {key: i for i, key in enumerate([*map(_key, own), *shared], start=1)}
     wanted = [0, *(order[_key(column)] for column in fit.columns)]
     return both._replace(driven=both.driven[..., wanted], seen=both.seen[..., wanted])
 

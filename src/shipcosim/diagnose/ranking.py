@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.linear import innovations, linearise
+from shipcosim.diagnose.linear import beside, innovations, linearise
 
 DIRECTIONS = 12
 ROUNDS = 5
@@ -136,21 +136,6 @@ def prepared(case, rounds=3):
     return replace(case, motion=motion, base=base)
 
 
-def joined(linear, known):
-    """A problem with columns of another in front of its own."""
-    driven = np.concatenate([linear.driven[..., :1], known.driven[..., 1:], linear.driven[..., 1:]], axis=-1)
-    seen = np.concatenate([linear.seen[..., :1], known.seen[..., 1:], linear.seen[..., 1:]], axis=-1)
-    return linear._replace(driven=driven, seen=seen)
-
-
-def beside(linear, extra):
-    """A problem with the columns of another behind its own."""
-    return linear._replace(
-        driven=np.concatenate([linear.driven, extra.driven[..., 1:]], axis=-1),
-        seen=np.concatenate([linear.seen, extra.seen[..., 1:]], axis=-1),
-    )
-
-
 def _key(column):
     return tuple(sorted(column.turns.items()))
 
@@ -214,21 +199,20 @@ def _next(fit):
     return found
 
 
-def weighed(case, fit, only=None):
+def weighed(case, fit):
     """Gain in log-evidence of each suspect beside a fit, linearised once.
 
     Parameters
     ----------
     case : Case
     fit : Fit
-    only : sequence of Suspect, optional
 
     Returns
     -------
     list of (float, Suspect, dict of str to float)
         Gain, suspect, first values of the numbers that it turns; best first.
     """
-    wanted = [s for s in (only or case.suspects) if s not in fit.suspects]
+    wanted = [s for s in case.suspects if s not in fit.suspects]
     added = [column for suspect in wanted for group in probes(suspect) for column in group]
     linear = beside(fit.linear, case.base_of(added))
     products = gram(innovations(linear, case.noise, case.record)).products
@@ -344,7 +328,7 @@ def explain(case, *, most=3, likely=4, near=12.0, enough=5.0):
                 if gain < max(most_gain - max(near, most_gain / 7.0), -2.0 if stage == 0 else enough - 2.0):
                     break
                 suspects = (*fit.suspects, suspect)
-                key = _names(suspects)
+                key = names(suspects)
                 if key not in fits and key not in tried:
                     tried[key] = fitted(case, suspects, fit.values | values)
         fits |= tried
@@ -362,7 +346,13 @@ def at_first_sight(case):
     return nothing.score + max(weighed(case, nothing)[0][0], 0.0)
 
 
-def _names(suspects):
+def without_causes(fits):
+    """The fit without a cause among others."""
+    return next(fit for fit in fits if not fit.suspects)
+
+
+def names(suspects):
+    """Labels of suspects, in no order."""
     return frozenset(suspect.label for suspect in suspects)
 
 
@@ -375,8 +365,8 @@ def _simplify(case, fits):
             rest = tuple(suspect for suspect in best.suspects if suspect is not left)
             values = {path: best.values[path] for s in rest for knob in s.knobs for path in knob.paths}
             again = fitted(case, rest, values)
-            known = fits.get(_names(rest))
+            known = fits.get(names(rest))
             if known is None or again.score > known.score + 0.1:
-                fits[_names(rest)], new = again, True
+                fits[names(rest)], new = again, True
         if not new:
             return

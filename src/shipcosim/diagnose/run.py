@@ -19,7 +19,7 @@ from shipcosim.diagnose.null import null_gains
 from shipcosim.diagnose.onset import from_onset
 from shipcosim.diagnose.plant import plant_of
 from shipcosim.diagnose.prescription import prescribe
-from shipcosim.diagnose.ranking import Case, at_first_sight, explain, fitted, prepared, probes, weighed
+from shipcosim.diagnose.ranking import Case, at_first_sight, explain, fitted, prepared, probes, weighed, without_causes
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.verdict import MOST, STRANGE, gained, judge, not_testable
@@ -122,14 +122,15 @@ def _looked_closer(clean, case, fits, plant, catalogue):
     tuple
         Log, case and fits with that put right; faults of the data; time from which on causes act, or None. [s]
     """
-    faults, began = [], None
-    while len(faults) < _FAULTS and not _is_healthy(case, fits[0]):
+    faults, began, healthy = [], None, _is_healthy(case, fits[0])
+    while len(faults) < _FAULTS and not healthy:
         better = _with_right_drivers(clean, case, fits, plant, catalogue)
         if better is None:
             break
         fault, clean, case, fits = better
         faults.append(fault)
-    if not _is_healthy(case, fits[0]):
+        healthy = _is_healthy(case, fits[0])
+    if not healthy:
         later = from_onset(clean, case, fits, lambda part: prepare(part, plant, catalogue, case.noise))
         if later is not None:
             began, clean, case, fits = later
@@ -146,9 +147,10 @@ def _judged(case, fits):
     strange, unknown_wind = {}, case.record.wind is None
 
     def beside(fit):
-        strange.update(unexplained(case, fit))
+        if fit not in strange:
+            strange[fit] = unexplained(case, fit)
         # where nobody knows the wind, a force that nobody explains is no surprise
-        return {kind: gain for kind, gain in strange.items() if kind == "in a channel" or not unknown_wind}
+        return {kind: gain for kind, gain in strange[fit].items() if kind == "in a channel" or not unknown_wind}
 
     chance = {suspect.label: _WITHOUT_WIND for suspect in case.suspects if unknown_wind}
     judgement = judge(fits, beside, chance)
@@ -156,7 +158,7 @@ def _judged(case, fits):
     if more:
         chance = {label: chance.get(label, 0.0) + gain for label, gain in more.items()}
         judgement = judge(fits, beside, chance)
-    return judgement, strange, chance
+    return judgement, strange[judgement.fit], chance
 
 
 def _by_chance(case, fit, fits):
@@ -251,7 +253,7 @@ def _unknown_wind(everyone):
 
 
 def _not_testable(case, fits):
-    nothing = next(fit for fit in fits if not fit.suspects)
+    nothing = without_causes(fits)
     columns, groups = list(nothing.columns), []
     for suspect in case.suspects:
         for group in probes(suspect):

@@ -2,11 +2,18 @@
 
 from dataclasses import dataclass
 
+from shipcosim.models.hull import HullParameters
 from shipcosim.models.quantity import quantity
 
-__all__ = ["Instruments", "Water"]
+__all__ = ["Instruments", "Water", "stern_of"]
 
 _NEUTRAL = "neutral"
+_STERN = -17.0  # m, of the lengthened Gunnerus
+
+
+def stern_of(length):
+    """Where a line is made fast on a ship of some length, forward of the origin: the stern, assumed. [m]"""
+    return _STERN if length == HullParameters().length else -0.5 * length
 
 
 @dataclass(frozen=True)
@@ -35,7 +42,7 @@ class Water:
     )
     tow_north: float = quantity(0.0, "N", "pull of a line towards north", _NEUTRAL)
     tow_east: float = quantity(0.0, "N", "pull of a line towards east", _NEUTRAL)
-    tow_x: float = quantity(-17.0, "m", "where the line is made fast", "the stern")
+    tow_x: float = quantity(_STERN, "m", "where the line is made fast", "the stern")
 
 
 @dataclass(frozen=True)

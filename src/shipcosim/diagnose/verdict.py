@@ -7,6 +7,7 @@ import numpy as np
 
 from shipcosim.diagnose.evidence import evidence
 from shipcosim.diagnose.finding import Candidate, Estimate, Finding
+from shipcosim.diagnose.ranking import names, without_causes
 
 __all__ = [
     "APART",
@@ -74,7 +75,7 @@ def judge(fits, strange, chance=None):
     -------
     Judgement
     """
-    nothing = next(fit for fit in fits if not fit.suspects)
+    nothing = without_causes(fits)
     fair = [fit for fit in fits if not fit.suspects or admissible(fit, fits, chance or {})]
     best = max(fair, key=lambda fit: fit.score)
     scores = [fit.score if fit.suspects else fit.score + ENOUGH for fit in fair]
@@ -89,19 +90,15 @@ def judge(fits, strange, chance=None):
     findings = tuple(sorted((_finding(s, best, candidates) for s in best.suspects), key=lambda f: -f.probability))
     if rivals:
         named = {label for fit in (best, *rivals) for label in labels(fit)}
-        same = tuple(c for c in candidates if _label(c) in named)
+        same = tuple(c for c in candidates if c.label in named)
         shared = set(labels(best)).intersection(*(labels(fit) for fit in rivals))
-        findings = tuple(f for f in findings if _label(f) in shared)
+        findings = tuple(f for f in findings if f.label in shared)
         return Judgement("ambiguous", best, findings, candidates, same, tuple(rivals))
     return Judgement("named", best, findings, candidates, ())
 
 
 def labels(fit):
     return [suspect.label for suspect in fit.suspects]
-
-
-def _label(entry):
-    return f"{entry.cause} of {entry.component}" if entry.component else entry.cause
 
 
 def admissible(fit, fits, chance):
@@ -121,8 +118,8 @@ def admissible(fit, fits, chance):
 
 def gained(suspect, fit, fits):
     """What a cause gains in a set, against the set without it. [nats]"""
-    rest = frozenset(s.label for s in fit.suspects if s is not suspect)
-    without = [other.score for other in fits if frozenset(labels(other)) == rest]
+    rest = names(s for s in fit.suspects if s is not suspect)
+    without = [other.score for other in fits if names(other.suspects) == rest]
     return fit.score - max(without, default=-np.inf)
 
 
@@ -151,9 +148,7 @@ def _finding(suspect, fit, candidates):
         )
         for k in suspect.knobs
     }
-    chance = next(
-        (c.probability for c in candidates if (c.cause, c.component) == (suspect.cause, suspect.component)), 0
-    )
+    chance = next((c.probability for c in candidates if c.label == suspect.label), 0)
     return Finding(suspect.cause, suspect.component, "physics", chance, parameters)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.noise import explained
+from shipcosim.diagnose.ranking import without_causes
 from shipcosim.diagnose.verdict import ENOUGH, STRANGE
 from shipcosim.report.diagnosis_data import TIME, line, panel, rounded
 from shipcosim.report.diagnosis_units import plain, span
@@ -35,7 +36,7 @@ def evidence_panel(fits, chosen):
     chosen : Fit
         That the verdict rests on.
     """
-    nothing = next(fit.score for fit in fits if not fit.suspects)
+    nothing = without_causes(fits).score
     sets = [fit for fit in fits if fit.suspects][:MOST_SETS][::-1]
     gains = [max(fit.score - nothing, 0.0) for fit in sets]
     bars = {

@@ -3,6 +3,7 @@
 import numpy as np
 
 from shipcosim.diagnose.manoeuvres import cannot_turn, library
+from shipcosim.diagnose.ranking import without_causes
 from shipcosim.diagnose.verdict import gained
 from shipcosim.report import diagnosis_causes as causes
 from shipcosim.report import diagnosis_error as error
@@ -74,7 +75,7 @@ def causes_section(story, figures):
     """Which cause?"""
     diagnosis, details = story.diagnosis, story.details
     fit, case = details.fit, details.case
-    nothing = next(f for f in details.fits if not f.suspects)
+    nothing = without_causes(details.fits)
     text = (
         "Every cause of the catalogue, alone and with others, was fitted to the whole log, while every coefficient of "
         "the ship stayed free within its tolerance."
