@@ -93,6 +93,8 @@ class System:
         Default start, stop and step.
     remarks : tuple of Problem
         What a user should know although it stops nothing.
+    given : tuple of Connection
+        From parameters of the outermost system to variables; the start values follow them already.
     """
 
     name: str
@@ -104,6 +106,7 @@ class System:
     parameters: Mapping = field(default_factory=dict)
     experiment: Experiment = Experiment()
     remarks: tuple[Problem, ...] = ()
+    given: tuple[Connection, ...] = ()
     _packages: tuple = field(default=(), repr=False, compare=False)  # keeps what was unpacked on disk
 
     def split(self, signal, where=""):
@@ -244,6 +247,7 @@ def _system(tree, structure, file, findings):
         file=file,
         components=components,
         connections=tuple(c for c in connections if not _is_given(c, structure.system)),
+        given=tuple(c for c in connections if _is_given(c, structure.system)),
         inputs=signals.of("input"),
         outputs=signals.of("output", "local", "calculatedParameter", "constant"),
         parameters=signals.of("parameter", "structuralParameter"),
