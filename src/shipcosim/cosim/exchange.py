@@ -1,6 +1,6 @@
 """Values of one type on their way from outputs to inputs, as a few array operations for all components together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,8 @@ class Wire:
         Replaces values of the source before that; those that are not in it stay as they are.
     period : int
         In base steps.
+    added : tuple of Wire
+        Whose values are added to this one's, in this order.
     """
 
     source: int
@@ -26,6 +28,12 @@ class Wire:
     offset: float = 0.0
     table: dict | None = None
     period: int = 1
+    added: tuple["Wire", ...] = ()
+
+    @property
+    def terms(self):
+        """The wires of a sum; none where nothing is added."""
+        return (replace(self, added=()), *self.added) if self.added else ()
 
     def passed_on(self, values):
         """What arrives of a source over time: (n,) arrays with one value for each base step."""
@@ -34,6 +42,11 @@ class Wire:
         if (self.factor, self.offset) != (1.0, 0.0):
             passed = self.factor * passed + self.offset
         return passed.astype(values.dtype)
+
+    def arriving(self, columns):
+        """What arrives over time of all sources, one column each, together."""
+        arrived = self.passed_on(columns[self.source])
+        return sum((wire.passed_on(columns[wire.source]) for wire in self.added), arrived)
 
 
 class Changes:
@@ -94,7 +107,7 @@ class Exchange:
     settings : (m,) array
         Start values of the settings; its type is that of all values.
     wires : sequence of Wire
-        One for each input.
+        One for each input, with those that are added to it.
     crossings : sequence of (setting, Exchange, source)
         Settings that follow a source of an exchange of another type.
 
@@ -109,13 +122,14 @@ class Exchange:
         self.raw = np.concatenate([np.zeros(n_outputs, dtype=kind), settings])
         self.outputs, self.settings = self.raw[:n_outputs], self.raw[n_outputs:]
         self.seen = self.raw.copy()
-        self.plain = np.zeros(len(wires), dtype=kind)
+        single, self._sums, n = _numbered(wires)
+        self.plain = np.zeros(n, dtype=kind)
         self.inputs = np.zeros(len(wires), dtype=kind)
         self.output_changes, self.input_changes = Changes(), Changes()
         self.version, self._counts_versions = 0, kind.kind != "f"
         self._crossings = crossings
-        periods = sorted({wire.period for wire in wires})
-        self._groups = [_Group(wires, period, n_outputs) for period in periods]
+        periods = sorted({wire.period for _, wire in single})
+        self._groups = [_Group(single, period, n) for period in periods]
 
     def transfer(self, count):
         """Pass on what is due after `count` base steps, transformed and with overrides and biases."""
@@ -126,24 +140,43 @@ class Exchange:
         for group in self._groups:
             if count % group.period == 0:
                 group.transfer(self.seen, self.plain)
+        for row, terms in self._sums:
+            total = 0.0
+            for term in self.plain[terms].tolist():
+                total += term  # one after the other, as libcosim does
+            self.plain[row] = total
         self.refresh()
 
     def refresh(self):
         """Bring the inputs up to date after a change of overrides and biases."""
         before = self.inputs.tobytes() if self._counts_versions else b""
-        np.copyto(self.inputs, self.plain)
+        np.copyto(self.inputs, self.plain[: len(self.inputs)])
         self.input_changes.apply(self.inputs)
         if self._counts_versions and before != self.inputs.tobytes():
             self.version += 1
 
 
+def _numbered(wires):
+    """(row, wire) of all that carry one value, (row, slice of terms) of the sums, and how many rows that makes.
+
+    The terms of sums have rows of their own, behind those of the inputs.
+    """
+    single = [(row, wire) for row, wire in enumerate(wires) if not wire.added]
+    sums, n = [], len(wires)
+    for row, terms in ((row, wire.terms) for row, wire in enumerate(wires) if wire.added):
+        single += enumerate(terms, start=n)
+        sums.append((row, slice(n, n + len(terms))))
+        n += len(terms)
+    return single, sums, n
+
+
 class _Group:
     """The wires of one period."""
 
-    def __init__(self, wires, period, n_outputs):
-        rows = [row for row, wire in enumerate(wires) if wire.period == period]
-        due = [wires[row] for row in rows]
-        self.period, self.rows, self.is_all = period, np.array(rows, dtype=int), len(rows) == len(wires)
+    def __init__(self, single, period, n):
+        rows = [row for row, wire in single if wire.period == period]
+        due = [wire for _, wire in single if wire.period == period]
+        self.period, self.rows, self.is_all = period, np.array(rows, dtype=int), len(rows) == n
         self.sources = np.array([wire.source for wire in due], dtype=int)
         linear = [i for i, wire in enumerate(due) if (wire.factor, wire.offset) != (1.0, 0.0)]
         self.linear = np.array(linear, dtype=int)

@@ -144,7 +144,7 @@ class Job:
             crossing = {setting for setting, _, _ in layout.crossings}
             for end, wire in zip(layout.inputs, layout.wires, strict=True):
                 setting = wire.source - len(layout.outputs)
-                if setting >= 0 and setting not in crossing:
+                if setting >= 0 and setting not in crossing and not wire.added:
                     plain = wire.passed_on(self._settings[kind][:, setting])
                     yield end, Driven(plain[0].item(), self._changed(plain, end))
 
@@ -159,7 +159,7 @@ class Job:
             if end in self.driven:
                 yield self.driven[end].values
             else:
-                yield self._changed(wire.passed_on(outputs[wire.source]), end)
+                yield self._changed(wire.arriving(outputs), end)
 
     def _changed(self, plain, end):
         """Values of an input with the events on it."""

@@ -1,6 +1,6 @@
 """Before anything is instantiated: which values travel where, in rows of a few arrays, and what happens when."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import lcm
 
 from shipcosim.cosim.exchange import Wire
@@ -44,6 +44,12 @@ class Layout:
     def names(self):
         """Names of the sources and of the inputs, for messages."""
         return [label(end) for end in (*self.outputs, *self.settings)], [label(end) for end in self.inputs]
+
+    @property
+    def carried(self):
+        """Names of all that connections carry: the inputs and, behind them, the terms of those that are sums."""
+        sums = [(label(end), len(wire.terms)) for end, wire in zip(self.inputs, self.wires, strict=True)]
+        return [label(end) for end in self.inputs] + [f"{name}[{i}]" for name, n in sums for i in range(n)]
 
 
 @dataclass(frozen=True)
@@ -128,7 +134,7 @@ def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time
         elif plan.variable(connection.target).kind == "String":
             plan.texts.append(connection)
         else:
-            into[connection.target] = connection
+            into.setdefault(connection.target, []).append(connection)
     _lay_out(plan, into)
     return plan
 
@@ -159,7 +165,7 @@ def _is_fed(source, plan, fed):
 
 
 def _lay_out(plan, into):
-    sources = {connection.source for connection in into.values()}
+    sources = {connection.source for connections in into.values() for connection in connections}
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end, kind = (component.name, variable.name), KINDS.get(variable.kind)
@@ -171,7 +177,8 @@ def _lay_out(plan, into):
             if end in into or (end in plan.touched and variable.causality != "output"):
                 layout = plan.layouts[KINDS[variable.kind]]
                 layout.inputs.append(end)
-                layout.wires.append(_wire(plan, layout, end, into.get(end)))
+                first, *more = [_wire(plan, layout, end, connection) for connection in into.get(end, [None])]
+                layout.wires.append(replace(first, added=tuple(more)))
 
 
 def _wire(plan, layout, end, connection):

@@ -67,7 +67,7 @@ def take(plan, exchanges, parts, span, scenario, in_force):
     for kind, exchange in exchanges.items():
         ends = plan.layouts[kind].outputs, plan.layouts[kind].inputs
         outputs |= zip(map(label, ends[0]), exchange.outputs.tolist(), strict=True)
-        inputs |= zip(map(label, ends[1]), exchange.plain.tolist(), strict=True)
+        inputs |= zip(plan.layouts[kind].carried, exchange.plain.tolist(), strict=True)
         for rows, changed in zip(ends, (exchange.output_changes, exchange.input_changes), strict=True):
             changes |= {label(rows[row]): change for row, change in changed.in_force.items()}
     return Snapshot(
@@ -94,10 +94,9 @@ def put_back(snapshot, plan, exchanges, texts, parts):
             target, row = target_of(end, plan, exchanges)
             target.put(row, *change)
     for kind, exchange in exchanges.items():
-        outputs, inputs = (map(label, ends) for ends in (plan.layouts[kind].outputs, plan.layouts[kind].inputs))
-        _fill(exchange.outputs, outputs, snapshot.outputs)
+        _fill(exchange.outputs, map(label, plan.layouts[kind].outputs), snapshot.outputs)
         exchange.transfer(0)
-        _fill(exchange.plain, inputs, snapshot.inputs)
+        _fill(exchange.plain, plan.layouts[kind].carried, snapshot.inputs)
     for text in texts:
         text.last = None
 

@@ -11,6 +11,7 @@ class Connection:
     """What a component's variable or an output of the system gets, and from where.
 
     Values: ``target = factor * mapping.get(source, source) + offset``; factor and offset for a real target alone.
+    Several connections into one target add up, in their order: a Sum of OSP. SSP has none.
 
     Parameters
     ----------

@@ -194,7 +194,11 @@ def validate(root, schema, file, findings):
     """
     if schema.startswith("ss") and root.get("version", "").startswith("2."):
         return
-    checker = _schema(schema)
+    report_schema(_schema(schema), root, file, findings)
+
+
+def report_schema(checker, root, file, findings):
+    """Note where an element breaks a schema of lxml's, in our words."""
     if checker.validate(root):
         return
     for entry in checker.error_log:
