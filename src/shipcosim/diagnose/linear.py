@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from shipcosim.diagnose.plant import Motion, motion_rates, shown
+from shipcosim.diagnose import kalman
+from shipcosim.diagnose.plant import Motion, loads, motion_rates, shown
 
 __all__ = [
     "SLOW_STD",
@@ -143,13 +144,18 @@ def linearise(motion, record, plant, columns):
     middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
     transition = _transition(middle, record, plant)
     over_a_step = 0.5 * record.step * (transition[..., :6, :6] + np.eye(6))
+    drivers = record.drivers(plant, 0.5)
+    like = plant, loads(middle, drivers, plant)
     for j, turns in enumerate(columns, start=1):
         up, down = (
             plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
             for share in (_SHARE, -_SHARE)
         )
-        if any(not path.startswith("instruments.") or path.endswith("_lag") for path in turns):
+        if any(path.endswith("_lag") for path in turns):
             rates = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
+            driven[..., :6, j] = (over_a_step @ _slope(*rates)[..., None])[..., 0]
+        elif any(not path.startswith("instruments.") for path in turns):
+            rates = (motion_rates(middle, drivers, ship, like=like) for ship in (down, up))
             driven[..., :6, j] = (over_a_step @ _slope(*rates)[..., None])[..., 0]
         else:
             out[..., j] = _slope(shown(motion, up), shown(motion, down))
@@ -242,51 +248,36 @@ def innovations(linear, noise, record, motion=None, *, keep=False):
     -------
     Innovations
     """
-    A, B, H, Z, whole = linear
-    n, lead = Z.shape[0], np.broadcast_shapes(Z.shape[1:-2], np.shape(noise.white)[:-1])
-    Q, R = _process(noise, record.step), np.asarray(noise.white) ** 2
-    H = H * whole[..., None]
-    diagonal = np.eye(6)
-    x, P = np.zeros((*lead, STATES, Z.shape[-1])), _uncertain(noise, lead)
-    lost = _lost()
-    white, logdet = np.empty((n, *lead, *Z.shape[-2:])), np.empty((n, *lead))
-    kept = []
-    for k in range(n):
-        Hk = H[k]
-        PHt = P @ np.swapaxes(Hk, -1, -2)
-        L = np.linalg.cholesky(Hk @ PHt + np.where(whole[k], R, 1.0)[..., None] * diagonal)
-        Li = np.linalg.inv(L)
-        white[k] = w = Li @ (Z[k] - Hk @ x)
-        logdet[k] = 2.0 * np.log(np.diagonal(L, axis1=-2, axis2=-1)).sum(-1)
-        KL = PHt @ np.swapaxes(Li, -1, -2)
-        x = x + KL @ w
-        P = P - KL @ np.swapaxes(KL, -1, -2)
-        P = 0.5 * (P + np.swapaxes(P, -1, -2))
-        if keep or motion is not None:
-            kept.append((x[..., 0], P))
-        if k < n - 1:
-            x = A[k] @ x + B[k]
-            P = A[k] @ P @ np.swapaxes(A[k], -1, -2) + (Q if record.known[k] else Q + lost)
+    lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
+    A, B, H, Z = (_by_log(values, lead, 2) for values in linear[:4])
+    whole, known, lost = _by_log(linear.whole, lead, 1), np.asarray(record.known), _lost()
+    R = np.where(whole, _by_log(np.asarray(noise.white)[None] ** 2, lead, 1), 1.0)
+    Q, P = (_by_log(values[None], lead, 2)[:, 0] for values in (_process(noise, record.step), _uncertain(noise, lead)))
+    kept = keep or motion is not None
+    white, logdet, *states = kalman.filtered(A, B, H * whole[..., None], Z, R, Q, P, known, lost, kept)
+    white, logdet = _rows_before(white, lead), _rows_before(logdet, lead)
     if keep:
-        return Innovations(white, logdet, filtered=np.stack([state for state, _ in kept]))
+        return Innovations(white, logdet, filtered=_rows_before(states[0], lead))
     if motion is None:
         return Innovations(white, logdet)
-    return Innovations(white, logdet, *_smoothed(kept, A, B, Q, lost, record, motion))
+    found = kalman.smoothed(A, B[..., 0].copy(), Q, known, lost, *states)
+    found = found.reshape(*lead, *found.shape[1:])
+    return Innovations(white, logdet, Motion(*(v + found[..., i] for i, v in enumerate(motion))), found[..., 6:])
 
 
-def _smoothed(kept, A, B, Q, lost, record, motion):
-    """Rauch-Tung-Striebel smoother of the first column."""
-    n = len(kept)
-    rows = [None] * n
-    rows[-1] = x = kept[-1][0]
-    for k in range(n - 2, -1, -1):
-        xf, P = kept[k]
-        ahead = A[k] @ P @ np.swapaxes(A[k], -1, -2) + (Q if record.known[k] else Q + lost)
-        gain = np.swapaxes(np.linalg.solve(ahead, A[k] @ P), -1, -2)
-        predicted = (A[k] @ xf[..., None])[..., 0] + B[k][..., 0]
-        rows[k] = x = xf + (gain @ (x - predicted)[..., None])[..., 0]
-    found = np.moveaxis(np.stack(rows), 0, -2)
-    return Motion(*(value + found[..., i] for i, value in enumerate(motion))), found[..., 6:]
+def _by_log(values, lead, tail):
+    """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (m, n, *tail) array."""
+    middle = values.ndim - 1 - tail
+    values = values.reshape(len(values), *(1,) * (len(lead) - middle), *values.shape[1:])
+    shape = values.shape[values.ndim - tail :]
+    values = np.moveaxis(np.broadcast_to(values, (len(values), *lead, *shape)), 0, len(lead))
+    # one kind of array only: for each other kind the filter would be compiled anew
+    return np.require(values, requirements=["C", "W"]).reshape(-1, values.shape[len(lead)], *shape)
+
+
+def _rows_before(values, lead):
+    """(m, n, ...) array as (n, *lead, ...)."""
+    return np.moveaxis(values.reshape(*lead, *values.shape[1:]), len(lead), 0)
 
 
 def _process(noise, h):

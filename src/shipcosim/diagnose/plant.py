@@ -236,7 +236,7 @@ def current_at(time, plant):
     return north, east
 
 
-def loads(motion, drivers, plant):
+def loads(motion, drivers, plant, like=None):
     """Loads on the ship by name: each thruster, wind, drift, tow.
 
     Parameters
@@ -245,6 +245,8 @@ def loads(motion, drivers, plant):
     drivers : Drivers
         At the same times.
     plant : Plant
+    like : tuple of Plant, dict, optional
+        Another ship in the same motion with the same drivers, and her loads: what is alike is not computed again.
 
     Returns
     -------
@@ -255,10 +257,11 @@ def loads(motion, drivers, plant):
     c_north, c_east = current_at(drivers.time, plant)
     u_c, v_c = to_body(motion.psi, c_north, c_east)
     u_r, v_r, r = motion.u - u_c, motion.v - v_c, motion.r
+    same = _alike(plant, *like) if like else {}
     for name in plant.thrusters:
-        found[name] = _thruster_loads(name, drivers, u_r, v_r, r, plant)
+        found[name] = same.get(name) or _thruster_loads(name, drivers, u_r, v_r, r, plant)
     if drivers.wind_speed is not None:
-        found["wind"] = _wind_loads(motion, drivers, plant)
+        found["wind"] = same.get("wind") or _wind_loads(motion, drivers, plant)
     water = parts["water"]
     if np.any(water.drift_north) or np.any(water.drift_east):
         law = {"surge_share": water.drift_surge_share, "yaw_arm": water.drift_yaw_arm}
@@ -266,6 +269,13 @@ def loads(motion, drivers, plant):
     if np.any(water.tow_north) or np.any(water.tow_east):
         found["tow"] = earth_force(motion.psi, water.tow_north, water.tow_east, x=water.tow_x)
     return found
+
+
+def _alike(plant, other, found):
+    """Those of another ship's loads that this one has too."""
+    if plant.parts["water"] is not other.parts["water"]:
+        return {"wind": found["wind"]} if "wind" in found and plant.parts["wind"] is other.parts["wind"] else {}
+    return {name: load for name, load in found.items() if plant.parts.get(name) is other.parts.get(name, 0)}
 
 
 def _thruster_loads(name, drivers, u_r, v_r, r, plant):
@@ -310,7 +320,7 @@ def _wind_loads(motion, drivers, plant):
     )
 
 
-def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0)):
+def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0), like=None):
     """Rates of position, heading and velocity over ground.
 
     Parameters
@@ -320,13 +330,15 @@ def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0)):
     plant : Plant
     extra : tuple of three
         Further loads. [N, N, N.m]
+    like : tuple of Plant, dict, optional
+        As for `loads`.
 
     Returns
     -------
     Motion
         Rates.
     """
-    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, drivers, plant).values(), strict=True))
+    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, drivers, plant, like).values(), strict=True))
     u_c, v_c = to_body(motion.psi, *current_at(drivers.time, plant))
     u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=plant.parts["hull"])
     north, east = to_ned(motion.psi, motion.u, motion.v)
