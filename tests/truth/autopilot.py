@@ -30,10 +30,14 @@ SQUARE_DRAG = np.array([[2e3], [60e3], [75e6]])
 LIMIT = np.array([[50e3], [30e3], [450e3]])
 ERROR_LIMIT = np.array([[2.5], [2.5], [np.radians(25.0)]])  # a larger one is not answered by more thrust
 THRUST_RATE = 2000.0
+HAND_RATE = 600.0  # of a thruster pushed by hand, so that the others can follow
+TURN_RATE = np.radians(10.0)
 BIAS_LIMIT = np.array([[15e3], [15e3], [200e3]])
 DEAD_BAND = np.array([[0.15], [0.15], [np.radians(0.2)]])
 TICK = 1.0
 FIXED, TURNING, OPPOSED = 0, 1, 2
+LOADS = np.array([[1, 0, 1, 0, 0], [0, 1, 0, 1, 1], [-UNIT_Y[0], UNIT_X, -UNIT_Y[1], UNIT_X, TUNNEL_X]])
+ARM = np.array([1.0, 1.0, 8.0])  # of moments against forces, where the thrusters that are left cannot hold everything
 NOMINAL_WIND = wind_table(np.ones(3), rough=False)
 
 
@@ -60,11 +64,26 @@ def draw_style(rng):
 
 
 @dataclass(frozen=True)
+class ByHand:
+    """Where somebody else than the DP has the thrusters, one column per tick."""
+
+    force: np.ndarray  # (3, ticks) thrust that one is told, not a number where it is the DP's [N]
+    azimuth: np.ndarray  # (2, ticks) and where it points [rad]
+    dead: np.ndarray  # (ticks,) no thruster has power
+
+    @classmethod
+    def nothing(cls, ticks):
+        """All is the DP's."""
+        return cls(np.full((3, ticks), np.nan), np.full((2, ticks), np.nan), np.zeros(ticks, bool))
+
+
+@dataclass(frozen=True)
 class Plan:
     """Setpoints of one log, one column per tick."""
 
     eta: np.ndarray  # (3, ticks) position and heading, continuous [m, m, rad]
     mode: np.ndarray  # (ticks,) how the units are used: FIXED, TURNING or OPPOSED
+    hand: ByHand | None = None
 
 
 class Planner:
@@ -182,11 +201,16 @@ class Autopilot:
         self.bandwidth, self.bias_time, self.wind_share, self.toe, self.opposed = (
             np.array([getattr(style, name) for style in styles]) for name in Style.__dataclass_fields__
         )
+        hands = [plan.hand or ByHand.nothing(plan.mode.size) for plan in plans]
+        self.told, self.told_azimuth, self.dead = (
+            np.stack([getattr(hand, name) for hand in hands], axis=-1) for name in ByHand.__dataclass_fields__
+        )
         self.stiffness = INERTIA * self.bandwidth**2
         self.damping = np.sqrt(3.0) * INERTIA * self.bandwidth
         self.position = self.eta[:, 0].copy()
         self.velocity = np.zeros_like(self.position)
         self.bias = np.zeros_like(self.position)
+        self.moved = np.zeros_like(self.position)  # setpoint from the plan's: where the ship is when power comes back
         self.wind = None
         self.azimuth = azimuth.copy()
         self.thrust = np.zeros((3, azimuth.shape[1]))
@@ -208,11 +232,16 @@ class Autopilot:
             Propeller speeds (3, n) [rpm] and unit directions (2, n) [rad].
         """
         self.observe(eta, nu, wind)
+        self.moved = np.where(self.dead[k], self.position - self.eta[:, k], self.moved)
         load = np.clip(self.load(k), -LIMIT, LIMIT)
         thrust, azimuth = self.allocate(load, self.mode[k])
-        self.thrust = self.thrust + np.clip(thrust - self.thrust, -THRUST_RATE * TICK, THRUST_RATE * TICK)
-        self.azimuth = azimuth
-        return revolutions(self.thrust), azimuth
+        for i in np.flatnonzero(np.isfinite(self.told[:, k]).any(axis=0)):
+            thrust[:, i], azimuth[:, i] = self.by_hand(load[:, i], k, i)
+        most = np.where(np.isfinite(self.told[:, k]), HAND_RATE, THRUST_RATE) * TICK
+        thrust = self.thrust + np.clip(thrust - self.thrust, -most, most)
+        self.thrust = np.where(self.dead[k], 0.0, thrust)
+        self.azimuth = np.where(self.dead[k], self.azimuth, azimuth)
+        return revolutions(self.thrust), self.azimuth
 
     def observe(self, eta, nu, wind):
         """Complementary filter: the velocity for the short, the position for the long."""
@@ -225,7 +254,7 @@ class Autopilot:
     def load(self, k):
         """Load that brings the ship to its setpoint. (3, n)"""
         psi = self.position[2]
-        off = np.clip(self.eta[:, k] - self.position, -ERROR_LIMIT, ERROR_LIMIT)
+        off = np.clip(self.eta[:, k] + self.moved - self.position, -ERROR_LIMIT, ERROR_LIMIT)
         error = self.into_body(psi, off)
         planned = self.into_body(psi, self.rates[:, k])
         slow = planned - self.velocity
@@ -260,12 +289,30 @@ class Autopilot:
         toe = np.array([-self.toe, self.toe])
         azimuth = np.where(mode == FIXED, toe, turned)
         turn = np.mod(azimuth - self.azimuth + np.pi, 2 * np.pi) - np.pi
-        azimuth = self.azimuth + np.clip(turn, -np.radians(10.0) * TICK, np.radians(10.0) * TICK)
+        azimuth = self.azimuth + np.clip(turn, -TURN_RATE * TICK, TURN_RATE * TICK)
         along = np.maximum(np.cos(azimuth) * force_x + np.sin(azimuth) * force_y, 0.0)
         units = np.where(mode == FIXED, fixed, along)
         bow = np.where(mode == FIXED, fixed_bow, bow)
         most = TUNNEL_THRUST * TUNNEL_RPM_MAX**2
         return np.array([*np.clip(units, -30e3, 60e3), np.clip(bow, -most, most)]), azimuth
+
+    def by_hand(self, load, k, i):
+        """Thrusts (3,) and directions (2,) of one ship: as told, and the others hold her against it."""
+        told, c, s = np.isfinite(self.told[:, k, i]), np.cos(self.azimuth[:, i]), np.sin(self.azimuth[:, i])
+        pushed = np.where(told, self.thrust[:, i], 0.0)
+        forces = np.array([pushed[0] * c[0], pushed[0] * s[0], pushed[1] * c[1], pushed[1] * s[1], pushed[2]])
+        free = np.repeat(~told, (2, 2, 1))
+        rest = (load - LOADS @ forces) / ARM
+        forces[free] = np.linalg.lstsq((LOADS / ARM[:, None])[:, free], rest, rcond=None)[0]
+        wish = forces[:4].reshape(2, 2).T
+        turned = np.where(np.hypot(*wish) > 1200.0, np.arctan2(wish[1], wish[0]), self.azimuth[:, i])
+        turned = np.where(told[:2], self.told_azimuth[:, k, i], turned)
+        turn = np.mod(turned - self.azimuth[:, i] + np.pi, 2 * np.pi) - np.pi
+        azimuth = self.azimuth[:, i] + np.clip(turn, -TURN_RATE * TICK, TURN_RATE * TICK)
+        along = np.maximum(np.cos(azimuth) * wish[0] + np.sin(azimuth) * wish[1], 0.0)
+        most = TUNNEL_THRUST * TUNNEL_RPM_MAX**2
+        thrust = np.array([*np.clip(along, 0.0, 60e3), np.clip(forces[4], -most, most)])
+        return np.where(told, self.told[:, k, i], thrust), azimuth
 
     def fixed(self, x, y, n):
         """Thrusts of units at the fixed angles (2, n) and of the tunnel that give a load."""

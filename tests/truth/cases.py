@@ -4,7 +4,6 @@ A log is drawn by a kind and a seed. Everything but the effect has random stream
 same ship, weather, plan and noise.
 """
 
-import zlib
 from dataclasses import dataclass, field, replace
 from datetime import date
 from itertools import combinations
@@ -15,7 +14,9 @@ import pandas as pd
 from . import autopilot, effects, faults, sensors, unknowns
 from .effects import Answer, Effect
 from .loop import AFTER, BEFORE, HALF_SECOND, Setup, run
+from .orders import Orders, carried_out
 from .ship import draw_coefficients
+from .streams import Lengthened, stream
 from .weather import draw_weather, elevation, wind_series, windier
 
 KINDS = ("trial", "work", "hold")
@@ -89,6 +90,9 @@ def draw_many(kind, seeds, **options):
         Causes (or names of unknown effects) to draw from; all if not given.
     onset : bool
         Effects on the ship or its sensors begin within the log (default no).
+    after : dict, optional
+        A manoeuvre or a loss of power that the ship sails when the log is over, as the fields of `orders.Orders`; its
+        rows are added at the end, the others are the same bytes as without it. The weather and the effect go on.
 
     Returns
     -------
@@ -114,12 +118,7 @@ def weekly_seed(day=None):
     return seed
 
 
-def stream(kind, seed, name):
-    """Random generator of its own for one part of one log."""
-    return np.random.default_rng([seed, zlib.crc32(kind.encode()), zlib.crc32(name.encode())])
-
-
-def set_up(kind, seed, causes=1, size=1.0, minutes=40, mismatch=1.0, rough=False, among=None, onset=False):
+def set_up(kind, seed, causes=1, size=1.0, minutes=40, mismatch=1.0, rough=False, among=None, onset=False, after=None):
     """Everything about a log that is drawn before it is simulated; see `draw_many`."""
     hidden = set_effects(kind, seed, causes, size, minutes, among, onset)
     names = {e.answer.cause for e in hidden} | {e.answer.note for e in hidden}
@@ -133,23 +132,40 @@ def set_up(kind, seed, causes=1, size=1.0, minutes=40, mismatch=1.0, rough=False
         heading = np.radians(rng.uniform(-0.3, 0.3))
     planner = autopilot.Planner((0.0, 0.0, heading), BEFORE, ticks)
     autopilot.PLANS[kind](planner, rng, modes_for(hidden))
-    half = int((BEFORE + ticks) / HALF_SECOND) + 1
-    air = stream(kind, seed, "air")
-    mast, over_ship = wind_series(weather, air, half, HALF_SECOND)
+    plan, longer = planner.plan(), 0
+    if after:
+        orders = Orders(**after)
+        plan, longer = carried_out(plan, orders, stream(kind, seed, "captain"), AFTER), AFTER + orders.rows
+        if "clock" not in names:  # with one, the last rows of the log may see what comes after them
+            hidden = [effects.gone_on(e, 60 * minutes + longer) for e in hidden]
+    ends = [(n, n + longer) for n in (BEFORE + ticks, rows)] + [(records(BEFORE + ticks), records(plan.mode.size))]
+
+    def lengthened(name):
+        then = stream(kind, seed, f"{name} after")
+        return Lengthened(stream(kind, seed, name), then, {long: short for short, long in ends})
+
+    air = lengthened("air")
+    mast, over_ship = wind_series(weather, air, ends[2][1], HALF_SECOND)
     return Setup(
         kind=kind,
         seed=seed,
-        rows=rows,
+        rows=rows + longer,
+        planned_rows=rows,
         coefficients=draw_coefficients(stream(kind, seed, "ship"), mismatch, rough),
         weather=weather,
         mast_wind=mast,
         wind=over_ship,
-        sea=elevation(weather, air, half, HALF_SECOND),
+        sea=elevation(weather, air, ends[2][1], HALF_SECOND),
         style=autopilot.draw_style(stream(kind, seed, "style")),
-        plan=planner.plan(),
-        noise=sensors.draw_noise(stream(kind, seed, "noise"), BEFORE + ticks, rows),
+        plan=plan,
+        noise=sensors.draw_noise(lengthened("noise"), plan.mode.size, rows + longer),
         effects=tuple(hidden),
     )
+
+
+def records(ticks):
+    """Number of records of so many seconds."""
+    return int(ticks / HALF_SECOND) + 1
 
 
 def modes_for(hidden):
@@ -213,18 +229,28 @@ def write(setup, record):
     grid = -BEFORE + HALF_SECOND * np.arange(record["x"].size)
     when = faults.true_times(times, [e.answer for e in setup.effects])
     channels = sensors.log_channels(record, grid, when, setup.weather, setup.mast_wind, setup.sea, setup.noise)
+    parts = [spoiled(setup, channels, times, slice(0, setup.planned_rows), "dropouts")]
+    if setup.rows > setup.planned_rows:
+        parts.append(spoiled(setup, channels, times, slice(setup.planned_rows, setup.rows), "dropouts after"))
+    log = pd.concat([part for part, _ in parts], ignore_index=True)
+    answer = [faults.told_of(pieces) for pieces in zip(*(told for _, told in parts), strict=True)]
+    truth = pd.DataFrame({name: np.interp(times, grid, record[name]) for name in sensors.RECORDED})
+    target = setup.plan.eta[:, BEFORE : BEFORE + setup.rows]
+    off_track = np.hypot(truth["x"] - target[0], truth["y"] - target[1]).to_numpy()
+    off_heading = (truth["psi"] - target[2]).to_numpy()
+    return Case(setup.kind, setup.seed, log, answer, truth, off_track, off_heading)
+
+
+def spoiled(setup, channels, times, rows, name):
+    """Some rows of the log with faults, resolution and dropouts, and what is hidden in them."""
+    channels, times = {role: values[rows] for role, values in channels.items()}, times[rows]
     kept, answer = np.ones(times.size, bool), []
     for effect in setup.effects:
         channels, left, told = faults.spoil(channels, times, effect)
         kept &= left
         answer.append(told)
     channels = sensors.wrap_and_round(channels)
-    channels, received = sensors.drop_out(channels, stream(setup.kind, setup.seed, "dropouts"))
+    channels, received = sensors.drop_out(channels, stream(setup.kind, setup.seed, name))
     columns = {"time [s]": times.astype(float)}
     columns |= {f"{role} [{sensors.ROLES[role][0]}]": values for role, values in channels.items()}
-    log = pd.DataFrame(columns)[kept & received].reset_index(drop=True)
-    truth = pd.DataFrame({name: np.interp(times, grid, record[name]) for name in sensors.RECORDED})
-    target = setup.plan.eta[:, BEFORE : BEFORE + setup.rows]
-    off_track = np.hypot(truth["x"] - target[0], truth["y"] - target[1]).to_numpy()
-    off_heading = (truth["psi"] - target[2]).to_numpy()
-    return Case(setup.kind, setup.seed, log, answer, truth, off_track, off_heading)
+    return pd.DataFrame(columns)[kept & received], answer

@@ -209,11 +209,22 @@ def act_current(effect, knobs, i, t, ship, ramp):
 
 def act_current_varying(effect, knobs, i, t, ship, ramp):
     shape = effect.shape
-    part = np.clip(t / shape["last"], 0.0, 1.0)
+    part = np.clip(t / shape["last"], 0.0, shape.get("goes_to", 1.0))
     speed = shape["speeds"][0] + part * (shape["speeds"][1] - shape["speeds"][0])
     heading = shape["first"] + part * shape["turn"]
     knobs.current_north[i] += speed * np.cos(heading)
     knobs.current_east[i] += speed * np.sin(heading)
+
+
+def gone_on(effect, last):
+    """The effect in a log that goes on until `last`: a current keeps varying at the same pace, all else has no end."""
+    if effect.answer.cause != "current_varying":
+        return effect
+    shape = effect.shape | {"goes_to": last / effect.shape["last"]}
+    speed = shape["speeds"][0] + shape["goes_to"] * (shape["speeds"][1] - shape["speeds"][0])
+    end = vector(speed, shape["first"] + shape["goes_to"] * shape["turn"])
+    parameters = effect.answer.parameters | {f"{name}_end": float(value) for name, value in end.items()}
+    return Effect(effect.answer._replace(parameters=parameters), shape)
 
 
 def act_wave_drift(effect, knobs, i, t, ship, ramp):

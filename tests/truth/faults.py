@@ -160,6 +160,14 @@ def spoil(channels, times, effect):
     return channels, rows, answer
 
 
+def told_of(pieces):
+    """The answer of a log from those of its consecutive parts: only of a heading each has segments of its own."""
+    first, *more = pieces
+    if first.cause != "heading_wrap":
+        return first
+    return first._replace(segments=sum((piece.segments for piece in more), first.segments))
+
+
 def blend(channels, changed, hit):
     """Channels with the changed ones in the rows that are hit."""
     return channels | {role: np.where(hit, values, channels[role]) for role, values in changed.items()}

@@ -24,6 +24,7 @@ class Setup:
     kind: str
     seed: int
     rows: int
+    planned_rows: int  # before whatever is sailed after it
     coefficients: Coefficients
     weather: Weather
     mast_wind: np.ndarray

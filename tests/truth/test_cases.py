@@ -1,5 +1,6 @@
 """Drawn logs: the same again, twins that differ by the effect alone, and a DP that holds the ship."""
 
+import hashlib
 import time
 from datetime import date
 
@@ -38,6 +39,22 @@ def test_same_seed_gives_the_same_bytes_alone_or_among_others():
     healthy = draw("work", 1, causes=0, **SHORT)
     assert healthy.log.to_csv() == draw_many("work", range(2), causes=0, **SHORT)[1].log.to_csv()
     assert many[0].log.to_csv() != many[1].log.to_csv()
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed", "options", "digest"),
+    [
+        ("trial", 3, {}, "604df3a30cdb45ee"),
+        ("work", 8, {"causes": 2}, "79201ae689c86a29"),
+        ("hold", 5, {"causes": "unknown"}, "f2d865f653387edc"),
+        ("work", 4, {"causes": 0, "mismatch": 2.0, "rough": True}, "aa129d12a79bff6c"),
+        ("trial", 2, {"among": ["clock"]}, "a74f3c05c6f4e913"),
+        ("hold", 9, {"among": ["current_varying"], "onset": True, "size": 0.5}, "e1b3ce20c5afda05"),
+    ],
+)
+def test_a_draw_gives_for_ever_what_it_gave(kind, seed, options, digest):
+    log = draw(kind, seed, minutes=10, **options).log
+    assert hashlib.sha256(log.to_csv().encode()).hexdigest()[:16] == digest
 
 
 def test_a_healthy_draw_is_its_own_twin_and_that_of_the_faulty_one():
