@@ -14,7 +14,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from shipcosim.cosim.outside import EngineError, Job, is_linear, refuse, run_on
+from shipcosim.cosim.outside import EngineError, Job, is_linear, refuse, run_on, sums
 from shipcosim.cosim.plan import End, label
 from shipcosim.cosim.traces import no_traces
 from shipcosim.errors import Problem, ShipcosimError
@@ -31,7 +31,8 @@ def run(system: System, scenario: Scenario, *, inputs=None, progress=None, order
     """Run a checked system on ecos. See `shipcosim.cosim.simulate`."""
     check_installed()
     job = Job(system, scenario, inputs, order)
-    refuse("ecos", job, lambda connection: None, _problems(job))
+    added = sums(job.connections)
+    refuse("ecos", job, lambda connection: "it is added to others" if connection in added else None, _problems(job))
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
     return run_on("ecos", Session, job, about, progress)
 

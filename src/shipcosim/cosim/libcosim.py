@@ -17,14 +17,13 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from shipcosim.cosim.outside import EngineError, Job, held, indices, is_linear, refuse, run_on
+from shipcosim.cosim.outside import EngineError, Job, held, indices, is_linear, refuse, run_on, sums
 from shipcosim.cosim.plan import KINDS
 from shipcosim.cosim.traces import no_traces
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
-from shipcosim.ssp import System
+from shipcosim.ssp import Simulator, System, seconds_text, structure_text
 
-NAMESPACE = "http://opensimulationplatform.com/MSMI/OSPSystemStructure"
 SERIES = {"Real": ("REAL", "real", c_double, np.float64), "Integer": ("INTEGER", "integer", c_int, np.int32)}
 """What its observer of time series can hold, in the names and types that it goes by there."""
 
@@ -63,8 +62,11 @@ def _problems(job):
 def _complaint_of(job):
     def complaint(connection):
         source, target = (job.plan.variable(end).causality for end in (connection.source, connection.target))
-        return None if (source, target) == ("output", "input") else f"it goes from {source} to {target}"
+        if (source, target) != ("output", "input"):
+            return f"it goes from {source} to {target}"
+        return "it is transformed and added to others" if connection in added and is_linear(connection) else None
 
+    added = sums(job.connections)
     return complaint
 
 
@@ -254,36 +256,23 @@ def _flag_file(folder, name):
 
 def structure_of(job: Job) -> str:
     """OspSystemStructure.xml of a job: no start values, no events."""
-    step = _nanoseconds(job.scenario.step_size)
     simulators = [
-        f"<Simulator name={quoteattr(name)} source={quoteattr(component.fmu.path.resolve().as_uri())}"
-        f' stepSize="{_seconds(step * job.plan.multiples[name])}"/>'
+        Simulator(name, component.fmu.path.resolve().as_uri(), job.scenario.step_size * job.plan.multiples[name])
         for name, component in job.system.components.items()
     ]
-    functions, connections = [], []
-    for connection in job.connections:
-        source, target = _variable(connection.source), _variable(connection.target)
-        if is_linear(connection):
-            name, how = f"f{len(functions)}", f'factor="{connection.factor!r}" offset="{connection.offset!r}"'
-            functions.append(f'<LinearTransformation name="{name}" {how}/>')
-            for variable, signal in ((source, "in"), (target, "out")):
-                end = f'<Signal function="{name}" name="{signal}"/>'
-                connections.append(f"<SignalConnection>{variable}{end}</SignalConnection>")
-        else:
-            connections.append(f"<VariableConnection>{source}{target}</VariableConnection>")
-    return (
-        f'<OspSystemStructure xmlns="{NAMESPACE}" version="0.1"><StartTime>0</StartTime>'
-        f"<BaseStepSize>{_seconds(step)}</BaseStepSize><Algorithm>fixedStep</Algorithm>"
-        f"{_group('Simulators', simulators)}{_group('Functions', functions)}{_group('Connections', connections)}"
-        "</OspSystemStructure>"
-    )
+    return structure_text(simulators, job.connections, job.scenario.step_size)
 
 
 def events_of(job: Job) -> str:
     """Scenario of OSP, in JSON, with the changes that a job makes."""
-    step, events = _nanoseconds(job.scenario.step_size), []
+    events = []
     for k, change, (component, variable), value in job.changes:
-        event = {"time": float(_seconds(step * k)), "model": component, "variable": variable, "action": change}
+        event = {
+            "time": float(seconds_text(job.scenario.step_size * k)),
+            "model": component,
+            "variable": variable,
+            "action": change,
+        }
         if change != "reset":
             event["value"] = int(value) if KINDS[job.plan.variable((component, variable)).kind] == "Integer" else value
         events.append(event)
@@ -291,21 +280,8 @@ def events_of(job: Job) -> str:
     return json.dumps({"description": job.scenario.description, "events": events, "end": after})
 
 
-def _group(name, parts):
-    return f"<{name}>{''.join(parts)}</{name}>" if parts else ""
-
-
-def _variable(end):
-    return f"<Variable simulator={quoteattr(end[0])} name={quoteattr(end[1])}/>"
-
-
 def _nanoseconds(seconds):
     return round(seconds * 1e9)
-
-
-def _seconds(nanoseconds):
-    """Seconds as libcosim, which cuts off fractions of a nanosecond, reads them without losing one."""
-    return f"{nanoseconds // 10**9}.{nanoseconds % 10**9:09d}25"
 
 
 def _function(name, result, arguments):

@@ -7,6 +7,7 @@ before the run: inputs of the system, and inputs that hang on nothing but change
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -273,6 +274,12 @@ def _connection_complaint(job, connection):
     if kinds[0] != "Real" and is_linear(connection):
         return f"it transforms values of type {kinds[0]}"
     return None
+
+
+def sums(connections: list[Connection]) -> list[Connection]:
+    """Those that are added to others on their way into an input."""
+    count = Counter(connection.target for connection in connections)
+    return [connection for connection in connections if count[connection.target] > 1]
 
 
 def is_linear(connection: Connection) -> bool:

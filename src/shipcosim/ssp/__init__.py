@@ -4,7 +4,10 @@ from shipcosim.ssp.archive import unpack
 from shipcosim.ssp.check import check_file, check_system
 from shipcosim.ssp.edit import SystemStructure, new, read
 from shipcosim.ssp.fmu import FmuDescription, Variable, read_fmu
-from shipcosim.ssp.system import Component, Signal, System, read_system, with_values
+from shipcosim.ssp.osp import osp_file
+from shipcosim.ssp.osp_write import Simulator, seconds_text, structure_text
+from shipcosim.ssp.reading import read_system
+from shipcosim.ssp.system import Component, Signal, System, with_values
 from shipcosim.ssp.wiring import Connection
 from shipcosim.ssp.write import pack, parameter, write_ssv
 
@@ -13,17 +16,21 @@ __all__ = [
     "Connection",
     "FmuDescription",
     "Signal",
+    "Simulator",
     "System",
     "SystemStructure",
     "Variable",
     "check_file",
     "check_system",
     "new",
+    "osp_file",
     "pack",
     "parameter",
     "read",
     "read_fmu",
     "read_system",
+    "seconds_text",
+    "structure_text",
     "unpack",
     "with_values",
     "write_ssv",

@@ -7,7 +7,7 @@ from pathlib import Path
 from shipcosim.errors import Problem
 from shipcosim.ssp.fmu import describe_fmu
 from shipcosim.ssp.parameters import read_dictionary, read_mapping, read_parameter_set
-from shipcosim.ssp.system import assemble
+from shipcosim.ssp.reading import assemble
 from shipcosim.ssp.xml import Findings, read_document
 
 READERS = {".ssv": read_parameter_set, ".ssm": read_mapping, ".ssb": read_dictionary}
@@ -38,7 +38,7 @@ def problems_of(system, findings):
 
 
 def check_file(path, *, fmus=()):
-    """Problems of a file by its ending: .ssp, .ssd, a folder with a SystemStructure.ssd, .ssv, .ssm, .ssb or .fmu.
+    """Problems of a file by its ending: .ssp, .ssd, .ssv, .ssm, .ssb, .fmu, .xml (of OSP), or of a folder.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def check_file(path, *, fmus=()):
     list of Problem
     """
     suffix = Path(str(path).partition("#")[0]).suffix.lower()
-    if suffix in (".ssp", ".ssd") or Path(path).is_dir():
+    if suffix in (".ssp", ".ssd", ".xml") or Path(path).is_dir():
         return check_system(path, fmus=fmus)
     findings = Findings()
     if suffix == ".fmu":
@@ -65,7 +65,9 @@ def check_file(path, *, fmus=()):
             READERS[suffix](document, findings)
     else:
         return [
-            Problem(str(path), f"Files ending in '{suffix}' are not known.", "Known: .ssp .ssd .ssv .ssm .ssb .fmu.")
+            Problem(
+                str(path), f"Files ending in '{suffix}' are not known.", "Known: .ssp .ssd .ssv .ssm .ssb .fmu .xml."
+            )
         ]
     return list(dict.fromkeys(findings.problems))
 

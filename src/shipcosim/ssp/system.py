@@ -7,7 +7,6 @@ from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp.fmu import FmuDescription
-from shipcosim.ssp.package import open_package
 from shipcosim.ssp.parameters import ParameterSet, read_parameter_set
 from shipcosim.ssp.setting import Settings, check_bounds
 from shipcosim.ssp.structure import Experiment, read_structure
@@ -148,40 +147,6 @@ class System:
         return Problem(where, f"There is no component or connector '{element}'.", suggestion(element, known))
 
 
-def read_system(path, parameters=(), *, fmus=()):
-    """Read a system structure and everything it refers to, checked completely.
-
-    Parameters
-    ----------
-    path : path
-        A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, or a .ssd.
-    parameters : path or ParameterSet, or iterable of them
-        Parameter sets (.ssv) applied over those of the system, the last one last.
-    fmus : iterable of path
-        Folders searched for FMUs that are not beside the SSD.
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    ShipcosimError
-        With everything that is wrong.
-    """
-    system, findings = assemble(path, parameters, fmus)
-    if findings.errors:
-        raise ShipcosimError(list(dict.fromkeys(findings.errors)))
-    return system
-
-
-def assemble(path, parameters=(), fmus=()):
-    """System and findings; the system is None or incomplete where there are errors."""
-    findings = Findings()
-    package = open_package(path, findings, fmus)
-    return None if package is None else assemble_package(package, parameters, str(path), findings), findings
-
-
 def assemble_package(package, parameters, file, findings, described=None):
     """System of a package, None or incomplete where there are errors.
 
@@ -204,12 +169,12 @@ def assemble_package(package, parameters, file, findings, described=None):
         return None
     tree = Tree(findings, described)
     tree.grow(structure, package)
-    for values in _parameter_sets(parameters, findings):
+    for values in parameter_sets(parameters, findings):
         tree.bind(values)
     return _system(tree, structure, file, findings)
 
 
-def _parameter_sets(parameters, findings):
+def parameter_sets(parameters, findings):
     """Sets given for this run, read where they are paths."""
     if isinstance(parameters, (str, Path, ParameterSet)):
         parameters = (parameters,)
@@ -224,20 +189,9 @@ def _system(tree, structure, file, findings):
     connections = connect(tree, findings)
     settings = Settings(tree, findings)
     settings.apply()
-    components = {
-        ".".join(path): Component(
-            ".".join(path),
-            fmu,
-            dict(settings.start[path]),
-            element.step_size,
-            element.implementation,
-            dict(settings.tolerances[path]),
-        )
-        for path, (element, fmu) in tree.components.items()
-        if fmu is not None
-    }
+    components = components_of(tree, settings)
     _check_names(tree, findings)
-    _remark_unconnected(components, connections, findings)
+    remark_unconnected(components, connections, findings)
     name = structure.name or structure.system.name
     if findings.errors:
         return System(name, file, components)
@@ -255,6 +209,22 @@ def _system(tree, structure, file, findings):
         remarks=tuple(dict.fromkeys(findings.remarks)),
         _packages=tuple(tree.packages),
     )
+
+
+def components_of(tree, settings):
+    """Components of a tree by full name, with their start values; those whose FMU cannot be read are left out."""
+    return {
+        ".".join(path): Component(
+            ".".join(path),
+            fmu,
+            dict(settings.start[path]),
+            element.step_size,
+            element.implementation,
+            dict(settings.tolerances[path]),
+        )
+        for path, (element, fmu) in tree.components.items()
+        if fmu is not None
+    }
 
 
 def _is_given(connection, system):
@@ -279,7 +249,8 @@ def _check_names(tree, findings):
         seen[name] = element
 
 
-def _remark_unconnected(components, connections, findings):
+def remark_unconnected(components, connections, findings):
+    """Note which inputs nothing feeds."""
     connected = {connection.target for connection in connections}
     for component in components.values():
         free = [name for name in component.fmu.named("input") if (component.name, name) not in connected]

@@ -1,0 +1,45 @@
+"""A system read from any file that describes one: an SSP in its three forms, or an OspSystemStructure.xml."""
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp.osp import assemble_osp, osp_file
+from shipcosim.ssp.package import open_package
+from shipcosim.ssp.system import assemble_package
+from shipcosim.ssp.xml import Findings
+
+
+def read_system(path, parameters=(), *, fmus=()):
+    """Read a system structure and everything it refers to, checked completely.
+
+    Parameters
+    ----------
+    path : path
+        A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, a .ssd, or an
+        OspSystemStructure.xml (a folder with one).
+    parameters : path or ParameterSet, or iterable of them
+        Parameter sets (.ssv) applied over those of the system, the last one last.
+    fmus : iterable of path
+        Folders searched for FMUs that are not beside the system structure.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is wrong.
+    """
+    system, findings = assemble(path, parameters, fmus)
+    if findings.errors:
+        raise ShipcosimError(list(dict.fromkeys(findings.errors)))
+    return system
+
+
+def assemble(path, parameters=(), fmus=()):
+    """System and findings; the system is None or incomplete where there are errors."""
+    findings = Findings()
+    osp = osp_file(path)
+    if osp is not None:
+        return assemble_osp(osp, parameters, fmus, findings), findings
+    package = open_package(path, findings, fmus)
+    return None if package is None else assemble_package(package, parameters, str(path), findings), findings
