@@ -47,8 +47,8 @@ Store = Annotated[
 From = Annotated[Path | None, typer.Option("--from", metavar="FILE", help="Continue from a state that --store left.")]
 
 
-def command(function):
-    """Make a function a command: errors become a readable block on stderr and an exit code."""
+def command(function, group=app):
+    """Make a function a command of a group: errors become a readable block on stderr and an exit code."""
 
     @functools.wraps(function)
     def guarded(*args, debug=False, **kwargs):
@@ -67,7 +67,7 @@ def command(function):
             _explain([Problem("shipcosim", f"{type(error).__name__}: {error}", remedy)], debug)
             raise typer.Exit(UNUSABLE) from None
 
-    return app.command(epilog=EXIT_CODES)(guarded)
+    return group.command(epilog=EXIT_CODES)(guarded)
 
 
 def _explain(problems, debug):
@@ -174,8 +174,9 @@ def simulate(
         ),
     ] = None,
     start_time: Annotated[
-        float, typer.Option("--start-time", callback=_finite, help="[s] On the clock of the table.")
-    ] = 0.0,
+        float | None,
+        typer.Option("--start-time", callback=_finite, help="[s] On the clock of the table. Default: the system's."),
+    ] = None,
     settings: Settings = None,
     until: Until = None,
     store: Store = None,
@@ -203,6 +204,8 @@ def simulate(
     happening = experiment_of(system, stop_time, step_size)
     table = feeding(inputs, system, interpolate or (), max_gap)
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
+    if start_time is None:
+        start_time = system.experiment.start_time if resume is None else 0.0
     course = {"start_time": start_time, "until": until, "store": store, "resume": resume}
     _simulate_and_save(system, happening, out or default, engine, table, **course)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.cosim import ecos, libcosim
 from shipcosim.cosim.engine import Interrupted, RunError, run
+from shipcosim.cosim.export_fmu import export_fmu
 from shipcosim.cosim.feed import interpolated
 from shipcosim.cosim.repeat import repeat
 from shipcosim.cosim.replay import replay
@@ -27,6 +28,7 @@ __all__ = [
     "RunError",
     "Snapshot",
     "engines_missing",
+    "export_fmu",
     "interpolated",
     "read_snapshot",
     "repeat",

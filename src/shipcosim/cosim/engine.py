@@ -116,7 +116,7 @@ class Journey:
         """
         span = self._span
         try:
-            self._parts = _parts(self._plan, self._exchanges, instances, check_interrupt)
+            self._parts = _parts(self._plan, self._exchanges, instances, check_interrupt, self._scenario.step_size)
             self._texts = _texts(self._plan, self._parts)
             master = self._master(check_interrupt)
             master.initialise(span.start_time, span.stop_time)
@@ -203,7 +203,7 @@ def _exchanges(plan, scenario, span, fed, in_force):
     return exchanges, trajectories
 
 
-def _parts(plan, exchanges, instances, check_interrupt):
+def _parts(plan, exchanges, instances, check_interrupt, base):
     """The components, instantiated, their start values set."""
     parts = {}
     for component in plan.system.components.values():
@@ -214,7 +214,8 @@ def _parts(plan, exchanges, instances, check_interrupt):
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
-        part = parts[name] = Part(name, slave, plan.multiples[name])
+        fixed_step = None if fmu.capability("canHandleVariableCommunicationStepSize") else base * plan.multiples[name]
+        part = parts[name] = Part(name, slave, plan.multiples[name], fixed_step)
         for kind, exchange in exchanges.items():
             part.bind(kind, exchange, *plan.rows(kind, name))
     return parts

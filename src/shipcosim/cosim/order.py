@@ -1,6 +1,7 @@
 """In which order components step."""
 
 from shipcosim.cosim.plan import Plan
+from shipcosim.ssp import System
 
 ORDERS = ("jacobi", "gauss-seidel")
 
@@ -11,11 +12,14 @@ def stepping_order(plan: Plan, order: str) -> list[str]:
     Jacobi has no order: the system's. Gauss-Seidel puts every component behind those that feed it; where these form a
     loop, the first of it in the system goes first.
     """
-    names = list(plan.system.components)
-    if order == "jacobi":
-        return names
+    return list(plan.system.components) if order == "jacobi" else feeders_first(plan.system)
+
+
+def feeders_first(system: System) -> list[str]:
+    """Names of the components, each behind those that feed it as far as these form no loop."""
+    names = list(system.components)
     feeds = {name: set() for name in names}
-    for connection in plan.system.connections:
+    for connection in system.connections:
         source, target = connection.source[0], connection.target[0]
         if source and target and source != target:
             feeds[target].add(source)

@@ -31,17 +31,23 @@ class Part:
         Its FMU.
     multiple : int
         Its step, in base steps.
+    fixed_step : float, optional
+        What it is told as its step, for an FMU that can take no other: the difference of two times is not always the
+        same number. [s]
     """
 
     name: str
     slave: Slave
     multiple: int
+    fixed_step: float | None = None
     _set_reals: Callable[[], int] | None = None
     _discrete: list[Discrete] = field(default_factory=list)
     _gets: list[tuple[str, Callable[[], int]]] = field(default_factory=list)
 
     def __post_init__(self):
-        self._do_step = self.slave.stepper()
+        self._do_step = do_step = self.slave.stepper()
+        if (step := self.fixed_step) is not None:
+            self._do_step = lambda time, _: do_step(time, step)
 
     def bind(self, kind: str, exchange: Exchange, outputs: tuple, inputs: tuple) -> None:
         """Prepare the calls for the variables of one kind.

@@ -53,6 +53,7 @@ class Slave:
         self.messages: list[tuple[int, str]] = []
         self._is_lost = False
         self._is_python = (Path(folder) / "resources" / "slavemodule.txt").is_file()
+        self._is_container = (Path(folder) / "resources" / "container.json").is_file()
         here = os.getcwd()
         try:
             self._fmu = self._load(
@@ -225,7 +226,7 @@ class Slave2(Slave):
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(lambda env, name, status, kind, text: self._log(status, text))
         callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-        if not self._is_python:  # PythonFMU logs Python's text as a format: a % in it makes formatting read wild memory
+        if not (self._is_python or self._is_container):  # they log text as a format: % in it would read wild memory
             addLoggerProxy(byref(callbacks))
         self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
 
