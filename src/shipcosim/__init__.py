@@ -53,7 +53,7 @@ def simulate(
     inputs=None,
     progress=None,
     order="jacobi",
-    start_time=0.0,
+    start_time=None,
     until=None,
     resume=None,
     store=None,
@@ -72,7 +72,9 @@ def simulate(
         Start values by full name, in the FMUs' units.
     events : iterable of mapping
         As in a scenario file: ``{"time": 10.0, "override": {"vessel.tau_X_5": 1e4}}``.
-    engine, inputs, progress, order, start_time, until, resume, store
+    start_time : float, optional
+        As for `shipcosim.cosim.simulate`; where nobody says anything, the system's default experiment does. [s]
+    engine, inputs, progress, order, until, resume, store
         As for `shipcosim.cosim.simulate`: `until` and `store` stop at a time and keep the state of the whole system,
         `resume` continues from there.
 
@@ -94,6 +96,8 @@ def simulate(
     if not isinstance(system, ssp.System):
         structure = system if isinstance(system, ssp.SystemStructure) else ssp.read(system)
         system = structure.checked(() if scenario is None else scenario.parameter_paths)
+    if start_time is None:
+        start_time = system.experiment.start_time if scenario is None and resume is None else 0.0
     keys = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
     keys = {name: value for name, value in keys.items() if value is not None}
     scenario = _scenario(scenario, system.experiment, keys | {"set": set or {}, "events": list(events)})

@@ -10,10 +10,11 @@ from pathlib import Path
 from urllib.parse import quote
 
 from shipcosim.errors import ShipcosimError, suggestion
+from shipcosim.ssp.annotations import step_sizes
 from shipcosim.ssp.check import problems_of
 from shipcosim.ssp.declare import declare, declare_variable
 from shipcosim.ssp.draft import Draft
-from shipcosim.ssp.experiment import step_sizes, write_step_size
+from shipcosim.ssp.experiment import write_step_size
 from shipcosim.ssp.fmu import read_fmu
 from shipcosim.ssp.markup import add, add_osp, drop, ensure
 from shipcosim.ssp.names import attached, best_pair, connections, find_connector, find_element, split_owner, walk

@@ -1,18 +1,8 @@
 """The base step size of an SSD, which the standard leaves to annotations of the tools."""
 
+from shipcosim.ssp.annotations import step_sizes
 from shipcosim.ssp.markup import OSP_MARK, add_osp, ensure
-from shipcosim.ssp.structure import STEP_SIZES
-from shipcosim.ssp.xml import child, children, local
-
-
-def step_sizes(root):
-    """(element, attribute) of all that state it in an SSD, the one that counts first."""
-    for owner in (child(root, "ssd:DefaultExperiment"), child(root, "ssd:System")):
-        for annotation in () if owner is None else children(owner, "ssd:Annotations", "ssc:Annotation"):
-            for part in annotation.iter():
-                attribute = STEP_SIZES.get(local(part))
-                if attribute and part.get(attribute) is not None:
-                    yield part, attribute
+from shipcosim.ssp.xml import local
 
 
 def write_step_size(root, step_size):

@@ -121,6 +121,8 @@ def _mapped(flow, transformation, port, place, findings):
     table = transformation.table
     if kind == "Enumeration":
         table = _by_number(table, flow.items, port.items or flow.items, place, findings)
+    elif port.items:
+        _check_numbers(table, flow.items, port.items, place, findings)
     before = flow.mapping or {}
     after = {value: table.get(between, between) for value, between in before.items()}
     return replace(flow, mapping={**table, **after})
@@ -132,6 +134,14 @@ def _by_number(table, source, target, place, findings):
         if name not in items:
             findings.error(place, f"The enumeration has no item '{name}'.", has(name, items))
     return {source[a]: target[b] for a, b in table.items() if a in source and b in target}
+
+
+def _check_numbers(table, source, target, place, findings):
+    """What a mapping by numbers makes of a source's items must be items of the target."""
+    made = {table.get(value, value) for value in (source.values() or table)}
+    if lost := sorted(made - set(target.values())):
+        found = f"The mapping gives {', '.join(map(str, lost))}, which the target's enumeration has not."
+        findings.error(place, found, f"It has: {', '.join(f'{name} ({value})' for name, value in target.items())}.")
 
 
 def _items_checked(flow, port, transformation, place, findings):

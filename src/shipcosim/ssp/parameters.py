@@ -215,13 +215,11 @@ def _table(document, element, kind, findings):
 
 def _attribute(document, element, name, kind, findings):
     """Value of an attribute; None where it is missing or, with an error, makes no sense."""
-    if element.get(name) is None:
-        return None
-    try:
-        return read_value(kind, element.get(name))
-    except ValueError as error:
-        findings.error(document.place(element, f"{local(element)}, {name}"), str(error))
-        return None
+    value = None
+    if element.get(name) is not None:
+        with reporting(document, element, findings, f"{local(element)}, {name}"):
+            value = read_value(kind, element.get(name))
+    return value
 
 
 def read_dictionary(document, findings):
@@ -240,6 +238,9 @@ def read_dictionary(document, findings):
     entries = {}
     for element in children(root, "ssb:DictionaryEntry"):
         typed = next((part for part in element if local(part) in KINDS), None)
+        if element.get("name") in entries:
+            place = document.place(element, element.get("name"))
+            findings.error(place, "The dictionary has this entry already.", "Names must differ.")
         if typed is not None:
             items = enumerations.get(typed.get("name"), {})
             unit = find_unit(typed.get("unit"), units)

@@ -72,6 +72,8 @@ class Settings:
         port = self._port(key)
         if flow.type == "Enumeration" and isinstance(value, str):
             value, flow, step = self._number(value, flow, step, port, place)
+            if value is None:
+                return
         flow = advance(flow, step, port, (place, ("the value", str(key))), self.findings)
         if port.owner == "component":
             self._start(value, flow, key, port, place)
@@ -91,7 +93,10 @@ class Settings:
         return variable_port(fmu.variables[key.name], fmu, "")
 
     def _number(self, value, flow, step, port, place):
-        """Number of an enumeration's item, at the first port that knows its items; a mapping of names comes before."""
+        """Number of an enumeration's item, at the first port that knows its items; a mapping of names comes before.
+
+        None with an error where there is no such item.
+        """
         if not port.items:
             return value, flow, step
         table = step.transformation.table if step.transformation else {}
@@ -99,7 +104,7 @@ class Settings:
         if name not in port.items:
             self.findings.error(place, f"The enumeration has no item '{name}'.", has(name, port.items))
         step = replace(step, transformation=None)
-        return port.items.get(name, 0), replace(flow, items=port.items), step
+        return port.items.get(name), replace(flow, items=port.items), step
 
     def _start(self, value, flow, key, port, place):
         variable = port.variable

@@ -6,6 +6,7 @@ Reference: System Structure and Parameterization 1.0, section 5; type names of 2
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from shipcosim.ssp.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored, stated
 from shipcosim.ssp.parameters import (
     Transformation,
     has_root,
@@ -30,13 +31,6 @@ KIND_NAMES = (
     "inout",
     "unspecified",
 )
-
-
-STEP_SIZES = {"FixedStepAlgorithm": "baseStepSize", "FixedStepMaster": "stepSize"}
-"""Where annotations give the base step size: libcosim and ecos; OMSimulator and older OSP."""
-
-STEP_SIZE_HINTS = {"StepSizeHint": "value"}
-"""Where annotations of a component give its own step size: ecos and Vico."""
 
 
 @dataclass(frozen=True)
@@ -200,6 +194,7 @@ def read_structure(document, findings):
         enumerations=reader.enumerations,
         document=document,
     )
+    remark_ignored(document, findings)
     return structure
 
 
@@ -337,17 +332,17 @@ class _Reader:
         element = child(self.document.root, "ssd:DefaultExperiment")
         if element is None:
             return Experiment()
-        times = [self.number(element, name) for name in ("startTime", "stopTime")]
-        return Experiment(times[0] or 0.0, times[1], self.annotated(element, STEP_SIZES))
+        start, stop = (self.number(element, name) for name in ("startTime", "stopTime"))
+        start = start or 0.0
+        if stop is not None and stop <= start:
+            place, found = self.place(element, "DefaultExperiment"), f"startTime is {start:g}, stopTime {stop:g}."
+            self.findings.error(place, found, "The stop comes after the start.")
+        return Experiment(start, stop, self.annotated(element, STEP_SIZES))
 
     def annotated(self, element, names):
         """Number that an annotation of any tool gives under one of these names, or None."""
-        for annotation in children(element, "ssd:Annotations", "ssc:Annotation"):
-            for part in annotation.iter():
-                attribute = names.get(local(part))
-                if attribute and part.get(attribute) is not None:
-                    return self.positive(part, attribute)
-        return None
+        found = next(stated(element, names), None)
+        return None if found is None else self.positive(*found)
 
     def positive(self, element, name):
         number = self.number(element, name)

@@ -26,10 +26,22 @@ SCHEMAS = {
     "ssv": "ssp/schema/SystemStructureParameterValues.xsd",
     "ssm": "ssp/schema/SystemStructureParameterMapping.xsd",
     "ssb": "ssp/schema/SystemStructureSignalDictionary.xsd",
+    "fmi1": "schema/fmi1/fmiModelDescription.xsd",
     "fmi2": "schema/fmi2/fmi2ModelDescription.xsd",
     "fmi3": "schema/fmi3/fmi3ModelDescription.xsd",
 }
 WORDS = {"double": "a number", "int": "a whole number", "boolean": "a Boolean (true, false, 1, 0)"}
+REMEDIES = {
+    "is not a Boolean": "Write true or false.",
+    "is not a whole number": "Write a whole number, e.g. 3.",
+    "number": "Write a number with a decimal point, e.g. 1.5.",
+    "is not allowed": "Correct its name or remove it.",
+    "is required but missing": "Add it.",
+    "unique": "Names must differ.",
+    "is not expected": "Remove it.",
+    "is invalid": "Correct it.",
+}
+"""What would be right, by part of what was found."""
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
 
 
@@ -38,6 +50,7 @@ class Findings:
 
     def __init__(self):
         self.problems = []
+        self.refused_lines = set()  # by a schema: what else is wrong with a value there has been said
 
     def error(self, where, found, remedy=""):
         """Note what makes the input unusable."""
@@ -88,7 +101,19 @@ def reporting(document, element, findings, what=""):
     try:
         yield
     except ValueError as error:
-        findings.error(document.place(element, what), str(error))
+        if document.place(element) not in findings.refused_lines:
+            findings.error(document.place(element, what), str(error), remedy_for(str(error)))
+
+
+def remedy_for(found):
+    """What would be right instead of a value of the wrong form.
+
+    Examples
+    --------
+    >>> remedy_for("'2,0' is not a number.")
+    'Write a number with a decimal point, e.g. 1.5.'
+    """
+    return next((remedy for part, remedy in REMEDIES.items() if part in found), "Correct it.")
 
 
 def qualified(tag):
@@ -202,12 +227,16 @@ def report_schema(checker, root, file, findings):
     if checker.validate(root):
         return
     for entry in checker.error_log:
-        text = re.sub(r"\{[^}]*\}", "", entry.message)
+        text = re.sub(r"\{(http|urn)[^}]*\}", "", entry.message)
         for kind, word in WORDS.items():
             text = text.replace(f"a valid value of the atomic type 'xs:{kind}'", word)
-        found, _, expected = text.partition(" Expected is ")
+        text, _, choice = re.sub(r"\[facet '[^']*'\] ", "", text).partition(" is not an element of the set ")
+        found, _, expected = (f"{text} does not exist." if choice else text).partition(" Expected is ")
         where = f"{file}, line {entry.line}" if entry.line else file
-        findings.error(where, found, f"Expected is {expected}" if expected else "")
+        findings.refused_lines.add(where)
+        if choice:
+            expected = f"one of: {choice.strip('{}.')}."
+        findings.error(where, found, f"Expected is {expected}" if expected else remedy_for(found))
 
 
 @cache
