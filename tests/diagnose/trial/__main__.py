@@ -1,4 +1,4 @@
-"""Command of the trial: `python tests/diagnose/trial run ...` and `... table ...`; `--help` says more."""
+"""Command of the trial: `python tests/diagnose/trial run ...`, `sail` and `table`; `--help` says more."""
 
 import argparse
 import os
@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from diagnose.trial import comparison, runs, scoring, tables
+from diagnose.trial import comparison, manoeuvres, runs, scoring, tables
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = ROOT / "docs" / "diagnosis-trial.md"
@@ -24,8 +24,16 @@ def main(arguments=None):
     running.add_argument("--into", type=Path, default=ROOT / "results" / "trial.jsonl")
     running.add_argument("--jobs", type=int, default=1)
     running.add_argument("--minutes", type=float, help="begin no new batch after this long")
-    running.add_argument("--tool", default=runs.TOOL, help="module:function that diagnoses a path")
+    running.add_argument("--tool", help="module:function that diagnoses a path")
     running.set_defaults(call=_run)
+    sailing = commands.add_parser("sail", help="sail what ambiguous answers prescribe, and diagnose the longer logs")
+    sailing.add_argument("--kinds", nargs="+", choices=runs.KINDS, default=runs.KINDS)
+    sailing.add_argument("--sets", nargs="+", choices=runs.SETS, default=["one"])
+    sailing.add_argument("--into", type=Path, default=ROOT / "results" / "trial.jsonl", help="where the answers are")
+    sailing.add_argument("--jobs", type=int, default=1)
+    sailing.add_argument("--minutes", type=float, help="begin no new log after this long")
+    sailing.add_argument("--tool", default=runs.TOOL, help="module:function that diagnoses a path")
+    sailing.set_defaults(call=_sail)
     showing = commands.add_parser("table", help="print the table of results")
     showing.add_argument("results", type=Path, nargs="*", default=[ROOT / "results" / "trial.jsonl"])
     showing.add_argument("--write", action="store_true", help="into docs/diagnosis-trial.md too, between its markers")
@@ -45,6 +53,20 @@ def _run(options):
         options.kinds,
         options.sets,
         options.seeds,
+        options.into,
+        tool=options.tool,
+        jobs=options.jobs,
+        minutes=options.minutes,
+        progress=_show,
+    )
+
+
+def _sail(options):
+    if options.jobs > 1:
+        os.environ.setdefault("OMP_NUM_THREADS", "1")
+    manoeuvres.sail(
+        options.kinds,
+        options.sets,
         options.into,
         tool=options.tool,
         jobs=options.jobs,

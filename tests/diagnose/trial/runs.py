@@ -8,10 +8,12 @@ import subprocess
 import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 
 from truth import draw_many
+from truth.cases import CAUSES
 
 import shipcosim
 
@@ -19,7 +21,9 @@ from .scoring import DATA_FAULTS
 
 KINDS = ("trial", "work", "hold")
 TOOL = "diagnose.trial.tools:ours"
+TOOLS = {"drift": "diagnose.trial.tools:with_drift"}  # of the sets that others are for
 BATCH = 16
+DRIFT = {"legs": [[30, 0, 0, 0], [300, 0, 0, 0]], "free": [[30, 330]]}  # five minutes without power
 SETS = {
     "one": {},
     "healthy": {"causes": 0},
@@ -33,10 +37,11 @@ SETS = {
     "rough": {"rough": True},
     "healthy_mismatch": {"causes": 0, "mismatch": 2.0},
     "healthy_rough": {"causes": 0, "rough": True},
+    "drift": {"among": [cause for cause in CAUSES if cause not in DATA_FAULTS], "after": DRIFT},
 }
 
 
-def run(kinds, sets, seeds, into, *, tool=TOOL, jobs=1, minutes=None, progress=print):
+def run(kinds, sets, seeds, into, *, tool=None, jobs=1, minutes=None, progress=print):
     """Diagnose every log of a plan that is not in the results yet.
 
     Parameters
@@ -47,8 +52,8 @@ def run(kinds, sets, seeds, into, *, tool=TOOL, jobs=1, minutes=None, progress=p
         Each is drawn once for each kind and set.
     into : path
         JSON lines; what is there already is not done again, new lines are appended.
-    tool : str
-        ``module:function`` that makes a `Diagnosis` of the path of a log.
+    tool : str, optional
+        ``module:function`` that makes a `Diagnosis` of the path of a log; `TOOL`, or that of the set in `TOOLS`.
     jobs : int
         Processes.
     minutes : float, optional
@@ -64,17 +69,14 @@ def run(kinds, sets, seeds, into, *, tool=TOOL, jobs=1, minutes=None, progress=p
     into, until = Path(into), time.monotonic() + 60.0 * (minutes or 1e9)
     into.parent.mkdir(parents=True, exist_ok=True)
     done = {key(result) for result in read_results(into)}
-    version = _version()
-    _end_line(into)
     with pool_of(jobs) as pool:
         for batch in (seeds[i : i + BATCH] for i in range(0, len(seeds), BATCH)):
             for kind, name in itertools.product(kinds, sets):
                 wanted = [seed for seed in batch if (kind, name, seed) not in done]
                 if not wanted or time.monotonic() > until:
                     continue
-                for result in diagnosed(kind, name, wanted, tool=tool, pool=pool):
-                    with into.open("a", encoding="utf-8") as file:
-                        file.write(json.dumps(result | {"version": version, "tool": tool}) + "\n")
+                for result in diagnosed(kind, name, wanted, tool=tool or TOOLS.get(name, TOOL), pool=pool):
+                    add(result, into)
                     progress(result)
     plan = set(itertools.product(kinds, sets, seeds))
     return [result for result in read_results(into) if key(result) in plan]
@@ -91,24 +93,31 @@ def diagnosed(kind, name, seeds, *, tool=TOOL, pool=None):
     Yields
     ------
     dict
-        `kind`, `set`, `options`, `seed`, `answer` (what is hidden), `span` of the log [s], `diagnosis` (None after an
-        error), `error`, `seconds`.
+        `kind`, `set`, `options`, `seed`, `answer` (what is hidden), `span` of the log [s], `tool`, `diagnosis` (None
+        after an error), `error`, `seconds`.
     """
     cases = draw_many(kind, seeds, **SETS[name])
+    yield from answered([(case, name, SETS[name]) for case in cases], tool=tool, pool=pool)
+
+
+def answered(drawn, *, tool=TOOL, pool=None):
+    """Diagnose drawn logs, each with its set and the options that it was drawn with; yields as `diagnosed`."""
     with tempfile.TemporaryDirectory() as folder:
-        paths = [str(Path(folder) / f"{kind}-{name}-{case.seed}.csv") for case in cases]
-        for case, path in zip(cases, paths, strict=True):
+        paths = [str(Path(folder) / f"{case.kind}-{name}-{case.seed}.csv") for case, name, _ in drawn]
+        for (case, *_), path in zip(drawn, paths, strict=True):
             case.save(path)
         each = pool.map if pool else map
-        for case, outcome in zip(cases, each(outcome_of, paths, itertools.repeat(tool)), strict=True):
+        outcomes = each(outcome_of, paths, itertools.repeat(tool))
+        for (case, name, options), outcome in zip(drawn, outcomes, strict=True):
             times = case.log["time [s]"]
             yield {
-                "kind": kind,
+                "kind": case.kind,
                 "set": name,
-                "options": SETS[name],
+                "options": options,
                 "seed": int(case.seed),
                 "answer": json.loads(json.dumps([answer._asdict() for answer in case.answer], default=float)),
                 "span": [float(times.min()), float(times.max())],
+                "tool": tool,
                 **outcome,
             }
 
@@ -123,6 +132,13 @@ def outcome_of(path, tool=TOOL):
     except Exception as failure:  # whatever it is, the trial goes on and counts it as a miss
         error = f"{type(failure).__name__}: {failure}"
     return {"diagnosis": diagnosis, "error": error, "seconds": round(time.monotonic() - start, 2)}
+
+
+def add(result, into):
+    """Append a result to a file, with the version of the project."""
+    _end_line(into)
+    with into.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(result | {"version": _version()}) + "\n")
 
 
 def read_results(path):
@@ -148,6 +164,7 @@ def _end_line(path):
             file.write("\n")
 
 
+@cache
 def _version():
     """Version of the project, with the commit where it is a working copy."""
     command = ["git", "describe", "--always", "--dirty"]

@@ -133,6 +133,17 @@ def score(answers, diagnosis, span):
     )
 
 
+def named_rightly(answers, diagnosis):
+    """Each finding of an answer with whether it is hidden in the log, a hidden cause once.
+
+    Returns
+    -------
+    list of tuple of dict and bool
+    """
+    pairs = _paired(answers, diagnosis.get("findings", []))
+    return [(found, any(found is one for _, one in pairs)) for found in diagnosis.get("findings", [])]
+
+
 def _paired(answers, findings):
     """Each hidden cause with the finding of the same name, a finding once."""
     left, pairs = list(findings), []

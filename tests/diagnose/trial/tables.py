@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 
 from .runs import KINDS
-from .scoring import score
+from .scoring import named_rightly, score
 
 UNJUDGED = {"verdict": "error", "findings": []}
 Z = 1.959964
+LEAVES_LITTLE = 0.95  # of what the observer misses is noise: nothing to remove
+SURE = (0.0, 0.5, 0.8, 0.9, 0.95, 1.0)  # edges of the bins of stated probabilities
 
 
 @dataclass(frozen=True)
@@ -88,9 +90,16 @@ def _alarm(result, judged):
     return judged.alarm
 
 
-def _worse(result, judged):
-    gain = (result["diagnosis"] or UNJUDGED).get("gain")
-    return gain["after_m"] > gain["bias_observer_m"] if gain and judged.named else None
+def _of_ambiguous(result, judged):
+    return judged.contained if judged.verdict == "ambiguous" else None
+
+
+def _worse(name):
+    def hit(result, judged):
+        gain = (result["diagnosis"] or UNJUDGED).get(name)
+        return gain["after_m"] > gain["bias_observer_m"] if gain and judged.named else None
+
+    return hit
 
 
 def _two_sigma(pairs):
@@ -103,16 +112,14 @@ def _error(pairs):
     return f"{100 * np.median(errors):.1f} % ({len(errors)})" if errors else ""
 
 
-def _removed(pairs):
-    gains = [
-        result["diagnosis"]["gain"] for result, judged in pairs if judged.right and result["diagnosis"].get("gain")
-    ]
-    shares = [
-        (gain["bias_observer_m"] - gain["after_m"]) / (gain["bias_observer_m"] - gain["noise_floor_m"])
-        for gain in gains
-        if gain["bias_observer_m"] > gain["noise_floor_m"]
-    ]
-    return f"{100 * np.median(shares):.0f} % ({len(shares)})" if shares else ""
+def _removed(name):
+    def cell(pairs):
+        gains = [result["diagnosis"].get(name) for result, judged in pairs if judged.right]
+        left = [(gain["bias_observer_m"], gain["after_m"], gain["noise_floor_m"]) for gain in gains if gain]
+        shares = [(rival - after) / (rival - floor) for rival, after, floor in left if floor < LEAVES_LITTLE * rival]
+        return f"{100 * np.median(shares):.0f} % ({len(shares)})" if shares else ""
+
+    return cell
 
 
 def _seconds(pairs):
@@ -126,6 +133,14 @@ ROWS = (
     Row(
         "in the reported set (before any manoeuvre)", "one", ("", "", ""), lambda r, s: s.contained if s.alarm else None
     ),
+    Row("the same, of ambiguous answers", "one", ("", "", ""), _of_ambiguous),
+    Row(
+        "in the reported set after the one prescribed manoeuvre",
+        "one sailed",
+        ("95", "95", "95"),
+        lambda r, s: s.contained,
+    ),
+    Row("the same, right cause named", "one sailed", ("", "", ""), _right),
     Row("right when it names one", "one", ("99", "98", "95"), _precise),
     Row("effects halved: right", "half", ("95", "", ""), _right),
     Row("20 minutes of log: right", "short", ("95", "", ""), _right),
@@ -140,8 +155,10 @@ ROWS = (
     Row("the same, with segment", "data", ("95", "95", "95"), lambda r, s: s.right and s.located),
     Row("parameter error, median", "one", ("5", "7", ""), cell=_error),
     Row("within two sigma", "one", ("90-97", "90-97", ""), cell=_two_sigma),
-    Row("error at 60 s removed beyond the bias observer, median", "one", ("95", "90", ""), cell=_removed),
-    Row("worse than the bias observer", "one", ("2", "2", "2"), _worse),
+    Row("error at 60 s removed beyond the bias observer, median: DP", "drift", ("95", "90", ""), cell=_removed("gain")),
+    Row("the same, free drift", "drift", ("90", "85", ""), cell=_removed("drift")),
+    Row("worse than the bias observer: DP", "drift", ("2", "2", "2"), _worse("gain")),
+    Row("the same, free drift", "drift", ("2", "2", "2"), _worse("drift")),
     Row("twice the mismatch: right", "mismatch", ("", "", ""), _right),
     Row("twice the mismatch: right when it names one", "mismatch", ("99", "98", "95"), _precise),
     Row("twice the mismatch: false alarm on healthy data", "healthy_mismatch", ("", "", ""), _alarm),
@@ -173,7 +190,8 @@ def table(results):
                 f" ({target})" if cell and target else "" for cell, target in zip(cells, row.targets, strict=True)
             ]
             lines.append(f"| {row.label} | " + " | ".join(map(str.__add__, cells, wanted)) + " |")
-    return "\n".join([_heading(results), "", *lines, "", *_causes(results), "", *_misses(results)])
+    parts = lines, calibration(results), _causes(results), _misses(results)
+    return "\n".join([_heading(results), *(line for part in parts for line in ("", *part))])
 
 
 def content(row, results, kind):
@@ -197,6 +215,33 @@ def _heading(results):
         f"{len(results)} logs, seeds {min(seeds)} to {max(seeds)}, version {', '.join(versions)}; {errors} ended in an"
         " error (counted as misses). Rates with Wilson's 95 % interval and the number of logs that count."
     )
+
+
+def calibration(results):
+    """How often what was named with some probability was hidden in the log, as lines of a table in Markdown.
+
+    Parameters
+    ----------
+    results : list of dict
+        As `runs.run` gives them, of all sets.
+
+    Returns
+    -------
+    list of str
+    """
+    edges = [f"{low:g} to {high:g}" for low, high in zip(SURE[:-1], SURE[1:], strict=True)]
+    bins = {name: [] for name in (*edges, "faults of the data")}
+    for result in results:
+        for finding, right in named_rightly(result["answer"], result["diagnosis"] or UNJUDGED):
+            sure, data = finding["probability"], finding["kind"] == "data"
+            place = -1 if data else min(np.searchsorted(SURE, sure, side="right"), len(edges)) - 1
+            [*bins.values()][place].append((sure, right))
+    lines = ["| causes named with probability | named | mean probability | right |", "|---|---|---|---|"]
+    for name, found in bins.items():
+        if found:
+            sure, right = np.transpose(found)
+            lines.append(f"| {name} | {len(found)} | {sure.mean():.2f} | {_cell(int(right.sum()), right.size)} |")
+    return lines
 
 
 def _causes(results):

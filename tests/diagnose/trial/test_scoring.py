@@ -133,3 +133,45 @@ def test_a_run_that_was_cut_off_is_taken_up_where_it_was(tmp_path, monkeypatch):
     results = runs.run(["hold"], ["healthy"], range(4), into, **quiet)
     assert asked == [0, 1, 2, 2, 3]
     assert [result["seed"] for result in results] == [0, 1, 2, 3]
+
+
+def test_what_was_named_is_counted_by_how_sure_it_was():
+    def answer(seed, *findings, **more):
+        return {"answer": [hidden("mass")], "diagnosis": named(*findings), "seed": seed} | more
+
+    sure, unsure = {"kind": "physics", "probability": 0.99}, {"kind": "physics", "probability": 0.7}
+    fault = {"kind": "data", "probability": 1.0}
+    results = [answer(i, found("mass", **sure)) for i in range(3)]
+    results += [answer(3, found("tow", **sure), found("mass", **unsure)), answer(4, found("gap", **fault))]
+    _, _, *lines = tables.calibration([*results, answer(5, diagnosis=None)])
+    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
+    assert [row[:3] for row in cells] == [
+        ["0.5 to 0.8", "1", "0.70"],
+        ["0.95 to 1", "4", "0.99"],
+        ["faults of the data", "1", "1.00"],
+    ]
+    assert [row[3].split()[0] for row in cells] == ["100.0", "75.0", "0.0"]
+
+
+def test_removed_beyond_the_observer_is_of_what_it_leaves_and_right_answers_only():
+    def answer(observer, after, floor, cause="mass"):
+        gain = {"bias_observer_m": observer, "after_m": after, "noise_floor_m": floor}
+        diagnosis = named(found(cause)) | {"gain": gain, "drift": None}
+        return {"kind": "work", "set": "drift", "answer": [hidden("mass")], "span": SPAN, "diagnosis": diagnosis}
+
+    results = [answer(2.0, 0.7, 0.7), answer(2.0, 0.96, 0.7), answer(2.0, 0.7, 0.7, "tow"), answer(0.7, 0.7, 0.69)]
+    rows = [row for row in tables.ROWS if row.name == "drift"]
+    assert [tables.content(row, results, "work") for row in rows][:2] == ["90 % (2)", ""]
+    assert tables.rates(results, "drift", "work", rows[2].hit) == (0, 4)
+    assert tables.rates([answer(1.0, 1.1, 0.5)], "drift", "work", rows[2].hit) == (1, 1)
+
+
+def test_after_the_manoeuvre_the_truth_must_be_named_or_in_the_set():
+    set_of_two = {"verdict": "ambiguous", "findings": [], "indistinguishable": [found("mass"), found("tow")]}
+    (row,) = (row for row in tables.ROWS if row.label == "in the reported set after the one prescribed manoeuvre")
+    answers = (named(found("mass")), set_of_two, named(found("drag")), HEALTHY)
+    results = [
+        {"kind": "hold", "set": "one sailed", "answer": [hidden("mass")], "span": SPAN, "diagnosis": answer}
+        for answer in answers
+    ]
+    assert tables.rates(results, row.name, "hold", row.hit) == (2, 4)
