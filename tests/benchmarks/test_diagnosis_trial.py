@@ -21,8 +21,8 @@ ENOUGH = 20  # logs, before a rate is held to anything
 def results(root):
     """All results so far, with a further part of the plan done."""
     into = root / "results" / "trial.jsonl"
-    manoeuvres.sail(runs.KINDS, ["one"], into, jobs=JOBS, minutes=0.5 * MINUTES)
-    runs.run(runs.KINDS, list(runs.SETS), SEEDS, into, jobs=JOBS, minutes=MINUTES)
+    manoeuvres.sail(runs.KINDS, ["one"], into, jobs=JOBS, minutes=0.2 * MINUTES)
+    runs.run(runs.KINDS, list(runs.SETS), SEEDS, into, jobs=JOBS, minutes=0.8 * MINUTES)
     found = [result for result in runs.read_results(into) if result["seed"] in SEEDS]
     print(f"\n{tables.table(found)}")
     return found
