@@ -63,7 +63,7 @@ def test_fmi_3_variables_arrays_and_aliases(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("<fmiModelDescription fmiVersion='1.0'/>", "FMI version '1.0'. Versions 2.0 and 3.0 are read"),
+        ("<fmiModelDescription fmiVersion='0.9'/>", "FMI version '0.9'. Versions 1.0, 2.0 and 3.0 are read"),
         ("<x/>", "Its outermost element is <x>."),
         ("<fmiModelDescription", "Not well-formed XML"),
         ("<fmiModelDescription fmiVersion='2.0'/>", "The attribute 'modelName' is required but missing."),
@@ -102,3 +102,52 @@ def test_our_stand_in_is_what_fmpy_reads_too(shop):
             variable.causality,
             variable.unit,
         )
+
+
+FIRST = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="1.0" modelName="m" modelIdentifier="m" guid="{1}" numberOfContinuousStates="2"
+    numberOfEventIndicators="1">
+  <TypeDefinitions>
+    <Type name="Gear"><EnumerationType min="0"><Item name="back"/><Item name="park"/></EnumerationType></Type>
+    <Type name="Speed"><RealType unit="m/s" min="-3"/></Type>
+  </TypeDefinitions>
+  <ModelVariables>
+   <ScalarVariable name="u" valueReference="0" causality="input"><Real declaredType="Speed" start="1"/></ScalarVariable>
+   <ScalarVariable name="k" valueReference="1" variability="parameter"><Real start="2"/></ScalarVariable>
+   <ScalarVariable name="y" valueReference="2" causality="output"><Real/></ScalarVariable>
+   <ScalarVariable name="minus" valueReference="2" alias="negatedAlias"><Real/></ScalarVariable>
+   <ScalarVariable name="gear" valueReference="3" causality="output"><Enumeration declaredType="Gear"/></ScalarVariable>
+   <ScalarVariable name="guess" valueReference="4"><Real start="5" fixed="false"/></ScalarVariable>
+  </ModelVariables>MORE
+</fmiModelDescription>
+"""
+SLAVE = (
+    '<Implementation><CoSimulation_StandAlone><Capabilities canHandleVariableCommunicationStepSize="true"/>'
+    "</CoSimulation_StandAlone></Implementation>"
+)
+
+
+def test_fmi_1_is_described_in_the_words_of_fmi_2(tmp_path):
+    described = read_fmu(fmu(tmp_path / "first.fmu", FIRST.replace("MORE", SLAVE)))
+    traits = {
+        v.name: (v.causality, v.variability, v.initial, v.start, v.settable) for v in described.variables.values()
+    }
+    assert traits == {
+        "u": ("input", "continuous", None, 1.0, True),
+        "k": ("parameter", "fixed", "exact", 2.0, True),
+        "y": ("output", "continuous", None, None, False),
+        "minus": ("local", "continuous", None, None, False),
+        "gear": ("output", "discrete", None, None, False),
+        "guess": ("local", "continuous", "approx", 5.0, True),
+    }
+    assert described.variables["minus"].negated and not described.variables["y"].negated
+    assert described.variables["gear"].items == {"back": 0, "park": 1}
+    assert (described.variables["u"].unit, described.variables["u"].minimum) == ("m/s", -3.0)
+    assert (described.fmi_version, described.n_states, described.n_event_indicators) == ("1.0", 2, 1)
+    assert set(described.interfaces) == {"CoSimulation"} and described.model_identifier == "m"
+    assert described.capability("canHandleVariableCommunicationStepSize")
+
+
+def test_fmi_1_without_an_implementation_is_model_exchange(tmp_path):
+    described = read_fmu(fmu(tmp_path / "first.fmu", FIRST.replace("MORE", "")))
+    assert set(described.interfaces) == {"ModelExchange"} and described.identifier("ModelExchange") == "m"

@@ -1,6 +1,6 @@
 """FMUs by their modelDescription.xml; no binary is ever loaded here.
 
-Reference: FMI 2.0.4 and FMI 3.0.1, section 2 of each.
+Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """
 
 from collections.abc import Mapping
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.archive import entries, read_entry
+from shipcosim.ssp.fmu1 import interfaces_of, is_negated, items_of, traits_of
 from shipcosim.ssp.units import read_units
 from shipcosim.ssp.values import KINDS, read_value
 from shipcosim.ssp.xml import LARGEST_FILE, Document, Findings, is_true, local, parse, validate
@@ -42,6 +43,10 @@ class Variable:
         Items of an enumeration.
     dimensions : tuple of int
         Size of an array, by the start values of the structural parameters that set it; empty for a scalar.
+    sizes : tuple of (int or str)
+        The same as written: a number, or the name of the structural parameter.
+    negated : bool
+        FMI 1.0: it is the negative of the variable with the same value reference.
     """
 
     name: str
@@ -57,6 +62,8 @@ class Variable:
     description: str = ""
     items: Mapping = field(default_factory=dict)
     dimensions: tuple[int, ...] = ()
+    sizes: tuple = ()
+    negated: bool = False
 
     @property
     def kind(self):
@@ -79,7 +86,7 @@ class FmuDescription:
     path : Path
         Its archive on disk.
     fmi_version : str
-        ``"2.0"`` or ``"3.0"``.
+        ``"1.0"``, ``"2.0"`` or ``"3.0"``.
     model_name, token, description, generation_tool : str
         `token` is the GUID or, in FMI 3.0, the instantiation token.
     interfaces : mapping of str to mapping
@@ -92,6 +99,8 @@ class FmuDescription:
         Folders with binaries, e.g. ``"linux64"`` or ``"x86_64-linux"``.
     experiment : mapping of str to float
         ``startTime``, ``stopTime``, ``stepSize``, ``tolerance``, where given.
+    n_states, n_event_indicators : int
+        For model exchange in FMI 1.0 and 2.0; an FMU of FMI 3.0 is asked for them while it runs.
     """
 
     path: Path
@@ -105,6 +114,8 @@ class FmuDescription:
     units: Mapping = field(default_factory=dict)
     platforms: tuple[str, ...] = ()
     experiment: Mapping = field(default_factory=dict)
+    n_states: int = 0
+    n_event_indicators: int = 0
 
     def capability(self, name, interface="CoSimulation"):
         """Truth of a capability flag, e.g. ``"canGetAndSetFMUstate"``; false where it is not given."""
@@ -113,7 +124,11 @@ class FmuDescription:
     @property
     def model_identifier(self):
         """Name of the co-simulation binary without its ending; empty where there is none."""
-        return self.interfaces.get("CoSimulation", {}).get("modelIdentifier", "")
+        return self.identifier("CoSimulation")
+
+    def identifier(self, interface):
+        """Name of the binary of one form, without its ending; empty where it does not offer this form."""
+        return self.interfaces.get(interface, {}).get("modelIdentifier", "")
 
     def named(self, *causalities):
         """Names of the variables of these causalities."""
@@ -175,36 +190,43 @@ def _is_fmi(root, file, findings):
     if local(root) != "fmiModelDescription":
         findings.error(file, f"Its outermost element is <{local(root)}>.", "Right would be <fmiModelDescription>.")
         return False
-    if not version.startswith(("2.", "3.")):
-        findings.error(
-            file, f"FMI version '{version}'.", "Versions 2.0 and 3.0 are read: export the FMU in one of them."
-        )
+    if not version.startswith(("1.", "2.", "3.")):
+        found = f"FMI version '{version}'."
+        findings.error(file, found, "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them.")
         return False
     return True
 
 
 def _description(document, path, names, findings):
     root = document.root
-    variables = _read_variables(document, findings)
-    interfaces = {
-        local(part): dict(part.attrib)
-        for part in root
-        if local(part) in ("CoSimulation", "ModelExchange", "ScheduledExecution")
-    }
+    version = f"{root.get('fmiVersion')[:1]}.0"
     platforms = {parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"}
     return FmuDescription(
         path=path,
-        fmi_version="3.0" if root.get("fmiVersion").startswith("3") else "2.0",
+        fmi_version=version,
         model_name=root.get("modelName", ""),
         token=root.get("guid") or root.get("instantiationToken", ""),
-        variables=variables,
+        variables=_read_variables(document, findings),
         description=root.get("description", ""),
         generation_tool=root.get("generationTool", ""),
-        interfaces=interfaces,
+        interfaces=interfaces_of(root) if version == "1.0" else _interfaces(root),
         units=read_units(_parts(root, "UnitDefinitions")),
         platforms=tuple(sorted(platforms)),
         experiment=_experiment(root),
+        n_states=_n_states(root),
+        n_event_indicators=int(root.get("numberOfEventIndicators") or 0),
     )
+
+
+def _interfaces(root):
+    known = ("CoSimulation", "ModelExchange", "ScheduledExecution")
+    return {local(part): dict(part.attrib) for part in root if local(part) in known}
+
+
+def _n_states(root):
+    """Number of continuous states: given in FMI 1.0, that of the listed derivatives in FMI 2.0."""
+    derivatives = [part for group in _parts(root, "ModelStructure") if local(group) == "Derivatives" for part in group]
+    return int(root.get("numberOfContinuousStates") or 0) or len([part for part in derivatives if local(part)])
 
 
 def _parts(root, name):
@@ -217,17 +239,18 @@ def _experiment(root):
 
 
 def _read_variables(document, findings):
-    """Variables by name; FMI 2.0 puts the type into a child element, FMI 3.0 makes it the element itself."""
+    """Variables by name; FMI 1.0 and 2.0 put the type into a child element, FMI 3.0 makes it the element itself."""
     types = {part.get("name"): part for part in _parts(document.root, "TypeDefinitions")}
     elements = [part for part in _parts(document.root, "ModelVariables") if _type_element(part) is not None]
-    sizes = {part.get("valueReference"): part.get("start") for part in elements}
+    sizes = {part.get("valueReference"): (part.get("name"), part.get("start")) for part in elements}
+    is_first = document.root.get("fmiVersion", "").startswith("1.")
     variables = {}
     for element in elements:
         for name, description in _names(element):
             if name in variables:
                 findings.error(document.place(element, name), "A second variable has this name.", "Names must differ.")
             try:
-                variables[name] = _variable(element, name, description, types, sizes)
+                variables[name] = _variable(element, name, description, types, sizes, is_first)
             except ValueError as error:
                 findings.error(document.place(element, name), str(error))
     return variables
@@ -246,41 +269,56 @@ def _type_element(element):
     return next((part for part in element if local(part) in KINDS), None)
 
 
-def _variable(element, name, description, types, sizes):
+def _variable(element, name, description, types, sizes, is_first):
     typed = _type_element(element)
     declared = types.get(typed.get("declaredType"))
     kind = KINDS[local(typed)]
-    dimensions = tuple(_size(part, sizes) for part in element if local(part) == "Dimension")
+    written = [part for part in element if local(part) == "Dimension"]
+    dimensions = tuple(_size(part, sizes) for part in written)
+    traits = traits_of(element, typed, kind) if is_first else _traits(element, kind)
     return Variable(
         name=name,
         value_reference=int(element.get("valueReference")),
         type=local(typed),
-        causality=element.get("causality", "local"),
-        variability=element.get("variability", "continuous" if kind == "Real" else "discrete"),
-        initial=element.get("initial"),
+        **traits,
         unit=_attribute(typed, declared, "unit"),
         start=_start(typed, kind, dimensions),
         minimum=_bound(typed, declared, kind, "min"),
         maximum=_bound(typed, declared, kind, "max"),
         description=description,
-        items=_items(declared) if kind == "Enumeration" else {},
+        items=_items(declared, is_first) if kind == "Enumeration" else {},
         dimensions=dimensions,
+        sizes=tuple(_size_as_written(part, sizes) for part in written),
+        negated=is_first and is_negated(element),
     )
+
+
+def _traits(element, kind):
+    return {
+        "causality": element.get("causality", "local"),
+        "variability": element.get("variability", "continuous" if kind == "Real" else "discrete"),
+        "initial": element.get("initial"),
+    }
 
 
 def _size(dimension, sizes):
     """Size of one dimension of an array: given as such, or the start value of a structural parameter."""
-    text = dimension.get("start") or sizes.get(dimension.get("valueReference"))
+    text = dimension.get("start") or sizes.get(dimension.get("valueReference"), (None, None))[1]
     if text is None:
         raise ValueError("The size of a dimension is neither given nor that of a variable with a start value.")
     return read_value("Integer", text)
 
 
+def _size_as_written(dimension, sizes):
+    text = dimension.get("start")
+    return sizes[dimension.get("valueReference")][0] if text is None else read_value("Integer", text)
+
+
 def _declaration(declared):
-    """The element of a declared type that carries the attributes: FMI 2.0 nests it in a SimpleType."""
-    if declared is None or local(declared) != "SimpleType":
+    """The element of a declared type that carries the attributes, which FMI 1.0 and 2.0 nest in another one."""
+    if declared is None or local(declared) not in ("SimpleType", "Type"):
         return declared
-    return next((part for part in declared if local(part) in KINDS), None)
+    return next((part for part in declared if local(part).removesuffix("Type") in KINDS), None)
 
 
 def _attribute(typed, declared, name):
@@ -293,8 +331,10 @@ def _bound(typed, declared, kind, name):
     return None if text is None or kind not in ("Real", "Integer", "Enumeration") else float(text)
 
 
-def _items(declared):
+def _items(declared, is_first):
     declaration = _declaration(declared)
+    if is_first:
+        return items_of(declaration)
     found = [] if declaration is None else [part for part in declaration if local(part) == "Item"]
     return {item.get("name"): int(item.get("value")) for item in found}
 
