@@ -14,7 +14,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from shipcosim.cosim.outside import EngineError, Job, is_linear, refuse, run_on, sums
+from shipcosim.cosim.outside import EngineError, Job, complaints, is_linear, run_on, sums
 from shipcosim.cosim.plan import End, label
 from shipcosim.cosim.traces import no_traces
 from shipcosim.errors import Problem, ShipcosimError
@@ -32,7 +32,8 @@ def run(system: System, scenario: Scenario, *, inputs=None, progress=None, order
     check_installed()
     job = Job(system, scenario, inputs, order)
     added = sums(job.connections)
-    refuse("ecos", job, lambda connection: "it is added to others" if connection in added else None, _problems(job))
+    if problems := complaints("ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)):
+        raise ShipcosimError(problems)
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
     return run_on("ecos", Session, job, about, progress)
 

@@ -17,8 +17,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from shipcosim.cosim.outside import EngineError, Job, held, indices, is_linear, refuse, run_on, sums
-from shipcosim.cosim.plan import KINDS
+from shipcosim.cosim import outside
+from shipcosim.cosim.outside import EngineError, Job, held, indices, is_linear, run_on, sums
 from shipcosim.cosim.traces import no_traces
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
@@ -32,7 +32,8 @@ def run(system: System, scenario: Scenario, *, inputs=None, progress=None, order
     """Run a checked system on libcosim. See `shipcosim.cosim.simulate`."""
     check_installed()
     job = Job(system, scenario, inputs, order)
-    refuse("libcosim", job, _complaint_of(job), _problems(job))
+    if problems := complaints(job):
+        raise ShipcosimError(problems)
     return run_on("libcosim", Session, job, {"libcosimpy_version": version("libcosimpy")}, progress)
 
 
@@ -45,6 +46,11 @@ def check_installed() -> None:
     except (ImportError, OSError) as error:
         remedy = "Install it: pip install libcosimpy (Linux and Windows on x86-64)."
         raise ShipcosimError(Problem("libcosim", f"is not installed: {error}.", remedy)) from error
+
+
+def complaints(job: Job) -> list[Problem]:
+    """What libcosim cannot do of a job."""
+    return outside.complaints("libcosim", job, _complaint_of(job), _problems(job))
 
 
 def _problems(job):
@@ -158,7 +164,7 @@ class Session:
         self._check(self._execution.add_manipulator(self._events))
         if self._job.changes:
             file = self._folder / "events.json"
-            file.write_text(events_of(self._job), encoding="utf-8")
+            file.write_text(_events(self._job), encoding="utf-8")
             self._check(self._execution.load_scenario(self._events, str(file)))
 
     def _observe(self):
@@ -254,28 +260,45 @@ def _flag_file(folder, name):
     return next(f for f in folder.iterdir() if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name))
 
 
-def structure_of(job: Job) -> str:
-    """OspSystemStructure.xml of a job: no start values, no events."""
+def structure_of(job: Job, sources=None, values=None, end_time: float | None = None) -> str:
+    """OspSystemStructure.xml of a job, no events in it.
+
+    Parameters
+    ----------
+    job : Job
+        Without complaints.
+    sources : mapping of str to str, optional
+        Addresses of the FMUs by component; where they are if not given.
+    values : mapping of str to dict, optional
+        Initial values by component, as in Simulator; none if not given.
+    end_time : float, optional
+        [s]
+    """
+    step, sources, values = job.scenario.step_size, sources or {}, values or {}
     simulators = [
-        Simulator(name, component.fmu.path.resolve().as_uri(), job.scenario.step_size * job.plan.multiples[name])
+        Simulator(
+            name,
+            sources.get(name) or component.fmu.path.resolve().as_uri(),
+            step * job.plan.multiples[name],
+            values.get(name, {}),
+        )
         for name, component in job.system.components.items()
     ]
-    return structure_text(simulators, job.connections, job.scenario.step_size)
+    return structure_text(simulators, job.connections, step, end_time)
 
 
-def events_of(job: Job) -> str:
-    """Scenario of OSP, in JSON, with the changes that a job makes."""
-    events = []
-    for k, change, (component, variable), value in job.changes:
-        event = {
-            "time": float(seconds_text(job.scenario.step_size * k)),
-            "model": component,
-            "variable": variable,
-            "action": change,
-        }
-        if change != "reset":
-            event["value"] = int(value) if KINDS[job.plan.variable((component, variable)).kind] == "Integer" else value
-        events.append(event)
+def event_of(job: Job, k: int, change: str, end: tuple, value) -> dict:
+    """Event of OSP that makes a change of a job before its step of number k."""
+    time = float(seconds_text(job.scenario.step_size * k))
+    event = {"time": time, "model": end[0], "variable": end[1], "action": change}
+    if change != "reset":
+        event["value"] = {"Real": float, "Boolean": bool}.get(job.plan.variable(end).kind, int)(value)
+    return event
+
+
+def _events(job):
+    """Scenario of OSP, in JSON, with the changes that a job makes to what travels between components."""
+    events = [event_of(job, *change) for change in job.changes]
     after = 2.0 * job.times[-1]  # all changes are taken back at this time
     return json.dumps({"description": job.scenario.description, "events": events, "end": after})
 

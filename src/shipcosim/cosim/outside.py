@@ -235,8 +235,8 @@ def _advance(session, job, check_interrupt, progress):
         progress(job.n_steps, job.n_steps)
 
 
-def refuse(engine: str, job: Job, may_connect: Callable[[Connection], str | None], others=()) -> None:
-    """Raise what an engine cannot do, which it would otherwise ignore or die of.
+def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | None], others=()) -> list[Problem]:
+    """What an engine cannot do of a job, which it would otherwise ignore or die of.
 
     Parameters
     ----------
@@ -259,8 +259,7 @@ def refuse(engine: str, job: Job, may_connect: Callable[[Connection], str | None
         if found := _connection_complaint(job, connection) or may_connect(connection):
             place = f"{label(connection.source)} -> {label(connection.target)}"
             problems.append(Problem(place, f"{engine} cannot make this connection: {found}.", "The engine fmpy can."))
-    if problems:
-        raise ShipcosimError(problems)
+    return problems
 
 
 def _connection_complaint(job, connection):

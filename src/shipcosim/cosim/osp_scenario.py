@@ -1,0 +1,238 @@
+"""Scenario files of the Open Simulation Platform, JSON or YAML: read into events of ours, and written.
+
+They are read as libcosim (tried: libcosimpy 0.0.6) acts on them: times count from the start of the run and move up to
+the next step, and at the end, but not before the step after the last event, everything that was changed follows its
+source again.
+"""
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario import Event
+from shipcosim.series import write_file
+
+KEYS = ("description", "defaults", "events", "end")
+EVENT_KEYS = ("time", "model", "variable", "action", "value")
+DEFAULTS = ("model", "variable", "action")
+ACTIONS = ("override", "bias", "reset")
+LARGEST = 16 << 20  # bytes
+LARGEST_NUMBER = 1e300
+BOOLEANS = {"true": True, "false": False}
+
+
+class OspScenario(NamedTuple):
+    """What a file says.
+
+    Parameters
+    ----------
+    description : str
+        Its text.
+    events : list of Event
+        In the order of the file; what the end takes back is the last one.
+    remarks : list of Problem
+        What a user should know although it stops nothing.
+    """
+
+    description: str
+    events: list[Event]
+    remarks: list[Problem]
+
+
+def read_osp_scenario(
+    path: str | os.PathLike, step_size: float, stop_time: float, start_time: float = 0.0
+) -> OspScenario:
+    """Read a scenario file of OSP.
+
+    Parameters
+    ----------
+    path : path
+        .json, .yaml or .yml.
+    step_size, stop_time, start_time : float
+        Of the run; the events get times on its clock. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        With every problem of the file.
+    """
+    path, problems = Path(path), []
+    content = _content(path)
+    if not isinstance(content, dict):
+        remedy = "Right would be an object with a list 'events'."
+        raise ShipcosimError(Problem(str(path), "It holds no object at its top.", remedy))
+    remarks = list(_unknown(path, content, KEYS))
+    defaults = content.get("defaults") or {}
+    listed = content.get("events") or []
+    if not isinstance(defaults, dict) or not isinstance(listed, list):
+        raise ShipcosimError(Problem(str(path), "'defaults' has to be an object, 'events' a list."))
+    due = []
+    for number, given in enumerate(listed, start=1):
+        place = f"{path}, event {number}"
+        if not isinstance(given, dict):
+            problems.append(Problem(place, "An event has to be an object.", f"Its keys: {', '.join(EVENT_KEYS)}."))
+            continue
+        remarks += _unknown(place, given, EVENT_KEYS)
+        try:
+            due.append(_change(given, {name: v for name, v in defaults.items() if name in DEFAULTS}, step_size))
+        except ValueError as error:
+            problems.append(Problem(place, *error.args))
+    try:
+        end = None if content.get("end") is None else _seconds(content["end"], "end")
+    except ValueError as error:
+        problems.append(Problem(str(path), *error.args))
+    if problems:
+        raise ShipcosimError(problems)
+    remarks += _doubts(path, due, end, step_size)
+    due += _taken_back(due, end, step_size, stop_time - start_time)
+    events = [_event(start_time + count * step_size, *change) for count, *change in due]
+    return OspScenario(str(content.get("description") or ""), events, remarks)
+
+
+def scenario_text(description: str, events: list[dict], end: float, suffix: str = ".json") -> str:
+    """Text of a scenario file of OSP.
+
+    Parameters
+    ----------
+    description : str
+        One line.
+    events : list of dict
+        With time, model, variable, action and value, as in the file.
+    end : float
+        When everything that was changed follows its source again. libcosim needs it. [s]
+    suffix : str
+        ``".json"``, ``".yaml"`` or ``".yml"``.
+    """
+    content = {"description": description, "events": events, "end": end}
+    if suffix == ".json":
+        return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+    return yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
+
+
+def write_osp_scenario(path: str | os.PathLike, description: str, events: list[dict], end: float) -> None:
+    """Write a scenario file of OSP, complete or not at all; see `scenario_text`."""
+    write_file(path, scenario_text(description, events, end, Path(path).suffix.lower()).encode())
+
+
+def _content(path):
+    """What is in the file, as dicts and lists; every scalar of YAML is a text."""
+    try:
+        data = path.read_bytes()
+        text = data.decode("utf-8-sig")
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"Cannot be read: {error.strerror}.")) from None
+    except UnicodeDecodeError:
+        raise ShipcosimError(Problem(str(path), "It is not UTF-8 text.", "Save the file in UTF-8.")) from None
+    if len(data) > LARGEST:
+        raise ShipcosimError(Problem(str(path), "The file is too large.", f"At most {LARGEST >> 20} MiB are read."))
+    try:
+        if path.suffix.lower() == ".json":
+            return json.loads(text, object_pairs_hook=_once)
+        if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, Loader=yaml.BaseLoader)):
+            raise ValueError("it uses an alias (*name)")
+        return yaml.load(text, Loader=_Loader)
+    except (ValueError, RecursionError, yaml.YAMLError) as error:
+        kind = "JSON" if path.suffix.lower() == ".json" else "YAML"
+        found = f"It cannot be read as {kind}: {' '.join(str(error).split())}."
+        raise ShipcosimError(Problem(str(path), found, "Correct it there.")) from None
+
+
+def _once(pairs):
+    content = dict(pairs)
+    if len(content) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise ValueError(f"'{next(name for name in names if names.count(name) > 1)}' is there twice")
+    return content
+
+
+class _Loader(yaml.BaseLoader):
+    def construct_mapping(self, node, deep=False):
+        return _once(
+            [(self.construct_object(k, deep=True), self.construct_object(v, deep=True)) for k, v in node.value]
+        )
+
+
+def _unknown(place, given, known):
+    for name in given:
+        if name not in known:
+            found = f"'{name}' is not used."
+            yield Problem(str(place), found, f"Known: {', '.join(known)}.", "remark")
+
+
+def _change(given, defaults, step_size):
+    """(step, action, signal, value) of an event; raises ValueError with what was found and what would be right."""
+    if "time" not in given:
+        raise ValueError("It has no time.", "Give it in seconds from the start of the run.")
+    count = max(0, math.ceil(_seconds(given["time"], "time") / step_size - 1e-6))
+    for name in DEFAULTS:
+        if not isinstance(given.get(name, defaults.get(name)), str):
+            raise ValueError(f"It has no {name}, and the defaults have none.", f"Give it a {name}.")
+    model, variable, action = (given.get(name, defaults.get(name)) for name in DEFAULTS)
+    if action not in ACTIONS:
+        raise ValueError(f"The action '{action}' is not known.", suggestion(action, ACTIONS))
+    value = None if action == "reset" else _value(given.get("value"))
+    if action == "bias" and (isinstance(value, (str, bool))):
+        raise ValueError(f"A bias of {value!r}.", "A bias is a number.")
+    return count, action, f"{model}.{variable}", value
+
+
+def _seconds(given, name):
+    value = _value(given)
+    if isinstance(value, (bool, str)):
+        raise ValueError(f"{name} is {value!r}.", "Give it in seconds.")
+    return float(value)
+
+
+def _value(given):
+    """A scalar by its text, as libcosim's reader takes it, which does not look at quotes."""
+    if given is None or isinstance(given, (list, dict)):
+        raise ValueError("It has no value.", "A value is a number, true or false.")
+    value = _typed(given) if isinstance(given, str) else given
+    if not isinstance(value, (bool, str)) and not abs(value) < LARGEST_NUMBER:
+        raise ValueError(f"{given} is no usable number.", "Give a finite one.")
+    return value
+
+
+def _typed(text):
+    if text.lower() in BOOLEANS:
+        return BOOLEANS[text.lower()]
+    for convert in (int, float):
+        try:
+            return convert(text.replace("_", "x"))
+        except ValueError:
+            continue
+    return text
+
+
+def _event(time, action, signal, value):
+    return Event.model_validate({"time": time, action: [signal] if action == "reset" else {signal: value}})
+
+
+def _doubts(path, due, end, step_size):
+    """Remarks on what libcosim does in its own way."""
+    seen = set()
+    for count, _, signal, _ in due:
+        if (count, signal) in seen:
+            found = f"{signal} is changed twice in the step at {count * step_size:g} s; the later one in the file acts."
+            yield Problem(str(path), found, "libcosim takes them in any order: keep one of them.", "remark")
+        seen.add((count, signal))
+    if due and end is None:
+        last = (max(count for count, *_ in due) + 1) * step_size
+        found = f"It has no end: as in libcosim everything is taken back in the next step, at {last:g} s."
+        yield Problem(str(path), found, 'Give "end", in seconds.', "remark")
+
+
+def _taken_back(due, end, step_size, duration):
+    """Changes at the end, of everything that was changed; none where the run is over by then."""
+    if not due:
+        return
+    last = max(count for count, *_ in due) + 1
+    count = max(last, math.ceil((end or 0.0) / step_size - 1e-6))
+    if count * step_size < duration - 1e-9:
+        for signal in dict.fromkeys(signal for _, _, signal, _ in due):
+            yield count, "reset", signal, None
