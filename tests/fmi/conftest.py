@@ -9,7 +9,7 @@ from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.logging import addLoggerProxy
 
-from shipcosim.fmi import builder
+from shipcosim.fmi import builder, bundle
 
 LAG = '''
 import numpy as np
@@ -145,6 +145,20 @@ def load(tmp_path):
     for host in hosts:
         host.slave.freeInstance()
         shutil.rmtree(host.slave.unzipDirectory, ignore_errors=True)
+
+
+@pytest.fixture
+def own_shipcosim(tmp_path, monkeypatch):
+    """own_shipcosim(version, **models): builds from a copy of shipcosim that has these models."""
+
+    def replace(version, **models):
+        copy = tmp_path / version / "shipcosim"
+        shutil.copytree(bundle.SHIPCOSIM, copy, ignore=shutil.ignore_patterns("__pycache__"))
+        for name, text in models.items():
+            (copy / "models" / f"{name}.py").write_text(text)
+        monkeypatch.setattr(bundle, "SHIPCOSIM", copy)
+
+    return replace
 
 
 @pytest.fixture

@@ -1,5 +1,4 @@
 import os
-import shutil
 import sys
 import zipfile
 
@@ -7,7 +6,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.fmi import builder, bundle
+from shipcosim.fmi import builder
 
 NEWCOMER = '''
 from shipcosim.fmi import Fmu, Input, Output, Parameter
@@ -32,20 +31,6 @@ from .maths import exp
 def thrust_after(thrust, command, h, limit, time_constant):
     return thrust + (max(-limit, min(limit, command)) - thrust) * (1 - exp(-h / time_constant))
 """
-
-
-@pytest.fixture
-def own_shipcosim(tmp_path, monkeypatch):
-    """own_shipcosim(version, **models): builds from a copy of shipcosim that has these models."""
-
-    def replace(version, **models):
-        copy = tmp_path / version / "shipcosim"
-        shutil.copytree(bundle.SHIPCOSIM, copy, ignore=shutil.ignore_patterns("__pycache__"))
-        for name, text in models.items():
-            (copy / "models" / f"{name}.py").write_text(text)
-        monkeypatch.setattr(bundle, "SHIPCOSIM", copy)
-
-    return replace
 
 
 def test_the_newcomers_thruster_runs_as_written(own_shipcosim, build, load):

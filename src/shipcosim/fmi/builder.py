@@ -19,6 +19,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 from .bundle import bundle, entry_module
 from .description import model_description
+from .loader import SUFFIXES, loader_for
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 PAGE = """<!DOCTYPE html>
@@ -213,10 +214,13 @@ def _description(cls, script, files):
 
 
 def _binaries(identifier):
-    """pythonfmu's binaries under the name that FMI asks for, and their licence."""
+    """Our loader under the name that FMI asks for, beside it pythonfmu's binary, which it loads, and its licence."""
     folder = Path(importlib.util.find_spec("pythonfmu").origin).parent / "resources" / "binaries"
-    found = sorted(path for path in folder.glob("*/*") if path.suffix in (".so", ".dll", ".dylib"))
-    files = {f"binaries/{path.parent.name}/{identifier}{path.suffix}": path.read_bytes() for path in found}
+    files = {}
+    for platform, suffix in SUFFIXES.items():
+        files[f"binaries/{platform}/{identifier}{suffix}"] = loader_for(platform).read_bytes()
+        for path in (folder / platform).glob(f"*{suffix}"):
+            files[f"binaries/{platform}/{path.name}"] = path.read_bytes()
     licence = importlib.metadata.distribution("pythonfmu").read_text("licenses/LICENSE")
     return files | {"documentation/licenses/pythonfmu.txt": (licence or "MIT, NTNU-IHB/PythonFMU").encode()}
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from . import state
-from .binary import keep, let_go_at_exit
+from .binary import keep
 
 CODE = Path(__file__).parents[2]
 SHELL = str(Path(__file__).parent)
@@ -133,7 +133,6 @@ class Fmi2Slave:
         self._in_binary = bool(resources)
         if resources:
             Fmi2Slave.newest = weakref.ref(self)
-            let_go_at_exit(resources)
         self._initialising = self._initialised = self._stale = False
         self.__dict__.update(self._starts)
 
