@@ -5,7 +5,7 @@ Everything that takes time to import is imported inside the commands: help comes
 
 import sys
 
-from shipcosim.cli import export_fmu  # noqa: F401  adds its command
+from shipcosim.cli import export_fmu, export_osp  # noqa: F401  add their commands
 from shipcosim.cli.app import app
 
 

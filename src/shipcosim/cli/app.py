@@ -45,6 +45,10 @@ Store = Annotated[
     Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")
 ]
 From = Annotated[Path | None, typer.Option("--from", metavar="FILE", help="Continue from a state that --store left.")]
+OspEvents = Annotated[
+    Path | None,
+    typer.Option("--scenario", metavar="FILE", help="Scenario file of OSP (.json, .yaml): what happens in the run."),
+]
 
 
 def command(function, group=app):
@@ -152,7 +156,9 @@ def run(
 
 @command
 def simulate(
-    ssp: Annotated[str, typer.Argument(metavar="SSP", help="A .ssp, a .ssd, or a folder with a SystemStructure.ssd.")],
+    ssp: Annotated[
+        str, typer.Argument(metavar="SSP", help="A .ssp, a .ssd, an OspSystemStructure.xml, or a folder with one.")
+    ],
     stop_time: Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the system's.")] = None,
     step_size: Annotated[float | None, typer.Option("--step-size", help="[s] Default: the system's.")] = None,
     out: Out = None,
@@ -178,6 +184,7 @@ def simulate(
         typer.Option("--start-time", callback=_finite, help="[s] On the clock of the table. Default: the system's."),
     ] = None,
     settings: Settings = None,
+    events: OspEvents = None,
     until: Until = None,
     store: Store = None,
     resume: From = None,
@@ -194,6 +201,7 @@ def simulate(
         feeding,
         find_project,
         parsed_settings,
+        with_osp_events,
     )
     from shipcosim.ssp import read_system, with_values
 
@@ -206,6 +214,7 @@ def simulate(
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
     if start_time is None:
         start_time = system.experiment.start_time if resume is None else 0.0
+    happening = with_osp_events(happening, events, start_time)
     course = {"start_time": start_time, "until": until, "store": store, "resume": resume}
     _simulate_and_save(system, happening, out or default, engine, table, **course)
 
@@ -218,6 +227,7 @@ def compare(
     parameters: Annotated[
         list[Path] | None, typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins.")
     ] = None,
+    events: OspEvents = None,
     tolerance: Annotated[
         float, typer.Option("--tolerance", min=0.0, help="Largest difference between engines, of a signal's range.")
     ] = 1e-9,
@@ -229,7 +239,7 @@ def compare(
     from shipcosim.cli.console import progress_of
     from shipcosim.cosim.compare import compare as compare_engines
 
-    system, happening = matter_of(what, parameters or (), stop_time, step_size)
+    system, happening = matter_of(what, parameters or (), stop_time, step_size, events)
     with progress_of("Comparing") as progress:
         comparison = compare_engines(system, happening, tolerance=tolerance, progress=progress)
     print_comparison(comparison, as_json)
@@ -239,7 +249,9 @@ def compare(
 
 @command
 def check(
-    files: Annotated[list[str], typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .toml .csv .nc")],
+    files: Annotated[
+        list[str], typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .xml .toml .csv .nc")
+    ],
     channels: Annotated[
         Path | None, typer.Option("--channels", metavar="X.toml", help="Channel file of measured data.")
     ] = None,

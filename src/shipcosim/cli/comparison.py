@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from shipcosim.cli.console import WIDTH
-from shipcosim.cli.project import build_stale, experiment_of, find_project, find_scenario
+from shipcosim.cli.project import build_stale, experiment_of, find_project, find_scenario, with_osp_events
 from shipcosim.cosim.compare import OURS
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import check_times, read_scenario
@@ -35,7 +35,7 @@ def print_comparison(comparison, as_json):
     console.print(*_verdict(comparison))
 
 
-def matter_of(given, parameters=(), stop_time=None, step_size=None):
+def matter_of(given, parameters=(), stop_time=None, step_size=None, events=None):
     """System and scenario that an argument means.
 
     Parameters
@@ -46,6 +46,8 @@ def matter_of(given, parameters=(), stop_time=None, step_size=None):
         Parameter sets over those of the scenario or the system.
     stop_time, step_size : float, optional
         In place of those of the scenario or the system. [s]
+    events : path, optional
+        Scenario file of OSP: what happens besides.
 
     Raises
     ------
@@ -55,7 +57,7 @@ def matter_of(given, parameters=(), stop_time=None, step_size=None):
     if not given.endswith(".toml") and Path(given.partition("#")[0]).exists():
         project = find_project(Path(given.partition("#")[0]))
         system = read_system(given, parameters, fmus=[build_stale(project)] if project else ())
-        return system, experiment_of(system, stop_time, step_size)
+        return system, with_osp_events(experiment_of(system, stop_time, step_size), events)
     scenario = read_scenario(find_scenario(given))
     fmus = [build_stale(scenario.project)]
     system = read_system(scenario.system_path, [*scenario.parameter_paths, *parameters], fmus=fmus)
@@ -63,7 +65,7 @@ def matter_of(given, parameters=(), stop_time=None, step_size=None):
     scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
     if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
         raise ShipcosimError(problems)
-    return system, scenario
+    return system, with_osp_events(scenario, events)
 
 
 def _table(comparison):

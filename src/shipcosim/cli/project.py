@@ -6,7 +6,7 @@ from pathlib import Path
 import shipcosim
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
-SYSTEMS = (".ssp", ".ssd")
+SYSTEMS = (".ssp", ".ssd", ".xml")
 IN_EVERY_FMU = ("models", "fmi")  # folders of this package whose code travels in FMUs
 
 
@@ -167,6 +167,29 @@ def experiment_of(system, stop_time=None, step_size=None):
     if problems:
         raise ShipcosimError(problems)
     return scenario
+
+
+def with_osp_events(scenario, path, start_time=0.0):
+    """Scenario in which, besides, happens what a file of OSP says; the same without a path. Remarks are printed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its steps are the run's.
+    path : Path or None
+        Of the file.
+    start_time : float
+        Of the run. [s]
+    """
+    if path is None:
+        return scenario
+    from shipcosim.cli.console import print_problems
+    from shipcosim.cosim.osp_scenario import read_osp_scenario
+
+    read = read_osp_scenario(path, scenario.step_size, scenario.stop_time, start_time)
+    print_problems(read.remarks)
+    more = {"events": [*scenario.events, *read.events]}
+    return scenario.model_copy(update=more | ({"description": read.description} if read.description else {}))
 
 
 def feeding(path, system, interpolated, max_gap):

@@ -89,13 +89,10 @@ def _initial_values(job, name):
 
 def _values_problems(job):
     for name, component in job.system.components.items():
-        for variable, value in component.start.items():
+        for variable in component.start:
             kind = component.fmu.variables[variable].kind
             if kind not in TYPES:
                 yield Problem(f"{name}.{variable}", f"is set and is {kind}; OSP has no initial value of this type.")
-            elif kind == "String" and not value.isascii():
-                found = f"is set to {value!r}; libcosim reads texts beyond ASCII wrongly from a file."
-                yield Problem(f"{name}.{variable}", found, "Spell it in ASCII.")
 
 
 def _file_names(system):
@@ -119,6 +116,11 @@ def _remarks(system, scenario):
         if signals:
             found = f"OSP has no {what}: {', '.join(signals)} have no name there."
             yield Problem(system.name, found, remedy, "remark")
+    for name, component in system.components.items():
+        for variable, value in component.start.items():
+            if isinstance(value, str) and not value.isascii():
+                found = "is a text beyond ASCII, which libcosim reads in the encoding of the machine that it runs on."
+                yield Problem(f"{name}.{variable}", found, "Run it where that is UTF-8.", "remark")
     if scenario.expect:
         found = f"OSP has no expectations: {len(scenario.expect)} stay behind."
         yield Problem(scenario.name or "scenario", found, severity="remark")

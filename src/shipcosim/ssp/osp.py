@@ -363,8 +363,9 @@ class _Reader:
         return number or None
 
     def _number(self, element, text):
+        """Time in whole nanoseconds, in which OSP counts. [s]"""
         with reporting(self.document, element, self.findings, local(element)):
-            return read_value("Real", text or "")
+            return round(read_value("Real", text or "") * 1e9) / 1e9
         return None
 
 

@@ -1,0 +1,84 @@
+"""`shipcosim export osp` leaves what libcosim runs by itself, with the digits of our run."""
+
+import json
+
+import pytest
+from osp_execution import assert_same, rows_of
+
+from shipcosim.cosim import simulate
+from shipcosim.scenario import read_scenario
+from shipcosim.ssp import read_system
+
+
+@pytest.fixture(autouse=True)
+def libcosim():
+    """Skips where it is not installed."""
+    pytest.importorskip("libcosimpy.CosimExecution", reason="needs libcosim")
+
+
+HAPPENING = """description = "Twenty seconds of stationkeeping"
+system      = "gunnerus_dp"
+parameters  = "gunnerus-33m9"
+stop_time   = 20.0
+step_size   = 0.05
+
+[set]
+"environment.wind_speed" = 8.0
+
+[[events]]
+time     = 4.0
+override = { "reference.x_set" = 1.0, "tunnel.failed" = true }
+
+[[events]]
+time  = 6.0
+bias  = { "vessel.u" = 0.05, "controller.y_meas" = 0.5, "environment.wind_speed" = 1.5 }
+
+[[events]]
+time     = 9.0
+reset    = ["vessel.u", "controller.y_meas", "environment.wind_speed"]
+override = { "port.azimuth_cmd" = 0.3 }
+
+[[events]]
+time  = 14.0
+reset = ["port.azimuth_cmd", "tunnel.failed"]
+"""
+
+
+def test_the_dp_ship_runs_in_libcosim_from_its_own_files_with_our_digits(gunnerus, call):
+    (gunnerus / "scenarios" / "happening.toml").write_text(HAPPENING)
+    result = call("export", "osp", "happening", "--out", "out")
+    assert result.code == 0 and "out/OspSystemStructure.xml" in result.out and "out/scenario.json" in result.out
+    scenario = read_scenario("scenarios/happening.toml")
+    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=["build/fmus"])
+    table = simulate(system, scenario)
+    rows = rows_of("out", system, 400, "out/scenario.json")
+    assert len(rows) > 60
+    assert_same(table, rows)
+    quiet = simulate(system, scenario.model_copy(update={"events": []}))
+    assert abs(table["vessel.x"] - quiet["vessel.x"]).max() > 0.05
+
+
+def test_what_was_exported_runs_here_again_with_its_scenario(gunnerus, call):
+    assert call("export", "osp", "short", "--out", "out").code == 0
+    assert call("run", "short", "--out", "ours").code == 0
+    again = call("simulate", "out/OspSystemStructure.xml", "--scenario", "out/scenario.json", "--out", "again")
+    assert again.code == 0, again.err
+    assert (gunnerus / "ours" / "result.csv").read_text() == (gunnerus / "again" / "result.csv").read_text()
+
+
+def test_check_takes_an_exported_structure_and_names_its_faults(gunnerus, call):
+    assert call("export", "osp", "ssp/gunnerus_dp", "--stop-time", "1", "--step-size", "0.1", "--out", "out").code == 0
+    assert not (gunnerus / "out" / "scenario.json").exists()
+    assert call("check", "out").code == 0
+    file = gunnerus / "out" / "OspSystemStructure.xml"
+    file.write_text(file.read_text().replace('name="psi"', 'name="pso"'))
+    result = call("check", "out/OspSystemStructure.xml")
+    assert result.code == 1
+    assert "line " in result.out and "vessel has no variable 'pso'." in result.out
+
+
+def test_a_faulty_scenario_of_osp_leaves_nothing(gunnerus, call):
+    (gunnerus / "events.json").write_text(json.dumps({"events": [{"time": 1.0}]}))
+    result = call("simulate", "ssp/gunnerus_dp", "--stop-time", "1", "--step-size", "0.1", "--scenario", "events.json")
+    assert result.code == 2 and "event 1:\nIt has no model" in result.err
+    assert not (gunnerus / "results").exists()
