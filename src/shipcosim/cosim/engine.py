@@ -9,6 +9,7 @@ from shipcosim.cosim.carry import Handover, Text
 from shipcosim.cosim.events import actions_of, settings_over_time
 from shipcosim.cosim.exchange import Exchange
 from shipcosim.cosim.feed import digest, feed
+from shipcosim.cosim.form import form_of
 from shipcosim.cosim.instances import Instances
 from shipcosim.cosim.interrupt import held_back
 from shipcosim.cosim.master import Failure, Master
@@ -214,11 +215,18 @@ def _parts(plan, exchanges, instances, check_interrupt, base):
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
-        fixed_step = None if fmu.capability("canHandleVariableCommunicationStepSize") else base * plan.multiples[name]
-        part = parts[name] = Part(name, slave, plan.multiples[name], fixed_step)
+        part = parts[name] = Part(
+            name, slave, plan.multiples[name], _fixed_step(component, base * plan.multiples[name])
+        )
         for kind, exchange in exchanges.items():
             part.bind(kind, exchange, *plan.rows(kind, name))
     return parts
+
+
+def _fixed_step(component, step):
+    """The step, for an FMU that can take no other one."""
+    is_free = component.fmu.capability("canHandleVariableCommunicationStepSize")
+    return None if is_free or form_of(component) == "ModelExchange" else step
 
 
 def _texts(plan, parts):

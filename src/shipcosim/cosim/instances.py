@@ -2,7 +2,8 @@
 
 from contextlib import ExitStack
 
-from shipcosim.cosim.slave import Slave, Slave2, Slave3, SlaveError
+from shipcosim.cosim.slave import Slave, SlaveError
+from shipcosim.cosim.slaves import slave_of
 from shipcosim.cosim.unpacked import Unpacked
 from shipcosim.ssp import Component
 
@@ -37,8 +38,7 @@ class Instances:
                 return self._slaves[name]
             except SlaveError:
                 self._free(name)
-        kind = Slave3 if fmu.fmi_version.startswith("3") else Slave2
-        self._slaves[name] = kind(name, self._unpacked.folder(fmu.path), fmu.model_identifier, fmu.token)
+        self._slaves[name] = slave_of(component, self._unpacked.folder(fmu.path))
         return self._slaves[name]
 
     def _free(self, name):

@@ -19,6 +19,7 @@ import numpy as np
 from shipcosim.cosim.engine import Interrupted, RunError
 from shipcosim.cosim.events import bend, changes, settings_over_time
 from shipcosim.cosim.feed import digest, feed
+from shipcosim.cosim.form import form_of
 from shipcosim.cosim.interrupt import held_back
 from shipcosim.cosim.master import BETWEEN_REPORTS
 from shipcosim.cosim.plan import KINDS, label, make_plan
@@ -251,6 +252,9 @@ def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | 
     """
     problems = list(others)
     for component in job.system.components.values():
+        if form_of(component) == "ModelExchange":
+            found = f"runs as model exchange, which {engine} does not do."
+            problems.append(Problem(component.name, found, "The engine fmpy does."))
         if items := [v.name for v in component.fmu.variables.values() if v.kind == "Enumeration"]:
             problems.append(
                 Problem(component.name, f"has enumerations, which {engine} has not: {', '.join(items[:5])}.")

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 from math import lcm
 
 from shipcosim.cosim.exchange import Wire
+from shipcosim.cosim.form import form_of, lacks_form
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.ssp import Connection, System, Variable
@@ -141,9 +142,8 @@ def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time
 
 def _component_problems(component, base, duration):
     step = component.step_size
-    if "CoSimulation" not in component.fmu.interfaces or component.implementation == "ModelExchange":
-        found = f"{component.fmu.path.name} would have to run as model exchange."
-        yield Problem(component.name, found, "Only co-simulation is done.")
+    if form_of(component) is None:
+        yield Problem(component.name, *lacks_form(component))
     if step is not None and not whole_steps(step, base):
         yield Problem(component.name, f"its step of {step:g} s is no multiple of the step size {base:g} s.")
     elif step is not None and whole_steps(duration, step) is None:

@@ -1,6 +1,7 @@
 """Taking a snapshot of a running system, and putting one back."""
 
 from shipcosim.cosim.events import in_force_after, target_of
+from shipcosim.cosim.form import form_of
 from shipcosim.cosim.master import Failure
 from shipcosim.cosim.plan import label
 from shipcosim.cosim.result import hashes, start_values
@@ -17,6 +18,10 @@ def check_storable(system):
     problems = []
     for component in system.components.values():
         fmu = component.fmu
+        if form_of(component) == "ModelExchange":
+            found = "it runs as model exchange, and the solver's state cannot be stored."
+            problems.append(Problem(component.name, found, "Run the system without storing it."))
+            continue
         needed = ABILITIES[fmu.fmi_version.startswith("3")]
         lacking = [name for name in needed if fmu.interfaces["CoSimulation"].get(name) not in ("true", "1")]
         if lacking:

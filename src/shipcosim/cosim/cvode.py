@@ -1,0 +1,130 @@
+"""CVode, the solver of SUNDIALS that FMPy brings, one internal step at a time and never beyond a given time.
+
+BDF of variable order with Newton's method, a dense Jacobian from finite differences, and roots found in every step.
+"""
+
+from collections.abc import Callable
+from ctypes import byref, c_double, c_int, c_void_p
+
+import numpy as np
+from fmpy.sundials import cvode as lib
+from fmpy.sundials.cvode_ls import CVodeSetLinearSolver
+from fmpy.sundials.libraries import sundials_core, sundials_cvode
+from fmpy.sundials.nvector_serial import NV_DATA_S, N_VDestroy_Serial, N_VNew_Serial
+from fmpy.sundials.sundials_context import SUNContext_Create, SUNContext_PushErrHandler
+from fmpy.sundials.sundials_linearsolver import SUNLinearSolver
+from fmpy.sundials.sundials_matrix import SUNMatrix
+from fmpy.sundials.sundials_types import SUN_COMM_NULL, SUNContext, SUNErrHandlerFn
+from fmpy.sundials.sunlinsol_dense import SUNLinSol_Dense
+from fmpy.sundials.sunmatrix_dense import SUNDenseMatrix
+
+BDF, ONE_STEP, ROOT_RETURN = lib.CV_BDF, 2, lib.CV_ROOT_RETURN
+RECOVERABLE, UNRECOVERABLE = 1, -1
+
+_set_stop_time = sundials_cvode.CVodeSetStopTime
+_set_stop_time.argtypes, _set_stop_time.restype = [c_void_p, c_double], c_int
+_free_solver, _free_matrix = sundials_core.SUNLinSolFree, sundials_core.SUNMatDestroy
+_free_solver.argtypes, _free_matrix.argtypes = [SUNLinearSolver], [SUNMatrix]
+_free_context = sundials_core.SUNContext_Free
+
+
+class SolverError(Exception):
+    """CVode cannot go on; the text is what it says."""
+
+
+class Cvode:
+    """An initial value problem and its solution so far.
+
+    Parameters
+    ----------
+    n : int
+        Number of states; none becomes one that stays as it is.
+    derivatives : callable
+        Takes (time, pointer to states, pointer to their derivatives, which it fills).
+    n_roots : int
+        Number of root functions.
+    roots : callable
+        Takes (time, pointer to states, pointer to the functions' values, which it fills).
+    tolerance : float
+        Relative; the absolute one is this times a state's nominal value.
+
+    Notes
+    -----
+    What the functions raise ends the step and is raised by it; returning RECOVERABLE makes CVode try a smaller step.
+    """
+
+    def __init__(self, n: int, derivatives: Callable, n_roots: int, roots: Callable, tolerance: float):
+        self._n, self._derivatives, self._roots, self._tolerance = n, derivatives, roots, tolerance
+        self._error, self._said, self._memory = None, "", None
+        self._context = SUNContext()
+        SUNContext_Create(SUN_COMM_NULL, byref(self._context))
+        self._hear = SUNErrHandlerFn(self._listen)
+        sundials_core.SUNContext_ClearErrHandlers(self._context)  # the one that is there prints
+        SUNContext_PushErrHandler(self._context, self._hear, None)
+        self._x, self._absolute = (N_VNew_Serial(max(n, 1), self._context) for _ in range(2))
+        self.states = np.ctypeslib.as_array(NV_DATA_S(self._x), (max(n, 1),))
+        self._tolerances = np.ctypeslib.as_array(NV_DATA_S(self._absolute), (max(n, 1),))
+        self.states[:], self._tolerances[:] = 0.0, 1.0
+        self._matrix = SUNDenseMatrix(max(n, 1), max(n, 1), self._context)
+        self._solver = SUNLinSol_Dense(self._x, self._matrix, self._context)
+        self._rhs, self._root_function = lib.CVRhsFn(self._evaluate), lib.CVRootFn(self._evaluate_roots)
+        self._memory = lib.CVodeCreate(BDF, self._context)
+        self._check(lib.CVodeInit(self._memory, self._rhs, 0.0, self._x))
+        self._check(lib.CVodeSVtolerances(self._memory, tolerance, self._absolute))
+        self._check(CVodeSetLinearSolver(self._memory, self._solver, self._matrix))
+        self._check(lib.CVodeSetNoInactiveRootWarn(self._memory))
+        if n_roots:
+            self._check(lib.CVodeRootInit(self._memory, n_roots, self._root_function))
+
+    def start(self, time: float, nominals: np.ndarray) -> None:
+        """Begin anew at a time, from the present `states`, with their nominal values, (n,) array."""
+        if self._n:
+            self._tolerances[:] = self._tolerance * np.abs(nominals)
+            self._check(lib.CVodeSVtolerances(self._memory, self._tolerance, self._absolute))
+        self._check(lib.CVodeReInit(self._memory, time, self._x))
+
+    def step(self, stop: float) -> tuple[float, bool]:
+        """Make one internal step, at most to a time; time reached and whether a root function is zero there."""
+        reached, self._error = c_double(), None
+        self._check(_set_stop_time(self._memory, stop))
+        flag = lib.CVode(self._memory, stop, self._x, byref(reached), ONE_STEP)
+        self._check(flag)
+        return reached.value, flag == ROOT_RETURN
+
+    def close(self) -> None:
+        """Free the solver's memory."""
+        if self._memory is not None:
+            self.states = self._tolerances = None
+            lib.CVodeFree(byref(c_void_p(self._memory)))
+            self._memory = None
+            _free_solver(self._solver)
+            _free_matrix(self._matrix)
+            N_VDestroy_Serial(self._x)
+            N_VDestroy_Serial(self._absolute)
+            _free_context(byref(self._context))
+
+    def _evaluate(self, time, x, dx, _):
+        if self._n:
+            return self._guarded(self._derivatives, time, NV_DATA_S(x), NV_DATA_S(dx))
+        NV_DATA_S(dx)[0] = 0.0
+        return 0
+
+    def _evaluate_roots(self, time, x, values, _):
+        return self._guarded(self._roots, time, NV_DATA_S(x), values)
+
+    def _guarded(self, function, *arguments):
+        try:
+            return function(*arguments) or 0
+        except Exception as error:  # one that left a callback would be printed and forgotten
+            self._error = error
+            return UNRECOVERABLE
+
+    def _check(self, flag):
+        if self._error is not None:
+            error, self._error = self._error, None
+            raise error
+        if flag < 0:
+            raise SolverError(f"CVode: {self._said or f'code {flag}'}")
+
+    def _listen(self, line, function, file, message, code, data, context):
+        self._said = (message or b"").decode(errors="replace")
