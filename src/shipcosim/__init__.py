@@ -94,8 +94,12 @@ def simulate(
     if system is None:
         system = scenario.system_path if scenario is not None else _missing("system", "Give a system or a scenario.")
     if not isinstance(system, ssp.System):
-        structure = system if isinstance(system, ssp.SystemStructure) else ssp.read(system)
-        system = structure.checked(() if scenario is None else scenario.parameter_paths)
+        parameters = () if scenario is None else scenario.parameter_paths
+        if not isinstance(system, ssp.SystemStructure) and ssp.osp_file(system):
+            system = ssp.read_system(system, parameters)
+        else:
+            structure = system if isinstance(system, ssp.SystemStructure) else ssp.read(system)
+            system = structure.checked(parameters)
     if start_time is None:
         start_time = system.experiment.start_time if scenario is None and resume is None else 0.0
     keys = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}

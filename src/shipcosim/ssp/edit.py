@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
-from shipcosim.errors import ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp.annotations import step_sizes
 from shipcosim.ssp.check import problems_of
 from shipcosim.ssp.declare import declare, declare_variable
@@ -18,6 +18,7 @@ from shipcosim.ssp.experiment import write_step_size
 from shipcosim.ssp.fmu import read_fmu
 from shipcosim.ssp.markup import add, add_osp, drop, ensure
 from shipcosim.ssp.names import attached, best_pair, connections, find_connector, find_element, split_owner, walk
+from shipcosim.ssp.osp import osp_file
 from shipcosim.ssp.package import SYSTEM_STRUCTURE, Package, open_package
 from shipcosim.ssp.parameters import has_root
 from shipcosim.ssp.start_values import StartValues
@@ -53,6 +54,9 @@ def read(path, *, fmus=None):
         If there is no such file, or no system structure in it.
     """
     findings = Findings()
+    if osp_file(path):
+        found = "An OspSystemStructure.xml cannot be edited."
+        raise ShipcosimError(Problem(str(path), found, "`simulate` and `read_system` take it."))
     package = open_package(path, findings, built_fmus(path) if fmus is None else fmus)
     document = None if package is None else package.document(findings)
     if document is not None and has_root(document, "ssd:SystemStructureDescription", findings):
