@@ -36,8 +36,10 @@ FORMS = {
     "ssp, 1.0": ("ssp", "1.0", str),
     "ssd, 2.0": ("ssd", "2.0", str),
     "ssp, 2.0, other prefixes": ("ssp", "2.0", lambda text: with_other_prefixes(text)),
+    "ssp, 1.0, other prefixes": ("ssp", "1.0", lambda text: with_other_prefixes(text)),
+    "ssp, 2.0": ("ssp", "2.0", str),
 }
-"""Ways to write down the same system: packing, version of the standard, prefixes."""
+"""Ways to write down the same system: packing, version of the standard, prefixes. Every case is run in the first four."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +111,7 @@ class Case:
     @property
     def forms(self):
         """Names of the forms that it can have."""
-        return [name for name, (_, version, _) in FORMS.items() if version in self.versions]
+        return [name for name, (_, version, _) in list(FORMS.items())[:4] if version in self.versions]
 
     def times(self):
         """Times of the rows. [s]"""

@@ -6,9 +6,9 @@ from shipcosim.fmi import Fmu, Input, Output, Parameter
 class Integrator(Fmu):
     """Integrates its input."""
 
-    u = Input("m/s", "rate")
+    u = Input("m", "rate, of a second")
     y = Output("m", "integral")
-    initial = Parameter(0.0, "m", "value at the start")
+    initial = Parameter(1.0, "m", "value at the start")
 
     def start(self):
         self.y = self.initial

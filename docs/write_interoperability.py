@@ -1,0 +1,48 @@
+"""Writes the table of docs/interoperability.md from what the conformance suite finds in each engine.
+
+Run it from the project's root where all engines are installed: .venv/bin/python docs/write_interoperability.py
+"""
+
+import re
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "tests"))
+
+from conformance.recording import ENGINES, record, rows  # noqa: E402
+
+PAGE = HERE / "interoperability.md"
+MARK = re.compile(r"(<!-- recorded -->\n).*?(<!-- end -->)", re.S)
+
+
+def table(found):
+    """Markdown of verdicts by engine and row."""
+    versions = {"libcosim": "libcosimpy", "ecos": "ecospy", "FMPy": "fmpy"}
+    heads = [f"{engine} ({version(versions[engine])})" if engine in versions else engine for engine in ENGINES]
+    lines = [f"| feature | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
+    last = ""
+    for name, (group, feature, _) in sorted(rows().items(), key=lambda row: row[1][0]):
+        if group != last:
+            lines.append(f"| **{group}** |" + " |" * len(heads))
+            last = group
+        lines.append(f"| {feature} | " + " | ".join(found[engine][name][0] for engine in ENGINES) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def recorded(text):
+    """Verdicts that the page states, by engine and feature."""
+    body = [line for line in MARK.search(text)[0].splitlines() if line.startswith("| ")][1:]
+    cells = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in body if not line.startswith("| **")]
+    return {engine: {row[0]: row[1 + i] for row in cells} for i, engine in enumerate(ENGINES)}
+
+
+def main():
+    """Run everything and write the table."""
+    text = PAGE.read_text(encoding="utf-8")
+    PAGE.write_text(MARK.sub(rf"\1{table({engine: record(engine) for engine in ENGINES})}\2", text), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
