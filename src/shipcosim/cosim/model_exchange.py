@@ -18,8 +18,8 @@ from shipcosim.cosim.slave import DISCARD, OK, Slave2, Slave3, SlaveError
 from shipcosim.ssp import FmuDescription
 from shipcosim.ssp.xml import is_true
 
-TOLERANCE = 1e-6
-"""Relative tolerance of the solver where the FMU's default experiment has none."""
+TOLERANCE = 1e-8
+"""Relative tolerance of the solver in each of its steps, where the default experiment of the FMU has none."""
 MOST_UPDATES = 1000
 MOST_EVENTS = 10_000
 """Largest number of updates in one event, and of events in one step of the master."""

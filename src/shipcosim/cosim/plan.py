@@ -119,7 +119,8 @@ def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time
         If the master cannot run this: arrays, no co-simulation, steps that do not fit.
     """
     base, duration = scenario.step_size, scenario.stop_time - start_time
-    if problems := [p for c in system.components.values() for p in _component_problems(c, base, duration)]:
+    problems = [p for c in system.components.values() for p in _component_problems(c, base, duration)]
+    if problems := problems + list(_handover_problems(system)):
         raise ShipcosimError(problems)
     touched = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
     touched |= {system.split(signal) for signal in changed}
@@ -151,6 +152,14 @@ def _component_problems(component, base, duration):
     arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
     if arrays:
         yield Problem(component.name, f"has arrays, which the master does not handle: {', '.join(arrays[:5])}.")
+
+
+def _handover_problems(system):
+    for connection in system.connections:
+        name = connection.target[0]
+        if connection.initial and name is not None and system.components[name].fmu.fmi_version == "1.0":
+            found = "its value comes from a connection, but FMI 1.0 has no initialisation mode to set it in."
+            yield Problem(label(connection.target), found, "Set it as a start value.")
 
 
 def _is_fed(source, plan, fed):
