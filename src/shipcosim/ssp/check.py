@@ -6,6 +6,7 @@ from pathlib import Path
 
 from shipcosim.errors import Problem
 from shipcosim.ssp.fmu import describe_fmu
+from shipcosim.ssp.loops import loop_problems
 from shipcosim.ssp.parameters import read_dictionary, read_mapping, read_parameter_set
 from shipcosim.ssp.reading import assemble
 from shipcosim.ssp.xml import Findings, read_document
@@ -34,7 +35,8 @@ def problems_of(system, findings):
     described = {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
     for fmu in described.values():
         _remark_platform(fmu, fmu.path.name, findings)
-    return list(dict.fromkeys(findings.problems))
+    loops = [] if system is None or findings.errors else loop_problems(system)
+    return list(dict.fromkeys([*findings.problems, *loops]))
 
 
 def check_file(path, *, fmus=()):

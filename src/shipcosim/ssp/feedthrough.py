@@ -1,0 +1,58 @@
+"""Which outputs of an FMU follow which inputs at once, as its ModelStructure says.
+
+Reference: FMI 1.0 co-simulation, section 3.3 (DirectDependency); FMI 2.0.4, section 2.2.8; FMI 3.0.1, section 2.4.8.
+"""
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp.archive import read_entry
+from shipcosim.ssp.xml import LARGEST_FILE, Findings, local, parse
+
+
+def feedthrough(fmu):
+    """Inputs that outputs follow at once.
+
+    Parameters
+    ----------
+    fmu : FmuDescription
+        Whose file is read again.
+
+    Returns
+    -------
+    dict of str to frozenset of str
+        By output. One that is not in it may follow every input: the FMU does not say.
+    """
+    try:
+        data = read_entry(fmu.path, "modelDescription.xml", LARGEST_FILE)
+    except ShipcosimError:
+        data = None
+    root = None if data is None else parse(data, fmu.path.name, Findings(), utf8=False)
+    if root is None:
+        return {}
+    variables = [part for group in root if local(group) == "ModelVariables" for part in group if local(part)]
+    if root.get("fmiVersion", "").startswith("1"):
+        return _direct(variables)
+    structure = [part for group in root if local(group) == "ModelStructure" for part in group if local(part)]
+    if root.get("fmiVersion", "").startswith("3"):
+        names = {part.get("valueReference"): part.get("name") for part in variables}
+        return _stated([part for part in structure if local(part) == "Output"], "valueReference", names)
+    names = {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
+    listed = [part for group in structure if local(group) == "Outputs" for part in group if local(part)]
+    return _stated(listed, "index", names)
+
+
+def _stated(outputs, key, names):
+    """Outputs that have an attribute `dependencies`, which can be empty."""
+    return {
+        names[part.get(key)]: frozenset(names[one] for one in part.get("dependencies").split() if one in names)
+        for part in outputs
+        if part.get("dependencies") is not None and part.get(key) in names
+    }
+
+
+def _direct(variables):
+    """Outputs of FMI 1.0 that have a list of their direct dependencies."""
+    found = {}
+    for variable in variables:
+        for part in (part for part in variable if local(part) == "DirectDependency"):
+            found[variable.get("name")] = frozenset((name.text or "").strip() for name in part if local(name))
+    return found
