@@ -47,6 +47,8 @@ class Variable:
         The same as written: a number, or the name of the structural parameter.
     negated : bool
         FMI 1.0: it is the negative of the variable with the same value reference.
+    whole, place : Variable or None, int
+        Of an array's element: the array, and which of its values this one is.
     """
 
     name: str
@@ -64,6 +66,8 @@ class Variable:
     dimensions: tuple[int, ...] = ()
     sizes: tuple = ()
     negated: bool = False
+    whole: object = None
+    place: int = 0
 
     @property
     def kind(self):
@@ -101,6 +105,8 @@ class FmuDescription:
         ``startTime``, ``stopTime``, ``stepSize``, ``tolerance``, where given.
     n_states, n_event_indicators : int
         For model exchange in FMI 1.0 and 2.0; an FMU of FMI 3.0 is asked for them while it runs.
+    arrays : mapping of str to tuple of int
+        Dimensions of the arrays whose elements stand in `variables` in their place.
     """
 
     path: Path
@@ -116,6 +122,7 @@ class FmuDescription:
     experiment: Mapping = field(default_factory=dict)
     n_states: int = 0
     n_event_indicators: int = 0
+    arrays: Mapping = field(default_factory=dict)
 
     def capability(self, name, interface="CoSimulation"):
         """Truth of a capability flag, e.g. ``"canGetAndSetFMUstate"``; false where it is not given."""

@@ -60,6 +60,8 @@ class ParameterValue:
         Where it stands, for messages.
     tolerance : float or None
         Standard deviation within which the value counts as known, in `unit`; kept in an annotation of ours.
+    dimensions : tuple of int
+        Of an array, whose `value` is a tuple, the last index fastest; empty for a scalar.
     """
 
     name: str
@@ -69,6 +71,7 @@ class ParameterValue:
     description: str = ""
     place: str = ""
     tolerance: float | None = None
+    dimensions: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -153,14 +156,27 @@ def _parameter(document, element, units, findings):
         return None
     kind = KINDS[local(typed)]
     try:
-        value = read_value(kind, typed.get("value", ""))
+        sizes = tuple(read_value("Integer", part.get("size", "")) for part in element if local(part) == "Dimension")
+        value = _values(kind, typed) if sizes else read_value(kind, _text(typed))
         tolerance = tolerance_of(element)
     except ValueError as error:
         findings.error(document.place(element, name), str(error), "Correct it, or leave the parameter to its default.")
         return None
     unit = find_unit(typed.get("unit"), units)
     description = element.get("description", "")
-    return ParameterValue(name, kind, value, unit, description, document.place(element, name), tolerance)
+    return ParameterValue(name, kind, value, unit, description, document.place(element, name), tolerance, sizes)
+
+
+def _values(kind, typed):
+    """Values of an array: a list in one attribute, or elements of their own for what may hold blanks."""
+    listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
+    return tuple(read_value(kind, text) for text in listed or typed.get("value", "").split())
+
+
+def _text(typed):
+    """Text of a single value, which may stand in an element of its own in SSP 2.0."""
+    listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
+    return listed[0] if len(listed) == 1 and typed.get("value") is None else typed.get("value", "")
 
 
 def tolerance_of(element):

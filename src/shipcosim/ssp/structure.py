@@ -53,6 +53,8 @@ class Connector:
         One line.
     place : str
         Where it stands, for messages.
+    dimensions : tuple of (int or None)
+        Sizes of an array; None where the SSD leaves one open.
     """
 
     name: str
@@ -62,11 +64,15 @@ class Connector:
     items: Mapping = field(default_factory=dict)
     description: str = ""
     place: str = ""
+    dimensions: tuple = ()
 
 
 @dataclass(frozen=True)
 class Link:
-    """A Connection element: it joins two connectors; which way values go follows from their kinds."""
+    """A Connection element: it joins two connectors; which way values go follows from their kinds.
+
+    Indices name a single element of an array, counted from 1.
+    """
 
     start_element: str | None
     start_connector: str
@@ -75,6 +81,8 @@ class Link:
     transformation: Transformation | None = None
     suppress_unit_conversion: bool = False
     place: str = ""
+    start_indices: tuple[int, ...] = ()
+    end_indices: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -274,7 +282,22 @@ class _Reader:
             items=self.items(typed, place),
             description=element.get("description", ""),
             place=place,
+            dimensions=tuple(self.size(part) for part in element if local(part) == "Dimension"),
         )
+
+    def size(self, element):
+        """Size of a dimension, or None where another connector or nothing gives it."""
+        return self.whole(element, "size", element.get("size"))
+
+    def indices(self, element, name):
+        return tuple(self.whole(element, name, text) or 0 for text in (element.get(name) or "").split())
+
+    def whole(self, element, name, text):
+        number = None
+        if text is not None:
+            with reporting(self.document, element, self.findings, name):
+                number = read_value("Integer", text)
+        return number
 
     def items(self, typed, place):
         if typed is None or local(typed) != "Enumeration":
@@ -304,6 +327,8 @@ class _Reader:
             transformation=read_transformation(self.document, element, self.findings),
             suppress_unit_conversion=is_true(element.get("suppressUnitConversion")),
             place=self.place(element, shown),
+            start_indices=self.indices(element, "startIndices"),
+            end_indices=self.indices(element, "endIndices"),
         )
 
     def bindings(self, element):

@@ -7,6 +7,7 @@ become ports with wires between them, so that what follows knows no hierarchy.
 from dataclasses import dataclass, replace
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ssp.arrays import element_connectors, element_links, element_values, without_arrays
 from shipcosim.ssp.fmu import FmuDescription, describe_fmu
 from shipcosim.ssp.links import wire_of
 from shipcosim.ssp.package import open_package, read_in_component
@@ -46,6 +47,7 @@ class Tree:
         self.ports: dict[Key, Port] = {}
         self.wires: list[Wire] = []
         self.settings: list[Setting] = []
+        self.arrays: dict[tuple[str, ...], dict] = {}
         self.references: dict[Key, Key] = {}
         self.packages = []
         self._fmus = {}
@@ -62,7 +64,8 @@ class Tree:
         if len(self.systems) > MOST_SYSTEMS:
             raise ShipcosimError(Problem(element.place, f"There are more than {MOST_SYSTEMS} systems."))
         place = replace(place, dictionaries=(self._dictionaries(element, path, place), *place.dictionaries))
-        for connector in element.connectors:
+        connectors, self.arrays[path] = element_connectors(element.connectors, {}, self.findings)
+        for connector in connectors:
             fields = (connector.kind, connector.type, "system", connector.unit, connector.items)
             self.ports[Key(path, connector.name)] = Port(
                 *fields, description=connector.description, place=connector.place
@@ -76,11 +79,19 @@ class Tree:
             else:
                 self._component(part, inner, place)
         for link in element.links:
-            wire = wire_of(link, element, path, self)
-            self.wires += [] if wire is None else [wire]
+            self._link(link, element, path)
         self._bindings(element.bindings, path, place)
         for bindings, outer in more_bindings:
             self._bindings(bindings, path, outer)
+
+    def _link(self, link, element, path):
+        """Wires of a connection, one for each element where it joins arrays."""
+        ends = ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
+        owners = [self.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in ends]
+        dimensions = (known.get(name, ()) for known, (_, name) in zip(owners, ends, strict=True))
+        for single in element_links(link, *dimensions, self.findings):
+            wire = wire_of(single, element, path, self)
+            self.wires += [] if wire is None else [wire]
 
     def _component(self, element, path, place):
         if element.type in (SSD, SSP):
@@ -132,7 +143,10 @@ class Tree:
         file = place.package.locate(element.source, place.folder, element.place, self.findings)
         fmu = None if file is None else self._described(file, place.package)
         self.components[path] = element, fmu
-        for connector in element.connectors:
+        self.arrays[path] = {} if fmu is None else dict(fmu.arrays)
+        connectors, declared = element_connectors(element.connectors, self.arrays[path], self.findings)
+        self.arrays[path] |= declared
+        for connector in connectors:
             self.ports[Key(path, connector.name)] = self._component_port(connector, element, fmu)
         if fmu is not None:
             self._check_implementation(element, fmu)
@@ -148,6 +162,7 @@ class Tree:
         if key not in self.described:
             before = len(self.findings.problems)
             fmu = describe_fmu(file, self.findings, package.show(file))
+            fmu = fmu and without_arrays(fmu, package.show(file), self.findings)
             if len(self.findings.problems) > before:
                 return fmu  # not kept: the next tree has to hear of its faults too
             self.described[key] = fmu
@@ -155,9 +170,10 @@ class Tree:
 
     def _check_implementation(self, element, fmu):
         wanted = element.implementation
-        if wanted != "any" and wanted not in fmu.interfaces:
+        forms = ("CoSimulation", "ModelExchange") if wanted == "any" else (wanted,)
+        if not any(form in fmu.interfaces for form in forms):
             remedy = f"It offers {', '.join(fmu.interfaces)}."
-            self.findings.error(element.place, f"{fmu.path.name} offers no {wanted}.", remedy)
+            self.findings.error(element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy)
 
     def _component_port(self, connector, element, fmu):
         """Port of a component's connector, checked against the FMU."""
@@ -261,9 +277,14 @@ class Tree:
         self.settings += self._settings(values, path, "", None, False)
 
     def _settings(self, values, path, prefix, mapping, near):
+        named = [(prefix + value.name, value) for value in values.values]
         if mapping is None:
-            return [Setting(path, prefix + value.name, value, near=near) for value in values.values]
-        by_name = {prefix + value.name: value for value in values.values}
+            return [
+                Setting(path, prefix + one.name, one, near=near)
+                for _, value in named
+                for one in element_values(value, self.findings)
+            ]
+        by_name = dict(named)
         settings = []
         for entry in mapping:
             if entry.source not in by_name:
@@ -271,7 +292,10 @@ class Tree:
                 self.findings.error(entry.place, found, has(entry.source, by_name))
                 continue
             how = (entry.transformation, entry.suppress_unit_conversion)
-            settings.append(Setting(path, entry.target, by_name[entry.source], *how, near=True))
+            renamed = replace(by_name[entry.source], name=entry.target)
+            settings += [
+                Setting(path, one.name, one, *how, near=True) for one in element_values(renamed, self.findings)
+            ]
         return settings
 
 
