@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.cosim.slave import Slave
+from shipcosim.cosim.slave import BUFFER_TYPES, Slave
 from shipcosim.ssp import Variable
 
 
 @dataclass
 class Text:
-    """A connection between String variables, made at every multiple of `period` base steps."""
+    """A connection between String or Binary variables, made at every multiple of `period` base steps."""
 
     source: Slave
     output: Variable
@@ -18,7 +18,7 @@ class Text:
     input: Variable
     mapping: dict | None = None
     period: int = 1
-    last: str | None = None
+    last: str | bytes | None = None
 
     def transfer(self, count: int) -> None:
         """Pass the text on where it is due and has changed."""
@@ -37,7 +37,7 @@ class Handover:
     Parameters
     ----------
     source, target : (Slave, Variable, kind)
-        Kind is Real, Integer or Boolean.
+        Kind is a key of BUFFER_TYPES.
     factor, offset, mapping
         As in Connection.
     """
@@ -45,8 +45,8 @@ class Handover:
     def __init__(self, source, target, factor=1.0, offset=0.0, mapping=None):
         (slave, variable, kind), (self._target, parameter, target_kind) = source, target
         self._source, self._how = slave, (factor, offset, mapping or {})
-        self._from = np.zeros(1, dtype=np.float64 if kind == "Real" else np.int32)
-        self._to = np.zeros(1, dtype=np.float64 if target_kind == "Real" else np.int32)
+        self._from = np.zeros(1, dtype=BUFFER_TYPES[kind])
+        self._to = np.zeros(1, dtype=BUFFER_TYPES[target_kind])
         self._get = slave.getter(kind, [variable], self._from)
         self._set = self._target.setter(target_kind, [parameter], self._to)
         self._done = False

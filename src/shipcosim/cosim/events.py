@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from shipcosim.cosim.exchange import Changes
-from shipcosim.cosim.plan import KINDS, End, Plan
+from shipcosim.cosim.plan import End, Plan
 from shipcosim.cosim.slave import BUFFER_TYPES
 from shipcosim.cosim.span import Span
 from shipcosim.scenario import Scenario, whole_steps
@@ -29,7 +29,7 @@ def actions_of(scenario: Scenario, plan: Plan, exchanges: dict, span: Span) -> d
 
 def target_of(end: End, plan: Plan, exchanges: dict) -> tuple[Changes, int]:
     """Where changes of a component's variable are kept, and its row there."""
-    kind = KINDS[plan.variable(end).kind]
+    kind = plan.kind(plan.variable(end))
     layout, exchange = plan.layouts[kind], exchanges[kind]
     if end in layout.inputs:
         return exchange.input_changes, layout.inputs.index(end)

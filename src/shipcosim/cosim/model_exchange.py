@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.cosim.slave import DISCARD, OK, Slave2, Slave3, SlaveError
+from shipcosim.cosim.slave import DISCARD, OK, Slave2, SlaveError
+from shipcosim.cosim.slave_fmi3 import Slave3
 from shipcosim.ssp import FmuDescription
 from shipcosim.ssp.xml import is_true
 

@@ -22,7 +22,7 @@ from shipcosim.cosim.feed import digest, feed
 from shipcosim.cosim.form import form_of
 from shipcosim.cosim.interrupt import held_back
 from shipcosim.cosim.master import BETWEEN_REPORTS
-from shipcosim.cosim.plan import KINDS, label, make_plan
+from shipcosim.cosim.plan import WIDE, label, make_plan
 from shipcosim.cosim.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.slave import BUFFER_TYPES
 from shipcosim.cosim.span import span_of
@@ -89,7 +89,7 @@ class Job:
         self.plan = make_plan(system, scenario, self._fed)
         self.connections = [c for c in system.connections if c.source[0] is not None and c.target[0] is not None]
         self._all_changes = list(changes(scenario, self.plan, self._span))
-        self._settings = {kind: self._settings_of(kind) for kind in KINDS.values()}
+        self._settings = {kind: self._settings_of(kind) for kind in self.plan.layouts}
         self.driven = dict(self._driven())
         last = {(k, end): (k, change, end, value) for k, change, end, value in changes(scenario, self.plan, self._span)}
         self.changes = [c for (_, end), c in last.items() if end[0] is not None and end not in self.driven]
@@ -255,6 +255,9 @@ def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | 
         if form_of(component) == "ModelExchange":
             found = f"runs as model exchange, which {engine} does not do."
             problems.append(Problem(component.name, found, "The engine fmpy does."))
+        if wide := [v.name for v in component.fmu.variables.values() if v.type in WIDE]:
+            found = f"has Integers of more than 32 bits, which {engine} has not: {', '.join(wide[:5])}."
+            problems.append(Problem(component.name, found))
         if items := [v.name for v in component.fmu.variables.values() if v.kind == "Enumeration"]:
             problems.append(
                 Problem(component.name, f"has enumerations, which {engine} has not: {', '.join(items[:5])}.")

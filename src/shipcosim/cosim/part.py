@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shipcosim.cosim.exchange import Exchange
-from shipcosim.cosim.slave import FAILED, Slave
+from shipcosim.cosim.slave import BUFFER_TYPES, FAILED, Slave, SlaveError
 
 
 @dataclass
@@ -55,7 +55,7 @@ class Part:
         Parameters
         ----------
         kind : str
-            Real, Integer or Boolean.
+            A key of BUFFER_TYPES.
         exchange : Exchange
             Holds their values.
         outputs, inputs : (first row, variables)
@@ -100,14 +100,28 @@ class Part:
 
 
 def set_start_values(slave: Slave, values: list[tuple]) -> None:
-    """Set (variable, value) pairs on an FMU that is not initialised yet."""
+    """Set (variable, value) pairs on an FMU that is not initialised yet, structural parameters first."""
+    structural = [pair for pair in values if pair[0].causality == "structuralParameter"]
+    if structural:
+        slave.call("EnterConfigurationMode")
+        _set(slave, structural)
+        slave.call("ExitConfigurationMode")
+    _set(slave, [pair for pair in values if pair[0].causality != "structuralParameter"])
+
+
+def _set(slave, values):
     by_kind = {}
     for variable, value in values:
-        by_kind.setdefault("Integer" if variable.kind == "Enumeration" else variable.kind, []).append((variable, value))
+        kind = "Integer" if variable.kind == "Enumeration" else variable.kind
+        kind = "Long" if kind == "Integer" and not -(2**31) <= value < 2**31 else kind
+        by_kind.setdefault(kind, []).append((variable, value))
     for kind, pairs in by_kind.items():
         variables, numbers = zip(*pairs, strict=True)
-        if kind == "String":
+        if kind in ("String", "Binary"):
             slave.set_strings(variables, numbers)
-        else:
-            buffer = np.array(numbers, dtype=np.float64 if kind == "Real" else np.int32)
-            slave.check(f"Set{kind}", slave.setter(kind, variables, buffer)())
+            continue
+        try:
+            buffer = np.array(numbers, dtype=BUFFER_TYPES[kind])
+        except OverflowError:
+            raise SlaveError(f"{variables[0].name} cannot be {numbers[0]}: it has more than 63 bits.") from None
+        slave.check(f"Set{kind}", slave.setter(kind, variables, buffer)())

@@ -1,16 +1,22 @@
 """Before anything is instantiated: which values travel where, in rows of a few arrays, and what happens when."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import lcm
 
 from shipcosim.cosim.exchange import Wire
 from shipcosim.cosim.form import form_of, lacks_form
+from shipcosim.cosim.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.ssp import Connection, System, Variable
+from shipcosim.ssp.arrays import resized
 
 KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "Real": "Real"}
-"""Arrays that values of a type travel in. Real comes last, since it may follow an Integer."""
+"""Arrays that values of a type travel in."""
+
+WIDE = ("UInt32", "Int64", "UInt64")
+"""Types of FMI 3.0 for which the Integers of a system travel in 64 bits."""
 
 End = tuple[str | None, str]
 """Component (None: the outermost system) and variable."""
@@ -66,9 +72,11 @@ class Plan:
     layouts : dict of str to Layout
         By kind.
     texts, handovers : list of Connection
-        Between String variables; from component to component into a parameter, once at the start.
+        Between String or Binary variables; from component to component into a parameter, once at the start.
     fed, touched : set of End
         Inputs that a connection feeds; what events change.
+    kinds : mapping of str to str
+        KINDS, as this system needs them.
     """
 
     system: System
@@ -78,10 +86,15 @@ class Plan:
     handovers: list[Connection]
     fed: set[End]
     touched: set[End]
+    kinds: Mapping
 
     def variable(self, end: End) -> Variable:
         """The FMU's variable."""
         return self.system.components[end[0]].fmu.variables[end[1]]
+
+    def kind(self, variable: Variable) -> str | None:
+        """Kind of the arrays that a variable's values travel in, or None where they travel in none."""
+        return self.kinds.get(variable.kind)
 
     def rows(self, kind: str, name: str) -> tuple[tuple, tuple]:
         """First row and variables of a component's outputs and inputs."""
@@ -116,16 +129,17 @@ def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time
     Raises
     ------
     ShipcosimError
-        If the master cannot run this: arrays, no co-simulation, steps that do not fit.
+        If the master cannot run this: no form that it can, steps that do not fit.
     """
     base, duration = scenario.step_size, scenario.stop_time - start_time
     problems = [p for c in system.components.values() for p in _component_problems(c, base, duration)]
-    if problems := problems + list(_handover_problems(system)):
+    if problems := problems + list(_connection_problems(system)):
         raise ShipcosimError(problems)
     touched = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
     touched |= {system.split(signal) for signal in changed}
     multiples = {name: whole_steps(c.step_size or base, base) for name, c in system.components.items()}
-    plan = Plan(system, multiples, {kind: Layout() for kind in KINDS.values()}, [], [], set(), touched)
+    layouts = {kind: Layout() for kind in BUFFER_TYPES}
+    plan = Plan(system, multiples, layouts, [], [], set(), touched, _kinds(system))
     into = {}
     for connection in system.connections:
         if connection.target[0] is None or not _is_fed(connection.source, plan, fed):
@@ -133,12 +147,17 @@ def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time
         plan.fed.add(connection.target)
         if connection.initial:
             plan.handovers.append(connection)
-        elif plan.variable(connection.target).kind == "String":
+        elif plan.variable(connection.target).kind in ("String", "Binary"):
             plan.texts.append(connection)
         else:
             into.setdefault(connection.target, []).append(connection)
     _lay_out(plan, into)
     return plan
+
+
+def _kinds(system):
+    types = {variable.type for component in system.components.values() for variable in component.fmu.variables.values()}
+    return KINDS | ({"Integer": "Long", "Enumeration": "Long"} if types.intersection(WIDE) else {})
 
 
 def _component_problems(component, base, duration):
@@ -151,12 +170,17 @@ def _component_problems(component, base, duration):
         yield Problem(component.name, f"its step of {step:g} s does not divide the run's {duration:g} s.")
     arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
     if arrays:
-        yield Problem(component.name, f"has arrays, which the master does not handle: {', '.join(arrays[:5])}.")
+        yield Problem(component.name, f"has arrays that are not taken apart: {', '.join(arrays[:5])}.")
+    for found in resized(component):
+        yield Problem(component.name, found, "Export the FMU again with this size.")
 
 
-def _handover_problems(system):
+def _connection_problems(system):
     for connection in system.connections:
         name = connection.target[0]
+        if name is not None and system.components[name].fmu.variables[connection.target[1]].kind == "Clock":
+            found = "is a Clock. FMUs are stepped without event mode, in which clocks do not tick."
+            yield Problem(label(connection.target), found, "Leave the clock unconnected.")
         if connection.initial and name is not None and system.components[name].fmu.fmi_version == "1.0":
             found = "its value comes from a connection, but FMI 1.0 has no initialisation mode to set it in."
             yield Problem(label(connection.target), found, "Set it as a start value.")
@@ -177,14 +201,14 @@ def _lay_out(plan, into):
     sources = {connection.source for connections in into.values() for connection in connections}
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
-            end, kind = (component.name, variable.name), KINDS.get(variable.kind)
+            end, kind = (component.name, variable.name), plan.kind(variable)
             if kind is not None and (variable.causality == "output" or end in sources):
                 plan.layouts[kind].outputs.append(end)
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end = component.name, variable.name
             if end in into or (end in plan.touched and variable.causality != "output"):
-                layout = plan.layouts[KINDS[variable.kind]]
+                layout = plan.layouts[plan.kind(variable)]
                 layout.inputs.append(end)
                 first, *more = [_wire(plan, layout, end, connection) for connection in into.get(end, [None])]
                 layout.wires.append(replace(first, added=tuple(more)))
@@ -201,7 +225,7 @@ def _wire(plan, layout, end, connection):
     if component is None:
         return Wire(_setting(layout, connection.source, plan.system.inputs[name].start or 0), *how, own)
     period = lcm(own, plan.multiples[component])
-    kind = KINDS[plan.variable(connection.source).kind]
+    kind = plan.kind(plan.variable(connection.source))
     outputs = plan.layouts[kind].outputs
     row = outputs.index(connection.source)
     if plan.layouts[kind] is layout:

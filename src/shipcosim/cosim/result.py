@@ -8,7 +8,8 @@ from importlib.metadata import version
 import numpy as np
 
 from shipcosim import __version__
-from shipcosim.cosim.plan import KINDS, Plan, label
+from shipcosim.cosim.plan import Plan, label
+from shipcosim.cosim.slave import BUFFER_TYPES
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 
@@ -71,11 +72,11 @@ def _variables(plan, values, n):
     """Columns of the components' outputs and settings, in the order of the system and of the FMUs."""
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
-            end, kind = (component.name, variable.name), KINDS.get(variable.kind)
+            end, kind = (component.name, variable.name), plan.kind(variable)
             column = values.get(end)
             if column is None and kind and variable.causality == "input" and end not in plan.fed:
                 start = component.start_value(variable.name) or 0
-                column = np.full(n, start, dtype={"Real": float, "Integer": np.int32, "Boolean": bool}[kind])
+                column = np.full(n, start, dtype=bool if kind == "Boolean" else BUFFER_TYPES[kind])
             if column is not None and variable.causality in ("input", "output", "parameter"):
                 yield label(end), column, variable.unit or "", variable.description
 

@@ -1,8 +1,9 @@
-"""One running instance of an FMU, FMI 2.0 or 3.0, behind the same few calls. The only door to FMPy.
+"""One running instance of an FMU, whatever its version of FMI, behind the same few calls; FMI 2.0. The door to FMPy.
 
 Exchanging values is prepared once: `setter` and `getter` bind value references and a NumPy buffer to the function of
 the FMU's library, and what they return is called in every step. Buffers hold Real as float64, Integer (and
-Enumeration) and Boolean as int32, whatever the FMU's own types are.
+Enumeration) and Boolean as int32, whatever the FMU's own types are; Long is Integer in 64 bits, for systems with an FMU
+of FMI 3.0 that needs them.
 """
 
 import os
@@ -17,7 +18,8 @@ import numpy as np
 
 from shipcosim.cosim.direct import Direct, object_of
 
-BUFFER_TYPES = {"Integer": np.int32, "Boolean": np.int32, "Real": np.float64}
+BUFFER_TYPES = {"Integer": np.int32, "Boolean": np.int32, "Long": np.int64, "Real": np.float64}
+"""Kinds of exchanged values, in an order in which each may follow those before it."""
 STATUS = ["ok", "warning", "discard", "error", "fatal", "pending"]
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 FAILED = DISCARD
@@ -135,6 +137,42 @@ class Slave:
         """End the simulation. That an FMU fails to is no matter any more."""
         self._is_lost = self._function("Terminate")(self.component) == FATAL
 
+    def _long_setter(self, variables, buffer):
+        """Setter from a buffer of 64 bits for an FMU with Integers of 32."""
+        own = np.zeros(len(variables), dtype=np.int32)
+        set_all = self.setter("Integer", variables, own)
+
+        def set_narrowed():
+            if (status := self.refuse_outside(buffer, own.dtype, variables)) is not None:
+                return status
+            own[:] = buffer
+            return set_all()
+
+        return set_narrowed
+
+    def _long_getter(self, variables, buffer):
+        """Getter into a buffer of 64 bits."""
+        own = np.zeros(len(variables), dtype=np.int32)
+        get_all = self.getter("Integer", variables, own)
+
+        def get_widened():
+            if (status := get_all()) >= FAILED:
+                return status
+            buffer[:] = own
+            return OK
+
+        return get_widened
+
+    def refuse_outside(self, values: np.ndarray, kind: np.dtype, variables: Sequence) -> int | None:
+        """Status of values that a type cannot hold, which are logged; None where it can hold all of them."""
+        limits = np.finfo(kind) if kind.kind == "f" else np.iinfo(kind)
+        low, high = int(limits.min), int(limits.max)
+        for variable, value in zip(variables, values.tolist(), strict=True):
+            if abs(value) != float("inf") and value == value and not low <= value <= high:
+                self._note(ERROR, f"{variable.name} cannot be {value!r}: {kind} ends at {low:.4g} and {high:.4g}.")
+                return ERROR
+        return None
+
     def _find_object(self):
         target = object_of(self._folder, self.name) if self._is_python else None
         self._direct = None if target is None else Direct(target, self._note)
@@ -169,12 +207,16 @@ class Slave2(Slave):
 
     def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        if kind == "Long":
+            return self._long_setter(variables, buffer)
         if self._direct is not None:
             return self._direct.setter(kind, variables, buffer)
         return self._exchange("Set", kind, variables, buffer)
 
     def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        if kind == "Long":
+            return self._long_getter(variables, buffer)
         if self._direct is not None:
             return self._direct.getter(kind, variables, buffer)
         return self._exchange("Get", kind, variables, buffer)
@@ -229,105 +271,6 @@ class Slave2(Slave):
         if not (self._is_python or self._is_container):  # they log text as a format: % in it would read wild memory
             addLoggerProxy(byref(callbacks))
         self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
-
-
-class Slave3(Slave):
-    """An instance of an FMU of FMI 3.0: scalar variables, no event mode, no early return."""
-
-    _prefix = "fmi3"
-    _state_calls = {
-        "get": "GetFMUState",
-        "set": "SetFMUState",
-        "free": "FreeFMUState",
-        "size": "SerializedFMUStateSize",
-        "serialise": "SerializeFMUState",
-        "deserialise": "DeserializeFMUState",
-    }
-
-    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
-        """Prepared call that sets variables of one kind from a buffer and returns the status."""
-        groups = list(self._groups("Set", variables))
-
-        def set_all():
-            for rows, own, call in groups:
-                own[:] = buffer[rows]
-                if (status := call()) >= FAILED:
-                    return status
-            return OK
-
-        return set_all
-
-    def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
-        """Prepared call that gets variables of one kind into a buffer and returns the status."""
-        groups = list(self._groups("Get", variables))
-
-        def get_all():
-            for rows, own, call in groups:
-                if (status := call()) >= FAILED:
-                    return status
-                buffer[rows] = own
-            return OK
-
-        return get_all
-
-    def stepper(self) -> Callable[[float, float], int]:
-        """Prepared call that advances from a time by a step size and returns the status."""
-        from ctypes import c_bool
-
-        do_step, event, terminate, early, reached = self._function("DoStep"), c_bool(), c_bool(), c_bool(), c_double()
-        results = byref(event), byref(terminate), byref(early), byref(reached)
-
-        def step(time, step_size):
-            status = do_step(self.component, time, step_size, True, *results)
-            return DISCARD if status < FAILED and (terminate.value or early.value) else status
-
-        return step
-
-    def get_strings(self, variables: Sequence) -> list[str]:
-        """Values of String variables."""
-        texts = (c_char_p * len(variables))()
-        self.call("GetString", _references(variables), len(variables), texts, len(variables))
-        return [(text or b"").decode() for text in texts]
-
-    def set_strings(self, variables: Sequence, values: Sequence[str]) -> None:
-        """Set String variables."""
-        texts = (c_char_p * len(variables))(*(value.encode() for value in values))
-        self.call("SetString", _references(variables), len(variables), texts, len(variables))
-
-    def enter_initialisation(self, start_time: float, stop_time: float) -> None:
-        """Enter the initialisation mode for a run between two times."""
-        self.call("EnterInitializationMode", False, 0.0, start_time, True, stop_time)
-
-    def _groups(self, verb, variables):
-        """For each of the FMU's types among the variables: their rows, a buffer of this type and the prepared call."""
-        for name in dict.fromkeys(variable.type for variable in variables):
-            rows = np.array([i for i, variable in enumerate(variables) if variable.type == name])
-            own = np.zeros(len(rows), dtype=_FMI3_TYPES[name])
-            function = self._function(f"{verb}{'Int64' if name == 'Enumeration' else name}")
-            values = cast(own.ctypes.data, function.argtypes[3])
-            references = _references([variables[row] for row in rows])
-            yield rows, own, partial(function, self.component, references, len(rows), values, len(rows))
-
-    @staticmethod
-    def _load(**arguments):
-        from fmpy.fmi3 import FMU3Slave
-
-        return FMU3Slave(**arguments)
-
-    def _instantiate(self):
-        self._fmu.instantiate(
-            loggingOn=True, logMessage=lambda environment, status, category, text: self._log(status, text)
-        )
-
-
-_FMI3_TYPES = {
-    "Float64": np.float64,
-    "Float32": np.float32,
-    "Boolean": np.bool_,
-    "Enumeration": np.int64,
-    **{f"Int{bits}": np.dtype(f"int{bits}") for bits in (8, 16, 32, 64)},
-    **{f"UInt{bits}": np.dtype(f"uint{bits}") for bits in (8, 16, 32, 64)},
-}
 
 
 def _references(variables):

@@ -27,6 +27,8 @@ class Slave1(Slave):
 
     def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        if kind == "Long":
+            return self._long_setter(variables, buffer)
         own, signs, call = self._prepared("Set", kind, variables)
 
         def set_all():
@@ -37,6 +39,8 @@ class Slave1(Slave):
 
     def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        if kind == "Long":
+            return self._long_getter(variables, buffer)
         own, signs, call = self._prepared("Get", kind, variables)
 
         def get_all():

@@ -4,8 +4,9 @@ from pathlib import Path
 
 from shipcosim.cosim.form import form_of
 from shipcosim.cosim.model_exchange import Model2, Model3
-from shipcosim.cosim.slave import Slave, Slave2, Slave3
+from shipcosim.cosim.slave import Slave, Slave2
 from shipcosim.cosim.slave_fmi1 import Model1, Slave1
+from shipcosim.cosim.slave_fmi3 import Slave3
 from shipcosim.ssp import Component
 
 SLAVES = {"1.0": Slave1, "2.0": Slave2, "3.0": Slave3}
