@@ -45,6 +45,13 @@ Store = Annotated[
     Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")
 ]
 From = Annotated[Path | None, typer.Option("--from", metavar="FILE", help="Continue from a state that --store left.")]
+Isolate = Annotated[
+    bool, typer.Option("--isolate", help="Run each component in a process of its own, which may crash or hang.")
+]
+Timeout = Annotated[
+    float | None,
+    typer.Option("--timeout", callback=_finite, help="[s] Longest wait for a component of --isolate. Default: 60."),
+]
 OspEvents = Annotated[
     Path | None,
     typer.Option("--scenario", metavar="FILE", help="Scenario file of OSP (.json, .yaml): what happens in the run."),
@@ -130,6 +137,8 @@ def run(
     until: Until = None,
     store: Store = None,
     resume: From = None,
+    isolate: Isolate = False,
+    timeout: Timeout = None,
     debug: Debug = False,
 ):
     """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO.
@@ -150,7 +159,7 @@ def run(
     with_values(system, given, "--set")
     print_problems(check_times(happening))
     happening = happening.model_copy(update={"set": happening.set | given})
-    course = {"until": until, "store": store, "resume": resume}
+    course = {"until": until, "store": store, "resume": resume} | _isolated(isolate, timeout)
     _simulate_and_save(system, happening, out or Path("results") / happening.name, engine, **course)
 
 
@@ -188,6 +197,8 @@ def simulate(
     until: Until = None,
     store: Store = None,
     resume: From = None,
+    isolate: Isolate = False,
+    timeout: Timeout = None,
     debug: Debug = False,
 ):
     """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
@@ -216,6 +227,7 @@ def simulate(
         start_time = system.experiment.start_time if resume is None else 0.0
     happening = with_osp_events(happening, events, start_time)
     course = {"start_time": start_time, "until": until, "store": store, "resume": resume}
+    course |= _isolated(isolate, timeout)
     _simulate_and_save(system, happening, out or default, engine, table, **course)
 
 
@@ -308,8 +320,18 @@ def diagnose(
         raise typer.Exit(FAILED)
 
 
+def _isolated(isolate, timeout):
+    """What `simulate` is told of --isolate and --timeout."""
+    if timeout is not None and not isolate:
+        raise ShipcosimError(Problem("--timeout", "Without --isolate there is no limit to a component's time."))
+    return {"isolate": isolate} | ({} if timeout is None else {"timeout": timeout})
+
+
 def _simulate_and_save(system, scenario, out, engine, inputs=None, store=None, **course):
-    """Run, judge, write, and say how it went; the exit code follows. `course` is where the run starts and ends."""
+    """Run, judge, write, and say how it went; the exit code follows. `course` is where and how it runs.
+
+    A component that fails in its own process is a finding, not unusable input.
+    """
     from shipcosim.cli.console import print_problems, print_summary, progress_of
     from shipcosim.cli.results import check_targets, save
     from shipcosim.cosim import Interrupted, RunError, write_snapshot
@@ -331,7 +353,10 @@ def _simulate_and_save(system, scenario, out, engine, inputs=None, store=None, *
             _keep(error.table, out, scenario, system)
         except ShipcosimError as another:
             error.problems += another.problems
-        raise
+        if not course["isolate"]:
+            raise
+        _explain(error.problems, debug=False)
+        raise typer.Exit(FAILED) from None
     scenario = _part(scenario, table)
     verdicts = judge(table, scenario)
     page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)

@@ -41,6 +41,10 @@ ENGINES = {"fmpy": run, "libcosim": libcosim.run, "ecos": ecos.run}
 """Functions from a checked system and a scenario to a table."""
 
 
+TIMEOUT = 60.0
+"""How long a component in its own process may take for an answer, if nothing else is said. [s]"""
+
+
 def engines_missing() -> dict[str, Problem]:
     """Engines that are not installed, with what to install."""
     missing = {}
@@ -64,6 +68,8 @@ def simulate(
     until: float | None = None,
     resume: Snapshot | str | os.PathLike | None = None,
     store: Callable[[Snapshot], None] | str | os.PathLike | None = None,
+    isolate: bool = False,
+    timeout: float = TIMEOUT,
 ) -> xarray.Dataset:
     """Run a system through a scenario.
 
@@ -93,6 +99,10 @@ def simulate(
         was overridden then stays so. What happens before that time in the scenario is not done again.
     store : callable or path, optional
         Gets the state of the whole system at the end of the run.
+    isolate : bool
+        Each component runs in a process of its own: one that crashes or hangs ends the run like one that fails.
+    timeout : float
+        How long a component in its own process may take for an answer. [s]
 
     Returns
     -------
@@ -115,14 +125,20 @@ def simulate(
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
         raise ShipcosimError(errors)
-    course = _course(start_time, until, resume, store)
+    course = _course(start_time, until, resume, store, _limit(timeout) if isolate else None)
     if course and engine != "fmpy":
         remedy = "The engine 'fmpy' does."
         raise ShipcosimError(Problem(f"engine '{engine}'", f"It does not know {', '.join(course)}.", remedy))
     return ENGINES[engine](system, scenario, inputs=inputs, progress=progress, order=order, **course)
 
 
-def _course(start_time, until, resume, store):
+def _limit(timeout):
+    if not 0.0 < timeout < float("inf"):
+        raise ShipcosimError(Problem("timeout", f"{timeout:g} s is no time limit.", "Give a positive number."))
+    return timeout
+
+
+def _course(start_time, until, resume, store, isolate):
     """What differs from a whole run from time 0 on, as the engine's arguments; files are read and written."""
     if resume is not None and not isinstance(resume, Snapshot):
         resume = read_snapshot(resume)
@@ -131,5 +147,5 @@ def _course(start_time, until, resume, store):
             found = "There is no such folder to store the state in."
             raise ShipcosimError(Problem(str(store), found, "Make it first."))
         store = partial(write_snapshot, path=store)
-    course = {"start_time": start_time or None, "until": until, "resume": resume, "store": store}
+    course = {"start_time": start_time or None, "until": until, "resume": resume, "store": store, "isolate": isolate}
     return {name: value for name, value in course.items() if value is not None}

@@ -12,6 +12,7 @@ from shipcosim.cosim.feed import digest, feed
 from shipcosim.cosim.form import form_of
 from shipcosim.cosim.instances import Instances
 from shipcosim.cosim.interrupt import held_back
+from shipcosim.cosim.isolate import Isolated
 from shipcosim.cosim.master import Failure, Master
 from shipcosim.cosim.order import ORDERS, stepping_order
 from shipcosim.cosim.part import Part, set_start_values
@@ -42,9 +43,22 @@ class Interrupted(KeyboardInterrupt):
 
 
 def run(
-    system, scenario, *, inputs=None, progress=None, order="jacobi", start_time=0.0, until=None, resume=None, store=None
+    system,
+    scenario,
+    *,
+    inputs=None,
+    progress=None,
+    order="jacobi",
+    start_time=0.0,
+    until=None,
+    resume=None,
+    store=None,
+    isolate=None,
 ):
-    """Run a checked system. See `simulate`; `resume` is a Snapshot, `store` a callable that gets one."""
+    """Run a checked system. See `simulate`; `resume` is a Snapshot, `store` a callable that gets one.
+
+    `isolate` is the time limit for an answer of a component in its own process [s], None without such processes.
+    """
     if resume is not None:
         check_fit(resume, system, scenario)
         start_time = resume.start_time
@@ -52,7 +66,7 @@ def run(
         check_storable(system)
     span = span_of(scenario, start_time, resume.step if resume else 0, until)
     journey = Journey(system, scenario, span, order, inputs, resume)
-    with held_back() as check_interrupt, Instances() as instances:
+    with held_back() as check_interrupt, Isolated(system, isolate) if isolate else Instances() as instances:
         journey.run(instances, check_interrupt, progress)
         if store is not None:
             store(journey.snapshot())

@@ -1,0 +1,45 @@
+"""--isolate: components in processes of their own."""
+
+from shipcosim.series import read_table
+
+PARTIAL = ["result-partial.csv", "result-partial.html", "result-partial.nc"]
+
+
+def test_results_are_the_same_and_the_exit_code_is_that_of_the_expectations(call, project):
+    assert call("run", "fill", "--out", "plain").code == 0
+    assert call("run", "fill", "--out", "apart", "--isolate").code == 0
+    assert (project / "plain" / "result.csv").read_bytes() == (project / "apart" / "result.csv").read_bytes()
+
+
+def test_a_component_that_hangs_is_named_and_the_rows_before_it_are_kept(call, project):
+    failed = call("run", "fill", "--isolate", "--timeout", "1", "--set", "lag.pause=60.0")
+    assert failed.code == 1
+    assert "error: lag:\nfailed in the step from t = 0 s. Its process gave no answer to DoStep within 1 s" in failed.err
+    assert "Traceback" not in failed.err and failed.out == ""
+    folder = project / "results" / "fill"
+    assert sorted(file.name for file in folder.iterdir()) == PARTIAL
+    table = read_table(folder / "result-partial.nc")
+    assert table.attrs["complete"] == 0 and table["time"].values.tolist() == [0.0]
+
+
+def test_an_exception_is_said_as_without_processes(call, project):
+    failed = call("run", "fill", "--isolate", "--set", "lag.fails_at=2.0")
+    assert failed.code == 1
+    assert all(text in failed.err for text in ("error: lag:", "ValueError: the pump has run dry", "lag.py", "t = 2"))
+    assert read_table(project / "results" / "fill" / "result-partial.nc")["time"].values[-1] == 2.0
+
+
+def test_a_state_is_stored_and_continued_in_processes(call, project):
+    assert call("run", "fill", "--out", "whole").code == 0
+    assert call("run", "fill", "--out", "first", "--until", "2", "--store", "half.state", "--isolate").code == 0
+    assert call("run", "fill", "--out", "rest", "--from", "half.state", "--isolate").code == 0
+    whole, rest = (read_table(project / name / "result.nc") for name in ("whole", "rest"))
+    n = rest.sizes["time"]
+    assert 1 < n < whole.sizes["time"]
+    assert all(whole[name].values[-n:].tobytes() == rest[name].values.tobytes() for name in whole)
+
+
+def test_a_time_limit_alone_and_one_that_is_none_are_refused(call, project):
+    alone, none = call("run", "fill", "--timeout", "5"), call("run", "fill", "--isolate", "--timeout", "0")
+    assert (alone.code, none.code) == (2, 2)
+    assert "Without --isolate" in alone.err and "0 s is no time limit" in none.err
