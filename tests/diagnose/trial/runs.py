@@ -18,6 +18,7 @@ from truth.cases import CAUSES
 import shipcosim
 
 from .scoring import DATA_FAULTS
+from .tools import twin_of
 
 KINDS = ("trial", "work", "hold")
 TOOL = "diagnose.trial.tools:ours"
@@ -104,8 +105,10 @@ def answered(drawn, *, tool=TOOL, pool=None):
     """Diagnose drawn logs, each with its set and the options that it was drawn with; yields as `diagnosed`."""
     with tempfile.TemporaryDirectory() as folder:
         paths = [str(Path(folder) / f"{case.kind}-{name}-{case.seed}.csv") for case, name, _ in drawn]
-        for (case, *_), path in zip(drawn, paths, strict=True):
+        for (case, name, _), path in zip(drawn, paths, strict=True):
             case.save(path)
+            if name in TOOLS:
+                case.twin().save(twin_of(path))
         each = pool.map if pool else map
         outcomes = each(outcome_of, paths, itertools.repeat(tool))
         for (case, name, options), outcome in zip(drawn, outcomes, strict=True):

@@ -12,7 +12,7 @@ from .scoring import named_rightly, score
 
 UNJUDGED = {"verdict": "error", "findings": []}
 Z = 1.959964
-LEAVES_LITTLE = 0.95  # of what the observer misses is noise: nothing to remove
+LITTLE = 0.95  # of what the observer misses would be missed anyway: next to nothing to remove
 SURE = (0.0, 0.5, 0.8, 0.9, 0.95, 1.0)  # edges of the bins of stated probabilities
 
 
@@ -112,11 +112,13 @@ def _error(pairs):
     return f"{100 * np.median(errors):.1f} % ({len(errors)})" if errors else ""
 
 
-def _removed(name):
+def _removed(name, floor):
     def cell(pairs):
         gains = [result["diagnosis"].get(name) for result, judged in pairs if judged.right]
-        left = [(gain["bias_observer_m"], gain["after_m"], gain["noise_floor_m"]) for gain in gains if gain]
-        shares = [(rival - after) / (rival - floor) for rival, after, floor in left if floor < LEAVES_LITTLE * rival]
+        left = [(gain["bias_observer_m"], gain["after_m"], gain[floor]) for gain in gains if gain]
+        shares = [
+            (rival - after) / (rival - min(least, after)) for rival, after, least in left if least < LITTLE * rival
+        ]
         return f"{100 * np.median(shares):.0f} % ({len(shares)})" if shares else ""
 
     return cell
@@ -127,6 +129,7 @@ def _seconds(pairs):
     return f"{np.median(seconds):.0f} s, at most {max(seconds):.0f} s" if seconds else ""
 
 
+REMOVED = "error at 60 s removed beyond the bias observer, {}, of what {}, median"
 ROWS = (
     Row("right cause named", "one", ("98", "88", "as honest"), _right),
     Row("right, or said not testable", "one", ("", "", ""), lambda r, s: s.right or (s.excused and not s.alarm)),
@@ -155,8 +158,10 @@ ROWS = (
     Row("the same, with segment", "data", ("95", "95", "95"), lambda r, s: s.right and s.located),
     Row("parameter error, median", "one", ("5", "7", ""), cell=_error),
     Row("within two sigma", "one", ("90-97", "90-97", ""), cell=_two_sigma),
-    Row("error at 60 s removed beyond the bias observer, median: DP", "drift", ("95", "90", ""), cell=_removed("gain")),
-    Row("the same, free drift", "drift", ("90", "85", ""), cell=_removed("drift")),
+    Row(REMOVED.format("DP", "the cause explains"), "drift", ("95", "90", ""), cell=_removed("gain", "twin_m")),
+    Row(REMOVED.format("drift", "the cause explains"), "drift", ("90", "85", ""), cell=_removed("drift", "twin_m")),
+    Row(REMOVED.format("DP", "is not noise"), "drift", ("", "", ""), cell=_removed("gain", "noise_floor_m")),
+    Row(REMOVED.format("drift", "is not noise"), "drift", ("", "", ""), cell=_removed("drift", "noise_floor_m")),
     Row("worse than the bias observer: DP", "drift", ("2", "2", "2"), _worse("gain")),
     Row("the same, free drift", "drift", ("2", "2", "2"), _worse("drift")),
     Row("twice the mismatch: right", "mismatch", ("", "", ""), _right),

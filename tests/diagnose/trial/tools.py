@@ -10,6 +10,7 @@ import pandas as pd
 
 ROOT = Path(__file__).resolve().parents[3]
 UNTIL = 2400.0  # end of the log that is diagnosed, where a drift follows it [s]
+SHARE = 0.65  # of it that is fitted on, for the gain under DP
 
 
 @cache
@@ -50,9 +51,10 @@ class WithGain:
 def with_drift(path):
     """The diagnosis of a log until `UNTIL`; its gain there, and in the drift at the end, which it has not seen.
 
-    Both in the array form, where a cause of the physics is named.
+    Both in the array form, where a cause of the physics is named. ``twin_m`` is what the plain model misses on the
+    healthy twin of the log, which lies beside it, see `twin_of`.
     """
-    from shipcosim.diagnose.gain import compare, gain
+    from shipcosim.diagnose.gain import compare
     from shipcosim.diagnose.run import diagnose
 
     head = Path(path).with_suffix(".head.csv")
@@ -61,17 +63,24 @@ def with_drift(path):
     diagnosis, details = diagnose(head, system())
     if diagnosis.verdict != "named" or not details.fit.suspects:
         return WithGain(diagnosis)
-    found = compare(details.case, details.fit)
-    if found:
-        diagnosis = replace(diagnosis, gain=gain(found.errors))
-    return WithGain(diagnosis, _gain_in_drift(path, details))
+    under_dp = compare(details.case, details.fit)
+    adrift = _compared(path, details, UNTIL)
+    healthy = [_compared(twin_of(path), replace(details, fit=None), until) for until in (SHARE * UNTIL, UNTIL)]
+    under_dp = _gain(under_dp, healthy[0], lambda errors: errors["start_time"].values <= UNTIL - 60.0)
+    adrift = _gain(adrift, healthy[1], lambda errors: errors["regime"].values == "drifting")
+    return WithGain(replace(diagnosis, gain=under_dp), adrift)
 
 
-def _gain_in_drift(path, details):
-    """Of the causes that were named, fitted on the rows until `UNTIL`; None where the drift is too short."""
+def twin_of(path):
+    """Where the healthy twin of a log is."""
+    return Path(path).with_suffix(".twin.csv")
+
+
+def _compared(path, details, until):
+    """Predictions on a log after some time, of the causes of a diagnosis, fitted until then."""
     from shipcosim.diagnose.effects import read_catalogue
     from shipcosim.diagnose.examine import examine
-    from shipcosim.diagnose.gain import compare, gain
+    from shipcosim.diagnose.gain import compare
     from shipcosim.diagnose.log import read_log
     from shipcosim.diagnose.plant import plant_of
     from shipcosim.diagnose.ranking import fitted
@@ -80,9 +89,19 @@ def _gain_in_drift(path, details):
 
     log = read_log(path)
     case = prepare(repaired(log, examine(log)), plant_of(system()), read_catalogue(None), details.case.noise)
-    fit = fitted(case, details.fit.suspects, details.fit.values)
-    found = compare(case, fit, train=case.record.time <= UNTIL)
-    if found is None:
-        return None
-    errors = found.errors.isel(segment=np.flatnonzero(found.errors["regime"].values == "drifting"))
-    return gain(errors) | {"segments": errors.sizes["segment"]} if errors.sizes["segment"] else None
+    fit = fitted(case, details.fit.suspects, details.fit.values) if details.fit else fitted(case)
+    return compare(case, fit, train=case.record.time <= until)
+
+
+def _gain(compared, healthy, chosen):
+    """The gain on some of the predictions, and how many; None where there are none."""
+    from shipcosim.diagnose.gain import gain, rms
+
+    parts = []
+    for one in (compared, healthy):
+        some = np.flatnonzero(chosen(one.errors)) if one else []
+        if not len(some):
+            return None
+        parts.append(one.errors.isel(segment=some))
+    errors, twins = parts
+    return gain(errors) | {"twin_m": rms(twins, "position", "plain"), "segments": errors.sizes["segment"]}
