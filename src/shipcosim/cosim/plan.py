@@ -10,7 +10,7 @@ from shipcosim.cosim.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.ssp import Connection, System, Variable
-from shipcosim.ssp.arrays import resized
+from shipcosim.ssp.arrays import RESIZE, resized
 
 KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "Real": "Real"}
 """Arrays that values of a type travel in."""
@@ -171,8 +171,13 @@ def _component_problems(component, base, duration):
     arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
     if arrays:
         yield Problem(component.name, f"has arrays that are not taken apart: {', '.join(arrays[:5])}.")
+    for variable in component.fmu.variables.values():
+        if variable.type == "UInt64" and (start := component.start_value(variable.name) or 0) >= 2**63:
+            yield Problem(
+                component.name, f"{variable.name} starts with {start}.", "Values of 64 bits end at 2**63 - 1."
+            )
     for found in resized(component):
-        yield Problem(component.name, found, "Export the FMU again with this size.")
+        yield Problem(component.name, found, RESIZE)
 
 
 def _connection_problems(system):

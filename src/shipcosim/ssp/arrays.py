@@ -155,6 +155,10 @@ def _shape(dimensions):
     return f"an array of {'x'.join(map(str, dimensions))}" if dimensions else "a scalar"
 
 
+RESIZE = "Export the FMU again with this size."
+"""What would be right instead of what `resized` finds."""
+
+
 def resized(component):
     """Sentences on start values that would change the size of arrays, whose elements are laid out already."""
     for variable in component.fmu.variables.values():

@@ -6,8 +6,10 @@ from math import isfinite
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ssp.arrays import RESIZE, resized
 from shipcosim.ssp.fmu import FmuDescription
 from shipcosim.ssp.parameters import ParameterSet, read_parameter_set
+from shipcosim.ssp.ports import Key
 from shipcosim.ssp.setting import Settings, check_bounds
 from shipcosim.ssp.structure import Experiment, read_structure
 from shipcosim.ssp.tree import Tree
@@ -191,6 +193,9 @@ def _system(tree, structure, file, findings):
     settings.apply()
     components = components_of(tree, settings)
     _check_names(tree, findings)
+    for component in components.values():
+        for found in resized(component):
+            findings.error(component.name, found, RESIZE)
     remark_unconnected(components, connections, findings)
     name = structure.name or structure.system.name
     if findings.errors:
@@ -200,8 +205,8 @@ def _system(tree, structure, file, findings):
         name=name,
         file=file,
         components=components,
-        connections=tuple(c for c in connections if not _is_given(c, structure.system)),
-        given=tuple(c for c in connections if _is_given(c, structure.system)),
+        connections=tuple(c for c in connections if not _is_given(c, tree)),
+        given=tuple(c for c in connections if _is_given(c, tree)),
         inputs=signals.of("input"),
         outputs=signals.of("output", "local", "calculatedParameter", "constant"),
         parameters=signals.of("parameter", "structuralParameter"),
@@ -227,11 +232,10 @@ def components_of(tree, settings):
     }
 
 
-def _is_given(connection, system):
+def _is_given(connection, tree):
     """Whether a connection only hands in a parameter of the outermost system, whose value is among the start values."""
-    kinds = {connector.name: connector.kind for connector in system.connectors}
     owner, name = connection.source
-    return owner is None and kinds[name] in ("parameter", "structuralParameter")
+    return owner is None and tree.ports[Key((), name)].kind in ("parameter", "structuralParameter")
 
 
 def _experiment(structure):
