@@ -5,6 +5,7 @@ import json
 import pytest
 from osp_execution import assert_same, rows_of
 
+import shipcosim as sc
 from shipcosim.cosim import simulate
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
@@ -82,3 +83,15 @@ def test_a_faulty_scenario_of_osp_leaves_nothing(gunnerus, call):
     result = call("simulate", "ssp/gunnerus_dp", "--stop-time", "1", "--step-size", "0.1", "--scenario", "events.json")
     assert result.code == 2 and "event 1:\nIt has no model" in result.err
     assert not (gunnerus / "results").exists()
+
+
+def test_check_for_a_tool_names_what_it_would_leave_out_and_how_to_mend_it(gunnerus, call):
+    result = call("check", "ssp/gunnerus_dp", "--for", "libcosim")
+    assert result.code == 1
+    assert "line 9: ParameterBinding" in result.out and "bound to a system: libcosim goes on without it" in result.out
+    system = sc.read("ssp/gunnerus_dp")
+    system.bind_to_components()
+    system.write("mended.ssp")
+    assert call("check", "mended.ssp", "--for", "libcosim", "--for", "ecos").code == 0
+    assert call("check", "scenarios/short.toml", "--for", "libcosim").code == 1
+    assert call("check", "ssp/gunnerus_dp", "--for", "vico").code == 2

@@ -267,6 +267,10 @@ def check(
     channels: Annotated[
         Path | None, typer.Option("--channels", metavar="X.toml", help="Channel file of measured data.")
     ] = None,
+    hosts: Annotated[
+        list[str] | None,
+        typer.Option("--for", metavar="TOOL", help="libcosim or ecos: what it would ignore or die of; repeatable."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Report as JSON.")] = False,
     debug: Debug = False,
 ):
@@ -276,8 +280,11 @@ def check(
     """
     from shipcosim.cli.checks import check_any, variables_in
     from shipcosim.cli.console import print_report, print_variables
+    from shipcosim.ssp.hosts import check_host
 
-    reports = {file: check_any(file, channels) for file in files}
+    for host in hosts or ():
+        check_host(host)
+    reports = {file: check_any(file, channels, hosts or ()) for file in files}
     print_report(reports, as_json)
     for variables in () if as_json else filter(None, map(variables_in, files)):
         print_variables(variables)

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 
-from shipcosim.cli.project import built_fmus, find_project
+from shipcosim.cli.project import SYSTEMS, built_fmus, find_project
 from shipcosim.errors import Problem, ShipcosimError
 
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 
 
-def check_any(file, channels=None):
+def check_any(file, channels=None, hosts=()):
     """Problems of a file; nothing is run and no binary loaded.
 
     Parameters
@@ -20,6 +20,8 @@ def check_any(file, channels=None):
         `shipcosim.ssp.check_file`).
     channels : path, optional
         Channel file of tables that are measured data.
+    hosts : iterable of str
+        Tools that are to read the file themselves; what they take otherwise is an error.
 
     Returns
     -------
@@ -34,6 +36,8 @@ def check_any(file, channels=None):
     if not path.exists():
         raise ShipcosimError(Problem(file, "There is no such file or folder.", "Give the path of one."))
     try:
+        if hosts and (problems := _host_problems(file, path, hosts)) is not None:
+            return [*check_any(file, channels), *problems]
         if path.suffix == ".toml":
             return check_scenario_file(path)
         if path.name.endswith(TABLES):
@@ -41,6 +45,21 @@ def check_any(file, channels=None):
         return _check_system_file(file, path)
     except ShipcosimError as error:
         return error.problems
+
+
+def _host_problems(file, path, hosts):
+    """What tools would make of a system, or of a scenario's; None for other files."""
+    from shipcosim.scenario import read_scenario
+    from shipcosim.ssp.hosts import check_for
+
+    if path.suffix.lower() not in (".toml", *SYSTEMS) and not path.is_dir():
+        return None
+    project, system = find_project(path), file
+    if path.suffix == ".toml":
+        scenario = read_scenario(path)
+        project, system = scenario.project, scenario.system_path
+    fmus = [built_fmus(project)] if project else ()
+    return [problem for host in hosts for problem in check_for(host, system, fmus=fmus)]
 
 
 def variables_in(file):

@@ -89,6 +89,8 @@ class StartValues(MutableMapping):
             drop(one.binding)
         for name, value in values.items():
             self._draft.sets.put(name, value)
+        for one in self._draft.sets.bound:
+            one.root.set("name", self._draft.root.get("name") or "values")  # ecos applies the sets of one name alone
 
     def _kind(self, name, value, kind):
         if type(value) not in KIND_OF:

@@ -1,0 +1,396 @@
+"""Where a system has a feature that other tools take otherwise; see `shipcosim.ssp.hosts`.
+
+Each function yields (place, what is there); an empty text stands for the feature's own words.
+"""
+
+import re
+from collections import defaultdict
+from dataclasses import dataclass
+from math import isclose
+from urllib.parse import unquote
+
+from lxml import etree
+
+from shipcosim.ssp.markup import OSP_TYPE
+from shipcosim.ssp.package import Package
+from shipcosim.ssp.parameters import read_parameter_set
+from shipcosim.ssp.ports import Key
+from shipcosim.ssp.structure import (
+    FMU,
+    STEP_SIZES,
+    ComponentElement,
+    DictionaryReference,
+    Structure,
+    SystemElement,
+)
+from shipcosim.ssp.system import System
+from shipcosim.ssp.tree import Tree
+from shipcosim.ssp.units import find_unit, relation
+from shipcosim.ssp.xml import NAMESPACES, Document, Findings, child, children, local
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A system that is looked at: the outermost file as written, and what it means.
+
+    Parameters
+    ----------
+    document, structure, package, tree
+        Of an SSP; None for an OspSystemStructure.xml.
+    system : System
+        Flat.
+    """
+
+    document: Document | None
+    structure: Structure | None
+    package: Package | None
+    tree: Tree | None
+    system: System
+
+    @property
+    def elements(self):
+        """Elements of the outermost system."""
+        return () if self.structure is None else self.structure.system.elements
+
+    @property
+    def components(self):
+        """Components of the outermost system."""
+        return [part for part in self.elements if isinstance(part, ComponentElement)]
+
+    @property
+    def links(self):
+        """Connections of the outermost system between its elements, with their ends' ports where they are known."""
+        for link in () if self.structure is None else self.structure.system.links:
+            ends = [
+                self.tree.ports.get(Key((element,), name))
+                for element, name in (
+                    (link.start_element, link.start_connector),
+                    (link.end_element, link.end_connector),
+                )
+            ]
+            if link.start_element and link.end_element:
+                yield link, *ends
+
+    @property
+    def sets(self):
+        """(component element, FMU, binding, ParameterSet) of sets bound to components."""
+        for part in self.components:
+            _, fmu = self.tree.components.get((part.name,), (None, None))
+            for binding in part.bindings:
+                document = binding.values.inline
+                if document is None and not binding.values.in_component:
+                    file = self.package.locate(binding.values.uri, self.document.folder, "", Findings())
+                    document = None if file is None else self.package.read(file, Findings())
+                if document is not None:
+                    yield part, fmu, binding, read_parameter_set(document, Findings())
+
+    @property
+    def values(self):
+        """(value, variable, fmu) of the values that are bound to components by their own names."""
+        for _, fmu, binding, values in self.sets:
+            for value in values.values if fmu is not None and binding.mapping is None else ():
+                variable = fmu.variables.get(value.name.removeprefix(binding.prefix))
+                if variable is not None:
+                    yield value, variable, fmu
+
+    @property
+    def fmus(self):
+        """(component's name, FMU) of all components."""
+        return [(name, component.fmu) for name, component in self.system.components.items()]
+
+
+DECLARING = re.compile(rb"<[\w.-]+:Algorithm\s[^>]*xmlns")
+"""A start tag that declares a prefix; whether it does cannot be seen any more once it is read."""
+
+
+def elements_of(subject, *tags):
+    """Elements of the outermost file of these local names."""
+    if subject.document is not None:
+        yield from (part for part in subject.document.root.iter(etree.Element) if local(part) in tags)
+
+
+# packaging
+
+
+def prefixes(subject):
+    documents = [] if subject.document is None else [subject.document]
+    if subject.document is not None:
+        for binding in (binding for part in subject.components for binding in part.bindings):
+            if binding.values.uri and not binding.values.in_component:
+                file = subject.package.locate(binding.values.uri, subject.document.folder, "", Findings())
+                documents.append(None if file is None else subject.package.read(file, Findings()))
+    wanted = {uri: prefix for prefix, uri in NAMESPACES.items()}
+    for document in filter(None, documents):
+        for part in document.root.iter(etree.Element):
+            uri = etree.QName(part).namespace
+            if uri in wanted and part.prefix != wanted[uri]:
+                yield document.place(part), f"<{_shown(part)}> instead of <{wanted[uri]}:{local(part)}>"
+                break
+
+
+def _shown(part):
+    return f"{part.prefix}:{local(part)}" if part.prefix else local(part)
+
+
+def version_2(subject):
+    if subject.structure is not None and subject.structure.version.startswith("2"):
+        yield subject.document.place(subject.document.root), ""
+
+
+def escaped_addresses(subject):
+    for part in subject.components:
+        if unquote(part.source) != part.source:
+            yield part.place, f"the address '{part.source}' has escaped characters"
+
+
+# systems in systems
+
+
+def nested_systems(subject):
+    yield from ((part.place, "") for part in subject.elements if isinstance(part, SystemElement))
+
+
+def other_files(subject):
+    yield from ((part.place, "") for part in subject.components if part.type != FMU)
+
+
+def dictionaries(subject):
+    yield from ((part.place, "") for part in subject.elements if isinstance(part, DictionaryReference))
+
+
+def system_connections(subject):
+    for link in () if subject.structure is None else subject.structure.system.links:
+        if not (link.start_element and link.end_element):
+            yield link.place, ""
+
+
+# connections
+
+
+def reversed_links(subject):
+    if subject.tree is not None:
+        wires = {(wire.source, wire.target) for wire in subject.tree.wires}
+        for link, _, _ in subject.links:
+            ends = Key((link.end_element,), link.end_connector), Key((link.start_element,), link.start_connector)
+            if ends in wires:
+                yield link.place, ""
+
+
+def undeclared_connectors(subject):
+    declared = {(part.name, connector.name) for part in subject.elements for connector in _connectors(part)}
+    for link, _, _ in subject.links:
+        for end in ((link.start_element, link.start_connector), (link.end_element, link.end_connector)):
+            if end not in declared:
+                yield link.place, f"{'.'.join(end)} is not declared as a connector"
+
+
+def _connectors(part):
+    return getattr(part, "connectors", ())
+
+
+def typeless_connectors(subject):
+    for part in subject.components:
+        yield from ((connector.place, "") for connector in part.connectors if connector.type is None)
+
+
+def enumeration_connectors(subject):
+    for part in subject.components:
+        yield from ((connector.place, "") for connector in part.connectors if connector.type == "Enumeration")
+
+
+def different_types(subject):
+    for link, start, end in subject.links:
+        kinds = [port.variable.kind for port in (start, end) if port is not None and port.variable is not None]
+        if len(kinds) == 2 and kinds[0] != kinds[1]:
+            yield link.place, f"a connection between {kinds[0]} and {kinds[1]}"
+
+
+def enumeration_connections(subject):
+    for link, *ports in subject.links:
+        if any(p is not None and p.variable is not None and p.variable.kind == "Enumeration" for p in ports):
+            yield link.place, ""
+
+
+def parameter_connections(subject):
+    initial = {(c.source, c.target): c for c in subject.system.connections if c.initial}
+    for link, _, _ in subject.links:
+        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
+        if ends in initial or ends[::-1] in initial:
+            yield link.place, ""
+
+
+def mappings(subject):
+    for link, _, _ in subject.links:
+        if link.transformation is not None and link.transformation.kind != "Linear":
+            yield link.place, f"a mapping of {link.transformation.kind} values"
+
+
+def linear_without_factor(subject):
+    for part in elements_of(subject, "LinearTransformation"):
+        if part.get("factor") is None and local(part.getparent()) == "Connection":
+            yield subject.document.place(part), ""
+
+
+def unit_conversions(subject):
+    """Connections whose whole transformation is another than the one that is written."""
+    flat = {(c.source, c.target): c for c in subject.system.connections}
+    for link, _, _ in subject.links:
+        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
+        whole = flat.get(ends) or flat.get(ends[::-1])
+        how = link.transformation
+        if whole is None or (how is not None and how.kind != "Linear"):
+            continue
+        written = (how.factor, how.offset) if how is not None else (1.0, 0.0)
+        pairs = zip(written, (whole.factor, whole.offset), strict=True)
+        if not all(isclose(one, other, rel_tol=1e-12) for one, other in pairs):
+            yield link.place, f"a conversion of units, {whole.factor:.6g} times the value plus {whole.offset:.6g}"
+
+
+# parameters
+
+
+def sets_on_systems(subject):
+    for binding in () if subject.structure is None else subject.structure.system.bindings:
+        yield binding.values.place or subject.structure.system.place, ""
+
+
+def several_sets(subject):
+    for part in subject.components:
+        yield from ((binding.values.place, "") for binding in part.bindings[1:])
+
+
+def set_names(subject):
+    names = dict.fromkeys(values.name for *_, values in subject.sets)
+    if names:
+        yield subject.structure.system.place, f"parameter sets {', '.join(map(repr, names))}"
+
+
+def sets_of_other_names(subject):
+    sets = list(subject.sets)
+    for part, _, _, values in sets:
+        if values.name != sets[0][-1].name:
+            yield part.place, f"the parameter set '{values.name}' beside '{sets[0][-1].name}'"
+
+
+def set_prefixes(subject):
+    for part in subject.components:
+        yield from ((binding.values.place, "") for binding in part.bindings if binding.prefix)
+
+
+def set_mappings(subject):
+    for part in subject.components:
+        yield from ((binding.mapping.place, "") for binding in part.bindings if binding.mapping is not None)
+
+
+def sets_in_fmus(subject):
+    for part in subject.components:
+        yield from ((binding.values.place, "") for binding in part.bindings if binding.values.in_component)
+
+
+def set_units(subject):
+    for value, variable, fmu in subject.values:
+        own = find_unit(variable.unit, fmu.units)
+        if value.unit is not None and own is not None and relation(value.unit, own) == "convertible":
+            yield value.place, f"a value in {value.unit.name}, where the FMU has {own.name}"
+
+
+def set_enumerations(subject):
+    for *_, values in subject.sets:
+        yield from ((value.place, "") for value in values.values if value.kind == "Enumeration")
+
+
+def integers_for_reals(subject):
+    for value, variable, _ in subject.values:
+        if (value.kind, variable.kind) == ("Integer", "Real"):
+            yield value.place, ""
+
+
+def values_of_others(subject):
+    for value, variable, _ in subject.values:
+        if variable.causality not in ("parameter", "input"):
+            yield value.place, f"a value for a variable of causality {variable.causality}"
+
+
+# times
+
+
+def _osp_steps(subject):
+    """FixedStepAlgorithm elements that libcosim looks for, whatever their prefixes."""
+    experiment = child(subject.document.root, "ssd:DefaultExperiment")
+    for annotation in () if experiment is None else children(experiment, "ssd:Annotations", "ssc:Annotation"):
+        if annotation.get("type") == OSP_TYPE:
+            yield from (part for part in annotation.iter(etree.Element) if local(part) == "FixedStepAlgorithm")
+
+
+def steps_of_others(subject):
+    if subject.document is not None and not list(_osp_steps(subject)) and subject.system.experiment.step_size:
+        yield next(_stated(subject)), ""
+
+
+def no_steps(subject):
+    if subject.document is not None and not list(_osp_steps(subject)) and not subject.system.experiment.step_size:
+        yield subject.document.place(subject.document.root), ""
+
+
+def steps(subject):
+    if subject.document is not None and subject.system.experiment.step_size:
+        yield next(_stated(subject)), f"the step size {subject.system.experiment.step_size:g} s"
+
+
+def _stated(subject):
+    """Places where a base step is stated, and at last the file's own."""
+    for part in elements_of(subject, *STEP_SIZES):
+        if part.get(STEP_SIZES[local(part)]) is not None:
+            yield subject.document.place(part)
+    yield subject.document.place(subject.document.root)
+
+
+def osp_annotations(subject):
+    for step in _osp_steps(subject) if subject.document is not None else ():
+        algorithm = step.getparent()
+        declares = DECLARING.search((subject.package.folder / subject.package.ssd).read_bytes())
+        if declares or algorithm.attrib or algorithm.prefix != "osp" or step.prefix != "osp":
+            yield subject.document.place(algorithm), ""
+
+
+def hints_of_others(subject):
+    for part in elements_of(subject, "StepSizeHint"):
+        annotation = part.getparent()
+        osp = part.prefix == "osp" and local(annotation) == "Annotation" and annotation.get("type") == OSP_TYPE
+        if not osp:
+            yield subject.document.place(part), ""
+
+
+def start_times(subject):
+    if subject.document is not None and subject.system.experiment.start_time:
+        place = subject.document.place(child(subject.document.root, "ssd:DefaultExperiment"))
+        yield place, f"the start time {subject.system.experiment.start_time:g} s"
+
+
+# FMUs
+
+
+def fmi_1(subject):
+    yield from ((name, "") for name, fmu in subject.fmus if fmu.fmi_version.startswith("1"))
+
+
+def fmi_3(subject):
+    yield from ((name, "") for name, fmu in subject.fmus if fmu.fmi_version.startswith("3"))
+
+
+def without_co_simulation(subject):
+    yield from ((name, "") for name, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces)
+
+
+def same_guids(subject):
+    """Components whose FMU has the GUID of another one with other variables."""
+    first = defaultdict(list)
+    for name, fmu in subject.fmus:
+        others = [other for other in first[fmu.token] if other.path != fmu.path]
+        if any(_variables(other) != _variables(fmu) for other in others):
+            yield name, f"{fmu.path.name} has the GUID of {others[0].path.name}"
+        first[fmu.token].append(fmu)
+
+
+def _variables(fmu):
+    return [(v.name, v.value_reference, v.type, v.causality) for v in fmu.variables.values()]
