@@ -221,6 +221,12 @@ def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(syste
     assert table["clock.count"].values.tolist() == list(range(6))
 
 
+def test_a_slow_component_failed_in_the_step_in_which_it_did(make_system, make_scenario, dangerous):
+    system = make_system({"engine": ("dangerous", {"how": "read", "when": 0.6}, 0.3), "after": "gain"})
+    with pytest.raises(RunError, match="engine: failed in the step from t = 0.6 s. Its process was ended"):
+        simulate(system, make_scenario(1.2, 0.1), isolate=True)
+
+
 def test_one_that_goes_down_at_the_start_is_named_too(system, make_scenario):
     with pytest.raises(
         RunError, match="engine: failed at the start. Its process was ended in .* by signal 11"
@@ -280,7 +286,9 @@ def test_a_flood_of_prints_is_cut(system, make_scenario, capfd):
 
 def processes(parent):
     """Processes of components that a process has started: (pid, command line)."""
-    found = subprocess.run(["ps", "-ww", "-o", "pid=,args=", "--ppid", str(parent)], capture_output=True, text=True).stdout
+    found = subprocess.run(
+        ["ps", "-ww", "-o", "pid=,args=", "--ppid", str(parent)], capture_output=True, text=True
+    ).stdout
     listed = [line.split(maxsplit=1) for line in found.splitlines()]
     return [(int(pid), command) for pid, command in listed if "cosim.isolated" in command]
 

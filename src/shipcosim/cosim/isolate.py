@@ -105,7 +105,7 @@ class Worker:
 
     def greet(self):
         """Wait until the process is there. Raises SlaveError if it does not come."""
-        self._in_time("its start", GREETING, None)
+        self._in_time("its start", GREETING, receive, self._process.stdout)
 
     def ask(self, what, function, *arguments):
         """What the process answers to a question.
@@ -124,7 +124,17 @@ class Worker:
         SlaveError
             If the FMU fails in it or in what it was told before, or no answer comes.
         """
-        went_well, result, messages = self._in_time(what, self._timeout, (True, function, *arguments))
+        self.put(what, function, *arguments)
+        return self.answer()
+
+    def put(self, what, function, *arguments):
+        """Put a question; `answer` has to be called next, and until then others can be asked too."""
+        self._asked = what
+        self._in_time(what, self._timeout, send, self._process.stdin, (True, function, *arguments))
+
+    def answer(self):
+        """Answer to the question that was put."""
+        went_well, result, messages = self._in_time(self._asked, self._timeout, receive, self._process.stdout)
         self.messages += messages
         if not went_well:
             raise SlaveError(result)
@@ -132,14 +142,12 @@ class Worker:
 
     def tell(self, what, function, *arguments):
         """Have the process do something; whether it went well comes with the next answer."""
-        self._in_time(what, self._timeout, (False, function, *arguments))
+        self._in_time(what, self._timeout, send, self._process.stdin, (False, function, *arguments))
 
-    def _in_time(self, what, limit, message):
+    def _in_time(self, what, limit, action, *arguments):
         self._deadline = monotonic() + limit
         try:
-            if message is not None:
-                send(self._process.stdin, message)
-            return receive(self._process.stdout) if message is None or message[0] else None
+            return action(*arguments)
         except (OSError, EOFError, pickle.UnpicklingError):
             raise SlaveError(self._obituary(what, limit)) from None
         except BaseException:
@@ -203,7 +211,7 @@ class Remote:
 
     def __init__(self, component, worker):
         self.name, self._worker = component.name, worker
-        self._getters, self._fetched = [], {}  # by number: prepared getters, what came of them with the last step
+        self._is_stepping, self._getters, self._fetched = False, [], {}
         worker.greet()
         worker.ask("its instantiation", "make", component)
 
@@ -216,35 +224,43 @@ class Remote:
 
     def setter(self, kind, variables, buffer):
         """Prepared call that sets variables of one kind from a buffer; what goes wrong is said by the next call."""
-        tell, what, number = self._worker.tell, f"Set{kind}", self._prepared("setter", kind, variables, buffer)
+        what, number = f"Set{kind}", self._prepared("setter", kind, variables, buffer)
 
         def set_all():
-            self._fetched.clear()
-            tell(what, "set", what, number, buffer.tobytes())
+            self._finish()
+            self._worker.tell(what, "set", what, number, buffer.tobytes())
             return OK
 
         return set_all
 
     def getter(self, kind, variables, buffer):
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
-        ask, what, number = self._worker.ask, f"Get{kind}", self._prepared("getter", kind, variables, buffer)
+        what, number = f"Get{kind}", self._prepared("getter", kind, variables, buffer)
         self._getters.append(number)
 
         def get_all():
-            status, data = self._fetched.pop(number, None) or ask(what, "get", number)
+            if self._is_stepping:
+                self._finish()
+            status, data = self._fetched.pop(number, None) or self._ask(what, "get", number)
             buffer[:] = np.frombuffer(data, buffer.dtype)
             return status
 
         return get_all
 
     def stepper(self):
-        """Prepared call that advances from a time by a step size and returns the status."""
-        ask, number, getters = self._worker.ask, self._prepared("stepper"), self._getters
+        """Prepared call that advances from a time by a step size; what goes wrong is said by the next call.
+
+        What the getters get then comes with it.
+        """
+        number = self._prepared("stepper")
 
         def step(time, step_size):
-            status, fetched = ask("DoStep", "step", number, time, step_size, getters)
-            self._fetched = dict(zip(getters, fetched, strict=False))
-            return status
+            self._finish()
+            self._worker.put("DoStep", "step", number, time, step_size, self._getters)
+            self._is_stepping = True
+            if not self._getters:  # then nothing waits for it
+                self._finish()
+            return OK
 
         return step
 
@@ -287,9 +303,19 @@ class Remote:
             self._call("terminate")
 
     def _call(self, method, *arguments):
-        self._fetched.clear()
-        return self._worker.ask(method, "call", method, *arguments)
+        return self._ask(method, "call", method, *arguments)
 
     def _prepared(self, method, kind=None, variables=(), buffer=None):
         blank = None if buffer is None else np.zeros_like(buffer)
-        return self._worker.ask("the preparation", "prepare", method, kind, tuple(variables), blank)
+        return self._ask("the preparation", "prepare", method, kind, tuple(variables), blank)
+
+    def _ask(self, *question):
+        self._finish()
+        return self._worker.ask(*question)
+
+    def _finish(self):
+        """See that a step has been done; what was got with the last one does not hold any longer."""
+        self._fetched = {}
+        if self._is_stepping:
+            self._is_stepping = False
+            self._fetched = dict(zip(self._getters, self._worker.answer(), strict=True))

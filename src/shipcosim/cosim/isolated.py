@@ -12,7 +12,7 @@ import sys
 import numpy as np
 
 from shipcosim.cosim.instances import Instances
-from shipcosim.cosim.slave import FAILED, SlaveError
+from shipcosim.cosim.slave import SlaveError
 
 DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does not outlive the run
 
@@ -101,9 +101,9 @@ class Desk:
         return call(), buffer.tobytes()
 
     def step(self, number, time, step_size, getters):
-        """Make a prepared step and get what will be asked for next; its status, and what `get` gives for each."""
-        status = self._prepared[number][0](time, step_size)
-        return status, [] if status >= FAILED else [self.get(getter) for getter in getters]
+        """Make a prepared step, then get what will be asked for next: what `get` gives for each."""
+        self._slave.check("DoStep", self._prepared[number][0](time, step_size))
+        return [self.get(getter) for getter in getters]
 
     def news(self):
         """Messages logged since the last time."""

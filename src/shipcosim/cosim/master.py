@@ -173,6 +173,7 @@ class Master:
             exchange.refresh()
 
     def _step(self, k, clock):
+        """Step all components; where none waits for another's outputs, those in own processes do it at once."""
         for part in self._parts:
             if self._sequential:
                 self._transfer(k + 1)
@@ -180,10 +181,16 @@ class Master:
                 if k % part.multiple == 0:
                     part.write()
                     part.step(clock[k], clock[k + part.multiple] - clock[k])
+                if self._sequential and (k + 1) % part.multiple == 0:
+                    part.read()
+            except SlaveError as error:
+                raise _failed_step(part, clock[k], error) from error
+        for part in () if self._sequential else self._parts:
+            try:
                 if (k + 1) % part.multiple == 0:
                     part.read()
             except SlaveError as error:
-                raise Failure(Problem(part.name, f"failed in the step from t = {clock[k]:.9g} s. {error}")) from error
+                raise _failed_step(part, clock[k + 1 - part.multiple], error) from error
 
     def _transfer(self, count):
         for exchange in self._all:
@@ -198,6 +205,10 @@ class Master:
         row = int(np.flatnonzero(~np.isfinite(reals.seen))[0])
         found = f"is {reals.seen[row]} at t = {time:.9g} s."
         raise Failure(Problem(self._names["Real"][0][row], found, "Every value has to be a finite number."))
+
+
+def _failed_step(part, time, error):
+    return Failure(Problem(part.name, f"failed in the step from t = {time:.9g} s. {error}"))
 
 
 @contextmanager
