@@ -5,23 +5,27 @@ from functools import cache
 import numpy as np
 import pytest
 from diagnose import twin
+from scipy.linalg import expm
 
 from shipcosim.diagnose.linear import (
     STATES,
+    WAVE_DAMPING,
     Linear,
     Noise,
     _lost,
     _process,
     _uncertain,
+    _with_waves,
     advanced,
     innovations,
     linearise,
+    oscillation,
     rows_first,
 )
 from shipcosim.diagnose.plant import Motion, motion_rates, shown
 from shipcosim.diagnose.record import first_motion, record_of
 
-NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]))
+NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]), 2.0 * twin.WHITE[3:], 1.1)
 WRONG = {
     "port.thrust_loss": 0.1,
     "instruments.heading_bias": 0.03,
@@ -147,8 +151,32 @@ def test_output_is_the_derivative_of_what_is_shown_and_of_slow_errors(state):
     up, down = (rows_first(shown(motion._replace(**{state: getattr(motion, state) + s}), plant)) for s in (1e-5, -1e-5))
     i = Motion._fields.index(state)
     np.testing.assert_allclose(linear.output[..., i], (up - down) / 2e-5, atol=2e-3)
-    np.testing.assert_array_equal(linear.output[:, :3, 9:], np.broadcast_to(np.eye(3), (motion.x.size, 3, 3)))
-    assert (linear.output[:, 3:, 9:] == 0.0).all()
+    np.testing.assert_array_equal(linear.output[:, :3, 9:12], np.broadcast_to(np.eye(3), (motion.x.size, 3, 3)))
+    assert (linear.output[:, 3:, 9:12] == 0.0).all()
+
+
+def test_waves_move_the_ship_in_her_own_axes():
+    """A place 1 m ahead is seen along the heading; their velocity as it is."""
+    _, plant, motion, linear = about()
+    psi = np.asarray(shown(motion, plant).psi)
+    np.testing.assert_allclose(linear.output[:, :3, 12], np.stack([np.cos(psi), np.sin(psi), 0.0 * psi], axis=-1))
+    np.testing.assert_allclose(linear.output[:, :3, 13], np.stack([-np.sin(psi), np.cos(psi), 0.0 * psi], axis=-1))
+    np.testing.assert_array_equal(linear.output[:, 3:, 15:], np.broadcast_to(np.eye(3), (psi.size, 3, 3)))
+    np.testing.assert_array_equal(linear.output[:, 2, 14], 1.0)
+
+
+def test_waves_are_an_oscillator_moved_by_white_noise():
+    """Transition by the matrix exponential, what a step adds by Van Loan's (1978) block exponential."""
+    h, w, z = 0.7, 1.1, WAVE_DAMPING
+    noise = Noise(np.ones(6), np.ones(3), np.ones(3), np.array([0.3, 0.2, 0.1]), w)
+    transition, added = oscillation(noise, h)
+    F = np.array([[0.0, 1.0], [-w * w, -2.0 * z * w]])
+    np.testing.assert_allclose(np.concatenate(transition).reshape(2, 2), expm(F * h), rtol=1e-12)
+    for i, speed in enumerate(noise.wave):
+        strength = np.diag([0.0, 4.0 * z * w * speed**2])  # so that the variance of the velocity stays speed**2
+        block = expm(np.block([[-F, strength], [np.zeros((2, 2)), F.T]]) * h)
+        Q = block[2:, 2:].T @ block[:2, 2:]
+        np.testing.assert_allclose([entry[i] for entry in added], Q[[0, 0, 1], [0, 1, 1]], rtol=1e-9)
 
 
 def test_steps_over_which_nothing_is_known_teach_nothing():
@@ -174,7 +202,8 @@ def tiny(n=5):
     A = np.eye(STATES) + 0.2 * random.standard_normal((n - 1, STATES, STATES))
     H = random.standard_normal((n, 6, STATES))
     B, Z = random.standard_normal((n - 1, STATES, 3)), random.standard_normal((n, 6, 3)) * whole[..., None]
-    noise = Noise(random.uniform(0.3, 1.0, 6), random.uniform(0.1, 0.5, 3), random.uniform(0.01, 0.1, 3))
+    levels = random.uniform(0.3, 1.0, 6), random.uniform(0.1, 0.5, 3), random.uniform(0.01, 0.1, 3)
+    noise = Noise(*levels, random.uniform(0.2, 0.4, 3), 1.1)
     return Linear(A, B, H, Z, whole), noise, record
 
 
@@ -182,7 +211,7 @@ def tiny(n=5):
 def dense():
     """The same without a filter: the covariance of all measurements, their deviations, and that of states with them."""
     (A, B, H, Z, whole), noise, record = tiny()
-    n = len(Z)
+    n, A = len(Z), _with_waves(A[None], noise, record.step, ())[0]
     covariance = {(0, 0): _uncertain(noise, ())}
     mean = [np.zeros((STATES, Z.shape[-1]))]
     for k in range(n - 1):
@@ -263,9 +292,10 @@ def test_innovations_of_what_the_model_draws_are_white_and_of_unit_variance():
 
 def test_several_logs_and_levels_of_noise_at_once_give_what_each_gives_alone():
     record, _, _, linear = about()
-    both = Noise(*(np.stack([level, 2.0 * level]) for level in (NOISE.white, NOISE.jolt, NOISE.walk)))
+    levels = [np.stack([level, 2.0 * level]) for level in (NOISE.white, NOISE.jolt, NOISE.walk, NOISE.wave)]
+    both = Noise(*levels, np.array([0.9, 1.3]))
     together = innovations(linear, both, record)
     for i in range(2):
-        alone = innovations(linear, Noise(both.white[i], both.jolt[i], both.walk[i]), record)
+        alone = innovations(linear, Noise(*(level[i] for level in levels), both.wave_frequency[i]), record)
         np.testing.assert_allclose(together.white[:, i], alone.white, atol=1e-9)
         np.testing.assert_allclose(together.log_determinant[:, i], alone.log_determinant, atol=1e-9)

@@ -15,6 +15,7 @@ from threadpoolctl import threadpool_limits
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.effects import read_catalogue
 from shipcosim.diagnose.linear import STATES, _process, _uncertain
+from shipcosim.diagnose.noise import waves_of
 from shipcosim.diagnose.plant import Drivers, Motion, motion_rates, plant_of, shown
 from shipcosim.diagnose.ranking import explain
 from shipcosim.diagnose.run import prepare
@@ -173,10 +174,13 @@ def fits(name):
 def drawn(seed, linear, noise, record):
     """A linear problem whose log is drawn from itself."""
     random, n = np.random.default_rng(seed), record.time.size
-    root = np.sqrt(np.diag(_process(noise, record.step)))
-    x, rows = np.linalg.cholesky(_uncertain(noise, ())) @ random.standard_normal(STATES), []
+    calm = replace(noise, wave=np.zeros(3))
+    root = np.sqrt(np.diag(_process(calm, record.step)))
+    x, rows = np.sqrt(np.diag(_uncertain(calm, ()))) * random.standard_normal(STATES), []
     for k in range(n):
         rows.append(linear.output[k] @ x + noise.white * random.standard_normal(6))
         if k < n - 1:
             x = linear.transition[k] @ x + root * random.standard_normal(STATES)
-    return linear._replace(driven=np.zeros((n - 1, STATES, 1)), seen=np.stack(rows)[..., None])
+    moved = waves_of(noise, record.step, (n, 1), random)[:, 0]
+    rows = np.stack(rows) + (linear.output[..., 12:] @ moved[..., None])[..., 0]
+    return linear._replace(driven=np.zeros((n - 1, STATES, 1)), seen=rows[..., None])

@@ -35,9 +35,24 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     table = _without(table, found)
     quiet = silent_rate(table)
     table = undone(table, mislabel_of(quiet[0]), quiet[0].segments) if quiet else table
-    labels, table = mislabelled(table)
-    found += [*quiet, *labels, *mislabelled_wind(table), *wrong_clock(table)]
+    labels, right = mislabelled(table)
+    clock = wrong_clock(right)
+    kept = [label for label in labels if not _is_the_clock(label, clock, table["time"])]
+    if len(kept) < len(labels):
+        right = table
+        for label in kept:
+            right = undone(right, mislabel_of(label), label.segments)
+        clock = wrong_clock(right)
+    found += [*quiet, *kept, *mislabelled_wind(right), *clock]
     return sorted(found, key=lambda finding: -finding.probability)
+
+
+def _is_the_clock(label, clock, time):
+    """Whether a mislabel of a part of the log is where the clock is wrong even with the label put right."""
+    if not label.segments or not clock:
+        return False
+    part, wrong = inside(time, label.segments), inside(time, [s for finding in clock for s in finding.segments])
+    return bool((part & wrong).sum() > 0.5 * part.sum())
 
 
 def _arrays(log):

@@ -8,6 +8,7 @@ from shipcosim.diagnose.examine_labels import CLIP, LEAST_GAIN, best_segment, in
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.mislabels import WIND_LABELS
 from shipcosim.diagnose.motion import Filter, Motion, filter_for, whiteness
+from shipcosim.diagnose.tables import inside
 
 __all__ = ["mislabelled_wind"]
 
@@ -15,6 +16,7 @@ ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
 LEAST_GAIN_WHOLE = 5.0  # nats, of a unit of the whole log, among three
 AVERAGING = 8.0  # [s] of a bell over the ship's velocity; wind sensors average, and waves shake the mast
 NEAR, SURE = 0.3, 0.18  # of the slope of the wind on the ship's velocity: agreement, largest deviation
+BESIDE, JUMP = 240.0, 0.35  # [s] beside an end of a segment; of the logarithm of the wind speed, against another unit
 STEADIER = 0.08  # by which the steadiness of the wind must grow; so the ship must have turned
 BOW, MIRRORED, NORTH = "from the bow", "mirrored", "from north"
 SLOPES = {BOW: {"apparent": 1.0, "kn": 1852.0 / 3600.0, "m/s": 3600.0 / 1852.0, "over ground": 0.0}}
@@ -100,7 +102,7 @@ def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     """The mislabel that the slope on the ship's velocity leaves over."""
     y, x = whitener(wind), whitener(slow)
     if frame == BOW:
-        return _unit(time, y, x, whitener(smooth))
+        return _unit(time, y, x, whitener(smooth), np.hypot(*wind.T))
     slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
     kinds = SLOPES[frame]
     weights = {kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12 for kind, b in kinds.items()}
@@ -108,7 +110,7 @@ def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     return [_named(LABEL[frame, kind], segment, gain, weights[kind] / sum(weights.values()))]
 
 
-def _unit(time, y, x, smooth):
+def _unit(time, y, x, smooth, speed):
     """Another unit, or the wind over ground with its direction from the bow, if the slope clearly says so."""
     found = []
     for kind, b in SLOPES[BOW].items():
@@ -120,9 +122,21 @@ def _unit(time, y, x, smooth):
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
         near = all(abs(one - b) < max(NEAR * b, 0.2) for one in (slope, also))
+        near &= b == 0.0 or _jumps(time, speed, segment, b)
         if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
             found.append(_named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0))
     return sorted(found, key=lambda finding: -finding.probability)[:1]
+
+
+def _jumps(time, speed, segment, factor):
+    """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log."""
+    if segment is None:
+        return True
+    here = inside(time, [segment])
+    near = inside(time, [(end - BESIDE, end + BESIDE) for end in segment])
+    if not (near & here).any() or not (near & ~here).any():
+        return True
+    return bool(abs(np.log(np.median(speed[near & here]) / np.median(speed[near & ~here]) / factor)) < JUMP)
 
 
 def _slope(y, x):

@@ -1,9 +1,11 @@
 """The force that a model lacks over a log: what else must have acted on the ship for her to move as she did."""
 
+from dataclasses import replace
+
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.linear import Noise, innovations, linearise
+from shipcosim.diagnose.linear import innovations, linearise
 from shipcosim.diagnose.predict import mass_matrix
 from shipcosim.models.kinematics import to_body, to_ned
 
@@ -33,7 +35,7 @@ def missing_force(case, plant, motion, *, learning=_LEARNING):
         ``speed`` over ground [m/s].
     """
     record = case.record
-    noise = Noise(case.noise.white, case.noise.jolt, case.noise.jolt / learning)
+    noise = replace(case.noise, walk=case.noise.jolt / learning)
     found = innovations(linearise(motion, record, plant, []), noise, record, motion)
     force = np.where(record.known[:, None], found.slow[:, :3] @ mass_matrix(plant).T, np.nan)
     return _in_frames(*force.T, found.motion, record, plant)

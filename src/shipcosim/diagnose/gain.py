@@ -1,13 +1,13 @@
 """What naming the cause is worth: how far predictions with each model are off, on rows that nothing was fitted on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import xarray
 
 from shipcosim.diagnose.heldout import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
-from shipcosim.diagnose.linear import Noise, linearise
+from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.plant import Motion, shown
 from shipcosim.diagnose.predict import earth_fixed, missing, observed, predicted, reference, replayable, restarted
 from shipcosim.diagnose.ranking import fitted
@@ -183,12 +183,8 @@ def _observed(case, about_fit, motion, seen, plants):
         earth_fixed(linear[name], about[name], plants[name]) if frame == "earth" else linear[name]
         for name, frame, _ in each
     ]
-    noise = case.noise
-    noise = Noise(
-        np.stack([noise.white] * len(each)),
-        np.stack([noise.jolt] * len(each)),
-        np.stack([noise.jolt / time for _, _, time in each]),
-    )
+    walks = np.stack([case.noise.jolt / time for _, _, time in each])
+    noise = replace(case.noise, jolt=np.broadcast_to(case.noise.jolt, walks.shape), walk=walks)
     known = observed(problems, noise, record, [about[n] for n, _, _ in each], [plants[n] for n, _, _ in each])
     found = {}
     for name, plant in plants.items():

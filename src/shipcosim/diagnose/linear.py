@@ -16,6 +16,7 @@ __all__ = [
     "SLOW_STD",
     "SLOW_TIME",
     "STATES",
+    "WAVE_DAMPING",
     "Innovations",
     "Linear",
     "Noise",
@@ -23,16 +24,20 @@ __all__ = [
     "beside",
     "innovations",
     "linearise",
+    "oscillation",
     "rows_first",
     "with_columns",
 ]
 
-STATES = 12
-"""x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3)."""
+STATES = 18
+"""x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3), what waves add
+to position and heading (3) and to velocity (3), in the ship's axes."""
 _SHARE = 0.2  # of a column's size, for differences
 SLOW_STD = np.array([0.1, 0.1, np.radians(0.1)])
 SLOW_TIME = np.array([240.0, 240.0, 60.0])
 """Slow errors of position and heading, stationary standard deviation [m, m, rad] and correlation time [s]."""
+WAVE_DAMPING = 0.1
+"""Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""
 
 
 @dataclass(frozen=True)
@@ -47,11 +52,17 @@ class Noise:
         White acceleration: what gusts and thrusters do that the model does not follow. [m/s^1.5, m/s^1.5, rad/s^1.5]
     walk : (..., 3) array
         Random walk of the unexplained acceleration. [m/s^2.5, m/s^2.5, rad/s^2.5]
+    wave : (..., 3) array
+        Standard deviation of the velocity of first-order wave motion. [m/s, m/s, rad/s]
+    wave_frequency : (...) array
+        Where that motion is largest. [rad/s]
     """
 
     white: Any
     jolt: Any
     walk: Any
+    wave: Any = (0.0, 0.0, 0.0)
+    wave_frequency: Any = 1.0
 
 
 class Linear(NamedTuple):
@@ -59,10 +70,11 @@ class Linear(NamedTuple):
 
     Attributes
     ----------
-    transition : (n-1, ..., 12, 12) array
-    driven : (n-1, ..., 12, 1 + p) array
+    transition : (n-1, ..., 18, 18) array
+        All but that of the waves, which is a matter of the noise.
+    driven : (n-1, ..., 18, 1 + p) array
         First column: by how much the model misses the next row of the motion.
-    output : (n, ..., 6, 12) array
+    output : (n, ..., 6, 18) array
     seen : (n, ..., 6, 1 + p) array
         First column: measured minus shown, 0 where nothing was measured.
     whole : (n, ..., 6) bool array
@@ -77,7 +89,7 @@ class Linear(NamedTuple):
 
 
 def with_columns(linear, driven, seen):
-    """The problem with further columns behind its own, (n-1, ..., 12, p) and (n, ..., 6, p) arrays."""
+    """The problem with further columns behind its own, (n-1, ..., 18, p) and (n, ..., 6, p) arrays."""
     return linear._replace(
         driven=np.concatenate([linear.driven, driven], axis=-1), seen=np.concatenate([linear.seen, seen], axis=-1)
     )
@@ -204,6 +216,9 @@ def _output(motion, seen, plant):
         other = shown(motion._replace(**{name: getattr(motion, name) + small}), plant)
         H[..., i] = (rows_first(other) - rows) / small
     H[..., range(3), range(9, 12)] = 1.0
+    c, s = np.cos(rows[..., 2]), np.sin(rows[..., 2])
+    H[..., 0, 12], H[..., 0, 13], H[..., 1, 12], H[..., 1, 13] = c, -s, s, c
+    H[..., 2, 14] = H[..., 3, 15] = H[..., 4, 16] = H[..., 5, 17] = 1.0
     return H
 
 
@@ -218,9 +233,9 @@ class Innovations(NamedTuple):
         Of their covariance, per row.
     motion : Motion or None
         The smoothed motion, (..., n) arrays.
-    slow : (..., n, 6) array or None
-        Smoothed unexplained acceleration, and slow errors.
-    filtered : (n, ..., 12) array or None
+    slow : (..., n, 12) array or None
+        Smoothed unexplained acceleration, slow errors and waves.
+    filtered : (n, ..., 18) array or None
         Deviations of the first column at each row by what was known until then.
     """
 
@@ -250,6 +265,7 @@ def innovations(linear, noise, record, motion=None, *, keep=False):
     """
     lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
     A, B, H, Z = (_by_log(values, lead, 2) for values in linear[:4])
+    A = _with_waves(A, noise, record.step, lead)
     whole, known, lost = _by_log(linear.whole, lead, 1), np.asarray(record.known), _lost()
     R = np.where(whole, _by_log(np.asarray(noise.white)[None] ** 2, lead, 1), 1.0)
     Q, P = (_by_log(values[None], lead, 2)[:, 0] for values in (_process(noise, record.step), _uncertain(noise, lead)))
@@ -280,22 +296,60 @@ def _rows_before(values, lead):
     return np.moveaxis(values.reshape(*lead, *values.shape[1:]), len(lead), 0)
 
 
+def oscillation(noise, h):
+    """First-order waves over a step.
+
+    Returns
+    -------
+    tuple of four (..., 1) arrays, tuple of three (..., 3) arrays
+        Transition from place and velocity to place, then to velocity; what a step adds to the variance of the place, to
+        the covariance of both, to the variance of the velocity.
+    """
+    w, z = np.asarray(noise.wave_frequency)[..., None], WAVE_DAMPING
+    fast = w * np.sqrt(1.0 - z * z)
+    cosine, sine = np.exp(-z * w * h) * np.cos(fast * h), np.exp(-z * w * h) * np.sin(fast * h) / fast
+    a, b, c, d = cosine + z * w * sine, sine, -w * w * sine, cosine - z * w * sine
+    place, speed = _waves(noise)
+    added = place - a * a * place - b * b * speed, -a * c * place - b * d * speed, speed - c * c * place - d * d * speed
+    return (a, b, c, d), added
+
+
+def _with_waves(A, noise, h, lead):
+    """Transitions (m, n-1, 18, 18) with that of the waves."""
+    A = A.copy()
+    a, b, c, d = (np.broadcast_to(entry[..., 0], lead).reshape(-1, 1, 1) for entry in oscillation(noise, h)[0])
+    A[..., range(12, 15), range(12, 15)], A[..., range(12, 15), range(15, 18)] = a, b
+    A[..., range(15, 18), range(12, 15)], A[..., range(15, 18), range(15, 18)] = c, d
+    return A
+
+
 def _process(noise, h):
     """Covariance of what happens over a step."""
     jolt, walk = np.asarray(noise.jolt) ** 2 * h, np.asarray(noise.walk) ** 2 * h
     place = jolt * h * h / 3.0 + 1e-10
     slow = np.broadcast_to(SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / SLOW_TIME)), jolt.shape)
-    return np.concatenate([place, jolt, walk, slow], axis=-1)[..., None] * np.eye(STATES)
+    still = np.zeros(jolt.shape)
+    Q = np.concatenate([place, jolt, walk, slow, still, still], axis=-1)[..., None] * np.eye(STATES)
+    _, (Q[..., range(12, 15), range(12, 15)], both, Q[..., range(15, 18), range(15, 18)]) = oscillation(noise, h)
+    Q[..., range(12, 15), range(15, 18)] = Q[..., range(15, 18), range(12, 15)] = both
+    return Q
+
+
+def _waves(noise):
+    """Variance of the place and of the velocity of wave motion."""
+    speed = np.asarray(noise.wave) ** 2
+    return speed / np.asarray(noise.wave_frequency)[..., None] ** 2, speed
 
 
 def _uncertain(noise, lead):
     """Covariance at the first row."""
     walk = np.asarray(noise.walk) ** 2 * 600.0
-    white = np.asarray(noise.white) ** 2
-    first = np.concatenate([100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape)], axis=-1)
+    white = np.broadcast_to(np.asarray(noise.white) ** 2, (*walk.shape[:-1], 6))
+    waves = (np.broadcast_to(values, walk.shape) for values in _waves(noise))
+    first = np.concatenate([100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape), *waves], axis=-1)
     return np.broadcast_to(first, (*lead, STATES))[..., None] * np.eye(STATES)
 
 
 def _lost():
     """What is added where nobody knows what drove the ship over a step."""
-    return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, *[0.0] * 12])

@@ -316,4 +316,5 @@ def true_wind(record, motion, plant):
 
 def sized(noise, factor):
     """The noise of rows that are that many times as far apart, averages of as many."""
-    return replace(noise, white=np.asarray(noise.white) / np.sqrt(factor))
+    less = np.sqrt(factor)
+    return replace(noise, white=np.asarray(noise.white) / less, wave=np.asarray(noise.wave) / less)

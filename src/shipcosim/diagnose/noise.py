@@ -1,10 +1,12 @@
 """How noisy a log is: levels of its channels and of what jolts the ship, by maximum likelihood."""
 
+from dataclasses import fields, replace
+
 import numpy as np
 
-from shipcosim.diagnose.linear import Linear, Noise, innovations
+from shipcosim.diagnose.linear import Linear, Noise, innovations, oscillation
 
-__all__ = ["explained", "first_noise", "tuned"]
+__all__ = ["explained", "first_noise", "tuned", "waves_of"]
 
 _GROUPS = (
     ("white", (0, 1)),
@@ -15,9 +17,16 @@ _GROUPS = (
     ("jolt", (2,)),
     ("walk", (0, 1)),
     ("walk", (2,)),
+    ("wave", (0,)),
+    ("wave", (1,)),
+    ("wave", (2,)),
+    ("wave_frequency", ()),
 )
+_FREQUENCIES = np.geomspace(0.4, 2.5, 8)  # rad/s, of waves
+_LEVELS = ((1.0, 1.0), (0.5, 1.0), (0.5, 0.5))  # of white noise in velocities and of waves, to begin with
 _STRIDE = 0.2  # of the natural logarithm
 _LONGEST = 0.8
+_SHARES = np.array([1.0, 0.5, 0.2, 0.0])  # of a move, that are tried
 
 
 def first_noise(record, length):
@@ -39,7 +48,8 @@ def first_noise(record, length):
     least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])
     white = np.where(silent[..., 0, :], 1.0, np.maximum(white, least))
     turning = 4.0 / length  # 1/m, from accelerations to those in yaw
-    return Noise(white, np.array([1e-3, 1e-3, 1e-3 * turning]), np.array([1e-5, 1e-5, 1e-5 * turning]))
+    jolt, walk = np.array([1e-3, 1e-3, 1e-3 * turning]), np.array([1e-5, 1e-5, 1e-5 * turning])
+    return Noise(white, jolt, walk, 0.7 * white[..., 3:], np.ones(white.shape[:-1]))
 
 
 def tuned(noise, linear, record, theta, *, most_walk, rounds=4):
@@ -62,21 +72,76 @@ def tuned(noise, linear, record, theta, *, most_walk, rounds=4):
     Noise
     """
     left = explained(linear, theta)
+    noise = _begun(noise, left, record)
     for _ in range(rounds):
         steps = np.zeros((2 * len(_GROUPS) + 1, len(_GROUPS)))
         for i in range(len(_GROUPS)):
             steps[1 + 2 * i, i], steps[2 + 2 * i, i] = _STRIDE, -_STRIDE
-        found = innovations(left, _scaled(noise, steps), record)
-        score = -0.5 * ((found.white[..., 0] ** 2).sum((0, -1)) + found.log_determinant.sum(0))
+        score = _likelihood(left, _scaled(noise, steps), record)
         up, down = score[1::2], score[2::2]
         slope, bend = (up - down) / (2 * _STRIDE), (up + down - 2 * score[0]) / _STRIDE**2
         move = np.where(bend < -1e-3, -slope / np.minimum(bend, -1e-3), np.sign(slope) * _LONGEST)
         move = np.clip(move, -_LONGEST, _LONGEST)
-        noise = _scaled(noise, move[None])
-        noise = Noise(noise.white[0], noise.jolt[0], np.minimum(noise.walk[0], most_walk))
+        tries = _scaled(noise, _SHARES[:, None] * move)
+        frequency = np.clip(tries.wave_frequency, *_FREQUENCIES[[0, -1]])
+        tries = replace(tries, walk=np.minimum(tries.walk, most_walk), wave_frequency=frequency)
+        scores = _likelihood(left, tries, record)
+        move = _SHARES[scores.argmax()] * move
+        noise = _of(tries, scores.argmax())
         if np.abs(move).max() < 0.05:
             break
     return noise
+
+
+def _begun(noise, left, record):
+    """The noise with the frequency of waves, and their share in the noise of the velocities, that suit a log best."""
+    rows = [(frequency, *levels) for frequency in _FREQUENCIES for levels in _LEVELS]
+    frequency, white, wave = np.array(rows).T
+    many = _scaled(noise, np.zeros((len(rows), len(_GROUPS))))
+    many.white[:, 3:] *= white[:, None]
+    tries = replace(many, wave=many.wave * wave[:, None], wave_frequency=frequency)
+    return _of(tries, _likelihood(left, tries, record).argmax())
+
+
+def _of(noise, which):
+    """One of several."""
+    return Noise(*(getattr(noise, part.name)[which] for part in fields(Noise)))
+
+
+def _likelihood(left, noise, record):
+    found = innovations(left, noise, record)
+    return -0.5 * ((found.white[..., 0] ** 2).sum((0, -1)) + found.log_determinant.sum(0))
+
+
+def waves_of(noise, h, shape, rng):
+    """First-order wave motion, drawn: place and velocity in the ship's axes.
+
+    Parameters
+    ----------
+    noise : Noise
+        Of one log.
+    h : float
+        Step. [s]
+    shape : tuple of int
+        Number of rows n and of logs m.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    (n, m, 6) array
+        [m, m, rad, m/s, m/s, rad/s]
+    """
+    n, m = shape
+    (a, b, c, d), (place, both, speed) = oscillation(noise, h)
+    along = np.divide(both, place, out=np.zeros(3), where=place > 0.0)
+    kicks = rng.standard_normal((2, n, m, 3)) * np.sqrt(np.stack([place, speed - along * both]))[:, None, None]
+    velocity = rng.standard_normal((m, 3)) * noise.wave
+    where, found = rng.standard_normal((m, 3)) * noise.wave / noise.wave_frequency, np.empty((n, m, 6))
+    for k in range(n):
+        found[k] = np.concatenate([where, velocity], axis=-1)
+        first, second = kicks[:, k]
+        where, velocity = a * where + b * velocity + first, c * where + d * velocity + along * first + second
+    return found
 
 
 def explained(linear, theta):
@@ -89,7 +154,11 @@ def explained(linear, theta):
 
 def _scaled(noise, steps):
     """Noise for each row of steps, which are in natural logarithms of the groups."""
-    parts = {name: np.repeat(getattr(noise, name)[None], len(steps), axis=0) for name in ("white", "jolt", "walk")}
+    names = [part.name for part in fields(Noise)]
+    parts = {name: np.repeat(np.asarray(getattr(noise, name))[None], len(steps), axis=0) for name in names}
     for i, (name, entries) in enumerate(_GROUPS):
-        parts[name][:, list(entries)] *= np.exp(steps[:, i])[:, None]
+        if entries:
+            parts[name][:, list(entries)] *= np.exp(steps[:, i])[:, None]
+        else:
+            parts[name] = parts[name] * np.exp(steps[:, i])
     return Noise(**parts)

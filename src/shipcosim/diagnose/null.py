@@ -11,6 +11,7 @@ import numpy as np
 
 from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.linear import SLOW_STD, SLOW_TIME, innovations
+from shipcosim.diagnose.noise import waves_of
 from shipcosim.diagnose.plant import shown
 from shipcosim.diagnose.ranking import gains, prepared, probes
 from shipcosim.diagnose.record import Record, first_motion
@@ -95,10 +96,11 @@ def _drawn(plant, count, rng):
 
 
 def _logged(motion, units, plant, case, rng):
-    """The log of the ships' motion, with the noise of the case and slow errors of position and heading."""
+    """The log of the ships' motion, with the noise of the case: white, of waves, and slow in position and heading."""
     record, (count, n) = case.record, motion.x.shape
     measured = np.stack([value.T for value in shown(motion, case.plant)], axis=-1)  # (n, m, 6)
     measured += rng.standard_normal(measured.shape) * np.asarray(case.noise.white)
+    measured += _shown_waves(waves_of(case.noise, record.step, (n, count), rng), motion.psi.T)
     keep = np.exp(-record.step / SLOW_TIME)
     slow = SLOW_STD * rng.standard_normal((count, 3))
     for k in range(n):
@@ -106,3 +108,9 @@ def _logged(motion, units, plant, case, rng):
         slow = keep * slow + np.sqrt(1.0 - keep**2) * SLOW_STD * rng.standard_normal((count, 3))
     measured = np.where(np.isfinite(record.measured)[:, None, :], measured, np.nan)
     return Record(record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known)
+
+
+def _shown_waves(waves, psi):
+    """Waves' place and velocity in the ship's axes as the channels show them, all (n, m, 6)."""
+    x, y, *others = np.moveaxis(waves, -1, 0)
+    return np.stack([np.cos(psi) * x - np.sin(psi) * y, np.sin(psi) * x + np.cos(psi) * y, *others], axis=-1)

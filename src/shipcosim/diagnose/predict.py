@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.linear import Linear, Noise, advanced, innovations, rows_first
+from shipcosim.diagnose.linear import Linear, advanced, innovations, rows_first
 from shipcosim.diagnose.plant import Motion, motion_rates, shown
 from shipcosim.models.instruments import motion_of
 from shipcosim.models.kinematics import to_body, to_ned
@@ -139,7 +139,7 @@ def reference(linear, motion, noise, record, plant):
         (n,) arrays.
     """
     jolt = _FREE * noise.jolt
-    return shown(innovations(linear, Noise(noise.white, jolt, jolt / _FREE), record, motion).motion, plant)
+    return shown(innovations(linear, replace(noise, jolt=jolt, walk=jolt / _FREE), record, motion).motion, plant)
 
 
 def stacked(problems):
