@@ -1,18 +1,23 @@
 """A system as one FMU: what it computes is held against the system itself and against other hosts."""
 
 import json
+import subprocess
+import sys
+import sysconfig
 import zipfile
 from dataclasses import replace
+from pathlib import Path
 
+import c_fmus
 import numpy as np
 import pytest
 
-from shipcosim.cosim import engines_missing, export_fmu, simulate
+from shipcosim.cosim import RunError, engines_missing, export_fmu, simulate
 from shipcosim.cosim.container import PLATFORMS
 from shipcosim.cosim.export_fmu import block_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario
-from shipcosim.ssp import read_fmu, read_system
+from shipcosim.ssp import Component, Connection, System, read_fmu, read_system
 
 CONVERSION = '|<ssc:LinearTransformation factor="2"/>'
 TYPED = ["clock.count -> meter.number", "clock.odd -> meter.flag", "clock.text -> meter.text"]
@@ -197,3 +202,83 @@ def test_the_dp_ship_is_one_block(root, tmp_path):
         assert np.allclose(block[name], ours[name], rtol=0.0, atol=1e-10 * max(abs(ours[name]).max(), 1e-6)), name
     mass = read_fmu(tmp_path / "ship.fmu").variables["vessel.mass"]
     assert (mass.causality, mass.unit, mass.start) == ("parameter", "kg", system.components["vessel"].start["mass"])
+
+
+def test_what_a_component_says_when_it_fails_comes_out_of_the_block(make_system, tmp_path):
+    system = make_system({"one": ("failing", {"when": 0.5}), "two": "lag"}, ["one.y -> two.u"])
+    export_fmu(system, tmp_path / "failing.fmu", 0.1, check=False)
+    with pytest.raises(
+        RunError, match="block: failed in the step from t = 0.5 s.*\n(.*\n)*.*ValueError: 50%s of it is"
+    ):
+        block_values(tmp_path / "failing.fmu", 1.0, 0.1)
+
+
+DECAY = """
+#define NX 1
+#define NZ 0
+#define STATES {0}
+static void start(M* m) { m->r[0] = 1; }
+static void equations(M* m) { m->r[1] = m->r[2] - m->r[0]; }
+static void indicators(M* m, double* z) {}
+static void event(M* m) { }
+static int completed(M* m) { return 0; }
+"""
+
+
+@pytest.fixture
+def decay(tmp_path, needs):
+    """Function: FMU of a decay by Euler's method, in a version and form of FMI."""
+    if c_fmus.compiler() is None:
+        needs("a C compiler")
+    variables = [("x", 0, "output", "Real", None), ("der(x)", 1, "local", "Real", None), ("u", 2, "input", "Real", 0.0)]
+
+    def make(version, form="CoSimulation"):
+        text = c_fmus.describe("decay", version, variables, (form,), 1)
+        return read_fmu(c_fmus.build(tmp_path, "decay", version, DECAY, text, form))
+
+    return make
+
+
+def test_components_of_fmi_3_and_fmi_2_are_one_block(make_system, decay, tmp_path):
+    lag = make_system({"lag": ("lag", {"y_start": 2.0})}).components["lag"]
+    parts = {"decay": Component("decay", decay("3.0")), "lag": lag}
+    lines = (Connection(("lag", "y"), ("decay", "u")), Connection(("decay", "x"), ("lag", "u")))
+    system = System("mixed", "mixed.ssd", parts, lines)
+    export_fmu(system, tmp_path / "mixed.fmu", 0.1)
+    theirs = simulate(system, Scenario(stop_time=2.0, step_size=0.1))
+    table = block_values(tmp_path / "mixed.fmu", 2.0, 0.1)
+    assert np.allclose(table["decay.x"], theirs["decay.x"], rtol=1e-13) and table["decay.x"][1] == 0.9 + 0.1 * 2.0
+
+
+@pytest.mark.parametrize(
+    ("version", "form", "said"),
+    [
+        ("2.0", "ModelExchange", "is no co-simulation FMU"),
+        ("1.0", "CoSimulation", "is no co-simulation FMU of FMI 2.0"),
+    ],
+)
+def test_other_forms_are_refused(decay, tmp_path, version, form, said):
+    system = System("one", "one.ssd", {"decay": Component("decay", decay(version, form))})
+    with pytest.raises(ShipcosimError, match=said):
+        export_fmu(system, tmp_path / "no.fmu", 0.1)
+
+
+def test_the_block_runs_in_a_program_that_is_not_python(chain, root, tmp_path, needs):
+    if not (sys.platform == "linux" and c_fmus.compiler() and sysconfig.get_config_var("Py_ENABLE_SHARED")):
+        needs("Linux, a C compiler and a Python with a shared library")
+    export_fmu(chain, tmp_path / "chain.fmu", 0.125)
+    with zipfile.ZipFile(tmp_path / "chain.fmu") as archive:
+        archive.extractall(tmp_path / "chain")
+    fmu = read_fmu(tmp_path / "chain.fmu")
+    program, library = tmp_path / "host", tmp_path / "chain/binaries/linux64/container_fmu.so"
+    source = root / "tests" / "fmi" / "host.c"
+    subprocess.run([c_fmus.compiler(), "-std=gnu11", "-w", "-o", program, source, "-ldl", "-lpthread"], check=True)
+    lines = [["load", "b", library, fmu.token, (tmp_path / "chain/resources").as_uri()]]
+    lines += [["set", "b", "Real", fmu.variables["u"].value_reference, 4.0], ["begin", "b"]]
+    lines += [["step", "b", k * 0.125, 0.125] for k in range(8)]
+    lines += [["get", "b", "Real", fmu.variables["y"].value_reference], ["quit"]]
+    text = "".join("\t".join(map(str, line)) + "\n" for line in lines)
+    path = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}
+    said = subprocess.run([program], input=text, env=path, capture_output=True, text=True, timeout=60).stdout
+    answers = [line for line in said.splitlines() if not line.startswith("log ")]
+    assert float(answers[-1]) == float(block_values(tmp_path / "chain.fmu", 1.0, 0.125, u=4.0)["y"][-1])

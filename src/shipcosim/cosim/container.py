@@ -101,6 +101,11 @@ def _component_problems(component, step_size):
         yield Problem(component.name, found, "The container FMU steps no other ones.")
     elif component.implementation == "ModelExchange":
         yield Problem(component.name, "is asked for as model exchange.", "The container FMU does co-simulation alone.")
+    for name in component.start:
+        if library_type(fmu, name) is None:
+            what = "an element of an array" if fmu.variables[name].whole else f"of type {fmu.variables[name].type}"
+            found = f"{name} gets a start value and is {what}."
+            yield Problem(component.name, found, "The container FMU cannot set it.")
     if component.step_size not in (None, step_size):
         found = f"has a step of {component.step_size:g} s of its own; the exchange has {step_size:g} s."
         yield Problem(component.name, found, "The container FMU steps all components alike.")

@@ -44,7 +44,7 @@ class Face:
 def library_type(fmu: FmuDescription, name: str) -> str | None:
     """What the container's library calls the type of a variable; None where it has no name for it."""
     variable = fmu.variables[name]
-    if variable.dimensions or variable.kind in ("Binary", "Clock"):
+    if variable.whole is not None or variable.dimensions or variable.kind in ("Binary", "Clock"):
         return None
     if variable.kind == "Enumeration":
         return "Int64" if fmu.fmi_version.startswith("3") else "Int32"
@@ -134,8 +134,10 @@ def _is_shown(one, system, problems, severity):
     kind = library_type(system.components[name].fmu, variable)
     if kind in SHOWN:
         return True
-    found = f"{one.name} is of type {one.variable.type}{'[]' if one.variable.dimensions else ''}"
-    problems.append(Problem(system.name, f"{found}, which FMI 2.0 has not; it is left out.", severity=severity))
+    what = "an element of an array" if one.variable.whole is not None else f"of type {one.variable.type}"
+    found = f"{one.name} is {what}, which FMI 2.0 has not"
+    found += "; it is left out." if severity == "remark" else "."
+    problems.append(Problem(system.name, found, severity=severity))
     return False
 
 
