@@ -57,6 +57,8 @@ def simulate(
     until=None,
     resume=None,
     store=None,
+    isolate=False,
+    timeout=60.0,
 ):
     """Run a system and return the table of all signals.
 
@@ -74,9 +76,9 @@ def simulate(
         As in a scenario file: ``{"time": 10.0, "override": {"vessel.tau_X_5": 1e4}}``.
     start_time : float, optional
         As for `shipcosim.cosim.simulate`; where nobody says anything, the system's default experiment does. [s]
-    engine, inputs, progress, order, until, resume, store
+    engine, inputs, progress, order, until, resume, store, isolate, timeout
         As for `shipcosim.cosim.simulate`: `until` and `store` stop at a time and keep the state of the whole system,
-        `resume` continues from there.
+        `resume` continues from there; `isolate` has each component run in a process of its own.
 
     Returns
     -------
@@ -106,6 +108,7 @@ def simulate(
     keys = {name: value for name, value in keys.items() if value is not None}
     scenario = _scenario(scenario, system.experiment, keys | {"set": set or {}, "events": list(events)})
     course = {"order": order, "start_time": start_time, "until": until, "resume": resume, "store": store}
+    course |= {"isolate": isolate, "timeout": timeout}
     return cosim.simulate(system, scenario, engine=engine, inputs=inputs, progress=progress, **course)
 
 

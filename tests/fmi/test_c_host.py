@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -181,6 +182,20 @@ class Talker(Fmu):
 """
     fmu = loaded(build("talker", script))
     assert "said at 0.0" in host(fmu.then("begin"), fmu.steps(1), [["quit"]], fmus=[fmu])
+
+
+def test_the_commands_of_the_page_run(root, program, only_numpy, tmp_path, needs):
+    """In a folder in which the project's own are found; what they build goes elsewhere."""
+    text = (root / "docs" / "portable-fmus.md").read_text(encoding="utf-8")
+    commands = next(block for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL) if "step_thruster" in block)
+    (tmp_path / "docs").symlink_to(root / "docs")
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build" / "fmus").symlink_to(build_stale(root))
+    path = f"{only_numpy}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["sh", "-ec", commands], cwd=tmp_path, capture_output=True, text=True, env=os.environ | {"PATH": path}
+    )
+    assert (done.returncode, done.stdout) == (0, "20000 N\n"), done.stderr
 
 
 # finding Python
