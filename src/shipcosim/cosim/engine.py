@@ -16,7 +16,7 @@ from shipcosim.cosim.isolate import Isolated
 from shipcosim.cosim.master import Failure, Master
 from shipcosim.cosim.order import ORDERS, stepping_order
 from shipcosim.cosim.part import Part, set_start_values
-from shipcosim.cosim.plan import KINDS, make_plan
+from shipcosim.cosim.plan import make_plan
 from shipcosim.cosim.recorder import Recorder
 from shipcosim.cosim.restore import check_fit, check_storable, put_back, take
 from shipcosim.cosim.result import attributes_of, columns_of, recorded_rows
@@ -258,6 +258,6 @@ def _handovers(plan, parts):
         ends = []
         for end in (connection.source, connection.target):
             variable = plan.variable(end)
-            ends.append((parts[end[0]].slave, variable, KINDS[variable.kind]))
+            ends.append((parts[end[0]].slave, variable, plan.kind(variable)))
         handovers.append(Handover(*ends, connection.factor, connection.offset, connection.mapping))
     return handovers
