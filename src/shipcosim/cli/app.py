@@ -243,17 +243,23 @@ def compare(
     tolerance: Annotated[
         float, typer.Option("--tolerance", min=0.0, help="Largest difference between engines, of a signal's range.")
     ] = 1e-9,
+    as_read: Annotated[
+        bool, typer.Option("--as-read", help="libcosim and ecos read the file themselves, as their users run it.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Report as JSON.")] = False,
     debug: Debug = False,
 ):
     """Run on every engine that is installed, and on ours with half the step; show by how much each signal differs."""
-    from shipcosim.cli.comparison import matter_of, print_comparison
+    from contextlib import nullcontext
+
+    from shipcosim.cli.comparison import matter_of, print_comparison, reading
     from shipcosim.cli.console import progress_of
     from shipcosim.cosim.compare import compare as compare_engines
 
     system, happening = matter_of(what, parameters or (), stop_time, step_size, events)
-    with progress_of("Comparing") as progress:
-        comparison = compare_engines(system, happening, tolerance=tolerance, progress=progress)
+    how = reading(what, happening, parameters) if as_read else nullcontext({})
+    with how as tools, progress_of("Comparing") as progress:
+        comparison = compare_engines(system, happening, tolerance=tolerance, progress=progress, **tools)
     print_comparison(comparison, as_json)
     if not comparison.agree:
         raise typer.Exit(FAILED)

@@ -2,19 +2,24 @@
 
 import json
 import math
+from contextlib import contextmanager
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from shipcosim.cli.console import WIDTH
-from shipcosim.cli.project import build_stale, experiment_of, find_project, find_scenario, with_osp_events
-from shipcosim.cosim.compare import OURS
-from shipcosim.errors import ShipcosimError
+from shipcosim.cli.project import build_stale, built_fmus, experiment_of, find_project, find_scenario, with_osp_events
+from shipcosim.cosim.as_read import readers
+from shipcosim.cosim.compare import OURS, Difference
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import check_times, read_scenario
-from shipcosim.ssp import read_system
+from shipcosim.ssp import osp_file, pack, read_system
+from shipcosim.ssp.hosts_taken import taken_by, told_set
 
 
 def print_comparison(comparison, as_json):
@@ -68,24 +73,65 @@ def matter_of(given, parameters=(), stop_time=None, step_size=None, events=None)
     return system, with_osp_events(scenario, events)
 
 
+@contextmanager
+def reading(given, scenario, parameters=()):
+    """Arguments of `compare` with which the tools read a system's file themselves.
+
+    Parameters
+    ----------
+    given : str
+        An .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml.
+    scenario : Scenario
+        Its steps.
+    parameters : iterable of path
+        Parameter sets that are not in the file: there must be none.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is none of these, or something happens in the scenario.
+    """
+    path, project = Path(given), find_project(Path(given))
+    fmus = [built_fmus(project)] if project else ()
+    if parameters:
+        raise ShipcosimError(Problem("--parameters", "A tool that reads the file itself does not know them."))
+    with TemporaryDirectory(prefix="shipcosim-") as folder:
+        if osp_file(path):
+            yield {"readers": readers(osp_file(path).resolve(), scenario)}
+            return
+        if path.is_dir():
+            pack(path, fmus, Path(folder) / "system.ssp")
+            packed = Path(folder) / "system.ssp"
+        elif path.suffix.lower() == ".ssp":
+            packed = path.resolve()
+        else:
+            remedy = "Give an .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml."
+            raise ShipcosimError(Problem(given, "The tools cannot read this themselves.", remedy))
+        yield {
+            "readers": readers(packed, scenario, set_name=told_set(given, fmus=fmus)),
+            "taken": partial(taken_by, path=given, fmus=fmus),
+        }
+
+
 def _table(comparison):
     others = [name for name in comparison.seconds if name != OURS]
     table = Table(box=None, pad_edge=False)
     table.add_column("signal", no_wrap=True)
-    headings = ["unit", "range", *others, "of range", "at t [s]", "half the step", "of range"]
+    headings = ["unit", "range", *others, "of range", "at t [s]", "half the step", "of range", "agree"]
     for heading in headings:
-        table.add_column(heading, justify="left" if heading == "unit" else "right", no_wrap=True)
+        table.add_column(heading, justify="left" if heading in ("unit", "agree") else "right", no_wrap=True)
     for signal in comparison.signals:
         table.add_row(*map(Text, _row(signal, others)), style="red" if signal.worst > comparison.tolerance else "")
     return table
 
 
 def _row(signal, others):
-    found = [signal.engines[name] for name in others]
+    found = [signal.engines.get(name, Difference(math.nan, math.nan, math.nan)) for name in others]
     worst = max(found, key=lambda d: math.inf if math.isnan(d.relative) else d.relative, default=None)
     cells = [signal.name, signal.unit, f"{signal.range:.4g}", *(f"{difference.largest:.1e}" for difference in found)]
     cells += ["", ""] if worst is None else [f"{worst.relative:.1e}", f"{worst.time:.6g}" if worst.largest else ""]
-    return [*cells, f"{signal.step.largest:.1e}", f"{signal.step.relative:.1e}"]
+    groups = "all" if len(signal.agreeing) == 1 else " | ".join(" = ".join(group) for group in signal.agreeing)
+    return [*cells, f"{signal.step.largest:.1e}", f"{signal.step.relative:.1e}", groups]
 
 
 def _verdict(comparison):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -50,9 +50,13 @@ class Signal:
     range : float
         Largest minus smallest value in our run.
     engines : dict of str to Difference
-        Of each other engine from ours.
+        Of each other engine that has the signal, from ours.
     step : Difference
         Of our run with half the step from that with the whole one.
+    agreeing : list of list of str
+        Engines that agree with each other; ours is in the first of these groups.
+    causes : dict of str to list of str
+        By engine: what makes its signal another one, where that is known.
     """
 
     name: str
@@ -60,6 +64,8 @@ class Signal:
     range: float
     engines: Mapping[str, Difference]
     step: Difference
+    agreeing: list[list[str]] = field(default_factory=list)
+    causes: Mapping[str, list[str]] = field(default_factory=dict)
 
     @property
     def worst(self) -> float:
@@ -108,6 +114,8 @@ def compare(
     inputs: xarray.Dataset | None = None,
     tolerance: float = TOLERANCE,
     progress: Callable[[int, int], None] | None = None,
+    readers: Mapping[str, Callable] | None = None,
+    taken: Callable[[str], tuple] | None = None,
 ) -> Comparison:
     """Run on every engine that is installed, and on ours with half the step.
 
@@ -119,6 +127,10 @@ def compare(
         Difference from which on a signal differs, relative to its range.
     progress : callable, optional
         Called with (parts done, parts in all) of all runs.
+    readers : mapping of str to callable, optional
+        Tools that read the file themselves, in place of the engines; see `shipcosim.cosim.as_read.readers`.
+    taken : callable, optional
+        Says in which respects a tool takes the system otherwise; see `shipcosim.ssp.hosts_taken.taken_by`.
 
     Raises
     ------
@@ -128,24 +140,64 @@ def compare(
     from shipcosim.cosim import ENGINES, engines_missing
 
     left_out = {name: str(problem) for name, problem in engines_missing().items()}
-    names = [name for name in ENGINES if name not in left_out]
-    runs = _Runs(system, inputs, progress, len(names) + 2)
+    names = [name for name in readers or ENGINES if name not in left_out and name != OURS]
+    runs = _Runs(system, inputs, progress, len(names) + 3)
     scenario = scenario.model_copy(update={"output_interval": None})
-    tables = {OURS: runs.run(OURS, scenario)}
+    ours, tables = runs.run(OURS, scenario), {}
     half = runs.run(OURS, halved(scenario), weight=2)
     seconds, failed = {OURS: runs.seconds[0]}, []
-    for name in (name for name in names if name != OURS):
+    for name in names:
         try:
-            tables[name] = runs.run(name, scenario)
+            tables[name] = runs.run(name, scenario, reader=(readers or {}).get(name))
             seconds[name] = runs.seconds[-1]
         except ShipcosimError as error:
             left_out[name] = str(error)
             failed += [name] if isinstance(error, RunError) else []
-    ours = tables.pop(OURS)
-    signals = [_signal(name, ours, tables, half) for name in ours.data_vars]
-    signals.sort(key=lambda signal: (signal.worst, signal.step.relative), reverse=True)
+    known = [name for name in ours.data_vars if not tables or any(name in table for table in tables.values())]
+    signals = [_signal(name, ours, tables, half, tolerance) for name in known]
     remarks = {name: explained(ours, table, scenario.step_size, tolerance) for name, table in tables.items()}
+    for name in (name for name in tables if taken is not None and remarks[name]):
+        found, causes = _traced(name, taken(name), ours, tables[name], scenario, tolerance)
+        remarks[name] = [remarks[name][0], *found] if found else remarks[name]
+        signals = [replace(s, causes=s.causes | {name: causes[s.name]}) if s.name in causes else s for s in signals]
+    signals.sort(key=lambda signal: (signal.worst, signal.step.relative), reverse=True)
     return Comparison(signals, seconds, left_out, remarks, tolerance, tuple(failed))
+
+
+def _traced(host, taken, ours, theirs, scenario, tolerance):
+    """What a tool takes otherwise, each run here by itself and all of it together, as remarks and by signal."""
+    from shipcosim.cosim import simulate
+
+    respects, whole = taken
+    remarks, causes = [], {}
+    names = [name for name in ours.data_vars if name in theirs]
+    differing = [name for name in names if _differs(name, ours, theirs, tolerance)]
+    try:
+        for respect in respects:
+            alone = simulate(respect.system, scenario)
+            changed = [name for name in differing if _differs(name, ours, alone, tolerance)]
+            remarks.append(f"{respect.what}. This changes {_listed(changed)}.")
+            for name in changed:
+                causes.setdefault(str(name), []).append(respect.what)
+        together = simulate(whole, scenario) if respects else ours
+    except ShipcosimError:
+        return [], {}
+    left = [name for name in names if _differs(name, together, theirs, tolerance)]
+    if respects and not left:
+        remarks.append(f"Run here with that, every signal is that of {host}.")
+    elif respects:
+        remarks.append(f"That does not explain all of {_listed(left)}.")
+    return remarks, causes
+
+
+def _listed(names):
+    shown = ", ".join(map(str, names[:5])) or "nothing that differs"
+    return shown + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+
+
+def _differs(name, ours, theirs, tolerance):
+    spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
+    return not bool(np.all(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
 
 
 def halved(scenario):
@@ -161,7 +213,7 @@ class _Runs:
         self.system, self.inputs, self.progress, self.n_parts = system, inputs, progress, n_parts
         self.seconds, self._done = [], 0
 
-    def run(self, engine, scenario, weight=1):
+    def run(self, engine, scenario, weight=1, reader=None):
         from shipcosim.cosim import simulate
 
         def report(done, total):
@@ -170,30 +222,48 @@ class _Runs:
 
         begin = perf_counter()
         try:
+            if reader is not None:
+                return reader(self.system)
             return simulate(self.system, scenario, engine=engine, inputs=self.inputs, progress=report)
         finally:
             self._done += weight
             self.seconds.append(perf_counter() - begin)
 
 
-def _signal(name, ours, tables, half):
+def _signal(name, ours, tables, half, tolerance):
     values = ours[name].values.astype(float)
     spread = float(np.ptp(values)) if len(values) else 0.0
-    engines = {engine: _difference(name, ours, table, spread) for engine, table in tables.items()}
+    having = {engine: table for engine, table in tables.items() if name in table}
+    engines = {engine: _difference(name, ours, table, spread) for engine, table in having.items()}
     step = _difference(name, ours, half, spread)
-    return Signal(str(name), ours[name].attrs.get("units", ""), spread, engines, step)
+    groups = _groups(name, {OURS: ours} | having, tolerance)
+    return Signal(str(name), ours[name].attrs.get("units", ""), spread, engines, step, groups)
+
+
+def _groups(name, tables, tolerance):
+    """Engines that agree with the first one of their group."""
+    groups = []
+    for engine, table in tables.items():
+        for group in groups:
+            if not _differs(name, tables[group[0]], table, tolerance):
+                group.append(engine)
+                break
+        else:
+            groups.append([engine])
+    return groups
 
 
 def _difference(name, ours, theirs, spread):
     distance = np.abs(_distance(name, ours, theirs))
     row = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
     largest = float(distance[row])
-    return Difference(largest, largest / spread if spread else largest, float(ours["time"].values[row]))
+    return Difference(largest, largest / spread if spread else largest, float(theirs["time"].values[row]))
 
 
 def _distance(name, ours, theirs):
-    """Theirs minus ours, angles the shorter way round; (n,)."""
-    distance = theirs[name].values.astype(float) - ours[name].values.astype(float)
+    """Theirs minus ours in the rows that both have at the end, angles the shorter way round; (n,)."""
+    n = min(len(ours["time"]), len(theirs["time"]))
+    distance = theirs[name].values[-n:].astype(float) - ours[name].values[-n:].astype(float)
     turn = TURN.get(ours[name].attrs.get("units"))
     return distance if turn is None else (distance + turn / 2.0) % turn - turn / 2.0
 
@@ -220,7 +290,8 @@ def explained(
         Empty if no signal differs.
     """
     first = {}
-    for name in ours.data_vars:
+    ours = ours.isel(time=slice(len(ours["time"]) - len(theirs["time"]), None))
+    for name in (name for name in ours.data_vars if name in theirs):
         spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
         beyond = np.flatnonzero(~(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
         if len(beyond):

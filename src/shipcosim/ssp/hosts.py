@@ -10,10 +10,6 @@ from dataclasses import dataclass, replace
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp import hosts_find as find
 from shipcosim.ssp.osp import assemble_osp, osp_file
-from shipcosim.ssp.package import open_package
-from shipcosim.ssp.structure import read_structure
-from shipcosim.ssp.system import assemble_package
-from shipcosim.ssp.tree import Tree
 from shipcosim.ssp.xml import Findings
 
 IGNORED, MISREAD = "goes on without it, and says nothing", "takes it for something else, and says nothing"
@@ -301,7 +297,7 @@ def check_for(host, path, *, fmus=()):
     if osp is not None and host == "ecos":
         remedy = "Give it the system as an SSP."
         return [Problem(str(path), "ecos does not read an OspSystemStructure.xml.", remedy)]
-    subject = _subject(path, fmus) if osp is None else _osp_subject(osp, fmus)
+    subject = find.subject_of(path, fmus) if osp is None else _osp_subject(osp, fmus)
     if subject is None:
         return []
     known = (feature for feature in FEATURES if host in feature.becomes)
@@ -315,19 +311,6 @@ def _problems(host, feature, subject):
         named = found.partition(" ")[0] not in ARTICLES
         problem = Problem(place, found if named else found[0].upper() + found[1:], feature.remedy)
         yield replace(problem, severity="remark") if verdict == TOLD else problem
-
-
-def _subject(path, fmus):
-    findings = Findings()
-    package = open_package(path, findings, fmus)
-    document = None if package is None else package.document(findings)
-    structure = None if document is None else read_structure(document, findings)
-    if structure is None:
-        return None
-    tree = Tree(findings)
-    tree.grow(structure, package)
-    system = assemble_package(package, (), str(path), findings)
-    return None if findings.errors else find.Subject(document, structure, package, tree, system)
 
 
 def _osp_subject(path, fmus):

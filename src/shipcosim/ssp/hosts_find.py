@@ -12,7 +12,7 @@ from urllib.parse import unquote
 from lxml import etree
 
 from shipcosim.ssp.markup import OSP_TYPE
-from shipcosim.ssp.package import Package
+from shipcosim.ssp.package import Package, open_package
 from shipcosim.ssp.parameters import read_parameter_set
 from shipcosim.ssp.ports import Key
 from shipcosim.ssp.structure import (
@@ -22,8 +22,9 @@ from shipcosim.ssp.structure import (
     DictionaryReference,
     Structure,
     SystemElement,
+    read_structure,
 )
-from shipcosim.ssp.system import System
+from shipcosim.ssp.system import System, assemble_package
 from shipcosim.ssp.tree import Tree
 from shipcosim.ssp.units import find_unit, relation
 from shipcosim.ssp.xml import NAMESPACES, Document, Findings, child, children, local
@@ -97,6 +98,20 @@ class Subject:
     def fmus(self):
         """(component's name, FMU) of all components."""
         return [(name, component.fmu) for name, component in self.system.components.items()]
+
+
+def subject_of(path, fmus=()):
+    """Subject of an SSP, or None where it has errors."""
+    findings = Findings()
+    package = open_package(path, findings, fmus)
+    document = None if package is None else package.document(findings)
+    structure = None if document is None else read_structure(document, findings)
+    if structure is None:
+        return None
+    tree = Tree(findings)
+    tree.grow(structure, package)
+    system = assemble_package(package, (), str(path), findings)
+    return None if findings.errors else Subject(document, structure, package, tree, system)
 
 
 DECLARING = re.compile(rb"<[\w.-]+:Algorithm\s[^>]*xmlns")
