@@ -1,6 +1,7 @@
 /* A host of FMUs of FMI 2.0 that knows nothing of Python. Commands come from stdin, words separated by tabs; answers,
    failures and what the FMUs log go to stdout, one line each. `load` takes several FMUs, each in a thread of its own:
 
+   global                               FMUs loaded from now on are loaded for everybody's use
    python   LIBRARY 0|1                 loaded for the host alone; 1: started too
    load     {NAME LIBRARY GUID RESOURCES}...
    begin    NAME                        set TYPE of a value: Real Integer Boolean String
@@ -32,7 +33,7 @@ typedef struct {
 } Instance;
 
 static Instance instances[MANY];
-static int n_instances;
+static int n_instances, mode = RTLD_NOW | RTLD_LOCAL;
 
 static void log_line(void *environment, const char *name, int status, const char *category, const char *format, ...)
 {
@@ -66,7 +67,7 @@ static void *load(void *given)
     void *(*instantiate)(const char *, int, const char *, const char *, const Callbacks *, int, int);
 
     snprintf(one->name, sizeof one->name, "%s", one->words[0]);
-    one->library = dlopen(one->words[1], RTLD_NOW | RTLD_LOCAL);
+    one->library = dlopen(one->words[1], mode);
     if (!one->library) {
         printf("dlopen: %s\n", dlerror());
         return NULL;
@@ -214,6 +215,10 @@ int main(void)
             words[n++] = word;
         if (!n || !strcmp(words[0], "quit"))
             return 0;
+        if (!strcmp(words[0], "global")) {
+            mode = RTLD_NOW | RTLD_GLOBAL;
+            continue;
+        }
         if (!strcmp(words[0], "load") || !strcmp(words[0], "python")) {
             words[0][0] == 'l' ? load_all(words + 1, n - 1) : load_python(words + 1);
             continue;

@@ -291,7 +291,8 @@ def test_an_fmu_whose_other_binary_is_missing_says_so(lag, loaded, host):
 # several in one process
 
 
-def test_many_fmus_side_by_side_have_their_own_code_and_state(build, sources, loaded, host):
+@pytest.mark.parametrize("before", [[], [["global"]]], ids=["each for itself", "for everybody's use"])
+def test_many_fmus_side_by_side_have_their_own_code_and_state(build, sources, loaded, host, before):
     """Two versions of one FMU, two FMUs with a module of the same name, instances of one; stepped in turns."""
     script = sources.adder.format(module="amounts", name="Adder")
     fmus = [
@@ -301,7 +302,9 @@ def test_many_fmus_side_by_side_have_their_own_code_and_state(build, sources, lo
     fmus.append(loaded(build("other", script, amounts="def amount():\n    return 4.0\n"), "four"))
     starts = [line for fmu in fmus for line in fmu.then("begin")]
     turns = [line for k in range(3) for fmu in fmus for line in fmu.steps(1 + (fmu.name == "again"), "total", first=k)]
-    lines = host(starts, turns, *(fmu.then("free") for fmu in fmus[:2]), fmus[2].steps(1, "total"), fmus=fmus)
+    lines = host(
+        starts, turns, *(fmu.then("free") for fmu in fmus[:2]), fmus[2].steps(1, "total"), fmus=fmus, before=before
+    )
     values = list(map(float, lines[4:]))
     assert sorted(lines[:4]) == sorted(f"{fmu.name} instantiated" for fmu in fmus)
     assert values == [1, 2, 1, 2, 4, 2, 4, 3, 4, 8, 3, 6, 5, 6, 12, 7]
