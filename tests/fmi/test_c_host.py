@@ -13,10 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import read_model_description
+from fmpy import read_model_description, simulate_fmu
 
 from shipcosim.cli.project import build_stale
+from shipcosim.cosim import export_fmu
 from shipcosim.series import read_table
+from shipcosim.ssp import read_system
 
 FMUS = sorted(path.stem for path in Path(__file__).parents[2].glob("fmus/*/*.py") if path.stem == path.parent.name)
 
@@ -343,6 +345,16 @@ def test_an_fmu_is_loaded_again_after_it_was_freed(lag, loaded, host):
     one, same = loaded(lag, "one"), loaded(lag, "same")
     lines = host(one.then("begin"), one.then("free"), [["load", *same.load]], same.then("begin"), fmus=[one])
     assert lines == ["one instantiated", "same instantiated"]
+
+
+def test_the_whole_dp_ship_as_one_fmu_gives_the_digits_that_fmpy_gets(root, loaded, host, tmp_path):
+    """Ten components in one block, two of them instances of one FMU."""
+    ship = read_system(root / "ssp" / "gunnerus_dp", fmus=[build_stale(root)])
+    export_fmu(ship, tmp_path / "ship.fmu", step_size=0.05, check=False)
+    signals, fmu = ["vessel.x", "vessel.psi", "port.thrust", "predictor.x_10"], loaded(tmp_path / "ship.fmu")
+    rows = simulate_fmu(str(tmp_path / "ship.fmu"), stop_time=2.0, step_size=0.05, output_interval=0.05, output=signals)
+    lines = host(fmu.then("begin"), fmu.steps(40, h=0.05), fmu.get(*signals), fmus=[fmu])
+    assert [float(line) for line in lines if not line.startswith(("log", "one"))] == list(rows[-1])[1:]
 
 
 # state
