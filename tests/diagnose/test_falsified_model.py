@@ -5,6 +5,7 @@ from xml.sax.saxutils import quoteattr
 import pytest
 from truth import draw
 
+import shipcosim as sc
 from shipcosim.diagnose.run import diagnose
 from shipcosim.ssp import read_system
 
@@ -61,3 +62,15 @@ def test_a_wrong_mass_of_the_vessel_is_found_there(log, falsified):
     diagnosis, _ = diagnose(log, falsified({"vessel.mass": 1.25, "vessel.inertia_yaw": 1.25}))
     assert named(diagnosis) == [("mass", None)]
     assert diagnosis.findings[0].parameters["scale"].estimate == pytest.approx(0.8, abs=0.04)
+
+
+@pytest.mark.slow
+def test_a_wrong_connection_is_found_there(log, root):
+    structure = sc.read(root / "ssp" / "gunnerus_open", fmus=[root / "build" / "fmus"])
+    with structure.changes():
+        structure.disconnect("port_rpm", "port.rpm_in")
+        structure.connect("starboard_rpm", "port.rpm_in")
+    diagnosis, details = diagnose(log, structure.checked())
+    assert (diagnosis.verdict, named(diagnosis)) == ("named", [("connection", "port")])
+    assert diagnosis.findings[0].note == "its rpm comes from starboard_rpm"
+    assert details.case.plant.wiring is None

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from shipcosim.diagnose.effects import read_catalogue
-from shipcosim.diagnose.grafts import Estimated, Graft, add_current, add_force, add_instruments, add_slipstreams
+from shipcosim.diagnose.grafts import Estimated, Graft, add_current, add_force, add_instruments, add_slipstreams, rewire
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 from shipcosim.ssp import SystemStructure, read, write_ssv
@@ -108,6 +108,9 @@ def _ship(structure):
 
 def _carry(graft, finding, catalogue):
     """Put one finding into the system."""
+    if finding.cause == "connection":
+        rewire(graft, finding.component)
+        return
     if finding.cause not in catalogue:
         graft.remark(finding, "it is not in the catalogue")
         return

@@ -330,3 +330,19 @@ def _origin(finding, log):
     source = Path(str(log["source"])).name if log.get("source") else "a log"
     digest = f", SHA-256 {log['sha256']}" if log.get("sha256") else ""
     return f"{finding.label}, named with probability {finding.probability:.2f}: {sizes}; from {source}{digest}"
+
+
+def rewire(graft, name):
+    """Connect a thruster's loads to the ship, and its inputs to the system's, as their names say."""
+    structure, loads = graft.structure, {f"{name}.tau_{axis}" for axis in _AXES}
+    wrong = [pair for pair in structure.connections if pair[0] in loads and pair[1].startswith(f"{graft.ship}.tau_")]
+    slots = [target.rpartition("_")[2] for _, target in wrong]
+    for pair in wrong:
+        structure.disconnect(*pair)
+    for axis in _AXES if wrong else ():
+        structure.connect(f"{name}.tau_{axis}", f"{graft.ship}.tau_{axis}_{max(slots, key=slots.count)}")
+    for source, target in structure.connections:
+        kind = target.removeprefix(f"{name}.").removesuffix("_in")
+        if target == f"{name}.{kind}_in" and source.endswith(f"_{kind}") and "." not in source:
+            structure.disconnect(source, target)
+            structure.connect(f"{name}_{kind}", target)

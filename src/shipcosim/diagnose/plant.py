@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.surroundings import Instruments, Water, stern_of
+from shipcosim.diagnose.wiring import wiring_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models import instruments, thruster, wind
 from shipcosim.models.current import varying_current
@@ -82,6 +83,8 @@ class Plant:
         First and last time of the log, between which the current varies. [s]
     wind_is_true : bool
         The log has the wind over ground instead of the apparent one.
+    wiring : Wiring or None
+        Where the system wires thrusters otherwise than named.
     """
 
     parts: dict
@@ -89,6 +92,7 @@ class Plant:
     tolerances: dict = field(default_factory=dict)
     span: tuple = (0.0, 1.0)
     wind_is_true: bool = False
+    wiring: Any = None
 
     @property
     def thrusters(self):
@@ -193,7 +197,8 @@ def plant_of(system):
         )
     water = Water(tow_x=stern_of(parts["hull"].length))
     parts = _neighbours_placed(parts) | {"water": water, "instruments": Instruments()}
-    return Plant(parts, ship.name, _tolerances(system, parts, ship.name))
+    plant = Plant(parts, ship.name, _tolerances(system, parts, ship.name))
+    return replace(plant, wiring=wiring_of(system, ship.name, plant.thrusters))
 
 
 def _holds(component, kind):
@@ -279,14 +284,21 @@ def _alike(plant, other, found):
 
 
 def _thruster_loads(name, drivers, u_r, v_r, r, plant):
-    unit, (n, azimuth) = plant.parts[name], drivers.units[name]
+    if plant.wiring is None:
+        return _loads_of(name, drivers.units, u_r, v_r, r, plant)
+    units = {other: plant.wiring.driven(other, drivers.units) for other in plant.thrusters}
+    return plant.wiring.loaded(name, _loads_of(name, units, u_r, v_r, r, plant))
+
+
+def _loads_of(name, units, u_r, v_r, r, plant):
+    unit, (n, azimuth) = plant.parts[name], units[name]
     if isinstance(unit, TunnelParameters):
         return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
     state = thruster.azimuth_replay(n, azimuth, u_r, v_r, r, unit=unit)
     neighbour = _neighbour(name, plant.parts)
     extra = {}
     if neighbour:
-        n_other, azimuth_other = drivers.units[neighbour]
+        n_other, azimuth_other = units[neighbour]
         extra = {"neighbour_azimuth": azimuth_other, "neighbour_rpm": 60.0 * n_other}
     return thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)[-3:]
 

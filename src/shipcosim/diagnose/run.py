@@ -10,7 +10,7 @@ from shipcosim.diagnose.drivers import suspected
 from shipcosim.diagnose.effects import read_catalogue, suspects
 from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.examine import examine
-from shipcosim.diagnose.finding import Diagnosis
+from shipcosim.diagnose.finding import Diagnosis, Finding
 from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.nameless import unexplained
@@ -23,6 +23,7 @@ from shipcosim.diagnose.ranking import Case, at_first_sight, explain, fitted, pr
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.verdict import MOST, STRANGE, gained, judge, not_testable
+from shipcosim.diagnose.wiring import put_right
 
 __all__ = ["Details", "diagnose", "prepare"]
 
@@ -97,21 +98,35 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         plant, catalogue = plant_of(system), read_catalogue(effects)
         say("which causes explain it?")
         case = prepare(clean, plant, catalogue)
+        wrong, plant, case = _rewired(clean, plant, catalogue, case)
         fits = explain(case)
         clean, case, fits, more, began = _looked_closer(clean, case, fits, plant, catalogue)
         faults += more
         say("what do healthy ships look like?")
         judgement, strange, chance = _judged(case, fits)
-        verdict = "named" if faults and judgement.verdict == "consistent" else judgement.verdict
+        verdict = "named" if (faults or wrong) and judgement.verdict == "consistent" else judgement.verdict
         diagnosis = Diagnosis(
             verdict,
-            (*faults, *(replace(finding, onset=began) for finding in judgement.findings)),
+            (*faults, *wrong, *(replace(finding, onset=began) for finding in judgement.findings)),
             judgement.candidates,
             judgement.indistinguishable,
             tuple(sorted({*_not_testable(case, fits), *_hidden(catalogue, case)})),
             prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals else None,
         )
         return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
+
+
+def _rewired(clean, plant, catalogue, case):
+    """Connections of the system that the log contradicts, and ship and case with them as their names say."""
+    found = []
+    for name, told in plant.wiring.odd.items() if plant.wiring else ():
+        better = replace(plant, wiring=put_right(plant.wiring, name))
+        again = prepare(clean, better, catalogue)
+        gain = at_first_sight(again) - at_first_sight(case)
+        if gain > _FAULT:
+            found.append(Finding("connection", name, "physics", 0.99, {}, note=told))
+            plant, case = better, again
+    return found, plant, case
 
 
 def _looked_closer(clean, case, fits, plant, catalogue):

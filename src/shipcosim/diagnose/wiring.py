@@ -1,0 +1,111 @@
+"""How a system wires her thrusters, where that is not what their connectors' names say: a suspect like any other."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.series import conversion
+
+__all__ = ["Wiring", "put_right", "wiring_of"]
+
+_AXES = ("X", "Y", "N")
+_DRIVES = ("rpm", "azimuth")
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """What is wired otherwise than named.
+
+    Attributes
+    ----------
+    loads : dict of str to (3, 3) array
+        By thruster: X, Y, N that the ship gets, of the thruster's own.
+    drives : dict of str to dict of str to (str, float)
+        By thruster, then ``rpm`` and ``azimuth``: whose logged speed or direction it gets, and by which factor.
+    odd : dict of str to str
+        What is wrong, by thruster.
+    """
+
+    loads: dict
+    drives: dict
+    odd: dict
+
+    def loaded(self, name, load):
+        """The load that the ship gets of a thruster's."""
+        if name not in self.loads:
+            return load
+        return tuple(sum(share * axis for share, axis in zip(row, load, strict=True)) for row in self.loads[name])
+
+    def driven(self, name, units):
+        """Speed and direction that a thruster gets, of those logged by thruster."""
+        found = list(units[name])
+        for i, (source, factor) in enumerate(self.drives.get(name, {}).get(kind, (name, 1.0)) for kind in _DRIVES):
+            found[i] = factor * units[source][i]
+        return tuple(found)
+
+
+def wiring_of(system, vessel, thrusters):
+    """What a system wires otherwise than its connectors' names say.
+
+    Parameters
+    ----------
+    system : System
+    vessel : str
+    thrusters : sequence of str
+
+    Returns
+    -------
+    Wiring or None
+        None where all is as named.
+    """
+    loads, drives, odd = {}, {}, {}
+    for name in thrusters:
+        matrix = _matrix(system, vessel, name)
+        if not np.allclose(matrix, np.eye(3), rtol=1e-9, atol=1e-12):
+            loads[name] = matrix
+            odd[name] = f"its load reaches {vessel} as {_told(matrix)}"
+        drives[name] = _driven(system, name, thrusters)
+        for kind, (source, factor) in drives[name].items():
+            if source != name or abs(factor - 1.0) > 1e-9:
+                what = f"{factor:g} times {source}_{kind}" if abs(factor - 1.0) > 1e-9 else f"{source}_{kind}"
+                odd[name] = "; ".join(filter(None, (odd.get(name), f"its {kind} comes from {what}")))
+    return Wiring(loads, drives, odd) if odd else None
+
+
+def put_right(wiring, name):
+    """The wiring with one thruster's as its connectors' names say; None where nothing odd is left."""
+    rest = {other: told for other, told in wiring.odd.items() if other != name}
+    loads, drives = ({k: v for k, v in part.items() if k != name} for part in (wiring.loads, wiring.drives))
+    return replace(wiring, loads=loads, drives=drives, odd=rest) if rest else None
+
+
+def _matrix(system, vessel, name):
+    """Share of each axis of a thruster's load in each axis of the ship's."""
+    matrix = np.zeros((3, 3))
+    for connection in system.connections:
+        (source, output), (target, slot) = connection.source, connection.target
+        if source == name and target == vessel and output.startswith("tau_") and slot.startswith("tau_"):
+            matrix[_AXES.index(slot[4]), _AXES.index(output[4])] += connection.factor
+    return matrix
+
+
+def _told(matrix):
+    """A matrix in words: ``X: Y, Y: -1 Y, N: nothing``."""
+    rows = []
+    for axis, row in zip(_AXES, matrix, strict=True):
+        terms = [name if share == 1.0 else f"{share:g} {name}" for share, name in zip(row, _AXES, strict=True) if share]
+        rows.append(f"{axis}: {' + '.join(terms) or 'nothing'}")
+    return ", ".join(rows)
+
+
+def _driven(system, name, thrusters):
+    """Whose logged speed and direction a thruster gets from the system's inputs, and by which factor."""
+    found = {}
+    for connection in system.connections:
+        (source, given), (target, variable) = connection.source, connection.target
+        other, _, kind = given.rpartition("_")
+        if source is None and target == name and variable == f"{kind}_in" and kind in _DRIVES and other in thrusters:
+            unit = system.components[name].fmu.variables[variable].unit
+            plain, _ = conversion(system.inputs[given].unit, unit)
+            found[kind] = other, connection.factor / plain
+    return found
