@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp import hosts_find as find
+from shipcosim.ssp.hosts_subject import Subject, subject_of
 from shipcosim.ssp.osp import assemble_osp, osp_file
 from shipcosim.ssp.xml import Findings
 
@@ -40,7 +41,7 @@ class Feature:
     about: str
     becomes: Mapping[str, str]
     remedy: str
-    find: Callable[[find.Subject], Iterable[tuple[str, str]]]
+    find: Callable[[Subject], Iterable[tuple[str, str]]]
 
 
 def _both(verdict):
@@ -297,7 +298,7 @@ def check_for(host, path, *, fmus=()):
     if osp is not None and host == "ecos":
         remedy = "Give it the system as an SSP."
         return [Problem(str(path), "ecos does not read an OspSystemStructure.xml.", remedy)]
-    subject = find.subject_of(path, fmus) if osp is None else _osp_subject(osp, fmus)
+    subject = subject_of(path, fmus) if osp is None else _osp_subject(osp, fmus)
     if subject is None:
         return []
     known = (feature for feature in FEATURES if host in feature.becomes)
@@ -316,4 +317,4 @@ def _problems(host, feature, subject):
 def _osp_subject(path, fmus):
     findings = Findings()
     system = assemble_osp(path, (), fmus, findings)
-    return None if findings.errors else find.Subject(None, None, None, None, system)
+    return None if findings.errors else Subject(None, None, None, None, system)

@@ -5,7 +5,8 @@ What it refuses or dies of is not looked at; see `shipcosim.ssp.hosts`.
 
 from dataclasses import dataclass, replace
 
-from shipcosim.ssp.hosts_find import hints_of_others, linear_without_factor, subject_of
+from shipcosim.ssp.hosts_find import hints_of_others, linear_without_factor
+from shipcosim.ssp.hosts_subject import subject_of
 from shipcosim.ssp.system import System
 
 

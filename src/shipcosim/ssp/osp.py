@@ -13,10 +13,11 @@ from shipcosim.ssp.fmu import describe_fmu
 from shipcosim.ssp.osp_functions import Wiring, read_function
 from shipcosim.ssp.osp_groups import file_names, read_groups
 from shipcosim.ssp.osp_schema import NAMESPACE, validate_osp
+from shipcosim.ssp.osp_times import own_step, read_experiment
 from shipcosim.ssp.parameters import ParameterValue
 from shipcosim.ssp.ports import Setting
 from shipcosim.ssp.setting import Settings
-from shipcosim.ssp.structure import FMU, ComponentElement, Experiment
+from shipcosim.ssp.structure import FMU, ComponentElement
 from shipcosim.ssp.system import System, components_of, parameter_sets, remark_unconnected
 from shipcosim.ssp.tree import Tree
 from shipcosim.ssp.units import find_unit, relation
@@ -25,7 +26,6 @@ from shipcosim.ssp.wiring import Connection
 from shipcosim.ssp.xml import local, read_document, reporting
 
 OSP_STRUCTURE = "OspSystemStructure.xml"
-DEFAULT_STEP = 0.1  # s; libcosim's where a file states none
 SOURCES = ("output", "calculatedParameter")
 HERE = ("", "file")
 """Schemes of addresses that mean a file."""
@@ -94,7 +94,8 @@ class _Reader:
             self.tree.bind(values)
         settings = Settings(self.tree, self.findings)
         settings.apply()
-        components, experiment = components_of(self.tree, settings), self._experiment()
+        components = components_of(self.tree, settings)
+        experiment = read_experiment(self.document, self.findings)
         remark_unconnected(components, self.connections, self.findings)
         return System(
             name=Path(self.document.file).resolve().parent.name,
@@ -120,7 +121,7 @@ class _Reader:
             self.findings.error(place, f"A second simulator is named '{name}'.", "Names must differ.")
             return
         fmu = self._fmu(element.get("source"), place)
-        step = self._positive(element, "stepSize") if element.get("stepSize") else None
+        step = own_step(self.document, element, self.findings)
         described = ComponentElement(name, element.get("source"), FMU, "any", (), (), step, place)
         self.tree.components[name,] = described, fmu
         for initial in element.iter(f"{{{NAMESPACE}}}InitialValue"):
@@ -328,45 +329,6 @@ class _Reader:
     def _variable(self, end):
         fmu = self.tree.components[end[0],][1]
         return fmu.variables.get(end[1])
-
-    # ---------------------------------------------------------------- times
-
-    def _experiment(self):
-        times = {local(part): part for part in self.document.root if local(part).endswith(("Time", "StepSize"))}
-        read = {name: self._number(part, part.text) for name, part in times.items()}
-        if "BaseStepSize" not in times:
-            place = self._place(self.document.root)
-            self.findings.remark(place, f"It has no BaseStepSize: {DEFAULT_STEP} s is taken, as libcosim does.")
-        elif read["BaseStepSize"] is not None and read["BaseStepSize"] <= 0.0:
-            self.findings.error(self._place(times["BaseStepSize"]), "The base step size must be positive.")
-        self._remark_algorithm()
-        return Experiment(
-            read.get("StartTime") or 0.0, read.get("EndTime"), read.get("BaseStepSize", DEFAULT_STEP) or None
-        )
-
-    def _remark_algorithm(self):
-        if not any(local(part) == "Algorithm" for part in self.document.root):
-            found = "It names no algorithm, and libcosim refuses such a file."
-            self.findings.remark(self._place(self.document.root), found, "Add <Algorithm>fixedStep</Algorithm>.")
-        for part in self.document.root:
-            if local(part) == "Algorithm" and (part.text or "").strip() != "fixedStep":
-                found = f"The algorithm '{(part.text or '').strip()}' is not known: it runs with fixed steps."
-                self.findings.remark(self._place(part), found)
-            if local(part) == "EccoConfiguration":
-                self.findings.remark(self._place(part), "The configuration of the algorithm ecco is not used.")
-
-    def _positive(self, element, name):
-        """Number of an attribute that must not be negative; None where it is 0, which means the base step."""
-        number = self._number(element, element.get(name))
-        if number is not None and number < 0.0:
-            self.findings.error(self._place(element, name), f"{name} is {number:g}.", "It must be positive.")
-        return number or None
-
-    def _number(self, element, text):
-        """Time in whole nanoseconds, in which OSP counts. [s]"""
-        with reporting(self.document, element, self.findings, local(element)):
-            return round(read_value("Real", text or "") * 1e9) / 1e9
-        return None
 
 
 def _shown(element):
