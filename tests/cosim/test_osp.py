@@ -2,10 +2,12 @@
 
 import shutil
 
+import numpy as np
 import pytest
 from osp_execution import assert_same, rows_of
 
 from shipcosim.cosim import simulate
+from shipcosim.cosim.osp_export import write_osp
 from shipcosim.fmi.builder import build_fmu
 from shipcosim.ssp import read_system
 
@@ -195,3 +197,27 @@ def test_an_event_on_a_summed_input_acts_on_the_sum(write, make_scenario):
     assert table["law.u"].values[8:].tolist() == [3.0] * 5
     theirs = simulate(system, make_scenario(0.6, 0.05, events=events), engine="libcosim")
     assert all(theirs[name].values.tolist() == column.values.tolist() for name, column in table.data_vars.items())
+
+
+def test_a_system_of_osp_is_exported_with_its_sums_and_has_libcosims_digits_again(write, make_scenario, tmp_path):
+    connections = joined(("filter.u", "plant.y"), ("plant.y", "slow.u"), ("plant.u", "law.y")) + through(
+        ("filter.y", ("all", "in[0]")), ("slow.y", ("all", "in[1]")), ("law.u", ("all", "out"))
+    )
+    simulators = LOOP.replace(' stepSize="0.15"', "")
+    system, scenario = read_system(write(simulators, '<Sum name="all" inputCount="2"/>', connections)), make_scenario()
+    write_osp(system, scenario, tmp_path / "again")
+    assert '<Sum name="sum_0" inputCount="2"/>' in (tmp_path / "again" / "OspSystemStructure.xml").read_text()
+    assert read_system(tmp_path / "again").connections != ()
+    assert_same(simulate(system, scenario), rows_of(tmp_path / "again", system, 10))
+
+
+@pytest.mark.parametrize("order", ["jacobi", "gauss-seidel"])
+def test_a_sum_is_the_closed_form_of_its_terms(write, make_scenario, order):
+    connections = through(("plant.y", ("all", "in[0]")), ("filter.y", ("all", "in[1]")), ("law.u", ("all", "out")))
+    simulators = simulator("plant", "integrator", y_start=0.25) + simulator("filter", "lag", y_start=0.5)
+    simulators += simulator("law", "gain", factor=2.0)
+    system = read_system(write(simulators, '<Sum name="all" inputCount="2"/>', connections))
+    table = simulate(system, make_scenario(1.0, 0.05), order=order)
+    decay = 0.5 * np.exp(-table["time"].values)
+    wanted = 2.0 * (0.25 + (decay if order == "gauss-seidel" else np.r_[0.5, decay[:-1]]))
+    np.testing.assert_allclose(table["law.y"].values, wanted, rtol=1e-12)
