@@ -366,7 +366,7 @@ def _simulate_and_save(system, scenario, out, engine, inputs=None, store=None, *
             _keep(error.table, out, scenario, system)
         except ShipcosimError as another:
             error.problems += another.problems
-        if not course["isolate"]:
+        if not course.get("isolate"):
             raise
         _explain(error.problems, debug=False)
         raise typer.Exit(FAILED) from None
