@@ -11,10 +11,10 @@ from shipcosim.ssp import Component, Connection, System, check_system, read_fmu,
 
 NUMBERS = ["Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean"]
 ZEROS = {"Boolean": "false"}
-MADE = "//" + "".join(f" fmi3Set{t}( fmi3Get{t}(" for t in NUMBERS)  # by a macro
+MADE = "//" + "".join(f" fmi3Set{t}( fmi3Get{t}(" for t in NUMBERS if t != "UInt64")  # by a macro
 ECHO = """
-typedef struct { char raw[16][16]; char text[64]; uint8_t data[64]; size_t size; double u[3], a[6], y[2];
-  char label[2][64]; } E;
+typedef struct { char raw[16][16]; char text[64]; uint8_t data[64]; size_t size; double u[9], a[18], y[2];
+  char label[2][64]; uint64_t columns; int configuring; } E;
 #define ECHO(NAME, T, K) \\
 int fmi3Set##NAME(E* m, const R* r, size_t n, const T* v, size_t nv) { \\
   for (size_t k = 0; k < n; k++) ((T*)m->raw[K])[0] = v[k]; return n == nv ? 0 : 3; } \\
@@ -22,9 +22,17 @@ int fmi3Get##NAME(E* m, const R* r, size_t n, T* v, size_t nv) { \\
   for (size_t k = 0; k < n; k++) v[k] = ((T*)m->raw[K])[0]; return n == nv ? 0 : 3; }
 ECHO(Float32, float, 0) ECHO(Int8, int8_t, 1) ECHO(UInt8, uint8_t, 2) ECHO(Int16, int16_t, 3)
 ECHO(UInt16, uint16_t, 4) ECHO(Int32, int32_t, 5) ECHO(UInt32, uint32_t, 6) ECHO(Int64, int64_t, 7)
-ECHO(UInt64, uint64_t, 8) ECHO(Boolean, bool, 9)
+ECHO(Boolean, bool, 9)
+int fmi3SetUInt64(E* m, const R* r, size_t n, const uint64_t* v, size_t nv) {
+  for (size_t k = 0; k < n; k++)
+    if (r[k] != 140) ((uint64_t*)m->raw[8])[0] = v[k]; else if (m->configuring) m->columns = v[k]; else return 3;
+  return 0;
+}
+int fmi3GetUInt64(E* m, const R* r, size_t n, uint64_t* v, size_t nv) { v[0] = ((uint64_t*)m->raw[8])[0]; return 0; }
+int fmi3EnterConfigurationMode(E* m) { m->configuring = 1; return 0; }
+int fmi3ExitConfigurationMode(E* m) { m->configuring = 0; return 0; }
 static double* at(E* m, R r, size_t* n) {
-  *n = r == 200 ? 3 : r == 201 ? 6 : 2; return r == 200 ? m->u : r == 201 ? m->a : m->y;
+  *n = r == 200 ? m->columns : r == 201 ? 2 * m->columns : 2; return r == 200 ? m->u : r == 201 ? m->a : m->y;
 }
 int fmi3SetFloat64(E* m, const R* r, size_t n, const double* v, size_t nv) {
   size_t p = 0, s;
@@ -33,7 +41,8 @@ int fmi3SetFloat64(E* m, const R* r, size_t n, const double* v, size_t nv) {
 }
 int fmi3GetFloat64(E* m, const R* r, size_t n, double* v, size_t nv) {
   size_t p = 0, s;
-  for (int i = 0; i < 2; i++) { m->y[i] = 0; for (int j = 0; j < 3; j++) m->y[i] += m->a[3 * i + j] * m->u[j]; }
+  for (int i = 0; i < 2; i++) {
+    m->y[i] = 0; for (int j = 0; j < m->columns; j++) m->y[i] += m->a[m->columns * i + j] * m->u[j]; }
   for (size_t k = 0; k < n; k++) { double* x = at(m, r[k], &s); memcpy(v + p, x, s * 8); p += s; }
   return p == nv ? 0 : 3;
 }
@@ -57,7 +66,7 @@ int fmi3GetBinary(E* m, const R* r, size_t n, size_t* s, const uint8_t** v, size
 }
 void* fmi3InstantiateCoSimulation(const char* n, const char* t, const char* w, bool v, bool l, bool x, bool y,
     const R* r, size_t nr, void* e, void* log, void* u) {
-  E* m = calloc(1, sizeof(E)); m->a[0] = m->a[4] = 1;
+  E* m = calloc(1, sizeof(E)); m->a[0] = m->a[4] = 1; m->columns = 3;
   for (int i = 0; i < 3; i++) m->u[i] = i + 1;
   return m;
 }
@@ -286,17 +295,26 @@ def test_an_array_of_texts_is_connected_as_a_whole(read_ssd):
             "The connector is an array of 4. Write an array of 3",
         ),
         (part("a", values=MATRIX.replace(" 6", "")), "", "A is an array of 2x3, but has 5 values. Give 6"),
-        (
-            part("a", values='<ssv:Parameter name="n"><ssv:UInt64 value="4"/></ssv:Parameter>'),
-            "",
-            "n is 4, which would change the size of u; it can only be 3 here",
-        ),
     ],
-    ids=["shapes", "scalar", "index", "indices", "connector", "values", "structural"],
+    ids=["shapes", "scalar", "index", "indices", "connector", "values"],
 )
 def test_arrays_that_do_not_fit_are_refused_when_they_are_read(read_ssd, elements, connections, said):
     with pytest.raises(ShipcosimError, match=said):
         read_ssd(elements, connections)
+
+
+def test_a_structural_parameter_sets_the_size_of_arrays(read_ssd):
+    size = '<ssv:Parameter name="n"><ssv:UInt64 value="2"/></ssv:Parameter>'
+    matrix = MATRIX.replace("1 2 3 4 5 6", "1 2 3 4").replace('size="3"', 'size="2"')
+    vector = '<ssd:Connector name="v" kind="input"><ssc:Float64/><ssc:Dimension size="2"/></ssd:Connector>'
+    lines = link("v", "a.u") + link("b.y", "b.u", 'startIndices="1" endIndices="3"')
+    system = read_ssd(part("a", values=size + matrix) + part("b"), lines, f"<ssd:Connectors>{vector}</ssd:Connectors>")
+    assert [n for n in system.components["a"].fmu.variables if n[0] == "A"] == ["A[1,1]", "A[1,2]", "A[2,1]", "A[2,2]"]
+    assert "A[2,3]" in system.components["b"].fmu.variables
+    table = simulate(system, Scenario(stop_time=0.2, step_size=0.1, set={"v[1]": 1.0, "v[2]": 10.0}))
+    assert [float(table[f"a.y[{k}]"][-1]) for k in (1, 2)] == [21.0, 43.0]
+    with pytest.raises(ShipcosimError, match="a: n is 3, but u has been laid out for 2. Set it in the SSD"):
+        simulate(system, Scenario(stop_time=0.2, step_size=0.1, set={"a.n": 3}))
 
 
 def test_a_connected_clock_is_refused(echo):

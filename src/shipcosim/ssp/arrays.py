@@ -25,28 +25,43 @@ def element_names(name, dimensions):
     return [f"{name}[{','.join(map(str, place))}]" for place in places]
 
 
-def without_arrays(fmu, place, findings):
-    """Description of an FMU with elements in place of its arrays, which stay known in `arrays`."""
-    arrays = {variable.name: variable.dimensions for variable in fmu.variables.values() if variable.dimensions}
-    if not arrays:
+def without_arrays(fmu, place, findings, sizes=None):
+    """Description of an FMU with elements in place of its arrays, which stay known in `arrays`.
+
+    Parameters
+    ----------
+    fmu : FmuDescription
+        As read.
+    place : str
+        Where it is used, for messages.
+    findings : Findings
+        Takes what is wrong.
+    sizes : mapping of str to int, optional
+        Values of structural parameters, where they are others than the FMU's own.
+    """
+    whole = {v.name: _with_sizes(v, sizes or {}) for v in fmu.variables.values() if v.dimensions}
+    if not whole:
         return fmu
-    if sum(prod(dimensions) for dimensions in arrays.values()) > MOST_ELEMENTS:
+    if sum(prod(variable.dimensions) for variable in whole.values()) > MOST_ELEMENTS:
         findings.error(place, f"{fmu.path.name} has arrays of more than {MOST_ELEMENTS} elements in all.")
-        arrays = {}
+        return replace(fmu, variables={n: v for n, v in fmu.variables.items() if n not in whole})
     variables = {}
-    for variable in fmu.variables.values():
-        if variable.dimensions:
-            variables |= {part.name: part for part in _elements(variable) if variable.name in arrays}
-        else:
-            variables[variable.name] = variable
-    return replace(fmu, variables=variables, arrays=arrays)
+    for name, variable in fmu.variables.items():
+        variables |= {part.name: part for part in _elements(whole[name])} if name in whole else {name: variable}
+    return replace(fmu, variables=variables, arrays={name: v.dimensions for name, v in whole.items()})
+
+
+def _with_sizes(variable, sizes):
+    """An array with other values of the structural parameters that size it; its start values are unknown then."""
+    pairs = zip(variable.sizes, variable.dimensions, strict=True)
+    dimensions = tuple(max(sizes.get(name, size), 0) for name, size in pairs)
+    return variable if dimensions == variable.dimensions else replace(variable, dimensions=dimensions, start=None)
 
 
 def _elements(variable):
-    starts = variable.start if isinstance(variable.start, tuple) else (variable.start,)
     names = element_names(variable.name, variable.dimensions)
-    if len(starts) != len(names):
-        starts = starts[:1] * len(names)  # one value for all of them
+    starts = variable.start if isinstance(variable.start, tuple) else (variable.start,)
+    starts = starts if len(starts) == len(names) else starts[:1] * len(names)  # one value for all of them
     for number, (name, start) in enumerate(zip(names, starts, strict=True)):
         yield replace(variable, name=name, start=start, dimensions=(), whole=variable, place=number)
 
@@ -155,15 +170,25 @@ def _shape(dimensions):
     return f"an array of {'x'.join(map(str, dimensions))}" if dimensions else "a scalar"
 
 
-RESIZE = "Export the FMU again with this size."
+RESIZE = "Set it in the SSD or in a parameter set."
 """What would be right instead of what `resized` finds."""
 
 
 def resized(component):
     """Sentences on start values that would change the size of arrays, whose elements are laid out already."""
     for variable in component.fmu.variables.values():
-        for name in dict.fromkeys(size for size in variable.sizes if isinstance(size, str)):
-            present, wanted = component.fmu.variables[name].start, component.start_value(name)
-            if variable.place == 0 and wanted != present:
-                whole = variable.whole.name
-                yield f"{name} is {wanted}, which would change the size of {whole}; it can only be {present} here."
+        if variable.whole is not None and variable.place == 0:
+            for name, size in zip(variable.sizes, variable.whole.dimensions, strict=True):
+                wanted = component.start_value(name) if isinstance(name, str) else size
+                if wanted != size:
+                    yield f"{name} is {wanted}, but {variable.whole.name} has been laid out for {size}."
+
+
+def sizes_wanted(components):
+    """Values of the structural parameters that the system sets and that give sizes, by component and name."""
+    wanted = {}
+    for name, component in components.items():
+        structural = {size for variable in component.fmu.variables.values() for size in variable.sizes}
+        values = {size: component.start[size] for size in structural & set(component.start)}
+        wanted |= {name: values} if values else {}
+    return wanted

@@ -6,7 +6,7 @@ from math import isfinite
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.ssp.arrays import RESIZE, resized
+from shipcosim.ssp.arrays import RESIZE, resized, sizes_wanted
 from shipcosim.ssp.fmu import FmuDescription
 from shipcosim.ssp.parameters import ParameterSet, read_parameter_set
 from shipcosim.ssp.ports import Key
@@ -169,11 +169,20 @@ def assemble_package(package, parameters, file, findings, described=None):
     structure = None if document is None else read_structure(document, findings)
     if structure is None:
         return None
-    tree = Tree(findings, described)
-    tree.grow(structure, package)
-    for values in parameter_sets(parameters, findings):
-        tree.bind(values)
-    return _system(tree, structure, file, findings)
+    before, sets = list(findings.problems), list(parameter_sets(parameters, findings))
+
+    def grown(sizes):
+        tree = Tree(findings, described, sizes)
+        tree.grow(structure, package)
+        for values in sets:
+            tree.bind(values)
+        return _system(tree, structure, file, findings)
+
+    system = grown({})
+    if any(found for component in system.components.values() for found in resized(component)):
+        findings.problems[:] = before
+        system = grown(sizes_wanted(system.components))
+    return system
 
 
 def parameter_sets(parameters, findings):

@@ -38,9 +38,11 @@ class Tree:
         Takes what is wrong.
     described : dict, optional
         Keeps descriptions of FMUs without fault for other trees.
+    sizes : mapping of str to mapping of str to int, optional
+        Values of structural parameters that give the sizes of arrays, by component, where they are not the FMU's own.
     """
 
-    def __init__(self, findings, described=None):
+    def __init__(self, findings, described=None, sizes=None):
         self.findings = findings
         self.components: dict[tuple[str, ...], tuple[ComponentElement, FmuDescription | None]] = {}
         self.systems: dict[tuple[str, ...], SystemElement] = {}
@@ -52,6 +54,7 @@ class Tree:
         self.packages = []
         self._fmus = {}
         self.described = {} if described is None else described
+        self.sizes = sizes or {}
 
     def grow(self, structure, package):
         """Take in the outermost system."""
@@ -142,6 +145,7 @@ class Tree:
     def _fmu(self, element, path, place):
         file = place.package.locate(element.source, place.folder, element.place, self.findings)
         fmu = None if file is None else self._described(file, place.package)
+        fmu = fmu and without_arrays(fmu, element.place, self.findings, self.sizes.get(".".join(path)))
         self.components[path] = element, fmu
         self.arrays[path] = {} if fmu is None else dict(fmu.arrays)
         connectors, declared = element_connectors(element.connectors, self.arrays[path], self.findings)
@@ -162,7 +166,6 @@ class Tree:
         if key not in self.described:
             before = len(self.findings.problems)
             fmu = describe_fmu(file, self.findings, package.show(file))
-            fmu = fmu and without_arrays(fmu, package.show(file), self.findings)
             if len(self.findings.problems) > before:
                 return fmu  # not kept: the next tree has to hear of its faults too
             self.described[key] = fmu
