@@ -295,12 +295,21 @@ def test_an_array_of_texts_is_connected_as_a_whole(read_ssd):
             "The connector is an array of 4. Write an array of 3",
         ),
         (part("a", values=MATRIX.replace(" 6", "")), "", "A is an array of 2x3, but has 5 values. Give 6"),
+        (part("a", values=MATRIX.replace('"3"', '"3000000000"')), "", "but has 6 values. Give 6000000000"),
+        (part("a", values=MATRIX.replace('"3"', '"-3"').replace('"2"', '"-2"')), "", "but has 6 values"),
     ],
-    ids=["shapes", "scalar", "index", "indices", "connector", "values"],
+    ids=["shapes", "scalar", "index", "indices", "connector", "values", "huge", "negative"],
 )
 def test_arrays_that_do_not_fit_are_refused_when_they_are_read(read_ssd, elements, connections, said):
     with pytest.raises(ShipcosimError, match=said):
         read_ssd(elements, connections)
+
+
+@pytest.mark.parametrize("size", [0, -1, 10**12])
+def test_a_connector_of_an_absurd_size_is_refused(read_ssd, size):
+    vector = f'<ssd:Connector name="v" kind="input"><ssc:Float64/><ssc:Dimension size="{size}"/></ssd:Connector>'
+    with pytest.raises(ShipcosimError, match="Arrays have from 1 to 100000 elements"):
+        read_ssd(part("a"), connectors=f"<ssd:Connectors>{vector}</ssd:Connectors>")
 
 
 def test_a_structural_parameter_sets_the_size_of_arrays(read_ssd):

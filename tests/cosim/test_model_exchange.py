@@ -288,3 +288,9 @@ def test_the_tolerance_of_the_default_experiment_is_that_of_the_solver(model, ru
         table = simulate(System("one", "one.ssd", {"m": Component("m", fmu)}), Scenario(stop_time=1.0, step_size=1.0))
         errors.append(abs(float(table["m.x"][-1]) / np.exp(-2.0) - 1))
     assert errors[0] > 30 * errors[1] > 900 * errors[2] and errors[2] < 1e-8
+
+
+def test_an_absurd_number_of_states_is_refused_before_any_memory_is_taken(model):
+    fmu = replace(read_fmu(model("decay", "2.0")), n_states=4_000_000_000)
+    with pytest.raises(RunError, match="m: .*4000000000 continuous states; at most 5000 are integrated"):
+        simulate(System("one", "one.ssd", {"m": Component("m", fmu)}), Scenario(stop_time=1.0, step_size=1.0))

@@ -24,6 +24,8 @@ TOLERANCE = 1e-8
 MOST_UPDATES = 1000
 MOST_EVENTS = 10_000
 """Largest number of updates in one event, and of events in one step of the master."""
+MOST_STATES = 5000
+"""Largest number of continuous states, whose Jacobian is dense."""
 CLOSE = 1e-12
 """Times that differ by less than this part of them are the same."""
 EVENT, CONTINUOUS = "event mode", "continuous-time mode"
@@ -93,6 +95,8 @@ class ModelExchange:
 
         self._leave_initialisation()
         self._n, self._n_indicators = self._sizes()
+        if self._n > MOST_STATES:
+            raise SlaveError(f"It has {self._n} continuous states; at most {MOST_STATES} are integrated.")
         tolerance = self._description.experiment.get("tolerance", TOLERANCE)
         self._close_solver()
         self._solver = Cvode(self._n, self._derivatives, self._n_indicators, self._indicators, tolerance)

@@ -87,7 +87,10 @@ def element_connectors(connectors, arrays, findings):
     for connector in connectors:
         written = connector.dimensions
         dimensions = arrays.get(connector.name, written)
-        if written and (None in dimensions or not _fits(written, dimensions)):
+        if dimensions and None not in dimensions and (min(dimensions) < 1 or prod(dimensions) > MOST_ELEMENTS):
+            remedy = f"Arrays have from 1 to {MOST_ELEMENTS} elements."
+            findings.error(connector.place, f"The connector is {_shape(dimensions)}.", remedy)
+        elif written and (None in dimensions or not _fits(written, dimensions)):
             shown = "x".join("?" if size is None else str(size) for size in written)
             remedy = f"Write {_shape(arrays[connector.name])}." if connector.name in arrays else "Give its sizes."
             findings.error(connector.place, f"The connector is an array of {shown}.", remedy)
@@ -157,12 +160,11 @@ def element_values(value, findings):
     """Parameter values of the elements, where one is an array; else the value itself."""
     if not value.dimensions:
         return [value]
-    names = element_names(value.name, value.dimensions)
-    if len(names) != len(value.value):
+    if min(value.dimensions) < 1 or prod(value.dimensions) != len(value.value):
         found = f"{value.name} is {_shape(value.dimensions)}, but has {len(value.value)} values."
-        findings.error(value.place, found, f"Give {len(names)}.")
+        findings.error(value.place, found, f"Give {prod(value.dimensions)}.")
         return []
-    pairs = zip(names, value.value, strict=True)
+    pairs = zip(element_names(value.name, value.dimensions), value.value, strict=True)
     return [replace(value, name=name, value=one, dimensions=()) for name, one in pairs]
 
 
