@@ -1,6 +1,8 @@
 """`shipcosim export osp` leaves what libcosim runs by itself, with the digits of our run."""
 
 import json
+import re
+import shutil
 
 import pytest
 from osp_execution import assert_same, rows_of
@@ -95,3 +97,13 @@ def test_check_for_a_tool_names_what_it_would_leave_out_and_how_to_mend_it(gunne
     assert call("check", "mended.ssp", "--for", "libcosim", "--for", "ecos").code == 0
     assert call("check", "scenarios/short.toml", "--for", "libcosim").code == 1
     assert call("check", "ssp/gunnerus_dp", "--for", "vico").code == 2
+
+
+def test_commands_of_the_page_run(root, gunnerus, call):
+    shutil.copy(root / "scenarios" / "gust.toml", "scenarios")
+    page = (root / "docs" / "osp.md").read_text(encoding="utf-8")
+    lines = re.findall(r"^shipcosim (.*)$", page, re.MULTILINE)
+    codes = {line: call(*line.split()).code for line in lines}
+    assert set(codes.values()) == {0, 1}
+    differing = ("check ssp/gunnerus_dp --for", "compare ssp/gunnerus_dp")
+    assert [line for line, code in codes.items() if code] == [line for line in lines if line.startswith(differing)]
