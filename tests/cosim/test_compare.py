@@ -79,6 +79,17 @@ def test_largest_difference_comes_first_with_its_time(loop, make_scenario, monke
     assert "decided otherwise" in " ".join(comparison.remarks["bent"])
 
 
+def test_engines_that_agree_with_each_other_are_named_together(loop, make_scenario, monkeypatch):
+    def scaled(values):
+        return 1.1 * values
+
+    runs = {"same": ENGINES["fmpy"], "one": altered("law.y", scaled), "two": altered("law.y", scaled)}
+    monkeypatch.setattr("shipcosim.cosim.ENGINES", {"fmpy": ENGINES["fmpy"]} | runs)
+    signals = by_name(compare(loop, make_scenario(1.0, 0.1)))
+    assert signals["law.y"].agreeing == [["fmpy", "same"], ["one", "two"]]
+    assert signals["plant.y"].agreeing == [["fmpy", "same", "one", "two"]]
+
+
 def test_difference_of_angles_is_the_shorter_way_round(loop, make_scenario, monkeypatch):
     def turned(system, scenario, **more):
         table = ENGINES["fmpy"](system, scenario, **more)

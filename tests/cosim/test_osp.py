@@ -10,6 +10,7 @@ from shipcosim.cosim import simulate
 from shipcosim.cosim.osp_export import write_osp
 from shipcosim.fmi.builder import build_fmu
 from shipcosim.ssp import read_system
+from shipcosim.ssp.hosts import check_for
 
 pytest.importorskip("libcosimpy.CosimExecution", reason="needs libcosim")
 
@@ -221,3 +222,44 @@ def test_a_sum_is_the_closed_form_of_its_terms(write, make_scenario, order):
     decay = 0.5 * np.exp(-table["time"].values)
     wanted = 2.0 * (0.25 + (decay if order == "gauss-seidel" else np.r_[0.5, decay[:-1]]))
     np.testing.assert_allclose(table["law.y"].values, wanted, rtol=1e-12)
+
+
+def errors_for_libcosim(path):
+    return [str(problem) for problem in check_for("libcosim", path) if problem.severity == "error"]
+
+
+def test_libcosim_refuses_a_file_without_an_algorithm_and_the_check_says_so(write):
+    path = write(LOOP, head="<BaseStepSize>0.05</BaseStepSize>")
+    with pytest.raises(AssertionError, match="Invalid algorithm choice"):
+        rows_of(path, read_system(path), 1)
+    (said,) = errors_for_libcosim(path)
+    assert "without an algorithm: libcosim refuses the system" in said
+
+
+def test_libcosim_drops_the_second_target_of_a_function_and_the_check_says_so(write, make_scenario):
+    simulators = simulator("plant", "integrator", y_start=0.5) + simulator("one", "gain") + simulator("two", "gain")
+    connections = through(("plant.y", ("f", "in")), ("one.u", ("f", "out")), ("two.u", ("f", "out")))
+    path = write(simulators, '<LinearTransformation name="f" factor="2"/>', connections)
+    system = read_system(path)
+    ours, theirs = simulate(system, make_scenario()), rows_of(path, system, 10)
+    assert (ours["one.y"][-1], ours["two.y"][-1]) == (1.0, 1.0)
+    assert (theirs["one.y"][-1], theirs["two.y"][-1]) == (1.0, 0.0)
+    (said,) = errors_for_libcosim(path)
+    assert "A second connection from f:out: libcosim goes on without it" in said
+
+
+def test_libcosim_does_not_find_groups_by_the_name_of_the_file_and_the_check_says_so(pairs, tmp_path):
+    path = pairs(
+        simulator("one", "pair") + simulator("two", "pair"),
+        "",
+        grouped("VariableGroup", group("one", "port"), group("two", "back")),
+    )
+    assert errors_for_libcosim(path) == []
+    (tmp_path / "pair.fmu").rename(tmp_path / "renamed.fmu")
+    path.write_text(path.read_text().replace("pair.fmu", "renamed.fmu"))
+    (tmp_path / "pair_OspModelDescription.xml").rename(tmp_path / "renamed_OspModelDescription.xml")
+    assert len(read_system(path).connections) == 4
+    with pytest.raises(AssertionError, match="Unable to create execution"):
+        rows_of(path, read_system(path), 1)
+    said = errors_for_libcosim(path)
+    assert len(said) == 2 and "one: variable groups that are not in pair_OspModelDescription.xml" in said[0]

@@ -125,6 +125,7 @@ class Exchange:
         single, self._sums, n = _numbered(wires)
         self.plain = np.zeros(n, dtype=kind)
         self.inputs = np.zeros(len(wires), dtype=kind)
+        self._carried = self.plain[: len(wires)]
         self.output_changes, self.input_changes = Changes(), Changes()
         self.version, self._counts_versions = 0, kind.kind != "f"
         self._crossings = crossings
@@ -150,7 +151,7 @@ class Exchange:
     def refresh(self):
         """Bring the inputs up to date after a change of overrides and biases."""
         before = self.inputs.tobytes() if self._counts_versions else b""
-        np.copyto(self.inputs, self.plain[: len(self.inputs)])
+        np.copyto(self.inputs, self._carried)
         self.input_changes.apply(self.inputs)
         if self._counts_versions and before != self.inputs.tobytes():
             self.version += 1

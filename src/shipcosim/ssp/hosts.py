@@ -11,7 +11,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp import hosts_find as find
 from shipcosim.ssp.hosts_subject import Subject, subject_of
 from shipcosim.ssp.osp import assemble_osp, osp_file
-from shipcosim.ssp.xml import Findings
+from shipcosim.ssp.xml import Findings, read_document
 
 IGNORED, MISREAD = "goes on without it, and says nothing", "takes it for something else, and says nothing"
 REFUSED, CRASHES = "refuses the system", "crashes"
@@ -255,6 +255,27 @@ FEATURES = (
         find.without_co_simulation,
     ),
     Feature(
+        "osp_algorithm",
+        "an OspSystemStructure.xml without an algorithm",
+        _libcosim(REFUSED),
+        "Add <Algorithm>fixedStep</Algorithm>.",
+        find.osp_without_algorithm,
+    ),
+    Feature(
+        "osp_second_target",
+        "a second connection from the output of a function",
+        _libcosim(IGNORED),
+        "Give each target a function of its own.",
+        find.osp_second_targets,
+    ),
+    Feature(
+        "osp_group_file",
+        "variable groups in a file that has not the model's name",
+        _libcosim(REFUSED),
+        "Call the file MODELNAME_OspModelDescription.xml.",
+        find.osp_group_files,
+    ),
+    Feature(
         "same_guid",
         "two FMUs of one GUID",
         _libcosim(MISREAD),
@@ -317,4 +338,5 @@ def _problems(host, feature, subject):
 def _osp_subject(path, fmus):
     findings = Findings()
     system = assemble_osp(path, (), fmus, findings)
-    return None if findings.errors else Subject(None, None, None, None, system)
+    document = read_document(path, str(path), findings)
+    return None if findings.errors else Subject(None, None, None, None, system, document)

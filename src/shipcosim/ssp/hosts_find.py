@@ -12,6 +12,7 @@ from lxml import etree
 
 from shipcosim.ssp.hosts_subject import elements_of
 from shipcosim.ssp.markup import OSP_TYPE
+from shipcosim.ssp.osp_groups import file_names
 from shipcosim.ssp.ports import Key
 from shipcosim.ssp.structure import FMU, STEP_SIZES, DictionaryReference, SystemElement
 from shipcosim.ssp.units import find_unit, relation
@@ -306,3 +307,32 @@ def same_guids(subject):
 
 def _variables(fmu):
     return [(v.name, v.value_reference, v.type, v.causality) for v in fmu.variables.values()]
+
+
+# OspSystemStructure.xml
+
+
+def _osp(subject, *tags):
+    return [] if subject.osp is None else [part for part in subject.osp.root.iter(etree.Element) if local(part) in tags]
+
+
+def osp_without_algorithm(subject):
+    if subject.osp is not None and not _osp(subject, "Algorithm"):
+        yield subject.osp.place(subject.osp.root), ""
+
+
+def osp_second_targets(subject):
+    seen = set()
+    for part in _osp(subject, "Signal", "SignalGroup"):
+        end = part.get("function"), part.get("name")
+        if end in seen and end[1].startswith("out"):
+            yield subject.osp.place(part), f"a second connection from {end[0]}:{end[1]}"
+        seen.add(end)
+
+
+def osp_group_files(subject):
+    for name in dict.fromkeys(part.get("simulator") for part in _osp(subject, "VariableGroup")):
+        fmu = subject.system.components[name].fmu
+        places = [folder / file_names(fmu)[0] for folder in (fmu.path.parent, subject.osp.folder)]
+        if not any(place.is_file() for place in places):
+            yield name, f"variable groups that are not in {places[0].name}"

@@ -23,6 +23,8 @@ class Subject:
         Of an SSP; None for an OspSystemStructure.xml.
     system : System
         Flat.
+    osp : Document or None
+        The OspSystemStructure.xml, where it is one.
     """
 
     document: Document | None
@@ -30,6 +32,7 @@ class Subject:
     package: Package | None
     tree: Tree | None
     system: System
+    osp: Document | None = None
 
     @property
     def elements(self):
