@@ -218,3 +218,21 @@ def test_another_file_is_none(tmp_path, text):
 def test_it_cannot_be_edited_and_says_so(osp):
     with pytest.raises(ShipcosimError, match="cannot be edited"):
         sc.read(osp())
+
+
+ARRAYS = """<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="m">
+<CoSimulation modelIdentifier="m"/><ModelVariables>
+<UInt64 name="n" valueReference="1" causality="structuralParameter" variability="fixed" start="2"/>
+<Float64 name="A" valueReference="2" causality="input" start="0 0"><Dimension valueReference="1"/></Float64>
+<Float64 name="B" valueReference="3" causality="output"><Dimension valueReference="1"/></Float64></ModelVariables>
+<ModelStructure><Output valueReference="3"/></ModelStructure></fmiModelDescription>"""
+
+
+def test_arrays_of_fmi_3_are_connected_by_elements_and_sized_by_initial_values(osp, shop):
+    with zipfile.ZipFile(shop.folder / "resources" / "three.fmu", "w") as archive:
+        archive.writestr("modelDescription.xml", ARRAYS)
+    simulators = SIMULATORS.replace("one.fmu", "three.fmu")
+    system = read_system(osp(connections=joined("a.B[2]", "b.A[1]"), simulators=simulators.replace("{}", "")))
+    assert [(c.source, c.target) for c in system.connections] == [(("a", "B[2]"), ("b", "A[1]"))]
+    larger = read_system(osp(values=value("n", "Integer", "3"), simulators=simulators))
+    assert "A[3]" in larger.components["b"].fmu.variables and "A[3]" not in larger.components["a"].fmu.variables

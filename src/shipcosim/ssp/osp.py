@@ -9,6 +9,7 @@ from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
 from shipcosim.errors import suggestion
+from shipcosim.ssp.arrays import resized, sizes_wanted, without_arrays
 from shipcosim.ssp.fmu import describe_fmu
 from shipcosim.ssp.osp_functions import Wiring, read_function
 from shipcosim.ssp.osp_groups import file_names, read_groups
@@ -64,7 +65,13 @@ def assemble_osp(path, parameters, fmus, findings):
     validate_osp(document, findings)
     if len(findings.errors) > before:
         return None
-    return _Reader(document, [Path(folder) for folder in fmus], findings).system(parameters)
+    before, sets = list(findings.problems), list(parameter_sets(parameters, findings))
+    folders = [Path(folder) for folder in fmus]
+    system = _Reader(document, folders, findings).system(sets)
+    if any(found for component in system.components.values() for found in resized(component)):
+        findings.problems[:] = before
+        system = _Reader(document, folders, findings, sizes_wanted(system.components)).system(sets)
+    return system
 
 
 def _is_osp(document, findings):
@@ -79,18 +86,18 @@ def _is_osp(document, findings):
 class _Reader:
     """Reads one document that keeps its schema."""
 
-    def __init__(self, document, fmus, findings):
-        self.document, self.searched, self.findings = document, fmus, findings
+    def __init__(self, document, fmus, findings, sizes=None):
+        self.document, self.searched, self.findings, self.sizes = document, fmus, findings, sizes or {}
         self.tree, self._described, self._groups = Tree(findings), {}, {}
         self.functions, self.connections, self._fed = {}, [], {}
 
-    def system(self, parameters):
+    def system(self, sets):
         for element in self._parts("Simulators"):
             self._simulator(element)
         for element in self._parts("Functions"):
             self._function(element)
         self._connect()
-        for values in parameter_sets(parameters, self.findings):
+        for values in sets:
             self.tree.bind(values)
         settings = Settings(self.tree, self.findings)
         settings.apply()
@@ -123,7 +130,9 @@ class _Reader:
         fmu = self._fmu(element.get("source"), place)
         step = own_step(self.document, element, self.findings)
         described = ComponentElement(name, element.get("source"), FMU, "any", (), (), step, place)
+        fmu = fmu and without_arrays(fmu, place, self.findings, self.sizes.get(name))
         self.tree.components[name,] = described, fmu
+        self.tree.arrays[name,] = {} if fmu is None else dict(fmu.arrays)
         for initial in element.iter(f"{{{NAMESPACE}}}InitialValue"):
             self._initial(name, initial)
 
