@@ -296,7 +296,7 @@ def _centre(columns, plant, neutral):
     return found
 
 
-def explain(case, *, most=3, likely=4, near=12.0, enough=5.0):
+def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
     """The sets of causes that explain a log best.
 
     Parameters
@@ -307,7 +307,8 @@ def explain(case, *, most=3, likely=4, near=12.0, enough=5.0):
     likely : int
         Candidates that are fitted at each stage.
     near : float
-        Candidates this far below the best are still fitted, or a seventh of its gain. [nats]
+        Candidates this far below the best are still fitted, or half its gain: at first sight what is not linear, as a
+        current, gains too little. [nats]
     enough : float
         What a further cause has to gain. [nats]
 
@@ -324,8 +325,8 @@ def explain(case, *, most=3, likely=4, near=12.0, enough=5.0):
         for fit in front:
             gains = weighed(case, fit)
             most_gain = gains[0][0]
-            for gain, suspect, values in gains[: likely if stage == 0 else 2]:
-                if gain < max(most_gain - max(near, most_gain / 7.0), -2.0 if stage == 0 else enough - 2.0):
+            for gain, suspect, values in gains[: likely if stage == 0 else likely // 2]:
+                if gain < max(most_gain - max(near, most_gain / 2.0), -2.0 if stage == 0 else enough - 2.0):
                     break
                 suspects = (*fit.suspects, suspect)
                 key = names(suspects)
