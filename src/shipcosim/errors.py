@@ -3,6 +3,10 @@
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+LONGEST_TEXT = 4000  # characters of each part of a problem: a name can be as long as a file
+MOST_SHOWN = 100  # problems that anybody reads at once
+MOST_COMPARED, LONGEST_NAME = 1000, 200  # names that a misspelt one is compared with, characters of one that is
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -25,6 +29,12 @@ class Problem:
     remedy: str = ""
     severity: str = "error"
 
+    def __post_init__(self):
+        for part in ("where", "found", "remedy"):
+            text = getattr(self, part)
+            if len(text) > LONGEST_TEXT:
+                object.__setattr__(self, part, f"{text[: LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4 :]}")
+
     def __str__(self):
         text = f"{self.where}: {self.found}" if self.where else self.found
         return f"{text} {self.remedy}".rstrip()
@@ -43,7 +53,23 @@ class ShipcosimError(Exception):
         if isinstance(problems, (Problem, str)):
             problems = [problems]
         self.problems = [p if isinstance(p, Problem) else Problem("", p) for p in problems]
-        super().__init__("\n".join(str(p) for p in self.problems))
+        super().__init__("\n".join(map(str, worth_showing(self.problems))))
+
+
+def worth_showing(problems):
+    """As many of the problems as anybody reads, errors before remarks if there are more, and how many others there are.
+
+    Examples
+    --------
+    >>> [str(problem) for problem in worth_showing([Problem("", str(i)) for i in range(103)])][-2:]
+    ['99', 'And 3 more.']
+    """
+    problems = list(problems)
+    if len(problems) <= MOST_SHOWN:
+        return problems
+    problems.sort(key=lambda problem: problem.severity != "error")
+    more = Problem("", f"And {len(problems) - MOST_SHOWN} more.", severity=problems[MOST_SHOWN].severity)
+    return [*problems[:MOST_SHOWN], more]
 
 
 def suggestion(name, known):
@@ -54,9 +80,9 @@ def suggestion(name, known):
     >>> suggestion("thrust_comand", ["thrust_cmd"])
     "There is: thrust_cmd. Did you mean 'thrust_cmd'?"
     """
-    known = sorted(known)
+    known = sorted(filter(None, known))
     if not known:
         return "There is none."
     shown = ", ".join(known[:12]) + (f", ... ({len(known)} in all)" if len(known) > 12 else "")
-    close = get_close_matches(name, known, n=1)
+    close = get_close_matches(name, known[:MOST_COMPARED], n=1) if len(name) < LONGEST_NAME else ()
     return f"There is: {shown}." + (f" Did you mean '{close[0]}'?" if close else "")

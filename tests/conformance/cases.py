@@ -39,7 +39,7 @@ FORMS = {
     "ssp, 1.0, other prefixes": ("ssp", "1.0", lambda text: with_other_prefixes(text)),
     "ssp, 2.0": ("ssp", "2.0", str),
 }
-"""Ways to write down the same system: packing, version of the standard, prefixes. Every case is run in the first four."""
+"""Ways to write down a system: packing, version of the standard, prefixes. Every case is run in the first four."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,7 @@ def write(case, folder, form="folder, 1.0", twin=None):
     for name, how in case.fmus.items():
         file = root / how.get("file", f"resources/{name}.fmu")
         file.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(fmu(name, _frozen(how)), file)
+        shutil.copyfile(fmu_of(name, how), file)
     for name in [name for name in case.files if name.endswith(".ssp/SystemStructure.ssd")]:
         inner = (root / name).parent
         _zip(inner, root / "packed")
@@ -239,9 +239,13 @@ def _thawed(how):
     return {key: _thawed(value) for key, value in how} if isinstance(how, tuple) else how
 
 
+def fmu_of(name, how):
+    """Path of an FMU made of a part, with a description that a case changes; see `Case.fmus`."""
+    return _fmu(name, _frozen(how))
+
+
 @cache
-def fmu(name, how):
-    """Path of an FMU made of a part, with a description that a case changes."""
+def _fmu(name, how):
     how = _thawed(how)
     part = build_part(how.pop("part", name))
     how.pop("file", None)

@@ -173,7 +173,7 @@ def in_libcosim(case, path):
 
 
 def in_ecos(case, path):
-    """ecos reading the SSP itself; it is told which parameter set to apply, and a step size: half where the file says one."""
+    """ecos reading the SSP itself; it is told the parameter set, and a step size: half of it where the file says one."""
     from ecospy import EcosLib, EcosSimulation
 
     EcosLib.set_log_level("off")

@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from shipcosim.errors import worth_showing
+
 WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
 STYLES = {"error": "bold red", "remark": "yellow"}
 VERDICTS = {"passed": "bold green", "failed": "bold red", "partial": "bold yellow"}
@@ -18,7 +20,7 @@ VERDICTS = {"passed": "bold green", "failed": "bold red", "partial": "bold yello
 def print_problems(problems):
     """Errors as one readable block on stderr."""
     console = Console(stderr=True, highlight=False, soft_wrap=True)
-    for problem in problems:
+    for problem in worth_showing(problems):
         console.print(_block(problem))
 
 
@@ -106,7 +108,7 @@ def print_report(reports, as_json):
         return
     console = Console(highlight=False, soft_wrap=True)
     for file, problems in reports.items():
-        for problem in problems:
+        for problem in worth_showing(problems):
             console.print(_block(problem))
         errors = sum(problem.severity == "error" for problem in problems)
         console.print(Text(f"{file}: " + (f"{errors} error{'s' * (errors > 1)}" if errors else "nothing wrong")))

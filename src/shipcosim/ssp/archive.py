@@ -16,6 +16,7 @@ LARGEST_TOTAL = 2**30  # bytes, unpacked
 LARGEST_RATIO = 200  # unpacked to packed; text reaches some 20
 SMALL = 64 * 2**20  # bytes; below this size any ratio is harmless
 BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, struct.error, NotImplementedError, RuntimeError, ValueError)
+CANNOT = (*BROKEN, OSError, MemoryError)  # sizes and places that a damaged directory states can be absurd
 
 
 def unpack(path, folder, shown=None):
@@ -78,7 +79,7 @@ def read_entry(path, name, limit, shown=None):
             raise ShipcosimError(Problem(shown, f"{name} is larger than {limit >> 20} MiB."))
         try:
             return archive.read(name)
-        except BROKEN as error:
+        except CANNOT as error:
             raise _damaged(shown, error) from None
 
 

@@ -68,23 +68,31 @@ class Settings:
                 self._deliver(value.value, flow, setting, key, value.place)
 
     def _deliver(self, value, flow, step, key, place):
-        """Take a value over one step to a port, and on from there."""
+        """Take a value over one step to a port, and on from there; once to each port, also where wires go round."""
+        ahead, seen = [(value, flow, step, key)], set()
+        while ahead:
+            *arriving, key = ahead.pop()
+            if key not in seen:
+                seen.add(key)
+                ahead += self._arrive(*arriving, key, place)
+
+    def _arrive(self, value, flow, step, key, place):
+        """What goes on from a port that a value has come to: (value, flow, wire, next port) each."""
         port = self._port(key)
         if flow.type == "Enumeration" and isinstance(value, str):
             value, flow, step = self._number(value, flow, step, port, place)
             if value is None:
-                return
+                return ()
         flow = advance(flow, step, port, (place, ("the value", str(key))), self.findings)
         if port.owner == "component":
             self._start(value, flow, key, port, place)
-            return
+            return ()
         if port.owner == "system" and port.kind not in SOURCES_INSIDE:
             self.findings.remark(place, f"{key} is of kind {port.kind}; a start value there has no effect.")
-            return
+            return ()
         if key.path == () and port.owner == "system":
             self.system_start[key.name] = flow.in_unit(port.unit)(value)
-        for wire in self.outgoing[key]:
-            self._deliver(value, flow, wire, wire.target, place)
+        return [(value, flow, wire, wire.target) for wire in self.outgoing[key]]
 
     def _port(self, key):
         if key in self.tree.ports:

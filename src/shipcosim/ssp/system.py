@@ -169,7 +169,8 @@ def assemble_package(package, parameters, file, findings, described=None):
     structure = None if document is None else read_structure(document, findings)
     if structure is None:
         return None
-    before, sets = list(findings.problems), list(parameter_sets(parameters, findings))
+    sets = list(parameter_sets(parameters, findings))
+    before = len(findings.problems)
 
     def grown(sizes):
         tree = Tree(findings, described, sizes)
@@ -180,7 +181,7 @@ def assemble_package(package, parameters, file, findings, described=None):
 
     system = grown({})
     if any(found for component in system.components.values() for found in resized(component)):
-        findings.problems[:] = before
+        findings.back_to(before)
         system = grown(sizes_wanted(system.components))
     return system
 
@@ -221,7 +222,7 @@ def _system(tree, structure, file, findings):
         parameters=signals.of("parameter", "structuralParameter"),
         experiment=_experiment(structure),
         remarks=tuple(dict.fromkeys(findings.remarks)),
-        _packages=tuple(tree.packages),
+        _packages=tuple(tree.library.packages),
     )
 
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp.arrays import element_connectors, element_links, element_values, without_arrays
-from shipcosim.ssp.fmu import FmuDescription, describe_fmu
+from shipcosim.ssp.fmu import FmuDescription
+from shipcosim.ssp.library import Library
 from shipcosim.ssp.links import wire_of
-from shipcosim.ssp.package import open_package, read_in_component
-from shipcosim.ssp.parameters import read_dictionary, read_mapping, read_parameter_set
 from shipcosim.ssp.ports import Key, Port, Setting, Wire, variable_port
 from shipcosim.ssp.structure import (
     FMU,
@@ -21,7 +20,6 @@ from shipcosim.ssp.structure import (
     ComponentElement,
     DictionaryReference,
     SystemElement,
-    read_structure,
 )
 from shipcosim.ssp.units import find_unit, relation
 from shipcosim.ssp.values import has
@@ -51,14 +49,12 @@ class Tree:
         self.settings: list[Setting] = []
         self.arrays: dict[tuple[str, ...], dict] = {}
         self.references: dict[Key, Key] = {}
-        self.packages = []
-        self._fmus = {}
-        self.described = {} if described is None else described
+        self.library = Library(findings, described)
         self.sizes = sizes or {}
 
     def grow(self, structure, package):
         """Take in the outermost system."""
-        self.packages.append(package)
+        self.library.packages.append(package)
         self._system(structure.system, (), _Place(structure, package, (), (structure.system.place,)), ())
         self._join_dictionaries()
 
@@ -126,25 +122,23 @@ class Tree:
             if system is None:
                 self.findings.error(element.place, f"No system in this file has the id '{fragment}'.", "Give it one.")
             return system and (place.structure, system, place.package)
-        file = place.package.locate(uri, place.folder, element.place, self.findings)
+        file = self.library.file(element, uri, place)
         if file is None:
             return None
         package, name = place.package, file
         if element.type == SSP:
             shown = place.package.show(file)
             address = f"{file}#{fragment}" if fragment else file
-            package = open_package(address, self.findings, place.package.fmus, shown)
+            package = self.library.package(address, place.package.fmus, shown)
             if package is None:
                 return None
-            self.packages.append(package)
             name = package.folder / package.ssd
-        document = package.read(name, self.findings)
-        structure = None if document is None else read_structure(document, self.findings)
+        structure = self.library.structure(package, name)
         return structure and (structure, structure.system, package)
 
     def _fmu(self, element, path, place):
-        file = place.package.locate(element.source, place.folder, element.place, self.findings)
-        fmu = None if file is None else self._described(file, place.package)
+        file = self.library.file(element, element.source, place)
+        fmu = None if file is None else self.library.fmu(file, place.package)
         fmu = fmu and without_arrays(fmu, element.place, self.findings, self.sizes.get(".".join(path)))
         self.components[path] = element, fmu
         self.arrays[path] = {} if fmu is None else dict(fmu.arrays)
@@ -155,21 +149,6 @@ class Tree:
         if fmu is not None:
             self._check_implementation(element, fmu)
         self._bindings(element.bindings, path, place, near=True, fmu=fmu)
-
-    def _described(self, file, package):
-        if file not in self._fmus:
-            self._fmus[file] = self._description(file, package)
-        return self._fmus[file]
-
-    def _description(self, file, package):
-        key = file, file.stat().st_mtime_ns
-        if key not in self.described:
-            before = len(self.findings.problems)
-            fmu = describe_fmu(file, self.findings, package.show(file))
-            if len(self.findings.problems) > before:
-                return fmu  # not kept: the next tree has to hear of its faults too
-            self.described[key] = fmu
-        return self.described[key]
 
     def _check_implementation(self, element, fmu):
         wanted = element.implementation
@@ -242,8 +221,8 @@ class Tree:
         """Dictionaries defined on a system: where they live among the ports, and their entries, by name."""
         found = {}
         for name, source in element.dictionaries.items():
-            document = self._content(source, place)
-            entries = {} if document is None else read_dictionary(document, self.findings)
+            document = self.library.content(source, place)
+            entries = {} if document is None else self.library.dictionary(document)
             found[name] = (*path, "", name), entries
         return found
 
@@ -254,25 +233,16 @@ class Tree:
             ends = (reference, entry) if reference in fed else (entry, reference)
             self.wires.append(Wire(*ends, place=self.ports[reference].place))
 
-    def _content(self, source, place, fmu=None):
-        """Document that a source means, inline or in a file, or None."""
-        if source.inline is not None or source.uri is None:
-            return source.inline
-        if source.in_component:
-            return None if fmu is None else read_in_component(fmu, source.uri, source.place, self.findings)
-        file = place.package.locate(source.uri, place.folder, source.place, self.findings)
-        return None if file is None else place.package.read(file, self.findings)
-
     def _bindings(self, bindings, path, place, near=False, fmu=None):
         for binding in bindings:
-            document = self._content(binding.values, place, fmu)
+            document = self.library.content(binding.values, place, fmu)
             if document is None:
                 continue
-            values = read_parameter_set(document, self.findings)
+            values = self.library.parameter_set(document)
             mapping = None
             if binding.mapping is not None:
-                content = self._content(binding.mapping, place, fmu)
-                mapping = () if content is None else read_mapping(content, self.findings)
+                content = self.library.content(binding.mapping, place, fmu)
+                mapping = () if content is None else self.library.mapping(content)
             self.settings += self._settings(values, path, binding.prefix, mapping, near)
 
     def bind(self, values, path=()):

@@ -81,16 +81,15 @@ def _is_end(key, port):
 
 def _way(key, incoming, findings):
     """Wires that lead to a port, first one first; empty where they go in a circle."""
-    wires = []
+    wires, seen = [], set()
     while key in incoming:
-        wires.insert(0, incoming[key])
+        seen.add(key)
+        wires.append(incoming[key])
         key = incoming[key].source
-        if any(wire.target == key for wire in wires):
-            findings.error(
-                wires[-1].place, "The connections go in a circle without a component.", "Remove one of them."
-            )
+        if key in seen:
+            findings.error(wires[0].place, "The connections go in a circle without a component.", "Remove one of them.")
             return []
-    return wires
+    return wires[::-1]
 
 
 def _source(key, tree):

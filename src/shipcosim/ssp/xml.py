@@ -50,6 +50,7 @@ class Findings:
 
     def __init__(self):
         self.problems = []
+        self._errors, self._looked_at = [], 0
         self.refused_lines = set()  # by a schema: what else is wrong with a value there has been said
 
     def error(self, where, found, remedy=""):
@@ -60,10 +61,17 @@ class Findings:
         """Note what a user should know although it stops nothing."""
         self.problems.append(Problem(where, found, remedy, severity="remark"))
 
+    def back_to(self, count):
+        """Forget all but the first problems."""
+        del self.problems[count:]
+        self._errors, self._looked_at = [], 0
+
     @property
     def errors(self):
         """Those of the problems that make the input unusable."""
-        return [problem for problem in self.problems if problem.severity == "error"]
+        self._errors += [problem for problem in self.problems[self._looked_at :] if problem.severity == "error"]
+        self._looked_at = len(self.problems)
+        return self._errors
 
     @property
     def remarks(self):
