@@ -41,6 +41,7 @@ void* fmi2Instantiate(const char* n, int kind, const char* guid, const char* whe
   M* m = calloc(1, sizeof(M)); m->next = HUGE_VAL; m->dirty = 1; m->i[7] = kind; start(m); return m;
 }
 const char* fmi2GetVersion(void) { return "2.0"; }
+int fmi2SetDebugLogging(M* m, int on, size_t n, const char** categories) { return 0; }
 const char* fmi2GetTypesPlatform(void) { return "default"; }
 void fmi2FreeInstance(M* m) { free(m); }
 int fmi2SetupExperiment(M* m, int d, double tolerance, double t, int s, double stop) { m->time = t; return 0; }
@@ -101,6 +102,7 @@ static M* made(int kind) {
   M* m = calloc(1, sizeof(M)); m->next = HUGE_VAL; m->dirty = 1; m->i[7] = kind; start(m); return m;
 }
 const char* fmi3GetVersion(void) { return "3.0"; }
+int fmi3SetDebugLogging(M* m, bool on, size_t n, const char** categories) { return 0; }
 void* fmi3InstantiateModelExchange(const char* n, const char* t, const char* w, bool v, bool l, void* e, void* log) {
   return made(0);
 }
@@ -165,12 +167,12 @@ FMI1 = """
 typedef struct { void (*log)(void*, const char*, int, const char*, const char*, ...); void *a, *b, *c; } C;
 static M* made(void) { M* m = calloc(1, sizeof(M)); m->next = HUGE_VAL; m->dirty = 1; start(m); return m; }
 const char* F(fmiGetVersion)(void) { return "1.0"; }
+int F(fmiSetDebugLogging)(M* m, char on) { return 0; }
 int F(fmiSetReal)(M* m, const R* r, size_t n, const double* v) {
   for (size_t k = 0; k < n; k++) m->r[r[k]] = v[k];
   m->dirty = 1; return 0;
 }
 int F(fmiGetReal)(M* m, const R* r, size_t n, double* v) {
-  if (m->mode == MADE) return 3;
   refresh(m); for (size_t k = 0; k < n; k++) v[k] = m->r[r[k]]; return 0;
 }
 int F(fmiSetInteger)(M* m, const R* r, size_t n, const int* v) {
@@ -338,6 +340,8 @@ def _variable(version, references, name, reference, causality, kind, start):
     if version == "1.0":
         how = {"local": "", "parameter": ' variability="parameter"'}.get(causality, f' causality="{causality}"')
         return f'<ScalarVariable name="{name}" valueReference="{reference}"{how}><{kind}{given}/></ScalarVariable>'
+    if name.startswith("der("):
+        given += f' derivative="{list(references).index(_state_of(name)) + 1}"'
     variability = ' variability="fixed"' if causality == "parameter" else ""
     variability = ' variability="discrete"' if kind != "Real" and not variability else variability
     place = f'name="{name}" valueReference="{reference}" causality="{causality}"{variability}'

@@ -282,3 +282,17 @@ def test_the_block_runs_in_a_program_that_is_not_python(chain, root, tmp_path, n
     said = subprocess.run([program], input=text, env=path, capture_output=True, text=True, timeout=60).stdout
     answers = [line for line in said.splitlines() if not line.startswith("log ")]
     assert float(answers[-1]) == float(block_values(tmp_path / "chain.fmu", 1.0, 0.125, u=4.0)["y"][-1])
+
+
+def test_two_blocks_of_one_fmu_are_a_block_again(chain, tmp_path):
+    export_fmu(chain, tmp_path / "chain.fmu", 0.125)
+    fmu = read_fmu(tmp_path / "chain.fmu")
+    parts = {"a": Component("a", fmu, {"u": 4.0}), "b": Component("b", fmu, {"lag.time_constant": 2.0})}
+    both = System("both", "both.ssd", parts, (Connection(("a", "y"), ("b", "u")),))
+    export_fmu(both, tmp_path / "both.fmu", 0.125)
+    table, block = (
+        simulate(both, Scenario(stop_time=2.0, step_size=0.125)),
+        block_values(tmp_path / "both.fmu", 2.0, 0.125),
+    )
+    assert np.array_equal(table["a.y"], block_values(tmp_path / "chain.fmu", 2.0, 0.125, u=4.0)["y"])
+    assert np.array_equal(table["b.y"], block["b.y"]) and not np.array_equal(table["b.y"], table["a.y"])
