@@ -121,37 +121,63 @@ def refusal(lines):
 # an FMU alone
 
 
+class Reference:
+    """The reference result of an FMU of the project: commands that drive the FMU through it, row by row."""
+
+    def __init__(self, name, fmu, root):
+        spec = importlib.util.spec_from_file_location("documents", root / "docs" / "write_fmu_documents.py")
+        documents = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(documents)
+        self.parameters, self.fmu = documents.PARAMETERS.get(name, {}), fmu
+        self.table = read_table(root / "fmus" / name / "reference.csv")
+        self.times = self.table["time"].values
+        self.inputs, self.outputs = (
+            [n for n, v in fmu.variables.items() if v.causality == causality and n in self.table]
+            for causality in ("input", "output")
+        )
+
+    def start(self):
+        yield from self.fmu.set(**self.parameters)
+        yield from self._set(0)
+        yield from self.fmu.then("begin")
+        yield from self.fmu.get(*self.outputs)
+
+    def rows(self, first, last):
+        for row in range(first, last):
+            yield from self._set(row - 1)
+            yield from self.fmu.then("step", self.times[row - 1], self.times[row] - self.times[row - 1])
+            yield from self.fmu.get(*self.outputs)
+
+    def _set(self, row):
+        given = {name: self.table[name].values[row] for name in self.inputs}
+        kinds = {name: float if self.fmu.variables[name].type == "Real" else int for name in given}
+        return self.fmu.set(**{name: kinds[name](value) for name, value in given.items()})
+
+
 @pytest.mark.parametrize("name", FMUS)
 def test_every_fmu_of_the_project_gives_its_reference_result(name, root, loaded, host):
     """To 1e-9 of each signal's range, as through FMPy."""
-    spec = importlib.util.spec_from_file_location("documents", root / "docs" / "write_fmu_documents.py")
-    documents = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(documents)
-    table, fmu = read_table(root / "fmus" / name / "reference.csv"), loaded(build_stale(root) / f"{name}.fmu")
-    times = table["time"].values
-    inputs, outputs = (
-        [n for n, v in fmu.variables.items() if v.causality == causality and n in table]
-        for causality in ("input", "output")
-    )
-
-    def commands():
-        yield from fmu.set(**documents.PARAMETERS.get(name, {}))
-        for row in range(len(times)):
-            given = {key: table[key].values[max(0, row - 1)] for key in inputs}
-            yield from fmu.set(**{k: v if fmu.variables[k].type == "Real" else int(v) for k, v in given.items()})
-            if row:
-                yield from fmu.then("step", times[row - 1], times[row] - times[row - 1])
-            else:
-                yield from fmu.then("begin")
-            yield from fmu.get(*outputs)
-
-    lines = host(commands(), fmus=[fmu])
+    fmu = loaded(build_stale(root) / f"{name}.fmu")
+    reference = Reference(name, fmu, root)
+    lines = host(reference.start(), reference.rows(1, len(reference.times)), fmus=[fmu])
     assert lines[0] == "one instantiated"
-    found = np.array(lines[1:], dtype=float).reshape(len(times), len(outputs))
-    for column, signal in enumerate(outputs):
-        expected = table[signal].values.astype(float)
+    found = np.array(lines[1:], dtype=float).reshape(len(reference.times), len(reference.outputs))
+    for column, signal in enumerate(reference.outputs):
+        expected = reference.table[signal].values.astype(float)
         tolerance = 1e-9 * max(np.ptp(expected), np.abs(expected).max(), 1e-6)
         np.testing.assert_allclose(found[:, column], expected, rtol=0.0, atol=tolerance, err_msg=signal)
+
+
+@pytest.mark.parametrize("name", [n if n == "vessel" else pytest.param(n, marks=pytest.mark.slow) for n in FMUS])
+def test_a_state_of_every_fmu_goes_on_in_another_process_bit_for_bit(name, root, loaded, host, tmp_path):
+    fmu = loaded(build_stale(root) / f"{name}.fmu")
+    reference, file = Reference(name, fmu, root), tmp_path / "state"
+    half, end = len(reference.times) // 2, len(reference.times)
+    save = fmu.then("save", file)
+    whole = host(reference.start(), reference.rows(1, half), save, reference.rows(half, end), fmus=[fmu])
+    begin = fmu.set(**reference.parameters), fmu.then("begin"), fmu.then("restore", file)
+    rest = host(*begin, reference.rows(half, end), fmus=[fmu])[1:]
+    assert len(rest) == (end - half) * len(reference.outputs) and rest == whole[-len(rest) :]
 
 
 def test_values_of_every_type_go_in_and_out_and_what_is_logged_arrives(lag, loaded, host):
