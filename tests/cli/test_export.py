@@ -99,6 +99,28 @@ def test_check_for_a_tool_names_what_it_would_leave_out_and_how_to_mend_it(gunne
     assert call("check", "ssp/gunnerus_dp", "--for", "vico").code == 2
 
 
+def test_check_holds_a_scenario_of_osp_against_the_structure_beside_it(gunnerus, call):
+    assert call("export", "osp", "short", "--out", "out").code == 0
+    file = gunnerus / "out" / "scenario.json"
+    assert call("check", "out/scenario.json").code == 0
+    file.write_text(file.read_text().replace('"x_set"', '"x_sett"'))
+    result = call("check", "out/scenario.json")
+    assert result.code == 1 and "reference has no variable 'x_sett'" in result.out and "scenario.json" in result.out
+    (gunnerus / "alone.yaml").write_text("events: [{time: 1, model: a, variable: b, action: rest}]")
+    assert "Did you mean 'reset'?" in call("check", "alone.yaml").out
+
+
+def test_a_scenario_of_ours_runs_an_osp_structure(gunnerus, call):
+    assert call("export", "osp", "short", "--out", "out").code == 0
+    (gunnerus / "scenarios" / "theirs.toml").write_text(
+        'system = "out/OspSystemStructure.xml"\nstop_time = 1.0\nstep_size = 0.05\n'
+        '[[events]]\ntime = 0.5\noverride = { "reference.x_set" = 1.0 }\n'
+    )
+    for name in ("short", "theirs"):
+        assert call("run", name, "--out", name).code == 0
+    assert (gunnerus / "short" / "result.csv").read_text() == (gunnerus / "theirs" / "result.csv").read_text()
+
+
 def test_commands_of_the_page_run(root, gunnerus, call):
     shutil.copy(root / "scenarios" / "gust.toml", "scenarios")
     page = (root / "docs" / "osp.md").read_text(encoding="utf-8")

@@ -268,7 +268,8 @@ def compare(
 @command
 def check(
     files: Annotated[
-        list[str], typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .xml .toml .csv .nc")
+        list[str],
+        typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .xml .toml .json .yaml .csv .nc"),
     ],
     channels: Annotated[
         Path | None, typer.Option("--channels", metavar="X.toml", help="Channel file of measured data.")

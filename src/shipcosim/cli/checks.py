@@ -1,5 +1,6 @@
 """What is wrong with a file of any kind that the commands take."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,8 @@ import numpy as np
 from shipcosim.cli.project import SYSTEMS, built_fmus, find_project
 from shipcosim.errors import Problem, ShipcosimError
 
+LATE = 1e9  # s; beyond what any run reaches
+OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 
 
@@ -16,7 +19,7 @@ def check_any(file, channels=None, hosts=()):
     Parameters
     ----------
     file : str
-        A scenario (.toml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a system (see
+        A scenario (.toml; of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a system (see
         `shipcosim.ssp.check_file`).
     channels : path, optional
         Channel file of tables that are measured data.
@@ -40,6 +43,8 @@ def check_any(file, channels=None, hosts=()):
             return [*check_any(file, channels), *problems]
         if path.suffix == ".toml":
             return check_scenario_file(path)
+        if path.suffix.lower() in OSP_SCENARIOS:
+            return check_osp_scenario(path)
         if path.name.endswith(TABLES):
             return check_log(path, channels) if channels or _is_log(path) else check_table(path)
         return _check_system_file(file, path)
@@ -89,6 +94,24 @@ def check_scenario_file(path):
     except ShipcosimError as error:
         problems = error.problems
     return [*problems, *check_scenario(scenario, system)]
+
+
+def check_osp_scenario(path):
+    """Problems of a scenario of OSP, in itself and with the OspSystemStructure.xml beside it, where there is one."""
+    from shipcosim.cosim.osp_scenario import read_osp_scenario
+    from shipcosim.scenario import Scenario, check_scenario
+    from shipcosim.ssp import osp_file, read_system
+
+    structure = osp_file(path.parent)
+    if structure is None:
+        return read_osp_scenario(path, 1e-6, LATE).remarks
+    system = read_system(structure)
+    step = system.experiment.step_size
+    read = read_osp_scenario(path, step, system.experiment.stop_time or LATE)
+    last = max((event.time for event in read.events), default=0.0) + step
+    stop = system.experiment.stop_time or last
+    found = check_scenario(Scenario(stop_time=stop, step_size=step, events=read.events), system)
+    return [*read.remarks, *(replace(problem, where=str(path)) for problem in found)]
 
 
 def _is_log(path):

@@ -239,13 +239,6 @@ FEATURES = (
         "Rename the file so that nothing has to be escaped.",
         find.escaped_addresses,
     ),
-    Feature(
-        "fmi_1",
-        "an FMU of FMI 1.0",
-        _libcosim(CRASHES),
-        "libcosim asks for values before the initialisation; an FMU that refuses it ends the process. Take FMI 2.0.",
-        find.fmi_1,
-    ),
     Feature("fmi_3", "an FMU of FMI 3.0", _libcosim(REFUSED), "Export the FMU as FMI 2.0.", find.fmi_3),
     Feature(
         "model_exchange",

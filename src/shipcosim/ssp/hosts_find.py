@@ -283,10 +283,6 @@ def start_times(subject):
 # FMUs
 
 
-def fmi_1(subject):
-    yield from ((name, "") for name, fmu in subject.fmus if fmu.fmi_version.startswith("1"))
-
-
 def fmi_3(subject):
     yield from ((name, "") for name, fmu in subject.fmus if fmu.fmi_version.startswith("3"))
 

@@ -1,6 +1,7 @@
 """A system that is looked at for what other tools take otherwise: its outermost file as written, and what it means."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from lxml import etree
 
@@ -34,19 +35,20 @@ class Subject:
     system: System
     osp: Document | None = None
 
-    @property
+    @cached_property
     def elements(self):
         """Elements of the outermost system."""
         return () if self.structure is None else self.structure.system.elements
 
-    @property
+    @cached_property
     def components(self):
         """Components of the outermost system."""
         return [part for part in self.elements if isinstance(part, ComponentElement)]
 
-    @property
+    @cached_property
     def links(self):
         """Connections of the outermost system between its elements, with their ends' ports where they are known."""
+        found = []
         for link in () if self.structure is None else self.structure.system.links:
             ends = [
                 self.tree.ports.get(Key((element,), name))
@@ -56,11 +58,13 @@ class Subject:
                 )
             ]
             if link.start_element and link.end_element:
-                yield link, *ends
+                found.append((link, *ends))
+        return found
 
-    @property
+    @cached_property
     def sets(self):
         """(component element, FMU, binding, ParameterSet) of sets bound to components."""
+        found = []
         for part in self.components:
             _, fmu = self.tree.components.get((part.name,), (None, None))
             for binding in part.bindings:
@@ -69,18 +73,21 @@ class Subject:
                     file = self.package.locate(binding.values.uri, self.document.folder, "", Findings())
                     document = None if file is None else self.package.read(file, Findings())
                 if document is not None:
-                    yield part, fmu, binding, read_parameter_set(document, Findings())
+                    found.append((part, fmu, binding, read_parameter_set(document, Findings())))
+        return found
 
-    @property
+    @cached_property
     def values(self):
         """(value, variable, fmu) of the values that are bound to components by their own names."""
+        found = []
         for _, fmu, binding, values in self.sets:
             for value in values.values if fmu is not None and binding.mapping is None else ():
                 variable = fmu.variables.get(value.name.removeprefix(binding.prefix))
                 if variable is not None:
-                    yield value, variable, fmu
+                    found.append((value, variable, fmu))
+        return found
 
-    @property
+    @cached_property
     def fmus(self):
         """(component's name, FMU) of all components."""
         return [(name, component.fmu) for name, component in self.system.components.items()]
