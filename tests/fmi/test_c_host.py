@@ -230,7 +230,7 @@ def test_the_commands_of_the_page_run(root, program, only_numpy, tmp_path, needs
 
 
 def test_an_environment_is_taken_as_it_is(build, loaded, host, only_numpy):
-    """The modules that it has, and no others; by name in a variable as well as by PATH."""
+    """The modules that it has, and no others; by PATH, or by path or name in a variable."""
     script = """
 import importlib.util
 import sys
@@ -249,7 +249,8 @@ class Asks(Fmu):
 """
     fmu = loaded(build("asks", script))
     expected = ["one instantiated", str(only_numpy.parent), "numpy"]
-    for where in ({}, {"path": "/nowhere", "SHIPCOSIM_PYTHON": str(only_numpy / "python")}):
+    named = [{"path": "/nowhere", "SHIPCOSIM_PYTHON": str(only_numpy / "python")}, {"SHIPCOSIM_PYTHON": "python"}]
+    for where in ({}, *named):
         assert host(fmu.then("begin"), fmu.steps(1, "prefix", "found"), fmus=[fmu], **where) == expected
 
 

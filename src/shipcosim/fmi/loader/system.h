@@ -31,7 +31,8 @@ void *python_of_this_process(void);
 
 void *symbol_of(void *library, const char *name);
 
-/* What a program prints on stdout when asked to run Python code; 0 where it could not be started. */
+/* What a program, a path or a name in PATH, prints on stdout when asked to run Python code; 0 where it could not be
+   started. */
 int answer_of(const char *program, const char *code, char *answer, size_t size);
 
 int is_file(const char *path);

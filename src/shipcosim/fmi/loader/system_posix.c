@@ -102,7 +102,7 @@ int answer_of(const char *program, const char *code, char *answer, size_t size)
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
     posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-    failed = posix_spawn(&child, program, &actions, NULL, arguments, environ);
+    failed = posix_spawnp(&child, program, &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
     while (!failed && length + 1 < size && (more = read(ends[0], answer + length, size - 1 - length)) > 0)

@@ -105,7 +105,7 @@ void *symbol_of(void *library, const char *name)
 /* As one argument of a command line; the code has no double quotes and no backslashes. */
 int answer_of(const char *program, const char *code, char *answer, size_t size)
 {
-    wchar_t name[PATH_SIZE], line[2 * PATH_SIZE];
+    wchar_t line[2 * PATH_SIZE];
     char text[2 * PATH_SIZE];
     SECURITY_ATTRIBUTES inherited = {sizeof inherited, NULL, TRUE};
     STARTUPINFOW start = {.cb = sizeof start, .dwFlags = STARTF_USESTDHANDLES};
@@ -117,11 +117,11 @@ int answer_of(const char *program, const char *code, char *answer, size_t size)
 
     if ((size_t)snprintf(text, sizeof text, "\"%s\" -c \"%s\"", program, code) >= sizeof text)
         return 0;
-    if (!wide(program, name, PATH_SIZE) || !wide(text, line, 2 * PATH_SIZE) || !CreatePipe(&from, &to, &inherited, 0))
+    if (!wide(text, line, 2 * PATH_SIZE) || !CreatePipe(&from, &to, &inherited, 0))
         return 0;
     SetHandleInformation(from, HANDLE_FLAG_INHERIT, 0);
     start.hStdOutput = to;
-    started = CreateProcessW(name, line, NULL, NULL, TRUE, CREATE_NO_WINDOW, NULL, NULL, &start, &child);
+    started = CreateProcessW(NULL, line, NULL, NULL, TRUE, CREATE_NO_WINDOW, NULL, NULL, &start, &child);
     CloseHandle(to);
     while (started && length + 1 < size && ReadFile(from, answer + length, (DWORD)(size - 1 - length), &more, NULL) && more)
         length += more;
