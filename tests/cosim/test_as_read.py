@@ -83,6 +83,9 @@ def test_parameters_events_and_files_that_a_tool_does_not_know_are_refused(tmp_p
     write_ssv(tmp_path / "x.ssv", "x", [parameter("ramp.bottom", 1.0)])
     cases = {"does not know them": (path, "--parameters", tmp_path / "x.ssv")}
     cases["cannot read this themselves"] = (path / "SystemStructure.ssd",)
+    cases["starts at 1 s, but a comparison starts at 0"] = (
+        conformance.write(conformance.cases()["experiment"], tmp_path / "late"),
+    )
     for message, arguments in cases.items():
         code, result = compared(*arguments, "--stop-time", 1, "--step-size", 0.1)
         assert code == 2 and message in result.stderr

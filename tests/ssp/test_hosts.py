@@ -110,7 +110,7 @@ def test_every_feature_is_in_some_system_that_was_tried(tmp_path):
     paths += [conformance.write(conformance.cases()["connection"], tmp_path / n, f[2]) for n, f in FORMED.items()]
     remedies = {problem.remedy for path in paths for host in HOSTS for problem in check_for(host, path)}
     seen = {feature.name for feature in FEATURES if feature.remedy in remedies}
-    elsewhere = {"fmi_3", "model_exchange", "same_guid"}
+    elsewhere = {"fmi_3", "form_asked", "model_exchange", "same_guid"}
     elsewhere |= {"osp_algorithm", "osp_second_target", "osp_group_file"}
     assert {feature.name for feature in FEATURES} - seen == elsewhere
 
@@ -197,6 +197,21 @@ def test_two_fmus_of_one_guid_are_one_to_libcosim(tmp_path, needs):
     (problem,) = [p for p in check_for("libcosim", folder) if p.severity == "error"]
     assert problem.where == "gain" and problem.found.startswith("gain.fmu has the GUID of ramp.fmu: libcosim takes")
     assert [p for p in check_for("ecos", folder) if p.severity == "error"] == []
+
+
+def test_the_form_that_is_asked_for_is_no_matter_to_the_tools(tmp_path, root):
+    """The page on forms states what they did, and its own tests measure it."""
+    page = (root / "docs" / "fmi-versions.md").read_text(encoding="utf-8")
+    row = next(line for line in page.splitlines() if line.startswith("| both forms, model exchange asked for"))
+    assert row.split(" | ")[2:4] == [WRONG, WRONG]
+    description = c_fmus.describe("both", "2.0", [("y", 0, "output", "Real", None)], ("CoSimulation", "ModelExchange"))
+    with zipfile.ZipFile(tmp_path / "both.fmu", "w") as archive:
+        archive.writestr("modelDescription.xml", description)
+    text = SSD.format("both").replace("resources/", "").replace("<ssd:Component ", "<ssd:Component {} ")
+    for form, said in (("any", set()), ("CoSimulation", set()), ("ModelExchange", {hosts.IGNORED})):
+        (tmp_path / "SystemStructure.ssd").write_text(text.format(f'implementation="{form}"'))
+        for host in HOSTS:
+            assert verdicts_of(host, tmp_path) - {hosts.TOLD} == said
 
 
 # what is said

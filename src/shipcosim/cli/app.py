@@ -257,7 +257,7 @@ def compare(
     from shipcosim.cosim.compare import compare as compare_engines
 
     system, happening = matter_of(what, parameters or (), stop_time, step_size, events)
-    how = reading(what, happening, parameters) if as_read else nullcontext({})
+    how = reading(what, system, happening, parameters) if as_read else nullcontext({})
     with how as tools, progress_of("Comparing") as progress:
         comparison = compare_engines(system, happening, tolerance=tolerance, progress=progress, **tools)
     print_comparison(comparison, as_json)

@@ -74,13 +74,15 @@ def matter_of(given, parameters=(), stop_time=None, step_size=None, events=None)
 
 
 @contextmanager
-def reading(given, scenario, parameters=()):
+def reading(given, system, scenario, parameters=()):
     """Arguments of `compare` with which the tools read a system's file themselves.
 
     Parameters
     ----------
     given : str
         An .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml.
+    system : System
+        As we read it.
     scenario : Scenario
         Its steps.
     parameters : iterable of path
@@ -95,6 +97,9 @@ def reading(given, scenario, parameters=()):
     fmus = [built_fmus(project)] if project else ()
     if parameters:
         raise ShipcosimError(Problem("--parameters", "A tool that reads the file itself does not know them."))
+    if system.experiment.start_time:
+        found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
+        raise ShipcosimError(Problem(given, found, "Let it start at 0."))
     with TemporaryDirectory(prefix="shipcosim-") as folder:
         if osp_file(path):
             yield {"readers": readers(osp_file(path).resolve(), scenario)}

@@ -248,6 +248,13 @@ FEATURES = (
         find.without_co_simulation,
     ),
     Feature(
+        "form_asked",
+        "model exchange asked for of an FMU that offers co-simulation too",
+        _both(IGNORED),
+        "Take an FMU that offers model exchange alone, or ask for co-simulation: they run that.",
+        find.model_exchange_asked,
+    ),
+    Feature(
         "osp_algorithm",
         "an OspSystemStructure.xml without an algorithm",
         _libcosim(REFUSED),

@@ -291,6 +291,12 @@ def without_co_simulation(subject):
     yield from ((name, "") for name, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces)
 
 
+def model_exchange_asked(subject):
+    for name, component in subject.system.components.items():
+        if component.implementation == "ModelExchange" and "CoSimulation" in component.fmu.interfaces:
+            yield name, ""
+
+
 def same_guids(subject):
     """Components whose FMU has the GUID of another one with other variables."""
     first = defaultdict(list)

@@ -5,7 +5,7 @@ What it refuses or dies of is not looked at; see `shipcosim.ssp.hosts`.
 
 from dataclasses import dataclass, replace
 
-from shipcosim.ssp.hosts_find import hints_of_others, linear_without_factor
+from shipcosim.ssp.hosts_find import hints_of_others, linear_without_factor, model_exchange_asked
 from shipcosim.ssp.hosts_subject import subject_of
 from shipcosim.ssp.system import System
 
@@ -51,7 +51,7 @@ def taken_by(host, path, *, fmus=()):
     if subject is None:
         return [], None
     whole, found = subject.system, []
-    for change in (_values, _connections, _steps):
+    for change in (_values, _connections, _steps, _forms):
         what, changed = change(host, subject, subject.system)
         if what:
             found.append(Taken(what, changed))
@@ -150,6 +150,13 @@ def _steps(host, subject, system):
     plain = {name: replace(part, step_size=None) for name, part in system.components.items()}
     other = [f"{name} steps with the base step" for name, part in system.components.items() if part.step_size]
     return _listed("step sizes are not read", other), replace(system, components=plain)
+
+
+def _forms(host, subject, system):
+    """Co-simulation, whatever the system asks for."""
+    plain = {name: replace(part, implementation="any") for name, part in system.components.items()}
+    other = [f"{name} runs as co-simulation" for name, _ in model_exchange_asked(subject)]
+    return _listed("forms are not looked at", other), replace(system, components=plain)
 
 
 def _listed(what, found):
