@@ -34,7 +34,13 @@ class Library:
 
     def file(self, owner, uri, place):
         """File that an element's address means, or None; `owner`, which has a place, stays as long as the tree."""
-        return self._once((id(owner), uri), lambda: place.package.locate(uri, place.folder, owner.place, self.findings))
+        at = "at", place.package.folder, place.folder, uri
+        if self._kept.get(at) is None:  # what is missing is said of each owner, once
+            self._kept[at] = self._once((id(owner), uri), lambda: self._located(owner, uri, place))
+        return self._kept[at]
+
+    def _located(self, owner, uri, place):
+        return place.package.locate(uri, place.folder, owner.place, self.findings)
 
     def package(self, address, fmus, shown):
         """Package at an address, or None."""
