@@ -1,7 +1,13 @@
 """FMUs made for a test, and FMPy as their host."""
 
 import ctypes
+import importlib.util
 import shutil
+import subprocess
+import sys
+import sysconfig
+import venv
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -116,6 +122,37 @@ class Host:
             self.slave.doStep(index * h, h)
             values.append(self.get(read))
         return values
+
+
+@pytest.fixture(scope="session")
+def compiled(tmp_path_factory, needs):
+    """compiled(source) -> program made of a C file that stands here."""
+
+    def compiled(source):
+        if sys.platform != "linux":
+            needs("Linux")
+        compiler = shutil.which("cc") or shutil.which("gcc") or needs("a C compiler")
+        target = tmp_path_factory.mktemp("program") / Path(source).stem
+        source = Path(__file__).with_name(source)
+        subprocess.run([compiler, "-std=gnu11", "-w", "-o", target, source, "-ldl", "-lpthread"], check=True)
+        return target
+
+    return compiled
+
+
+@pytest.fixture(scope="session")
+def only_numpy(tmp_path_factory, needs):
+    """Folder of the programs of a virtual environment in which NumPy is all there is."""
+    if not sysconfig.get_config_var("Py_ENABLE_SHARED"):
+        needs("a Python with a shared library")
+    folder = tmp_path_factory.mktemp("only") / "numpy"
+    venv.create(folder, symlinks=True)
+    packages = next(folder.glob("lib/python*/site-packages"))
+    installed = Path(importlib.util.find_spec("numpy").origin).parents[1]
+    for name in ("numpy", "numpy.libs"):
+        if (installed / name).exists():
+            (packages / name).symlink_to(installed / name)
+    return folder / "bin"
 
 
 @pytest.fixture

@@ -3,11 +3,8 @@
 import importlib.util
 import os
 import re
-import shutil
 import subprocess
-import sys
 import sysconfig
-import venv
 import zipfile
 from pathlib import Path
 
@@ -24,30 +21,9 @@ FMUS = sorted(path.stem for path in Path(__file__).parents[2].glob("fmus/*/*.py"
 
 
 @pytest.fixture(scope="session")
-def program(tmp_path_factory, needs):
+def program(compiled):
     """The compiled host."""
-    if sys.platform != "linux":
-        needs("Linux")
-    compiler = shutil.which("cc") or shutil.which("gcc") or needs("a C compiler")
-    target = tmp_path_factory.mktemp("host") / "host"
-    source = Path(__file__).with_name("host.c")
-    subprocess.run([compiler, "-std=gnu11", "-w", "-o", target, source, "-ldl", "-lpthread"], check=True)
-    return target
-
-
-@pytest.fixture(scope="session")
-def only_numpy(tmp_path_factory, needs):
-    """Folder of the programs of a virtual environment in which NumPy is all there is."""
-    if not sysconfig.get_config_var("Py_ENABLE_SHARED"):
-        needs("a Python with a shared library")
-    folder = tmp_path_factory.mktemp("only") / "numpy"
-    venv.create(folder, symlinks=True)
-    packages = next(folder.glob("lib/python*/site-packages"))
-    installed = Path(importlib.util.find_spec("numpy").origin).parents[1]
-    for name in ("numpy", "numpy.libs"):
-        if (installed / name).exists():
-            (packages / name).symlink_to(installed / name)
-    return folder / "bin"
+    return compiled("host.c")
 
 
 class Loaded:
