@@ -8,6 +8,7 @@ done to them, so that what a system needs beyond this is refused here.
 
 import hashlib
 import json
+import re
 import zipfile
 from pathlib import Path
 
@@ -144,9 +145,9 @@ def _connection_faults(connection, system, targets):
 
 
 def _paths(system):
-    """Folder in the resources for each FMU file."""
+    """Folder in the resources for each FMU file, of plain letters: not every FMU can read others in an address."""
     files = dict.fromkeys(component.fmu.path for component in system.components.values())
-    return {file: f"{number:02}_{file.stem}" for number, file in enumerate(files)}
+    return {file: f"{number:02}_{re.sub('[^A-Za-z0-9_]', '', file.stem)}" for number, file in enumerate(files)}
 
 
 def _files(fmu):

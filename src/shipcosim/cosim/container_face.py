@@ -88,7 +88,8 @@ def _connectors(system, problems):
         if start is None and causality != "output":
             start = _common_start(system, signal, ends, problems)
         shown = start if causality != "output" else None
-        yield Face(signal.name, causality, variable, ends, shown, signal.unit, signal.description)
+        description = signal.description or (variable.description if len(ends) == 1 else "")
+        yield Face(signal.name, causality, variable, ends, shown, signal.unit, description)
 
 
 def _signals(system):

@@ -18,6 +18,9 @@ from shipcosim.ssp import Component, System, read_fmu
 
 SWEEPS = (1, 2, 4, 8)
 STEPS = 100
+LIMIT = 60.0
+"""How long the container, in a process of its own, may take for an answer: its library ends the process where an FMU in
+it cannot be instantiated. [s]"""
 TOLERANCE = 1e-9
 """Of the largest value of a signal. Times are rounded differently in the last digit inside the container."""
 
@@ -59,7 +62,7 @@ def export_fmu(
             tried = Path(folder) / f"{sweeps}.fmu"
             remarks = write_container(system, tried, step_size, connectors_only=connectors_only, sweeps=sweeps)
             ours = _run(system, step_size) if ours is None else ours
-            differing = _differences(ours, _run(block_of(tried), step_size))
+            differing = _differences(ours, _run(block_of(tried), step_size, isolate=LIMIT))
             if not differing:
                 write_container(system, path, step_size, connectors_only=connectors_only, sweeps=sweeps)
                 return remarks
@@ -72,11 +75,11 @@ def block_of(fmu: Path) -> System:
     return System("block", str(fmu), {"block": Component("block", read_fmu(fmu))})
 
 
-def _run(system, step_size):
+def _run(system, step_size, isolate=None):
     from shipcosim.cosim.engine import run
 
     scenario = Scenario(description="side by side", step_size=step_size, stop_time=STEPS * step_size)
-    return run(system, scenario)
+    return run(system, scenario, isolate=isolate)
 
 
 def _differences(ours, theirs):
