@@ -56,6 +56,8 @@ class Twin:
         Text in the line that the problem names, where it is not that of the change; "-": it names no line.
     follow : int
         How many errors follow from it, which come after it.
+    versions : tuple of str
+        Of the standard, in which it is an error.
     """
 
     change: str
@@ -63,6 +65,7 @@ class Twin:
     says: str
     at: str = ""
     follow: int = 0
+    versions: tuple = ("1.0", "2.0")
 
 
 @dataclass(frozen=True)

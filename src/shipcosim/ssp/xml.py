@@ -4,6 +4,7 @@ import re
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -212,7 +213,7 @@ def _is_utf8(data):
 
 
 def validate(root, schema, file, findings):
-    """Check an element against a schema that FMPy brings; SSP 2.0 has none there and is checked by its meaning alone.
+    """Check an element against a schema that FMPy brings; SSP 2.0 has none there, see `shipcosim.ssp.version_2`.
 
     Parameters
     ----------
@@ -226,8 +227,9 @@ def validate(root, schema, file, findings):
         Takes what is wrong.
     """
     if schema.startswith("ss") and root.get("version", "").startswith("2."):
-        return
-    report_schema(_schema(schema), root, file, findings)
+        import_module("shipcosim.ssp.version_2").validate_2(root, schema, file, findings)
+    else:
+        report_schema(schema_of(schema), root, file, findings)
 
 
 def report_schema(checker, root, file, findings):
@@ -248,7 +250,8 @@ def report_schema(checker, root, file, findings):
 
 
 @cache
-def _schema(name):
+def schema_of(name):
+    """Schema by its name in SCHEMAS."""
     folder = Path(find_spec("fmpy").submodule_search_locations[0])  # finds FMPy without running its slow import
     parser = etree.XMLParser(no_network=True)
     return etree.XMLSchema(etree.parse(str(folder / SCHEMAS[name]), parser))
