@@ -61,6 +61,10 @@ class Dangerous(Fmu):
             os.abort()
         if self.how == "leave":
             os._exit(3)
+        if self.how == "fork":
+            if os.fork() == 0:
+                time.sleep(600.0)
+            os._exit(4)
         if self.how == "hang":
             print("hanging")
             time.sleep(600.0)
@@ -209,6 +213,7 @@ def test_the_dp_ship_gives_the_same_digits(root):
         ("abort", "by signal 6, Aborted. It printed last:\nsomething is badly wrong"),
         pytest.param("leave", "Its process ended itself in DoStep, with exit code 3.", marks=slow),
         pytest.param("close", "Its process ended itself in DoStep, with exit code 1.", marks=slow),
+        ("fork", "Its process ended itself in DoStep, with exit code 4."),
         ("hang", "Its process gave no answer to DoStep within 2 s and was ended."),
         pytest.param("spin", "Its process gave no answer to DoStep within 2 s and was ended.", marks=slow),
     ],

@@ -98,7 +98,7 @@ class Worker:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
-            start_new_session=True,  # Ctrl-C is for the run alone
+            start_new_session=True,  # Ctrl-C is for the run alone; what it starts can be ended with it
         )
         self._reader = Thread(target=self._show, daemon=True)
         self._reader.start()
@@ -151,17 +151,21 @@ class Worker:
         except (OSError, EOFError, pickle.UnpicklingError):
             raise SlaveError(self._obituary(what, limit)) from None
         except BaseException:
-            self._process.kill()
+            self._kill()
             raise
         finally:
             self._deadline = None
 
     def end_if_late(self):
-        """End the process if it has not answered for too long."""
+        """End the process if it has not answered for too long, and what it has started if it has ended itself."""
         deadline = self._deadline
-        if deadline is not None and monotonic() > deadline:
+        if deadline is None:
+            return
+        if self._process.poll() is not None:
+            self._kill()
+        elif monotonic() > deadline:
             self._was_late = True
-            self._process.kill()
+            self._kill()
 
     def dismiss(self):
         """Tell the process that it is not needed any more."""
@@ -173,17 +177,25 @@ class Worker:
         try:
             self._process.wait(max(0.0, limit - monotonic()))
         except subprocess.TimeoutExpired:
-            self._process.kill()
+            self._kill()
             self._process.wait()
         self._reader.join(1.0)
         self._process.stdout.close()
+
+    def _kill(self):
+        """End the process and all that it has started, which may hold the pipes open."""
+        if os.name != "posix":
+            self._process.kill()
+            return
+        with suppress(OSError):
+            os.killpg(self._process.pid, signal.SIGKILL)
 
     def _obituary(self, what, limit):
         """What became of the process."""
         try:
             code = self._process.wait(FAREWELL)
         except subprocess.TimeoutExpired:
-            self._process.kill()
+            self._kill()
             code = self._process.wait()
         self._reader.join(1.0)
         said = f" It printed last:\n{''.join(self._last).rstrip()}" if self._last else ""
