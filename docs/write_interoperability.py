@@ -1,6 +1,7 @@
 """Writes the table of docs/interoperability.md from what the conformance suite finds in each engine.
 
-Run it from the project's root where all engines are installed: .venv/bin/python docs/write_interoperability.py
+Run it from the project's root where all engines are installed: .venv/bin/python docs/write_interoperability.py. With
+names of engines behind it, the columns of the others stay.
 """
 
 import re
@@ -18,16 +19,16 @@ MARK = re.compile(r"(<!-- recorded -->\n).*?(<!-- end -->)", re.S)
 
 
 def table(found):
-    """Markdown of verdicts by engine and row."""
+    """Markdown of verdicts by engine and feature."""
     versions = {"libcosim": "libcosimpy", "ecos": "ecospy", "FMPy": "fmpy"}
     heads = [f"{engine} ({version(versions[engine])})" if engine in versions else engine for engine in ENGINES]
     lines = [f"| feature | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
     last = ""
-    for name, (group, feature, _) in sorted(rows().items(), key=lambda row: row[1][0]):
+    for group, feature, _ in sorted(rows().values(), key=lambda row: row[0]):
         if group != last:
             lines.append(f"| **{group}** |" + " |" * len(heads))
             last = group
-        lines.append(f"| {feature} | " + " | ".join(found[engine][name][0] for engine in ENGINES) + " |")
+        lines.append(f"| {feature} | " + " | ".join(found[engine][feature] for engine in ENGINES) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -38,11 +39,14 @@ def recorded(text):
     return {engine: {row[0]: row[1 + i] for row in cells} for i, engine in enumerate(ENGINES)}
 
 
-def main():
+def main(*engines):
     """Run everything and write the table."""
     text = PAGE.read_text(encoding="utf-8")
-    PAGE.write_text(MARK.sub(rf"\1{table({engine: record(engine) for engine in ENGINES})}\2", text), encoding="utf-8")
+    found = recorded(text) if engines else {}
+    for engine in engines or ENGINES:
+        found[engine] = {rows()[name][1]: verdict for name, (verdict, _) in record(engine).items()}
+    PAGE.write_text(MARK.sub(rf"\1{table(found)}\2", text), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

@@ -93,6 +93,8 @@ class Case:
         For the run; None: the system says it. [s]
     versions : tuple of str
         Of the standard, that the case can be written in.
+    tolerance : float
+        Relative, within which numbers are those of the closed form.
     """
 
     name: str
@@ -109,7 +111,13 @@ class Case:
     start_time: float = 0.0
     versions: tuple = ("1.0", "2.0")
     top: str = "SystemStructure.ssd"
+    tolerance: float = 1e-12
     run: dict = field(default_factory=dict)
+
+    @property
+    def needs_compiler(self):
+        """Whether an FMU of it is made from C."""
+        return any(how.get("part", "").startswith("c:") for how in self.fmus.values())
 
     @property
     def forms(self):
@@ -270,7 +278,11 @@ def _fmu(name, how):
 
 @cache
 def build_part(name):
-    """Path of the FMU of parts/NAME.py."""
+    """Path of the FMU of parts/NAME.py or, for a name of ``c:NAME``, of the one made from C."""
+    if name.startswith("c:"):
+        from conformance.c_parts import build_c
+
+        return build_c(name[2:], build_folder() / "c")
     return build_fmu(HERE / "parts" / f"{name}.py", build_folder())
 
 

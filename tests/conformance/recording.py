@@ -91,7 +91,8 @@ def main(engine, folder, *names):
     out = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # engines print what they like
     for name in names:
-        case, form = (cases()["connection"], FORMED[name][2]) if name in FORMED else (cases()[name], "ssp, 1.0")
+        case = cases()["connection" if name in FORMED else name]
+        form = FORMED[name][2] if name in FORMED else "ssp, 1.0" if "1.0" in case.versions else "ssp, 2.0"
         path = write(case, Path(folder) / f"{engine}-{name}-{os.getpid()}", form)
         verdict = _verdict(ENGINES[engine], case, path)
         print(json.dumps([name, *verdict]), file=out, flush=True)
@@ -111,7 +112,7 @@ def _is_right(case, signal, value):
     wanted = case.closed_form(signal)[-1]
     if value is None or isinstance(value, (str, bytes)):
         return value == wanted
-    return bool(np.isclose(float(value), float(wanted), rtol=1e-9, atol=1e-9))
+    return bool(np.isclose(float(value), float(wanted), rtol=(limit := max(1e-9, case.tolerance)), atol=limit))
 
 
 def _keywords(case):
@@ -173,7 +174,7 @@ def in_libcosim(case, path):
 
 
 def in_ecos(case, path):
-    """ecos reading the SSP itself; it is told the parameter set, and a step size: half of it where the file says one."""
+    """ecos reading the SSP itself; it is told the parameter set and a step size: half of it where the file says one."""
     from ecospy import EcosLib, EcosSimulation
 
     EcosLib.set_log_level("off")
@@ -212,7 +213,10 @@ def in_fmpy(case, path):
     simulation.free_fmu = read_and_free
     step = {} if "step_size" in case.run else {"step_size": case.step_size}
     stop = {} if "stop_time" in case.run else {"stop_time": case.stop_time}
-    simulation.simulate_ssp(str(path), **step, **stop)
+    try:
+        simulation.simulate_ssp(str(path), **step, **stop)
+    finally:
+        simulation.free_fmu = free
     return values
 
 

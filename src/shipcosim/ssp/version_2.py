@@ -23,6 +23,8 @@ def validate_2(root, schema, file, findings):
     reduced = deepcopy(root)
     for element in list(reduced.iter("{*}*")):
         if element.tag.startswith(tuple(f"{{{uri}}}" for uri in NAMESPACES.values())):
+            if wrong := _out_of_range(element):
+                findings.error(f"{file}, line {element.sourceline}", *wrong)
             _reduce(element)
     found = Findings()
     report_schema(schema_of(schema), reduced, file, found)
@@ -62,20 +64,24 @@ def _reduce_type(element, name):
         element.remove(part)
     if listed:
         element.set("value", listed[0].get("value") or listed[0].text or "")
-    kind = KINDS[name]
-    texts = [element.get("value")]
-    if "value" in element.attrib and kind in ("Real", "Integer", "Boolean"):
-        texts = element.get("value").split() or [""]
-    bad = next((text for text in texts if text is not None and not _fits(name, kind, text)), None)
-    if "value" in element.attrib and kind != "String":
-        element.set("value", bad if bad is not None else "0" if kind == "Integer" else texts[0])
+    kind, text = KINDS[name], element.get("value")
+    if text is not None and kind in ("Real", "Integer", "Boolean"):
+        texts = text.split() or [""]
+        bad = [one for one in texts if not _is(kind, one)]
+        element.set("value", bad[0] if bad else "0" if kind == "Integer" else texts[0])
     element.tag = f"{space}}}{kind}"
 
 
-def _fits(name, kind, text):
+def _is(kind, text):
     try:
-        value = read_value(kind, text)
+        return read_value(kind, text) is not None
     except ValueError:
         return False
-    low, high = RANGES.get(name, (None, None))
-    return low is None or low <= value <= high
+
+
+def _out_of_range(element):
+    """Found and remedy where an integer of so many bits cannot have a value that it is given, or None."""
+    low, high = RANGES.get(local(element), (0, 0))
+    texts = (element.get("value") or "").split() if high else []
+    bad = [text for text in texts if _is("Integer", text) and not low <= read_value("Integer", text) <= high]
+    return bad and (f"'{bad[0]}' is not a value of {local(element)}.", f"It has those from {low} to {high}.")
