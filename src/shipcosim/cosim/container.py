@@ -85,8 +85,9 @@ def _problems(system, step_size):
     yield from _repeated(system)
     for connection in system.connections:
         name = f"{label(connection.source)} -> {label(connection.target)}"
+        known = f"{name}: " if name not in connection.place else ""
         for found in _connection_faults(connection, system, targets):
-            yield Problem(connection.place or name, f"{name}: {found}", "The container FMU copies values as they are.")
+            yield Problem(connection.place, f"{known}{found}", "The container FMU copies values as they are.")
         targets.add(connection.target)
     for connection in system.given:
         if (connection.factor, connection.offset, connection.mapping) != (1.0, 0.0, None):
