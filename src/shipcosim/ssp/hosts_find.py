@@ -1,4 +1,4 @@
-"""Where a system has a feature that other tools take otherwise; see `shipcosim.ssp.hosts`.
+"""Where a system has a feature that other tools take otherwise; see `shipcosim.ssp.hosts_table`.
 
 Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
 """
@@ -10,13 +10,15 @@ from urllib.parse import unquote
 
 from lxml import etree
 
+from shipcosim.ssp.declare import TYPES
 from shipcosim.ssp.hosts_subject import elements_of
 from shipcosim.ssp.markup import OSP_TYPE
 from shipcosim.ssp.osp_groups import file_names
 from shipcosim.ssp.ports import Key
 from shipcosim.ssp.structure import FMU, STEP_SIZES, DictionaryReference, SystemElement
 from shipcosim.ssp.units import find_unit, relation
-from shipcosim.ssp.xml import NAMESPACES, Findings, child, children, local
+from shipcosim.ssp.values import KINDS
+from shipcosim.ssp.xml import NAMESPACES, child, children, local
 
 DECLARING = re.compile(rb"<[\w.-]+:Algorithm\s[^>]*xmlns")
 """A start tag that declares a prefix; whether it does cannot be seen any more once it is read."""
@@ -26,14 +28,8 @@ DECLARING = re.compile(rb"<[\w.-]+:Algorithm\s[^>]*xmlns")
 
 
 def prefixes(subject):
-    documents = [] if subject.document is None else [subject.document]
-    if subject.document is not None:
-        for binding in (binding for part in subject.components for binding in part.bindings):
-            if binding.values.uri and not binding.values.in_component:
-                file = subject.package.locate(binding.values.uri, subject.document.folder, "", Findings())
-                documents.append(None if file is None else subject.package.read(file, Findings()))
     wanted = {uri: prefix for prefix, uri in NAMESPACES.items()}
-    for document in filter(None, documents):
+    for document in subject.documents:
         for part in document.root.iter(etree.Element):
             uri = etree.QName(part).namespace
             if uri in wanted and part.prefix != wanted[uri]:
@@ -104,6 +100,15 @@ def _connectors(part):
 def typeless_connectors(subject):
     for part in subject.components:
         yield from ((connector.place, "") for connector in part.connectors if connector.type is None)
+
+
+def connectors_of_2(subject):
+    for part in elements_of(subject, "Connector"):
+        yield from ((subject.document.place(part), f"a connector of type {name}") for name in _types_of_2(part))
+
+
+def _types_of_2(element):
+    return [local(part) for part in element if local(part) in KINDS and local(part) not in TYPES]
 
 
 def enumeration_connectors(subject):
@@ -212,6 +217,20 @@ def set_enumerations(subject):
         yield from ((value.place, "") for value in values.values if value.kind == "Enumeration")
 
 
+def values_of_2(subject):
+    for document in subject.documents:
+        for part in document.root.iter(etree.Element):
+            if local(part) == "Parameter":
+                what = f"a value of type {_types_of_2(part)[0]}" if _types_of_2(part) else None
+                yield from [(document.place(part, part.get("name")), what)] if what else ()
+
+
+def values_for_fmi_1(subject):
+    for value, variable, fmu in subject.values:
+        if _is_first(fmu) and variable.causality == "parameter":
+            yield value.place, ""
+
+
 def integers_for_reals(subject):
     for value, variable, _ in subject.values:
         if (value.kind, variable.kind) == ("Integer", "Real"):
@@ -288,7 +307,15 @@ def fmi_3(subject):
 
 
 def without_co_simulation(subject):
-    yield from ((name, "") for name, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces)
+    yield from ((n, "") for n, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces and not _is_first(fmu))
+
+
+def without_co_simulation_1(subject):
+    yield from ((n, "") for n, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces and _is_first(fmu))
+
+
+def _is_first(fmu):
+    return fmu.fmi_version.startswith("1")
 
 
 def model_exchange_asked(subject):

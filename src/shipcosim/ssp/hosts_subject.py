@@ -77,6 +77,16 @@ class Subject:
         return found
 
     @cached_property
+    def documents(self):
+        """The outermost file, and the files of the sets that are bound to its components."""
+        found = [] if self.document is None else [self.document]
+        for binding in (binding for part in self.components for binding in part.bindings):
+            if binding.values.uri and not binding.values.in_component:
+                file = self.package.locate(binding.values.uri, self.document.folder, "", Findings())
+                found.append(None if file is None else self.package.read(file, Findings()))
+        return [document for document in found if document is not None]
+
+    @cached_property
     def values(self):
         """(value, variable, fmu) of the values that are bound to components by their own names."""
         found = []

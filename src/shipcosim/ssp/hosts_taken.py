@@ -1,6 +1,6 @@
 """A system as a tool takes it that reads its file itself: with the values and connections that it applies.
 
-What it refuses or dies of is not looked at; see `shipcosim.ssp.hosts`.
+What it refuses or dies of is not looked at; see `shipcosim.ssp.hosts_table`.
 """
 
 from dataclasses import dataclass, replace
@@ -69,7 +69,7 @@ def _values(host, subject, system):
             applied[part.name] = {}
             for value in values.values:
                 variable = fmu.variables.get(value.name)
-                if variable is not None and _takes(host, value, variable):
+                if variable is not None and _takes(host, value, variable, fmu):
                     applied[part.name][value.name] = float(value.value) if variable.kind == "Real" else value.value
     other = [
         _instead(component, variable, applied[name])
@@ -81,9 +81,11 @@ def _values(host, subject, system):
     return _listed("parameters are not applied", other), replace(system, components=components)
 
 
-def _takes(host, value, variable):
-    if host == "libcosim" and (value.kind != variable.kind or variable.causality not in ("parameter", "input")):
-        return False
+def _takes(host, value, variable, fmu):
+    if host == "libcosim":
+        known = ("input",) if fmu.fmi_version.startswith("1") else ("parameter", "input")
+        if value.kind != variable.kind or variable.causality not in known:
+            return False
     return variable.kind in ("Real", "Integer", "Boolean", "String") and value.kind != "Enumeration"
 
 
