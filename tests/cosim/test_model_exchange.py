@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from shipcosim.cosim import RunError, simulate
+from shipcosim.cosim import RunError, repeat, simulate
+from shipcosim.cosim.engine import Journey
 from shipcosim.cosim.form import form_of
+from shipcosim.cosim.instances import Instances
+from shipcosim.cosim.span import span_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component, Connection, System, read_fmu
@@ -269,9 +272,27 @@ def test_a_state_that_cannot_be_stored_is_said_before_the_run(run_model, model, 
         simulate(system, make_scenario(), store=tmp_path / "x.state")
 
 
-def test_a_run_is_repeated_to_the_digit(run_model):
-    first, again = (run_model("pol", "2.0", 5.0, 0.1) for _ in range(2))
-    assert np.array_equal(first["m.x"], again["m.x"])
+@pytest.mark.parametrize("version", VERSIONS)
+def test_runs_of_one_instance_and_repeated_runs_are_equal_to_the_digit(model, version):
+    system = System("one", "one.ssd", {"m": Component("m", read_fmu(model("ball", version)))})
+    scenario = Scenario(stop_time=2.0, step_size=0.1)
+    whole = simulate(system, scenario)
+    assert np.array_equal(repeat(whole, system)["m.h"], whole["m.h"])
+    with Instances() as instances:
+        for _ in range(2):
+            journey = Journey(system, scenario, span_of(scenario))
+            journey.run(instances, lambda: None)
+            journey.end()
+            assert np.array_equal(journey.table(complete=True)["m.h"], whole["m.h"])
+
+
+def test_a_run_in_one_form_is_not_repeated_in_the_other(model):
+    fmu = read_fmu(model("decay", "2.0", ("ModelExchange", "CoSimulation")))
+    system = System("one", "one.ssd", {"m": Component("m", fmu, implementation="ModelExchange")})
+    table = simulate(system, Scenario(stop_time=1.0, step_size=0.1))
+    other = System("one", "one.ssd", {"m": Component("m", fmu)})
+    with pytest.raises(ShipcosimError, match="wired"):
+        repeat(table, other)
 
 
 def test_a_parameter_of_fmi_1_cannot_be_connected(model, make_scenario):

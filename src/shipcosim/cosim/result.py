@@ -126,7 +126,7 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
 def fingerprint(system: System) -> str:
     """SHA-256 of how a system is wired: components, connections, connectors; start values are not part of it."""
     wiring = {
-        "components": [(c.name, c.step_size) for c in system.components.values()],
+        "components": [(c.name, c.step_size, *_asked(c)) for c in system.components.values()],
         "connections": [
             (c.source, c.target, c.factor, c.offset, list((c.mapping or {}).items()), c.initial)
             for c in system.connections
@@ -135,3 +135,7 @@ def fingerprint(system: System) -> str:
         "outputs": [(s.name, s.type, s.unit) for s in system.outputs.values()],
     }
     return hashlib.sha256(json.dumps(wiring, default=str).encode()).hexdigest()
+
+
+def _asked(component):
+    return () if component.implementation == "any" else (component.implementation,)
