@@ -14,6 +14,9 @@ import numpy as np
 import pytest
 
 from shipcosim.cosim import RunError, simulate
+from shipcosim.cosim.isolate import Isolated
+from shipcosim.cosim.part import set_start_values
+from shipcosim.cosim.slave import SlaveError
 from shipcosim.errors import ShipcosimError
 from shipcosim.fmi.builder import build_fmu
 
@@ -30,6 +33,11 @@ import time
 from shipcosim.fmi import Fmu, Input, Output, Parameter
 
 
+class Fatal:
+    def __str__(self):
+        os._exit(5)
+
+
 class Dangerous(Fmu):
     """Does what it is told to, at a time that it is told."""
 
@@ -39,6 +47,7 @@ class Dangerous(Fmu):
     y = Output("1", "time at the end of the step")
     count = Output("1", "steps so far", start=0)
     odd = Output("1", "whether that is odd", start=False)
+    text = Output("1", "steps so far in words", start="none")
 
     def start(self):
         if self.when < 0.0:
@@ -48,6 +57,7 @@ class Dangerous(Fmu):
         self.y = t + h
         self.count += 1
         self.odd = self.count % 2 == 1
+        self.text = Fatal() if self.how == "text" and self.count == 3 else f"{self.count} of them"
         if abs(t - self.when) < 1e-9:
             self.act()
 
@@ -257,6 +267,24 @@ def test_the_same_holds_for_an_fmu_made_from_c(falling, make_system, make_scenar
         simulate(system, make_scenario(1.0, 0.1), isolate=True, timeout=LIMIT)
     assert said in str(error.value)
     assert error.value.table["stone.x"].values[-1] == pytest.approx(0.4)
+
+
+def test_one_that_goes_down_when_its_text_is_read_is_named_by_the_connection(make_system, dangerous, make_scenario):
+    system = make_system({"engine": ("dangerous", {"how": "text"}), "meter": "meter"}, ["engine.text -> meter.text"])
+    with pytest.raises(RunError) as error:
+        simulate(system, make_scenario(1.0, 0.1), isolate=True)
+    said = str(error.value)
+    assert said.startswith("engine.text -> meter.text: its value cannot be passed on. Its process ended itself")
+    assert error.value.table["engine.count"].values.tolist() == [0, 1, 2]
+
+
+def test_a_start_value_that_is_refused_is_said_where_it_was_set(make_system):
+    system = make_system({"slow": "lag"})
+    component = system.components["slow"]
+    with Isolated(system, LIMIT) as instances:
+        slave = instances.of(component)
+        with pytest.raises(SlaveError, match="slow at t = 0 s: parameter 'time_constant' was set to nan"):
+            set_start_values(slave, [(component.fmu.variables["time_constant"], float("nan"))])
 
 
 def test_what_goes_wrong_without_a_crash_is_said_in_the_same_words(system, make_scenario):

@@ -20,6 +20,11 @@ class Text:
     period: int = 1
     last: str | bytes | None = None
 
+    @property
+    def place(self) -> str:
+        """The connection, for messages."""
+        return f"{self.source.name}.{self.output.name} -> {self.target.name}.{self.input.name}"
+
     def transfer(self, count: int) -> None:
         """Pass the text on where it is due and has changed."""
         if count % self.period:
@@ -44,6 +49,7 @@ class Handover:
 
     def __init__(self, source, target, factor=1.0, offset=0.0, mapping=None):
         (slave, variable, kind), (self._target, parameter, target_kind) = source, target
+        self.place = f"{slave.name}.{variable.name} -> {self._target.name}.{parameter.name}"
         self._source, self._how = slave, (factor, offset, mapping or {})
         self._from = np.zeros(1, dtype=BUFFER_TYPES[kind])
         self._to = np.zeros(1, dtype=BUFFER_TYPES[target_kind])

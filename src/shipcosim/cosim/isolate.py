@@ -17,7 +17,7 @@ from time import monotonic
 import numpy as np
 
 from shipcosim.cosim.isolated import receive, send
-from shipcosim.cosim.slave import FAILED, OK, Slave, SlaveError
+from shipcosim.cosim.slave import OK, Slave, SlaveError
 
 START = "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.isolated import serve; serve()"
 GREETING = 60.0  # s, for a process to start
@@ -281,9 +281,8 @@ class Remote:
         self._call("call", function, *arguments)
 
     def check(self, function, status):
-        """Raise SlaveError if the status says that the function failed."""
-        if status >= FAILED:
-            self._call("check", function, status)
+        """Raise SlaveError if the status, or what was put off until now, says that something failed."""
+        self._call("check", function, status)
 
     def get_strings(self, variables):
         """Values of String variables."""

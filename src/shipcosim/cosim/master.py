@@ -101,7 +101,7 @@ class Master:
         before, moving = None, {}
         for sweep in range(SWEEPS + len(self._parts)):
             last, before = before, self._inputs()
-            changed = [handover.transfer() for handover in self._handovers]
+            changed = [_passed_on(handover) for handover in self._handovers]
             if last == before and not any(changed):
                 return
             if sweep >= SWEEPS:
@@ -196,7 +196,7 @@ class Master:
         for exchange in self._all:
             exchange.transfer(count)
         for text in self._texts:
-            text.transfer(count)
+            _passed_on(text, count)
 
     def _check_finite(self, time):
         reals = self._exchanges.get("Real")
@@ -209,6 +209,14 @@ class Master:
 
 def _failed_step(part, time, error):
     return Failure(Problem(part.name, f"failed in the step from t = {time:.9g} s. {error}"))
+
+
+def _passed_on(carried, *arguments):
+    """What `transfer` of a Text or Handover returns; what the FMUs at its ends say becomes a Failure."""
+    try:
+        return carried.transfer(*arguments)
+    except SlaveError as error:
+        raise Failure(Problem(carried.place, f"its value cannot be passed on. {error}")) from error
 
 
 @contextmanager

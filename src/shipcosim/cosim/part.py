@@ -78,7 +78,8 @@ class Part:
             self.slave.check("SetReal", status)
         for discrete in self._discrete:
             if discrete.version != discrete.exchange.version:
-                self.slave.check(discrete.function, discrete.call())
+                if (status := discrete.call()) >= FAILED:
+                    self.slave.check(discrete.function, status)
                 discrete.version = discrete.exchange.version
 
     def restore(self, state: bytes) -> None:
