@@ -8,7 +8,7 @@ from shipcosim.ssp.markup import drop
 from shipcosim.ssp.parameters import ParameterValue, tolerance_of
 from shipcosim.ssp.units import conversion, find_unit, read_units, relation
 from shipcosim.ssp.write import KIND_OF
-from shipcosim.ssp.xml import children
+from shipcosim.ssp.xml import children, qualified
 
 
 class StartValues(MutableMapping):
@@ -85,8 +85,8 @@ class StartValues(MutableMapping):
         """See `SystemStructure.bind_to_components`."""
         system, bound = self._system(), self._draft.sets.bound
         values = {name: _given(system, bound, name) for name in self}
-        for one in bound:
-            drop(one.binding)
+        for binding in list(self._draft.root.iter(qualified("ssd:ParameterBinding"))):
+            drop(binding)
         for name, value in values.items():
             self._draft.sets.put(name, value)
         for one in self._draft.sets.bound:
