@@ -1,5 +1,8 @@
 """An exported system runs in libcosim from its own files, and has our digits."""
 
+import shutil
+from dataclasses import replace
+
 import pytest
 from osp_execution import assert_same, rows_of
 
@@ -80,3 +83,19 @@ def test_what_osp_cannot_say_is_refused(make_system, make_scenario, parts, conne
     with pytest.raises(ShipcosimError) as error:
         osp_files(make_system(parts, connections), make_scenario(1.0, 0.1))
     assert message in str(error.value)
+
+
+def test_fmus_of_one_name_get_names_of_their_own(make_system, make_scenario, fmus, tmp_path):
+    system = make_system({"a": "gain", "b": "lag", "c": "integrator"})
+    places = {"a": "one/x.fmu", "b": "two/x.fmu", "c": "one/x_2.fmu"}
+    components = {}
+    for name, place in places.items():
+        component, target = system.components[name], tmp_path / place
+        target.parent.mkdir(exist_ok=True)
+        shutil.copy(component.fmu.path, target)
+        components[name] = replace(component, fmu=replace(component.fmu, path=target))
+    write_osp(replace(system, components=components), make_scenario(), tmp_path / "out")
+    again = read_system(tmp_path / "out")
+    assert {n: c.fmu.model_name for n, c in again.components.items()} == {
+        n: c.fmu.model_name for n, c in system.components.items()
+    }

@@ -13,6 +13,7 @@ from shipcosim.cosim.plan import KINDS
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, check_scenario
 from shipcosim.ssp import System, with_values
+from shipcosim.ssp.declare import unused
 
 STRUCTURE, SCENARIO = "OspSystemStructure.xml", "scenario.json"
 TYPES = ("Real", "Integer", "Boolean", "String")
@@ -101,8 +102,7 @@ def _file_names(system):
     for component in system.components.values():
         path = component.fmu.path
         if path not in names:
-            number = sum(known.stem == path.stem for known in names)
-            names[path] = path.name if not number else f"{path.stem}_{number + 1}{path.suffix}"
+            names[path] = unused(path.stem, {name.removesuffix(".fmu") for name in names.values()}) + ".fmu"
     return names
 
 
