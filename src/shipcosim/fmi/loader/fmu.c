@@ -154,12 +154,14 @@ static void tell(const Callbacks *host, const char *name, Status status, const c
     free(format);
 }
 
-/* What pythonfmu's binary logs: it has no category for exceptions, which hosts may not expect. */
+/* What pythonfmu's binary logs. Exceptions have no category there, which hosts may not expect, and a first line that
+   only names functions of C. */
 static void log_for(void *host, const char *name, Status status, const char *category, const char *format, ...)
 {
     static const char *const categories[] = {"Ok", "Warning", "Discard", "Error", "Fatal", "Pending"};
+    static const char before_exceptions[] = "Fatal py exception encountered: ";
     va_list values;
-    char *text = NULL, own[32];
+    char *text = NULL, *second, own[32];
     int length;
 
     va_start(values, format);
@@ -171,7 +173,8 @@ static void log_for(void *host, const char *name, Status status, const char *cat
     vsnprintf(text, (size_t)length + 1, format, values);
     va_end(values);
     snprintf(own, sizeof own, "logStatus%s", categories[status <= PENDING ? status : ERROR]);
-    tell(host, name, status, category ? category : own, text);
+    second = strncmp(text, before_exceptions, sizeof before_exceptions - 1) ? NULL : strchr(text, '\n');
+    tell(host, name, status, category ? category : own, second ? second + 1 : text);
     free(text);
 }
 
