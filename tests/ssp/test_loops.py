@@ -13,7 +13,7 @@ from shipcosim.ssp.loops import find_loops
 def part(shop):
     """Function that makes an FMU of inputs u, v and outputs y, z, whose ModelStructure says what is given."""
 
-    def make(name, **stated):
+    def make(name, start=None, **stated):
         path = shop.fmu(name, "input u Real", "input v Real", "output y Real", "output z Real")
         index = {"u": "1", "v": "2", "y": "3", "z": "4"}
         outputs = ""
@@ -23,7 +23,9 @@ def part(shop):
             outputs += f'<Unknown index="{index[output]}"{listed}/>'
         with zipfile.ZipFile(path) as archive:
             text = archive.read("modelDescription.xml").decode()
-        text = text.replace("<ModelStructure/>", f"<ModelStructure><Outputs>{outputs}</Outputs></ModelStructure>")
+        unknowns = "" if start is None else f"<InitialUnknowns>{start}</InitialUnknowns>"
+        structure = f"<ModelStructure><Outputs>{outputs}</Outputs>{unknowns}</ModelStructure>"
+        text = text.replace("<ModelStructure/>", structure)
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("modelDescription.xml", text)
         return path
@@ -118,6 +120,20 @@ def test_check_prints_the_loop_as_a_remark_with_what_breaks_it(part, system, sho
     assert "a.y -> b.u" in problem.found and "b.y -> a.u" in problem.found
     assert "delays by one step" in problem.found and "taken to be so: b." in problem.found
     assert "one of these holds its outputs over a step: a, b" in problem.remedy
+
+
+def test_a_loop_of_the_start_alone_is_told_from_one_of_the_run(part, system, shop):
+    part("a", y="", z="", start='<Unknown index="3" dependencies="1"/>')
+    part("b", y="", z="", start='<Unknown index="3"/><Unknown index="4" dependencies=""/>')
+    lines = "a.y -> b.u", "b.y -> a.u"
+    looped = system("ab", *lines)
+    assert find_loops(looped) == []
+    (loop,) = find_loops(looped, at_start=True)
+    assert sorted(links(loop)) == sorted(lines) and loop.silent == ["b"]
+    (problem,) = [p for p in check_system(shop.folder) if "loop" in p.found]
+    assert "loop at the start" in problem.found and "the run is free of it" in problem.found
+    assert find_loops(system("ab", "a.y -> b.u", "b.z -> a.u"), at_start=True) == []  # z follows nothing
+    assert find_loops(system("ab", "a.z -> b.u", "b.y -> a.u"), at_start=True) == []  # z is known from the first
 
 
 FMI3 = """<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="m">

@@ -8,13 +8,16 @@ from shipcosim.ssp.archive import read_entry
 from shipcosim.ssp.xml import LARGEST_FILE, Findings, local, parse
 
 
-def feedthrough(fmu):
+def feedthrough(fmu, at_start=False):
     """Inputs that outputs follow at once.
 
     Parameters
     ----------
     fmu : FmuDescription
         Whose file is read again.
+    at_start : bool
+        During the initialisation, where outputs can follow inputs that they follow a step later in a run. An FMU that
+        says nothing of it is taken by what it says of the run.
 
     Returns
     -------
@@ -33,11 +36,17 @@ def feedthrough(fmu):
         return _direct(variables)
     structure = [part for group in root if local(group) == "ModelStructure" for part in group if local(part)]
     if root.get("fmiVersion", "").startswith("3"):
-        names = {part.get("valueReference"): part.get("name") for part in variables}
-        return _stated([part for part in structure if local(part) == "Output"], "valueReference", names)
-    names = {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
-    listed = [part for group in structure if local(group) == "Outputs" for part in group if local(part)]
-    return _stated(listed, "index", names)
+        key, names = "valueReference", {part.get("valueReference"): part.get("name") for part in variables}
+        listed = {tag: [part for part in structure if local(part) == tag] for tag in ("Output", "InitialUnknown")}
+    else:
+        key, names = "index", {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
+        groups = {local(group): [part for part in group if local(part)] for group in structure}
+        listed = {"Output": groups.get("Outputs", []), "InitialUnknown": groups.get("InitialUnknowns", [])}
+    if not (at_start and listed["InitialUnknown"]):
+        return _stated(listed["Output"], key, names)
+    unknown = {names.get(part.get(key)) for part in listed["InitialUnknown"]}
+    known = {name: frozenset() for name in fmu.named("output") if name not in unknown}
+    return known | _stated(listed["InitialUnknown"], key, names)
 
 
 def _stated(outputs, key, names):

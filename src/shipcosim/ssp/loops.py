@@ -37,13 +37,15 @@ class Loop:
     breaking: list
 
 
-def find_loops(system):
+def find_loops(system, at_start=False):
     """Loops of a checked system.
 
     Parameters
     ----------
     system : System
         Flat.
+    at_start : bool
+        Those of the initialisation instead of those of the run.
 
     Returns
     -------
@@ -55,25 +57,36 @@ def find_loops(system):
     circling = {name for part in _strong(_graph(rough), rough) for name in part}
     links = [link for link in links if link[0][0] in circling and link[1][0] in circling]
     fmus = {name: system.components[name].fmu for name in circling}
-    read = {fmu.path: feedthrough(fmu) for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()}
+    read = {fmu.path: feedthrough(fmu, at_start) for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()}
     stated = {name: read[fmu.path] for name, fmu in fmus.items()}
     edges = links + [edge for name in circling for edge in _inside(name, links, stated[name])]
     return [_loop(part, edges, links, stated, list(system.components)) for part in _strong(_graph(edges), edges)]
 
 
 def loop_problems(system):
-    """A remark on each loop, with what it does in a run and what breaks it."""
-    for loop in find_loops(system):
-        shown = ", ".join(f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links)
-        found = f"An algebraic loop, outputs that follow inputs at once: {shown}."
-        if loop.others:
-            found += f" {loop.others} more connections belong to it."
-        found += (
-            " In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
+    """A remark on each loop of the run, and on each that is one at the start alone; with what it does and breaks it."""
+    running = find_loops(system)
+    for loop in running:
+        does = (
+            "In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
         )
-        if loop.silent:
-            found += f" Not said by their FMUs, and so taken to be so: {', '.join(loop.silent)}."
-        yield Problem(f"{system.file}: {', '.join(loop.components)}", found, _remedy(loop), "remark")
+        yield _problem(system, loop, "An algebraic loop", does)
+    seen = [set(loop.components) for loop in running]
+    for loop in find_loops(system, at_start=True):
+        if not any(set(loop.components) <= components for components in seen):
+            does = "The start is iterated, which may not settle; the run is free of it."
+            yield _problem(system, loop, "An algebraic loop at the start", does)
+
+
+def _problem(system, loop, kind, does):
+    shown = ", ".join(f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links)
+    found = f"{kind}, outputs that follow inputs at once: {shown}."
+    if loop.others:
+        found += f" {loop.others} more connections belong to it."
+    found += f" {does}"
+    if loop.silent:
+        found += f" Not said by their FMUs, and so taken to be so: {', '.join(loop.silent)}."
+    return Problem(f"{system.file}: {', '.join(loop.components)}", found, _remedy(loop), "remark")
 
 
 def _remedy(loop):
