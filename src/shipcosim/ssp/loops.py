@@ -90,15 +90,13 @@ def _problem(system, loop, kind, does):
 
 
 def _remedy(loop):
+    says = 'over a step, which its FMU says in its ModelStructure (dependencies="")'
     if len(loop.breaking) > 1:
-        which = f"one of these holds its outputs over a step: {', '.join(loop.breaking)}"
-    elif loop.breaking:
-        which = f"{loop.breaking[0]} holds its outputs over a step"
-    elif len(loop.components) > MOST_TRIED:
-        which = "enough of them hold their outputs over a step"
-    else:
-        which = "several of them hold their outputs over a step; one alone does not do it"
-    return f'Broken where {which}, and where the FMU says so in its ModelStructure (dependencies="").'
+        return f"Broken where one of these holds its outputs {says}: {', '.join(loop.breaking)}."
+    if loop.breaking:
+        return f"Broken where {loop.breaking[0]} holds its outputs {says}."
+    more = "" if len(loop.components) > MOST_TRIED else " One alone does not do it."
+    return f"Broken where enough of them hold theirs {says}.{more}"
 
 
 def _inside(name, links, stated):
