@@ -215,7 +215,7 @@ def wraps(log: dict) -> list[Finding]:
     time, heading = log["time"], log["heading"]
     bad, fine = np.zeros(len(heading), bool), quantum(heading)
     full = np.where(np.abs(heading) <= fine, heading + 360.0, heading)  # 359.98 rounded is written as 0.0
-    for between in range(1, LONGEST_WRAP + 1):
+    for between in range(1, min(LONGEST_WRAP, len(heading) - 2) + 1):
         crossing = np.zeros(len(heading) - between - 1, bool)
         for a, b in ((heading, heading), (full, heading), (heading, full)):
             crossing |= _long_way(heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine)

@@ -14,7 +14,7 @@ STEP_SIZES = {"FixedStepAlgorithm": "baseStepSize", "FixedStepMaster": "stepSize
 STEP_SIZE_HINTS = {"StepSizeHint": "value"}
 """Where annotations of a component give its own step size: ecos and Vico."""
 
-ASKS = re.compile(r"(Algorithm|Master|Solver|StepSizeHint)$")
+ASKS = re.compile(r"(Algorithm|Master|Solver|StepSizeHint|Bus|^Connection)$")
 
 
 def step_sizes(root):
@@ -33,7 +33,7 @@ def stated(owner, names):
 
 
 def remark_ignored(document, findings):
-    """Name every algorithm and step size that an SSD asks for and does not get."""
+    """Name every algorithm, step size and connection that annotations of an SSD ask for and do not get."""
     honoured = [part for part, _ in list(step_sizes(document.root))[:1]]
     for component in document.root.iter(qualified("ssd:Component")):
         honoured += [part for part, _ in list(stated(component, STEP_SIZE_HINTS))[:1]]
@@ -62,4 +62,6 @@ def _remark(part, annotation, document, findings):
     detail = f" ({part.get(attribute)})" if part.get(attribute) else ""
     found = f"An annotation asks for {local(part)}{detail}, which is ignored."
     remedy = "All components step with one fixed base step, or a multiple of it that their StepSizeHint gives."
+    if local(part) in ("Bus", "Connection"):
+        remedy = "Only the connections of the standard are made."
     findings.remark(document.place(part, owner.get("name") or local(owner)), found, remedy)

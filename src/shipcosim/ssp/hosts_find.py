@@ -48,7 +48,7 @@ def version_2(subject):
 
 def escaped_addresses(subject):
     for part in subject.components:
-        if unquote(part.source) != part.source:
+        if part.source and unquote(part.source) != part.source:
             yield part.place, f"the address '{part.source}' has escaped characters"
 
 

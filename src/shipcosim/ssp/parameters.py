@@ -223,6 +223,8 @@ def _table(document, element, kind, findings):
     table = {}
     for entry in children(element, "ssc:MapEntry"):
         source, target = (_attribute(document, entry, name, kind, findings) for name in ("source", "target"))
+        if source is None or target is None:
+            continue  # the schema or `_attribute` has said so
         if source in table:
             findings.error(document.place(entry), f"The value '{source}' is mapped twice.", "Keep one of the entries.")
         table[source] = target

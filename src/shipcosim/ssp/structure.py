@@ -114,10 +114,10 @@ class Binding:
 
 @dataclass(frozen=True)
 class ComponentElement:
-    """A Component: an FMU or a system in another file."""
+    """A Component: an FMU or a system in another file; without a source it is a plan of one."""
 
     name: str
-    source: str
+    source: str | None
     type: str
     implementation: str
     connectors: tuple[Connector, ...]
@@ -246,7 +246,7 @@ class _Reader:
         name = element.get("name", "")
         return ComponentElement(
             name=name,
-            source=element.get("source", ""),
+            source=element.get("source"),
             type=element.get("type", FMU),
             implementation=element.get("implementation", "any"),
             connectors=self.connectors(element),

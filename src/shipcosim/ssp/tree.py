@@ -116,7 +116,7 @@ class Tree:
         self._system(system, path, inner, ((element.bindings, place),))
 
     def _structure(self, element, place):
-        uri, _, fragment = element.source.partition("#")
+        uri, _, fragment = (element.source or "").partition("#")
         if not uri:
             system = _with_id(place.structure.system, fragment)
             if system is None:
@@ -137,8 +137,10 @@ class Tree:
         return structure and (structure, structure.system, package)
 
     def _fmu(self, element, path, place):
-        file = self.library.file(element, element.source, place)
-        fmu = None if file is None else self.library.fmu(file, place.package)
+        if element.source is None:
+            self.findings.error(element.place, "It has no source: there is nothing to run.", "Name an FMU or a system.")
+        file = None if element.source is None else self.library.file(element, element.source, place)
+        fmu = self.library.fmu(file, place.package) if file else None
         fmu = fmu and without_arrays(fmu, element.place, self.findings, self.sizes.get(".".join(path)))
         self.components[path] = element, fmu
         self.arrays[path] = {} if fmu is None else dict(fmu.arrays)
