@@ -61,7 +61,8 @@ class Tree:
     def _system(self, element, path, place, more_bindings):
         self.systems[path] = element
         if len(self.systems) > MOST_SYSTEMS:
-            raise ShipcosimError(Problem(element.place, f"There are more than {MOST_SYSTEMS} systems."))
+            too_many = Problem(element.place, f"There are more than {MOST_SYSTEMS} systems.", "Take some away.")
+            raise ShipcosimError([*dict.fromkeys(self.findings.errors), too_many])
         place = replace(place, dictionaries=(self._dictionaries(element, path, place), *place.dictionaries))
         connectors, self.arrays[path] = element_connectors(element.connectors, {}, self.findings)
         for connector in connectors:

@@ -1,0 +1,104 @@
+"""What fuzzing has found, each as the smallest file that did it."""
+
+import random
+import struct
+import time
+
+import pytest
+from fuzz.damage_xml import many
+from fuzz.endless import HEAD, TAIL, endless_connections, endless_systems
+from fuzz.seeds import seeds, zipped
+
+from shipcosim.cli.checks import check_any
+from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError
+
+
+def checked(folder, files):
+    """What is found in the first of some files, and the time that it takes. [s]"""
+    for name, data in files.items():
+        (folder / name).write_bytes(data)
+    start = time.monotonic()
+    problems = check_any(str(folder / next(iter(files))))
+    return "\n".join(map(str, problems)), time.monotonic() - start
+
+
+class Chosen(random.Random):
+    """A generator that gives what it was told, in order."""
+
+    def __init__(self, *values):
+        super().__init__(0)
+        self.values = list(values)
+
+    def choice(self, among):
+        return self.values.pop(0)
+
+    def random(self):
+        return self.values.pop(0)
+
+
+@pytest.mark.parametrize(
+    ("last", "said"),
+    [
+        ("SystemStructure.ssd", "contains itself"),
+        ("missing.ssd", "more than 10000 systems"),
+        (None, "more than 10000 systems"),
+    ],
+)
+def test_thirty_files_that_each_contain_the_next_one_twice(tmp_path, last, said):
+    found, took = checked(tmp_path, endless_systems(Chosen(30, last)))
+    assert said in found and took < 10.0
+
+
+@pytest.mark.parametrize("kind", ["parameter", "input", "inout"])
+@pytest.mark.parametrize("circle", [0.0, 1.0])
+def test_four_hundred_systems_whose_connectors_fork_and_join(tmp_path, kind, circle):
+    found, took = checked(tmp_path, endless_connections(Chosen(400, circle, kind)))
+    assert found and took < 10.0
+
+
+def test_a_set_bound_five_thousand_times(tmp_path):
+    name, files = next((n, f) for n, f in seeds()["ssp"] if b"ParameterBinding" in f["SystemStructure.ssd"])
+    rng = random.Random(3)
+    data = max(
+        (many(rng, files["SystemStructure.ssd"]) for _ in range(40)), key=lambda d: d.count(b"ParameterBinding ")
+    )
+    assert data.count(b"ParameterBinding ") >= 1000
+    _, took = checked(tmp_path, {name: zipped(files | {"SystemStructure.ssd": data})})
+    assert took < 10.0
+
+
+def test_a_mapping_of_enumerations_without_a_source(tmp_path):
+    files = next(f for _, f in seeds()["ssp"] if b"EnumerationMapping" in f["SystemStructure.ssd"])
+    for version in ("1.0", "2.0"):
+        data = files["SystemStructure.ssd"].replace(b'source="off" ', b"")
+        data = data.replace(b'Description version="1.0"', f'Description version="{version}"'.encode())
+        found, _ = checked(tmp_path, {"system.ssp": zipped(files | {"SystemStructure.ssd": data})})
+        assert "The attribute 'source' is required but missing. Add it." in found
+
+
+@pytest.mark.parametrize(("field", "value"), [(42, 0xFFFFFFF0), (24, 0x7FFFFFFF), (20, 0xFFFFFFF0)])
+def test_an_archive_whose_directory_states_absurd_places_and_sizes(tmp_path, field, value):
+    data = bytearray(seeds()["fmu"][0][1])
+    struct.pack_into("<I", data, data.rfind(b"PK\x01\x02") + field, value)
+    found, _ = checked(tmp_path, {"ramp.fmu": bytes(data)})
+    assert "archive" in found or found == ""
+
+
+@pytest.mark.parametrize("rows", [0, 1, 2, 3])
+def test_a_log_of_few_rows(tmp_path, rows):
+    text = "time,north,east,heading\n" + "".join(f"{i},0.0,0.0,{359 - i}\n" for i in range(rows))
+    found, _ = checked(tmp_path, {"log.csv": text.encode()})
+    assert ("fewer than two" in found or "no row" in found or "empty" in found.lower()) == (rows < 2), found
+
+
+def test_names_without_end_are_told_in_short(tmp_path):
+    element = f'<ssd:Elements><ssd:Component name="{"x" * 1_000_000}" source="y.fmu"/></ssd:Elements>'
+    found, took = checked(tmp_path, {"SystemStructure.ssd": (HEAD + element + TAIL).encode()})
+    assert "does not exist" in found and len(found) < 20_000 and took < 10.0
+
+
+def test_of_very_many_problems_the_first_are_told_and_the_number_of_the_others():
+    problems = [Problem("x", str(i)) for i in range(10_000)]
+    error = ShipcosimError(problems)
+    assert len(error.problems) == 10_000
+    assert str(error).splitlines()[-1] == f"And {10_000 - MOST_SHOWN} more." and str(error).count("\n") == MOST_SHOWN
