@@ -130,7 +130,8 @@ def read_ssd(echo, tmp_path):
             xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues"
             xmlns:ssc="http://ssp-standard.org/SSP1/SystemStructureCommon"><ssd:System name="arrays">
             {connectors}<ssd:Elements>{elements}</ssd:Elements>
-            <ssd:Connections>{connections}</ssd:Connections></ssd:System></ssd:SystemStructureDescription>"""
+            {connections and f"<ssd:Connections>{connections}</ssd:Connections>"}
+            </ssd:System></ssd:SystemStructureDescription>"""
         (tmp_path / "SystemStructure.ssd").write_text(text, encoding="utf-8")
         return read(tmp_path, fmus=[echo.parent])
 
