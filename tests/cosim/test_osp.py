@@ -262,4 +262,4 @@ def test_libcosim_does_not_find_groups_by_the_name_of_the_file_and_the_check_say
     with pytest.raises(AssertionError, match="Unable to create execution"):
         rows_of(path, read_system(path), 1)
     said = errors_for_libcosim(path)
-    assert len(said) == 2 and "one: variable groups that are not in pair_OspModelDescription.xml" in said[0]
+    assert len(said) == 2 and "one: Variable groups that are not in pair_OspModelDescription.xml" in said[0]
