@@ -93,6 +93,8 @@ class Case:
         For the run; None: the system says it. [s]
     versions : tuple of str
         Of the standard, that the case can be written in.
+    gap : str
+        Part of what shipcosim says where it does not do this.
     tolerance : float
         Relative, within which numbers are those of the closed form.
     """
@@ -112,6 +114,7 @@ class Case:
     versions: tuple = ("1.0", "2.0")
     top: str = "SystemStructure.ssd"
     tolerance: float = 1e-12
+    gap: str = ""
     run: dict = field(default_factory=dict)
 
     @property

@@ -4,6 +4,7 @@ import importlib.util
 
 import c_fmus
 import pytest
+from conformance.cases import cases
 from conformance.recording import ENGINES, RIGHT, record, rows
 
 from shipcosim.cosim import engines_missing
@@ -26,8 +27,9 @@ def test_the_page_has_a_row_for_every_feature_and_no_other(stated):
         assert sorted(stated[engine]) == sorted(features)
 
 
-def test_our_own_master_does_all_of_it(stated):
-    assert {feature: verdict for feature, verdict in stated["shipcosim"].items() if verdict != RIGHT} == {}
+def test_our_own_master_does_all_but_the_gaps(stated):
+    gaps = {case.feature for case in cases().values() if case.gap}
+    assert {feature for feature, verdict in stated["shipcosim"].items() if verdict != RIGHT} == gaps
 
 
 def test_no_engine_that_we_drive_is_silently_wrong(stated):
