@@ -5,7 +5,7 @@ import pytest
 from diagnose import twin
 from diagnose.twin import case, fits
 
-from shipcosim.diagnose.ranking import fitted, probes, weighed
+from shipcosim.diagnose.ranking import _simplify, fitted, probes, weighed
 
 NAMES = {
     "current": {"current"},
@@ -91,3 +91,15 @@ def test_what_is_left_of_a_fit_is_known_numbers_alone():
     best = fits("thrust_loss")[0]
     assert best.left[-1] == pytest.approx(0.0, abs=0.02)
     assert np.abs(best.left[:-1]).max() < 3.5
+
+
+def test_a_steady_current_is_weighed_beside_the_varying_one_that_contains_it():
+    """From the general cause alone the simpler one is reached, and wins: two numbers instead of four."""
+    here = case("current")
+    varying = next(s for s in here.suspects if s.cause == "current_varying")
+    found = {frozenset(): fitted(here), frozenset(["current_varying"]): fitted(here, (varying,))}
+    _simplify(here, found)
+    best = max(found.values(), key=lambda fit: fit.score)
+    assert best.label == "current"
+    assert best.values["water.current_north"] == pytest.approx(0.22, abs=0.02)
+    assert best.values["water.current_east"] == pytest.approx(-0.12, abs=0.02)

@@ -1,6 +1,7 @@
 """Errors without a name: whether something pushes the ship, or is wrong in a channel, that no known cause explains."""
 
 import numpy as np
+from scipy.stats import chi2
 
 from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.linear import STATES, innovations, with_columns
@@ -10,6 +11,7 @@ __all__ = ["HATS", "PERIODS", "unexplained"]
 
 HATS = 8
 PERIODS = 28
+_STEADY = 0.1  # of a cause's size, by which its law may be wrong from part to part (assumed)
 _SIZE = 1e-3  # m/s2, of a force that matters; 500 N on 500 t
 _OFF = (1.0, 1.0, np.radians(1.0), 0.03, 0.03, np.radians(0.03))  # of a channel: m, m, rad, m/s, m/s, rad/s
 _LEVER = 4.0  # lengths of a ship over its radius of gyration, to turn that into a rate of yaw
@@ -19,8 +21,8 @@ def unexplained(case, fit):
     """Gain in log-evidence of errors without a name beside a fit.
 
     Forces of three kinds: slow ones in the body frame (a few hats over time), ones that go with the heading, and single
-    sinusoids of any period, for which the search over periods is paid. And channels that are off by a constant, by a
-    factor, or drift.
+    sinusoids of any period, for which the search over periods is paid. Channels that are off by a constant, by a
+    factor, or drift. And whether the causes of the fit are as large in each part of the log.
 
     Parameters
     ----------
@@ -49,7 +51,27 @@ def unexplained(case, fit):
             place += basis.shape[-1]
             scores.append(evidence(products, here, centre)[0] - nothing)
         found[kind] = float(max(scores) - np.log(len(scores)))
-    return found
+    return found | {"from part to part": _unsteady(fit)}
+
+
+def _unsteady(fit):
+    """Evidence that a cause's size differs from part to part of the log by more than a tenth. [nats]
+
+    Each part pulls at the estimate; what it would pull by chance is known. The least likely pull is turned into the
+    most evidence that its p-value can be: -log(-e p log p) (Sellke, Bayarri and Berger 2001).
+    """
+    blocks, place, unlikely = fit.products.blocks, len(fit.columns), []
+    for suspect in reversed(fit.suspects):
+        place -= len(suspect.knobs)
+        own = range(place, place + len(suspect.knobs))
+        size = np.linalg.norm([fit.theta[i] for i in own])
+        for i in own:
+            known = blocks[:, 1 + i, 1 + i]
+            pull = blocks[:, 1 + i, 0] - blocks[:, 1 + i, 1:] @ fit.left
+            chance = known * (1.0 + (_STEADY * size) ** 2 * known) + 1e-9
+            unlikely.append(chi2.logsf((pull**2 / chance).sum(), len(blocks)))
+    p = min(unlikely, default=0.0) + np.log(max(len(unlikely), 1))
+    return float(-1.0 - p - np.log(-p)) if p < -1.0 else 0.0
 
 
 def _bases(case, fit):

@@ -307,8 +307,8 @@ def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
     likely : int
         Candidates that are fitted at each stage.
     near : float
-        Candidates this far below the best are still fitted, or half its gain: at first sight what is not linear, as a
-        current, gains too little. [nats]
+        Candidates this far below the best are still fitted, or 70 % of its gain: at first sight what is not linear, as
+        a current, gains too little. [nats]
     enough : float
         What a further cause has to gain. [nats]
 
@@ -326,7 +326,7 @@ def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
             gains = weighed(case, fit)
             most_gain = gains[0][0]
             for gain, suspect, values in gains[: likely if stage == 0 else likely // 2]:
-                if gain < max(most_gain - max(near, most_gain / 2.0), -2.0 if stage == 0 else enough - 2.0):
+                if gain < max(most_gain - max(near, 0.7 * most_gain), -2.0 if stage == 0 else enough - 2.0):
                     break
                 suspects = (*fit.suspects, suspect)
                 key = names(suspects)
@@ -358,16 +358,41 @@ def names(suspects):
 
 
 def _simplify(case, fits):
-    """Fit the best set again without each of its causes, from the values that it has."""
+    """Fit the best set again without each of its causes, and with simpler ones instead, from the values that it has."""
     while True:
         best = max(fits.values(), key=lambda fit: fit.score)
         new = False
-        for left in best.suspects if len(best.suspects) > 1 else ():
-            rest = tuple(suspect for suspect in best.suspects if suspect is not left)
-            values = {path: best.values[path] for s in rest for knob in s.knobs for path in knob.paths}
-            again = fitted(case, rest, values)
-            known = fits.get(names(rest))
+        for suspects in _simpler(case, best.suspects):
+            values = {k.paths[0]: _value(k, suspect, best) for suspect in suspects for k in suspect.knobs}
+            again = fitted(case, suspects, _on_all_paths(values, suspects))
+            known = fits.get(names(suspects))
             if known is None or again.score > known.score + 0.1:
-                fits[names(rest)], new = again, True
+                fits[names(suspects)], new = again, True
         if not new:
             return
+
+
+def _simpler(case, suspects):
+    """Sets without one of the causes, and with the special case of one instead."""
+    found = []
+    for left in suspects:
+        rest = tuple(suspect for suspect in suspects if suspect is not left)
+        special = [s for s in case.suspects if s.cause == left.effect.special and s.component == left.component]
+        found += [rest] if rest else []
+        found += [(*rest, one) for one in special if one not in rest]
+    return found
+
+
+def _value(knob, suspect, fit):
+    """What a fit says of a number: its own value, or the mean of those of the more general cause."""
+    if knob.paths[0] in fit.values:
+        return fit.values[knob.paths[0]]
+    general = next(s for s in fit.suspects if s.effect.special == suspect.cause)
+    place = suspect.knobs.index(knob)
+    return float(np.mean([fit.values[k.paths[0]] for k in general.knobs[place :: len(suspect.knobs)]]))
+
+
+def _on_all_paths(values, suspects):
+    """The values of every number that the suspects turn."""
+    knobs = [knob for suspect in suspects for knob in suspect.knobs]
+    return {path: values[knob.paths[0]] for knob in knobs for path in knob.paths}

@@ -16,6 +16,7 @@ MOST_SETS, LAGS = 12, 30
 STRANGE_KINDS = {
     "slow": "a slow force in the ship's frame",
     "with the heading": "a force that goes with the heading",
+    "from part to part": "the best cause's size, from part to part of the log",
     "periodic": "a periodic force",
     "in a channel": "an error of a channel",
 }
