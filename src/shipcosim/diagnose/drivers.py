@@ -56,7 +56,7 @@ def _mislabels(clean, plant):
     for one, other in combinations(plant.thrusters, 2):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in clean and pair[1] in clean]
-        if type(plant.parts[one]) is type(plant.parts[other]):
+        if _make(plant, one) == _make(plant, other):
             found += [_swapped(group) for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]]) if group]
     for name in plant.thrusters:
         found += [negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in clean]
@@ -65,6 +65,12 @@ def _mislabels(clean, plant):
         labels = WIND_LABELS if motion else (negative("wind_from"),)
         found += [label for label in labels if all(role in clean for role in label.channels)]
     return found
+
+
+def _make(plant, name):
+    """What kind of thruster it is."""
+    stranger = plant.strangers.get(name)
+    return stranger.component.fmu.model_name if stranger else type(plant.parts[name])
 
 
 def _swapped(pairs):

@@ -64,8 +64,6 @@ class Effect(_Strict):
         Numbers that are only known within their tolerance and only matter where this cause acts.
     replaces : list of str
         Numbers that this cause speaks for: their tolerance is left out where it acts.
-    special : str, optional
-        A simpler cause that this one contains, its parameters several times in the same order.
     parameters : dict of str to EffectParameter
     """
 
@@ -77,7 +75,6 @@ class Effect(_Strict):
     least: float = 0.2
     companions: list[str] = []
     replaces: list[str] = []
-    special: str | None = None
     parameters: dict[str, EffectParameter]
 
 
@@ -189,7 +186,8 @@ def _on(effect, component, plant):
 def _paths(pattern, component, plant):
     pattern = pattern.replace("vessel.", f"{plant.vessel}.", 1) if pattern.startswith("vessel.") else pattern
     if "{azimuths}" in pattern:
-        return [pattern.replace("{azimuths}", name) for name in plant.azimuths]
+        found = (pattern.replace("{azimuths}", name) for name in plant.azimuths)
+        return [path for path in found if plant.has(path)]
     return [pattern.replace("{thruster}", component or "")]
 
 

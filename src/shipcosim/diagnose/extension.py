@@ -5,6 +5,7 @@ from pathlib import Path
 
 from shipcosim.diagnose.effects import read_catalogue
 from shipcosim.diagnose.grafts import Estimated, Graft, add_current, add_force, add_instruments, add_slipstreams, rewire
+from shipcosim.diagnose.grafts_links import put_on_connections
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 from shipcosim.ssp import SystemStructure, read, write_ssv
@@ -128,7 +129,8 @@ def _carry(graft, finding, catalogue):
     )
     for place, values in numbers.items():
         for number, estimate in values.items():
-            graft.put_parameter(finding, place, number, estimate)
+            if not put_on_connections(graft, finding, place, number, estimate):
+                graft.put_parameter(finding, place, number, estimate)
     if finding.cause == "thruster_interaction":
         add_slipstreams(graft, finding, [place for place, values in numbers.items() if "interaction_loss" in values])
     if finding.onset is not None and not with_onset:

@@ -7,6 +7,7 @@ import xarray
 
 from shipcosim.diagnose.linear import innovations, linearise
 from shipcosim.diagnose.predict import mass_matrix
+from shipcosim.diagnose.thrusters import pusher_of
 from shipcosim.models.kinematics import to_body, to_ned
 
 _LEARNING = 10.0  # s, how fast the force may change; faster, noise is taken for force
@@ -51,7 +52,8 @@ def _in_frames(surge, sway, yaw, motion, record, plant):
         "east": (east, "N", "missing force towards east"),
     }
     for name in plant.thrusters:
-        direction = record.units[name][1] if name in plant.azimuths else np.full(surge.size, 0.5 * np.pi)
+        unit = pusher_of(plant, name)
+        direction = unit.axis + (record.units[name][1] if unit.pointed else np.zeros(surge.size))
         along, across = to_body(direction, surge, sway)
         columns[f"{name}_along"] = along, "N", f"missing force in the direction of positive thrust of {name}"
         columns[f"{name}_across"] = across, "N", f"missing force clockwise of positive thrust of {name}"

@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.black_box import drives_of, part_of, problem_of, stranger_of
 from shipcosim.diagnose.surroundings import Instruments, Water, stern_of
+from shipcosim.diagnose.thrusters import neighbours_placed, thruster_loads
 from shipcosim.diagnose.wiring import wiring_of
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.models import instruments, thruster, wind
+from shipcosim.models import instruments, wind
 from shipcosim.models.current import varying_current
 from shipcosim.models.earth import drift_force, earth_force
 from shipcosim.models.hull import HullParameters
@@ -35,6 +37,8 @@ __all__ = [
     "shown",
 ]
 
+_OURS = (AzimuthParameters, TunnelParameters)
+
 
 class Motion(NamedTuple):
     """Position, heading, velocity over ground, all of the low-frequency ship; arrays of one shape."""
@@ -55,7 +59,7 @@ class Drivers(NamedTuple):
     time : array
         [s]
     units : dict of str to tuple of two arrays
-        By thruster: speed and direction as logged. [rev/s, rad]
+        By thruster: speed, or thrust where that drives it, and direction as logged. [rev/s or N, rad]
     wind_speed, wind_from : array or None
         Wind at the mast, apparent or true as `Plant.wind_is_true` says. [m/s, rad]
     """
@@ -85,6 +89,8 @@ class Plant:
         The log has the wind over ground instead of the apparent one.
     wiring : Wiring or None
         Where the system wires thrusters otherwise than named.
+    strangers : dict of str to Stranger
+        FMUs of somebody else that load the ship, with their laws once there is a log.
     """
 
     parts: dict
@@ -93,16 +99,25 @@ class Plant:
     span: tuple = (0.0, 1.0)
     wind_is_true: bool = False
     wiring: Any = None
+    strangers: dict = field(default_factory=dict)
 
     @property
     def thrusters(self):
         """Names of the thrusters."""
-        return [name for name in self.parts if isinstance(self.parts[name], AzimuthParameters | TunnelParameters)]
+        return [name for name in self.parts if self.drives(name)]
 
     @property
     def azimuths(self):
         """Names of the thrusters with a direction."""
-        return [name for name in self.thrusters if isinstance(self.parts[name], AzimuthParameters)]
+        return [name for name in self.parts if "azimuth" in self.drives(name)]
+
+    def drives(self, name):
+        """What a log should have of a part: ``"rpm"``, ``"azimuth"``; nothing where it is no thruster."""
+        if name in self.strangers:
+            return self.strangers[name].drives
+        if isinstance(self.parts[name], AzimuthParameters):
+            return "rpm", "azimuth"
+        return ("rpm",) if isinstance(self.parts[name], TunnelParameters) else ()
 
     def get(self, path):
         """Value of a number."""
@@ -150,12 +165,12 @@ class Plant:
 
 
 def plant_of(system):
-    """The ship of a system of our FMUs.
+    """The ship of a system with our vessel.fmu; what loads her may be anybody's.
 
     Parameters
     ----------
     system : System
-        With one vessel, and thrusters whose loads go into it.
+        With one vessel, and FMUs whose loads go into it.
 
     Returns
     -------
@@ -164,7 +179,7 @@ def plant_of(system):
     Raises
     ------
     ShipcosimError
-        No vessel, or loads on it that are not of our thrusters.
+        No vessel, or loads on it of FMUs that no log feeds.
     """
     vessels = [c for c in system.components.values() if _holds(c, HullParameters)]
     if len(vessels) != 1:
@@ -179,26 +194,19 @@ def plant_of(system):
     ship = vessels[0]
     parts = {"hull": _values(ship, HullParameters), "wind": _values(ship, WindParameters)}
     sources = {c.source[0] for c in system.connections if c.target[0] == ship.name and c.target[1].startswith("tau_")}
-    for name, component in system.components.items():
-        kind = next((kind for kind in (AzimuthParameters, TunnelParameters) if _holds(component, kind)), None)
-        if name in sources and kind:
-            parts[name] = _values(component, kind)
-    strangers = sorted(sources - set(parts))
-    if strangers:
-        raise ShipcosimError(
-            [
-                Problem(
-                    system.file,
-                    f"'{name}' ({system.components[name].fmu.model_name}) puts a load on '{ship.name}'.",
-                    "The diagnosis knows azimuth_thruster.fmu and tunnel_thruster.fmu.",
-                )
-                for name in strangers
-            ]
-        )
+    strangers = {}
+    for name in [name for name in system.components if name in sources]:
+        kind = next((kind for kind in _OURS if _holds(system.components[name], kind)), None)
+        if kind is None:
+            strangers[name] = stranger_of(system, name, ship.name)
+        parts[name] = _values(system.components[name], kind) if kind else part_of(strangers[name])
+    if problems := list(filter(None, (problem_of(system, name, ship.name, one) for name, one in strangers.items()))):
+        raise ShipcosimError(problems)
+    ours = [name for name in parts if isinstance(parts[name], _OURS)]
     water = Water(tow_x=stern_of(parts["hull"].length))
-    parts = _neighbours_placed(parts) | {"water": water, "instruments": Instruments()}
-    plant = Plant(parts, ship.name, _tolerances(system, parts, ship.name))
-    return replace(plant, wiring=wiring_of(system, ship.name, plant.thrusters))
+    parts = neighbours_placed(parts) | {"water": water, "instruments": Instruments()}
+    wiring = wiring_of(system, ship.name, ours)
+    return Plant(parts, ship.name, _tolerances(system, parts, ship.name), wiring=wiring, strangers=strangers)
 
 
 def _holds(component, kind):
@@ -263,8 +271,10 @@ def loads(motion, drivers, plant, like=None):
     u_c, v_c = to_body(motion.psi, c_north, c_east)
     u_r, v_r, r = motion.u - u_c, motion.v - v_c, motion.r
     same = _alike(plant, *like) if like else {}
-    for name in plant.thrusters:
-        found[name] = same.get(name) or _thruster_loads(name, drivers, u_r, v_r, r, plant)
+    for name in [name for name in parts if isinstance(parts[name], _OURS)]:
+        found[name] = same.get(name) or thruster_loads(name, drivers, u_r, v_r, r, plant)
+    for name in plant.strangers:
+        found[name] = same.get(name) or _stranger_loads(name, motion, drivers, (u_r, v_r), plant)
     if drivers.wind_speed is not None:
         found["wind"] = same.get("wind") or _wind_loads(motion, drivers, plant)
     water = parts["water"]
@@ -283,42 +293,10 @@ def _alike(plant, other, found):
     return {name: load for name, load in found.items() if plant.parts.get(name) is other.parts.get(name, 0)}
 
 
-def _thruster_loads(name, drivers, u_r, v_r, r, plant):
-    if plant.wiring is None:
-        return _loads_of(name, drivers.units, u_r, v_r, r, plant)
-    units = {other: plant.wiring.driven(other, drivers.units) for other in plant.thrusters}
-    return plant.wiring.loaded(name, _loads_of(name, units, u_r, v_r, r, plant))
-
-
-def _loads_of(name, units, u_r, v_r, r, plant):
-    unit, (n, azimuth) = plant.parts[name], units[name]
-    if isinstance(unit, TunnelParameters):
-        return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
-    state = thruster.azimuth_replay(n, azimuth, u_r, v_r, r, unit=unit)
-    neighbour = _neighbour(name, plant.parts)
-    extra = {}
-    if neighbour:
-        n_other, azimuth_other = units[neighbour]
-        extra = {"neighbour_azimuth": azimuth_other, "neighbour_rpm": 60.0 * n_other}
-    return thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)[-3:]
-
-
-def _neighbour(name, parts):
-    """The nearest other azimuth thruster, whose slipstream can hit this one."""
-    here = parts[name]
-    others = [o for o, part in parts.items() if isinstance(part, AzimuthParameters) and o != name]
-    return min(others, key=lambda o: abs(parts[o].x - here.x) + abs(parts[o].y - here.y), default=None)
-
-
-def _neighbours_placed(parts):
-    """The parts, in which each azimuth thruster knows where its neighbour is."""
-    placed = dict(parts)
-    for name, part in parts.items():
-        if isinstance(part, AzimuthParameters) and part.neighbour_x == part.neighbour_y == 0.0:
-            other = parts.get(_neighbour(name, parts))
-            if other:
-                placed[name] = replace(part, neighbour_x=other.x, neighbour_y=other.y)
-    return placed
+def _stranger_loads(name, motion, drivers, through, plant):
+    given = motion._asdict() | dict(zip(("u_r", "v_r"), through, strict=True))
+    given |= drives_of(*drivers.units.get(name, (0.0, 0.0)))
+    return plant.strangers[name].law.loads(drivers.time, given, plant.parts[name])
 
 
 def _wind_loads(motion, drivers, plant):

@@ -26,7 +26,7 @@ class Record:
     measured : (..., n, 6) array
         `CHANNELS` in SI, heading unwrapped, NaN where there is none.
     units : dict of str to tuple of two (..., n) arrays
-        Speed and direction of each thruster, direction unwrapped. [rev/s, rad]
+        Speed of each thruster, or thrust where that drives it, and direction, unwrapped. [rev/s or N, rad]
     wind : tuple of two (..., n) arrays, or None
         Speed, and direction unwrapped. [m/s, rad]
     known : (n,) bool array
@@ -96,11 +96,13 @@ def record_of(log, plant):
     measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
     measured[:, 2] = _unwrapped(measured[:, 2])
     remarks, known, units = [], np.ones(rows, bool), {}
+    _check_strangers(log, plant)
     for name in plant.thrusters:
         units[name], whole = _unit(log, name, plant, rows, remarks)
         known &= whole
     wind, whole = _wind(log, rows, remarks)
     known &= whole
+    remarks += [_about_stranger(name, one) for name, one in plant.strangers.items()]
     known[:-1] &= known[1:]
     record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
     slow = _SLOW_ENOUGH * np.sqrt(plant.parts["hull"].length)
@@ -128,17 +130,40 @@ def _column(log, role, rows):
 
 
 def _unit(log, name, plant, rows, remarks):
-    """Speed and direction of a thruster, and where they are known."""
+    """Speed or thrust of a thruster and its direction, and where they are known."""
     speed, direction = _column(log, f"{name}_rpm", rows) / 60.0, _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
-    if f"{name}_rpm" not in log:
-        remarks.append(f"No speed of '{name}' in the log: taken to stand still; nothing about it can be identified.")
+    if "thrust" in plant.drives(name):
+        speed = _column(log, f"{name}_thrust", rows)
+    elif f"{name}_rpm" not in log:
+        if "rpm" in plant.drives(name):
+            remarks.append(
+                f"No speed of '{name}' in the log: taken to stand still; nothing about it can be identified."
+            )
         speed = np.zeros(rows)
-    if f"{name}_azimuth" not in log:
-        if name in plant.azimuths:
-            remarks.append(f"No direction of '{name}' in the log: taken to point ahead.")
+    if name in plant.azimuths and f"{name}_azimuth" not in log:
+        remarks.append(f"No direction of '{name}' in the log: taken to point ahead.")
+    if name not in plant.azimuths or f"{name}_azimuth" not in log:
         direction = np.zeros(rows)
     whole = np.isfinite(speed) & np.isfinite(direction)
     return (_calmed(speed), _calmed(_unwrapped(direction))), whole
+
+
+def _check_strangers(log, plant):
+    """Raise ShipcosimError where the log lacks what drives an FMU of somebody else: nobody knows its load then."""
+    drives = [(name, f"{name}_{kind}") for name, one in plant.strangers.items() for kind in one.drives]
+    where, remedy = str(log.attrs.get("source", "log")), "Log it under this name, or name its column in a channel file."
+    lacking = [
+        Problem(where, f"no channel {role}, which drives '{name}'.", remedy) for name, role in drives if role not in log
+    ]
+    if lacking:
+        raise ShipcosimError(lacking)
+
+
+def _about_stranger(name, one):
+    """What to know of a part that somebody else's FMU moves."""
+    idle = f" What the log does not tell keeps its start value: {', '.join(one.idle)}." if one.idle else ""
+    law = f"'{name}' is somebody else's FMU ({one.component.fmu.model_name}), known by its co-simulation along the log."
+    return f"{law}{idle} No manoeuvre can be prescribed with it."
 
 
 def _wind(log, rows, remarks):

@@ -6,6 +6,7 @@ from math import ceil
 import numpy as np
 
 from shipcosim.cosim import replay
+from shipcosim.diagnose.black_box import DRIVES, drives_of
 from shipcosim.diagnose.heldout import HORIZONS, in_rows
 from shipcosim.diagnose.plant import Motion, shown
 from shipcosim.diagnose.predict import missing, predicted
@@ -172,11 +173,10 @@ def driving_table(system, predictor, step_size, lag=0.0):
     record, plant = predictor.record, predictor.plant
     columns, states, problems = [], {}, []
     for name, (speed, direction) in record.units.items():
-        states[f"{name}.replay"] = True
-        given = {"rpm_in": (60.0 * speed, "rpm")}
-        if name in plant.azimuths:
-            given["azimuth_in"] = direction, "rad"
-        for variable, (values, unit) in given.items():
+        states |= {} if name in plant.strangers else {f"{name}.replay": True}
+        series = {kind: (values, DRIVES[kind]) for kind, values in drives_of(speed, direction).items()}
+        for variable, kind in _driven(plant, name):
+            values, unit = series[kind]
             fed = _input(system, name, variable)
             if fed:
                 columns.append((fed, values, unit, ""))
@@ -196,6 +196,15 @@ def driving_table(system, predictor, step_size, lag=0.0):
     return table, states | calm
 
 
+def _driven(plant, name):
+    """Variables of a thruster that the log drives, and by what."""
+    if name not in plant.strangers:
+        return [(f"{kind}_in", kind) for kind in plant.drives(name)]
+    return [
+        (link.variable, link.quantity) for link in plant.strangers[name].links if link.quantity in plant.drives(name)
+    ]
+
+
 def _input(system, component, variable):
     """Input of the system that feeds a variable; None where there is none."""
     feeding = (c.source for c in system.connections if c.target == (component, variable))
@@ -208,13 +217,23 @@ def _connected(system, component, variable):
 
 def _weather(system, ship, record):
     """Columns of the wind, and values that leave it as logged."""
-    sources = [c.source[0] for c in system.connections if c.target == (ship, "wind_north")]
-    if not sources or sources[0] is None:
-        return [], {}
-    air = sources[0]
+    sources = [c.source for c in system.connections if c.target == (ship, "wind_north")]
+    if not sources or sources[0][0] is None:
+        return _straight(system, ship, record), {}
+    air = sources[0][0]
     known = system.components[air].fmu.variables
     values = {f"{air}.{name}": value for name, value in _CALM.items() if name in known}
     names = [_input(system, air, name) for name in ("wind_speed", "wind_from")]
     if record.wind is None or None in names:
         return [], values | ({names[0]: 0.0} if names[0] else {f"{air}.wind_speed": 0.0})
     return [(names[0], record.wind[0], "m/s", ""), (names[1], record.wind[1], "rad", "")], values
+
+
+def _straight(system, ship, record):
+    """Columns of the wind for inputs of the system that feed it to the ship."""
+    names = [_input(system, ship, f"wind_{axis}") for axis in ("north", "east")]
+    if record.wind is None or None in names:
+        return []
+    speed, direction = record.wind
+    values = -speed * np.cos(direction), -speed * np.sin(direction)
+    return [(name, value, "m/s", "") for name, value in zip(names, values, strict=True)]

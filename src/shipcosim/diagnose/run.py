@@ -11,6 +11,7 @@ from shipcosim.diagnose.effects import read_catalogue, suspects
 from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.examine import examine
 from shipcosim.diagnose.finding import Diagnosis, Finding
+from shipcosim.diagnose.law import lawful
 from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.nameless import unexplained
@@ -98,6 +99,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         plant, catalogue = plant_of(system), read_catalogue(effects)
         say("which causes explain it?")
         case = prepare(clean, plant, catalogue)
+        plant = replace(plant, strangers=case.plant.strangers)
         wrong, plant, case = _rewired(clean, plant, catalogue, case)
         fits = explain(case)
         clean, case, fits, more, began = _looked_closer(clean, case, fits, plant, catalogue)
@@ -111,7 +113,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
             judgement.candidates,
             judgement.indistinguishable,
             tuple(sorted({*_not_testable(case, fits), *_hidden(catalogue, case)})),
-            prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals else None,
+            prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals and not plant.strangers else None,
         )
         return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
 
@@ -219,13 +221,15 @@ def prepare(clean, plant, catalogue, noise=None):
     plant = replace(plant, span=(float(clean["time"][0]), float(clean["time"][-1])))
     plant = replace(plant, wind_is_true="wind_speed" not in clean and "true_wind_speed" in clean)
     record, length = record_of(clean, plant), plant.parts["hull"].length
+    motion = first_motion(record, plant)
+    plant = lawful(plant, record, motion)
     everyone = suspects(catalogue, plant)
-    hidden = unidentifiable(everyone, record, clean)
+    hidden = unidentifiable(everyone, record, clean, plant.strangers)
     if record.wind is None:
         plant = replace(plant, tolerances=plant.tolerances | _unknown_wind(everyone))
     wanted = tuple(suspect for suspect in everyone if suspect not in hidden)
     start = first_noise(record, length) if noise is None else noise
-    case = prepared(Case(record, plant, wanted, start, first_motion(record, plant)))
+    case = prepared(Case(record, plant, wanted, start, motion))
     if noise is not None:
         return case
     fit = fitted(case)
@@ -238,7 +242,7 @@ def prepare(clean, plant, catalogue, noise=None):
     return prepared(replace(case, noise=noise))
 
 
-def unidentifiable(everyone, record, clean):
+def unidentifiable(everyone, record, clean, strangers=()):
     """Suspects that a log without some channels cannot show: of wind and what acts like it, of silent thrusters.
 
     Parameters
@@ -246,12 +250,14 @@ def unidentifiable(everyone, record, clean):
     everyone : sequence of Suspect
     record : Record
     clean : xarray.Dataset
+    strangers : collection of str
+        Thrusters that the log is sure to have, whatever drives them.
 
     Returns
     -------
     list of Suspect
     """
-    silent = [name for name in record.units if f"{name}_rpm" not in clean]
+    silent = [name for name in record.units if f"{name}_rpm" not in clean and name not in strangers]
     return [s for s in everyone if s.component in silent or (record.wind is None and s.cause in _LIKE_WIND)]
 
 

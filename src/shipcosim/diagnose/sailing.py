@@ -7,7 +7,7 @@ those of a planned manoeuvre.
 import numpy as np
 
 from shipcosim.diagnose.plant import Drivers, Motion, motion_rates
-from shipcosim.models.thruster import AzimuthParameters
+from shipcosim.diagnose.thrusters import pusher_of
 
 _FREQUENCY = 0.5  # rad/s times the square root of the length in m over gravity, of the DP: 0.09 rad/s on Gunnerus
 _DAMPING = 0.8
@@ -89,6 +89,7 @@ class Dp:
 
     def __init__(self, plant, h, fixed=()):
         hull = plant.parts["hull"]
+        self.pushers = {name: pusher_of(plant, name) for name in plant.thrusters}
         self.h, self.plant, self.fixed = h, plant, fixed
         self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
         self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
@@ -136,13 +137,13 @@ class Dp:
         """
         columns, places = [], []
         for name, azimuth in azimuths.items():
-            unit = self.plant.parts[name]
-            turns = isinstance(unit, AzimuthParameters)
-            angle = (azimuth if turns else 0.5 * np.pi) + np.zeros(np.shape(azimuth))
-            for i in range(2 if turns and name not in self.fixed else 1):
+            unit = self.pushers[name]
+            angle = unit.axis + (azimuth if unit.pointed else 0.0) + np.zeros(np.shape(azimuth))
+            for i in range(2 if unit.turns and name not in self.fixed else 1):
                 c, s = np.cos(angle + 0.5 * np.pi * i), np.sin(angle + 0.5 * np.pi * i)
-                ease = np.where(held.get(name, False), 0.0, _ACROSS if i else 1.0)
-                columns.append(ease[..., None] * np.stack([c, s, unit.x * s - getattr(unit, "y", 0.0) * c], axis=-1))
+                alone = held.get(name, False) if unit.ahead else True
+                ease = np.where(alone, 0.0, _ACROSS if i else 1.0)
+                columns.append(ease[..., None] * np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
                 places.append((name, i, ease))
         scale = np.array([1.0, 1.0, 4.0 / self.plant.parts["hull"].length])
         B = scale[:, None] * np.stack(np.broadcast_arrays(*columns), axis=-1)
@@ -158,27 +159,23 @@ class Dp:
         """Speed and direction of each thruster: those that it is told anyway, changed by what the DP adds."""
         found = {}
         for name, (along, across) in told.items():
-            unit, n, azimuth = self.plant.parts[name], record.units[name][0][..., k], record.units[name][1][..., k]
-            size, most = self.force(name, n) + along, unit.rpm_max / 60.0
-            turn = 0.0
-            if isinstance(unit, AzimuthParameters):
+            unit, n, azimuth = self.pushers[name], record.units[name][0][..., k], record.units[name][1][..., k]
+            if not unit.ahead:
+                found[name] = n + 0.0 * along, azimuth + 0.0 * along
+                continue
+            size, turn = self.force(name, n) + along, 0.0
+            if unit.turns:
                 # a unit that hardly pushes cannot be told by its direction: it keeps it
-                turn = np.clip(across / np.maximum(np.abs(size), 0.02 * self.force(name, most)), -0.5, 0.5)
-            found[name] = np.clip(self.speed(name, size), -most, most), azimuth + turn * np.sign(size)
+                turn = np.clip(across / np.maximum(np.abs(size), 0.02 * self.force(name, unit.most)), -0.5, 0.5)
+            found[name] = np.clip(self.speed(name, size), -unit.most, unit.most), azimuth + turn * np.sign(size)
         return found
 
     def force(self, name, n):
         """Bollard thrust of a thruster at a speed in rev/s. [N]"""
-        ahead, astern = self._bollard(name)
-        return np.where(n >= 0, ahead, astern) * n * np.abs(n)
+        unit = self.pushers[name]
+        return np.where(n >= 0, unit.ahead, unit.astern) * n * np.abs(n)
 
     def speed(self, name, force):
         """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
-        ahead, astern = self._bollard(name)
-        return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, ahead, astern))
-
-    def _bollard(self, name):
-        unit = self.plant.parts[name]
-        if isinstance(unit, AzimuthParameters):
-            return unit.bollard[:2]
-        return (3600.0 * unit.thrust_coefficient,) * 2
+        unit = self.pushers[name]
+        return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern))
