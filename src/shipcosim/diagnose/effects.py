@@ -64,6 +64,8 @@ class Effect(_Strict):
         Numbers that are only known within their tolerance and only matter where this cause acts.
     replaces : list of str
         Numbers that this cause speaks for: their tolerance is left out where it acts.
+    special : str, optional
+        A simpler cause that this one contains, its parameters several times in the same order.
     parameters : dict of str to EffectParameter
     """
 
@@ -75,6 +77,7 @@ class Effect(_Strict):
     least: float = 0.2
     companions: list[str] = []
     replaces: list[str] = []
+    special: str | None = None
     parameters: dict[str, EffectParameter]
 
 
