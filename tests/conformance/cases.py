@@ -89,8 +89,12 @@ class Case:
         Contents of XML files without their outermost element, by name.
     remarks : tuple of str
         Parts of remarks that reading it makes.
-    stop_time, step_size : float or None
-        For the run; None: the system says it. [s]
+    stop_time, step_size, start_time : float
+        Of the run. [s]
+    top : str
+        What is read.
+    run : dict of str to float
+        Those of them that the system says itself.
     versions : tuple of str
         Of the standard, that the case can be written in.
     gap : str
@@ -126,6 +130,11 @@ class Case:
     def forms(self):
         """Names of the forms that it can have."""
         return [name for name, (_, version, _) in list(FORMS.items())[:4] if version in self.versions]
+
+    def keywords(self):
+        """What a run is told beside the system."""
+        given = {"stop_time": self.stop_time, "step_size": self.step_size}
+        return {key: value for key, value in given.items() if key not in self.run}
 
     def times(self):
         """Times of the rows. [s]"""

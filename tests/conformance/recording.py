@@ -115,14 +115,9 @@ def _is_right(case, signal, value):
     return bool(np.isclose(float(value), float(wanted), rtol=(limit := max(1e-9, case.tolerance)), atol=limit))
 
 
-def _keywords(case):
-    given = {"stop_time": case.stop_time, "step_size": case.step_size}
-    return {key: value for key, value in given.items() if key not in case.run}
-
-
 def _through(engine):
     def run(case, path):
-        table = sc.simulate(str(path), engine=engine, **_keywords(case))
+        table = sc.simulate(str(path), engine=engine, **case.keywords())
         if not np.allclose(table["time"].values, case.times()):
             return {}
         if missing := [signal for signal in case.expect if signal not in table]:
