@@ -6,7 +6,7 @@
    load     {NAME LIBRARY GUID RESOURCES}...
    begin    NAME                        set TYPE of a value: Real Integer Boolean String
    set      NAME TYPE REFERENCE VALUE   get NAME TYPE REFERENCE
-   step     NAME TIME STEP_SIZE
+   step     NAME TIME STEP_SIZE         log NAME 0|1: debug logging; an FMU starts without
    save     NAME FILE                   restore NAME FILE
    free     NAME                        quit (at once, nothing is freed)
 */
@@ -73,7 +73,7 @@ static void *load(void *given)
         return NULL;
     }
     *(void **)&instantiate = look_up(one->library, "fmi2Instantiate");
-    one->component = instantiate(one->name, 1, one->words[2], one->words[3], &callbacks, 0, 1);
+    one->component = instantiate(one->name, 1, one->words[2], one->words[3], &callbacks, 0, 0);
     printf("%s %s\n", one->name, one->component ? "instantiated" : "NULL");
     return NULL;
 }
@@ -191,6 +191,8 @@ static int obey(const char *command, Instance *one, char **words)
         return get(one, words[2], (unsigned)atoi(words[3]));
     if (!strcmp(command, "step"))
         return FUNCTION(one, "DoStep")(one->component, strtod(words[2], NULL), strtod(words[3], NULL), 1);
+    if (!strcmp(command, "log"))
+        return FUNCTION(one, "SetDebugLogging")(one->component, atoi(words[2]), (size_t)0, NULL);
     if (!strcmp(command, "save"))
         return save(one, words[2]);
     if (!strcmp(command, "restore"))

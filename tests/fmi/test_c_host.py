@@ -173,6 +173,32 @@ def test_values_of_every_type_go_in_and_out_and_what_is_logged_arrives(lag, load
     assert lines[-1] == "step one: status 4"
 
 
+def test_failures_and_warnings_are_logged_always_and_the_rest_on_demand(build, loaded, host):
+    script = """
+from shipcosim.fmi import Fmu, Output
+
+
+class Talker(Fmu):
+    y = Output("1", "nothing")
+
+    def step(self, t, h):
+        self.log(f"step {t + h:g}")
+        if t == 2.0:
+            self.log("soon", "warning")
+"""
+    fmu = loaded(build("talker", script))
+    steps = [list(fmu.steps(1, first=k, h=1.0)) for k in range(4)]
+    lines = host(fmu.then("begin"), steps[0], fmu.then("log", 1), steps[1], fmu.then("log", 0), *steps[2:], fmus=[fmu])
+    assert [line.partition("t = ")[2] for line in lines[1:]] == ["1 s: step 2", "2 s: soon"]
+
+
+def test_names_of_folders_do_not_depend_on_the_hosts_locale(lag, host, tmp_path):
+    fmu = Loaded(lag, tmp_path / "sj\u00f8 \u6d77", "one")
+    fmu.load[3] = f"file://{fmu.folder}/resources"
+    assert host(fmu.then("begin"), fmu.steps(2, "steps"), fmus=[fmu]) == ["one instantiated", "1", "2"]
+    assert host(fmu.then("begin"), fmu.steps(1, "steps"), fmus=[fmu], LC_ALL="C") == ["one instantiated", "1"]
+
+
 def test_what_an_fmu_prints_is_not_lost(build, loaded, host):
     script = """
 from shipcosim.fmi import Fmu, Output
@@ -339,9 +365,9 @@ def test_fmus_may_be_loaded_by_many_threads_at_once(lag, build, sources, loaded,
     """While none has started Python yet."""
     script = sources.adder.format(module="amounts", name="Adder")
     adder = build("adder", script, amounts="def amount():\n    return 1.0\n")
-    fmus = [loaded(lag if k % 2 else adder, f"n{k}") for k in range(8)]
+    fmus = [loaded(lag if k % 2 else adder, f"n{k}") for k in range(40)]
     lines = host(*(fmu.then("begin") for fmu in fmus), *(fmu.steps(3) for fmu in fmus), fmus=fmus)
-    assert sorted(lines) == sorted(f"n{k} instantiated" for k in range(8))
+    assert sorted(lines) == sorted(f"n{k} instantiated" for k in range(40))
 
 
 def test_an_fmu_is_loaded_again_after_it_was_freed(lag, loaded, host):

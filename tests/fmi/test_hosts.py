@@ -283,7 +283,7 @@ def test_failed_calls_and_new_instances_lose_no_reference(lag, bare_packages):
         """,
         path=bare_packages,
     )
-    assert printed.split() == ["1", "1", "1"]
+    assert printed.split()[-3:] == ["1", "1", "1"]  # before them, what the failures said
 
 
 def test_libcosim_runs_it(lag):

@@ -88,6 +88,7 @@ for path in map(str, Path(__file__).parent.rglob("*.py")):
 ENTRY = '''"""Where the binary enters: it runs this file for every instance, and once more when it is imported."""
 
 import sys
+from contextlib import suppress
 from os.path import isfile, join
 
 try:
@@ -97,9 +98,11 @@ try:
 
     keep(globals())
 finally:
-    # the binary has put this folder on the host's path
-    if sys.path and isfile(join(sys.path[0], "{entry}.py")):
-        del sys.path[0]
+    # the binary has put this folder on the host's path, and does so in other threads meanwhile
+    for path in list(sys.path):
+        if path and isinstance(path, str) and isfile(join(path, "{entry}.py")):
+            with suppress(ValueError):
+                sys.path.remove(path)
 '''
 
 

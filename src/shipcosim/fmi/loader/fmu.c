@@ -30,11 +30,20 @@ typedef struct {
     void *environment;
 } Callbacks;
 
+/* An instance, and what the host gave for it. */
+typedef struct Instance {
+    Callbacks own, host;
+    int tells_all;
+    void *component;
+    struct Instance *next;
+} Instance;
+
+static Instance *instances;
+
 #define REFERENCES void *component, const unsigned *references, size_t n
 
 /* name, parameters, arguments */
 #define FUNCTIONS(F) \
-    F(SetDebugLogging, (void *component, int on, size_t n, const char *const *names), (component, on, n, names)) \
     F(SetupExperiment, (void *component, int has_tolerance, double tolerance, double start, int has_stop, double stop), \
       (component, has_tolerance, tolerance, start, has_stop, stop)) \
     F(EnterInitializationMode, (void *component), (component)) \
@@ -156,14 +165,17 @@ static void tell(const Callbacks *host, const char *name, Status status, const c
 
 /* What pythonfmu's binary logs. Exceptions have no category there, which hosts may not expect, and a first line that
    only names functions of C. */
-static void log_for(void *host, const char *name, Status status, const char *category, const char *format, ...)
+static void log_for(void *environment, const char *name, Status status, const char *category, const char *format, ...)
 {
     static const char *const categories[] = {"Ok", "Warning", "Discard", "Error", "Fatal", "Pending"};
     static const char before_exceptions[] = "Fatal py exception encountered: ";
+    const Instance *instance = environment;
     va_list values;
     char *text = NULL, *second, own[32];
     int length;
 
+    if (status == OK && !instance->tells_all)
+        return;
     va_start(values, format);
     length = vsnprintf(NULL, 0, format, values);
     va_end(values);
@@ -174,21 +186,43 @@ static void log_for(void *host, const char *name, Status status, const char *cat
     va_end(values);
     snprintf(own, sizeof own, "logStatus%s", categories[status <= PENDING ? status : ERROR]);
     second = strncmp(text, before_exceptions, sizeof before_exceptions - 1) ? NULL : strchr(text, '\n');
-    tell(host, name, status, category ? category : own, second ? second + 1 : text);
+    tell(&instance->host, name, status, category ? category : own, second ? second + 1 : text);
     free(text);
 }
 
-/* Callbacks for an instance; they stay for good, few bytes each. */
-static const Callbacks *callbacks_for(const Callbacks *host)
+/* The place of a component in the list, or of its end. The lock is held. */
+static Instance **place_of(const void *component)
 {
-    Callbacks *own = host ? calloc(2, sizeof *own) : NULL;
+    Instance **place = &instances;
 
-    if (!own)
-        return host;
-    own[0] = own[1] = *host;
-    own[0].logger = log_for;
-    own[0].environment = &own[1];
-    return own;
+    while (*place && (*place)->component != component)
+        place = &(*place)->next;
+    return place;
+}
+
+/* pythonfmu's binary is to log all: without debug logging it would be silent about failures too. */
+static void *instantiate(const char *name, int type, const char *guid, const char *resources, const Callbacks *host,
+                         int visible, int logging)
+{
+    Instance *made = calloc(1, sizeof *made);
+
+    if (!made)
+        return NULL;
+    if (host)
+        made->own = made->host = *host;
+    made->own.logger = log_for;
+    made->own.environment = made;
+    made->tells_all = logging;
+    made->component = other.Instantiate(name, type, guid, resources, &made->own, visible, 1);
+    if (!made->component) {
+        free(made);
+        return NULL;
+    }
+    lock();
+    made->next = instances;
+    instances = made;
+    unlock();
+    return made->component;
 }
 
 EXPORT void *fmi2Instantiate(
@@ -197,13 +231,37 @@ EXPORT void *fmi2Instantiate(
     char why[PATH_SIZE] = "";
 
     if (is_ready(why, sizeof why))
-        return other.Instantiate(name, type, guid, resources, callbacks_for(callbacks), visible, logging);
+        return instantiate(name, type, guid, resources, callbacks, visible, logging);
     tell(callbacks, name ? name : "", ERROR, "logStatusError", why);
     return NULL;
 }
 
 EXPORT void fmi2FreeInstance(void *component)
 {
-    if (component)
-        other.FreeInstance(component);
+    Instance **place, *freed;
+
+    if (!component)
+        return;
+    lock();
+    place = place_of(component);
+    freed = *place;
+    if (freed)
+        *place = freed->next;
+    unlock();
+    other.FreeInstance(component);
+    free(freed);
+}
+
+/* All categories or none. */
+EXPORT Status fmi2SetDebugLogging(void *component, int on, size_t n, const char *const *names)
+{
+    Instance *instance;
+
+    (void)n, (void)names;
+    lock();
+    instance = *place_of(component);
+    if (instance)
+        instance->tells_all = on;
+    unlock();
+    return instance ? OK : ERROR;
 }

@@ -174,12 +174,18 @@ static int find(int minor, struct candidate *found, char *why, size_t size)
     return 0;
 }
 
-/* As Python 3.11 to 3.14 are told who they are. The name has to stay in memory. */
+/* As Python 3.11 to 3.14 are told who they are. The name has to stay in memory. Files are named in UTF-8, whatever the
+   locale of the host. */
 static int start_named(void *python, void (*set_name)(const wchar_t *), const char *executable)
 {
     wchar_t *(*decode)(const char *, size_t *) = symbol_of(python, "Py_DecodeLocale");
     void (*initialise)(int) = symbol_of(python, "Py_InitializeEx");
-    wchar_t *name = decode && initialise ? decode(executable, NULL) : NULL;
+    int *utf8_mode = symbol_of(python, "Py_UTF8Mode");
+    wchar_t *name;
+
+    if (utf8_mode)
+        *utf8_mode = 1;
+    name = decode && initialise ? decode(executable, NULL) : NULL;
 
     if (!name)
         return 0;
@@ -197,8 +203,9 @@ static int start_configured(void *python, const char *executable)
     int (*initialise)(void *) = symbol_of(python, "Py_InitializeFromInitConfig");
     void *config = create && set_text && set_number && initialise ? create() : NULL;
 
-    return config && !set_text(config, "executable", executable) && !set_number(config, "use_environment", 1) &&
-           !set_number(config, "user_site_directory", 1) && !initialise(config);
+    return config && !set_number(config, "utf8_mode", 1) && !set_text(config, "executable", executable) &&
+           !set_number(config, "use_environment", 1) && !set_number(config, "user_site_directory", 1) &&
+           !initialise(config);
 }
 
 /* Leaves the lock of Python to whoever calls an FMU next, from any thread. */
