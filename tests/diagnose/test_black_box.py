@@ -317,37 +317,85 @@ def test_two_inputs_that_could_be_the_speed_are_refused_by_name():
         plant_of(ship.checked())
 
 
-PUSHER = """
+POD = """
+from math import cos, radians, sin
+
 from shipcosim.fmi import Fmu, Input, Output
 
 
-class Pusher(Fmu):
-    \"\"\"Does what it is told.\"\"\"
+class Pod(Fmu):
+    \"\"\"Pushes as it is told, where it is told.\"\"\"
 
-    wanted = Input("N", "force ahead")
-    given = Output("N", "force ahead")
+    wanted = Input("N", "thrust")
+    angle = Input("deg", "direction of the thrust")
+    ahead = Output("kN", "force ahead")
+    aside = Output("kN", "force to starboard")
 
     def start(self):
-        self.given = 0.9 * self.wanted
+        self.ahead = 0.9e-3 * self.wanted * cos(radians(self.angle))
+        self.aside = 0.9e-3 * self.wanted * sin(radians(self.angle))
 
     def step(self, t, h):
         self.start()
 """
 
 
-def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(tmp_path):
-    (tmp_path / "pusher.py").write_text(PUSHER, encoding="utf-8")
+@pytest.fixture
+def podded(tmp_path):
+    """The boat with a pod at her origin that is told its thrust and its direction."""
+    (tmp_path / "pod.py").write_text(POD, encoding="utf-8")
     ship = boat.structure()
-    ship.add_component("bow", sc.build_fmu(tmp_path / "pusher.py", tmp_path))
-    ship.add_connector("bow_thrust", "input", unit="kN")
-    ship.connect("bow_thrust", "bow.wanted")
-    ship.connect("bow.given", "boat.tau_Y_3")
-    plant = plant_of(ship.checked())
-    assert plant.drives("bow") == ("thrust",) and not plant.has("bow.rpm_offset")
-    log = logged().assign(bow_thrust=200.0 + logged().left_rpm)
+    with ship.changes():
+        ship.add_component("pod", sc.build_fmu(tmp_path / "pod.py", tmp_path))
+        for role, unit, variable in (("thrust", "kN", "wanted"), ("azimuth", "rad", "angle")):
+            ship.add_connector(f"pod_{role}", "input", unit=unit)
+            ship.connect(f"pod_{role}", f"pod.{variable}")
+        ship.connect("pod.ahead", "boat.tau_X_3")
+        ship.connect("pod.aside", "boat.tau_Y_3")
+    return ship
+
+
+def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(podded):
+    plant = plant_of(podded.checked())
+    assert plant.drives("pod") == ("thrust", "azimuth") and not plant.has("pod.rpm_offset")
+    log = logged().assign(pod_thrust=200.0 + logged().left_rpm, pod_azimuth=0.2 * logged().right_rpm)
     plant, record, motion = with_laws(plant, log)
-    wanted = record.units["bow"][0][:-1]
-    X, Y, N = at_rows(plant.with_values({"bow.thrust_loss": 0.5}), record, motion)["bow"]
-    np.testing.assert_allclose(Y, 0.45 * wanted, rtol=1e-9)
-    assert wanted.max() > 500.0 and not X.any() and not N.any()
-    assert pusher_of(plant, "bow").ahead == 0.0
+    wanted, azimuth = (series[:-1] for series in record.units["pod"])
+    X, Y, N = at_rows(plant.with_values({"pod.thrust_loss": 0.5}), record, motion)["pod"]
+    np.testing.assert_allclose(X, 0.45 * wanted * np.cos(azimuth), atol=1e-6 * wanted.max())
+    np.testing.assert_allclose(Y, 0.45 * wanted * np.sin(azimuth), atol=1e-6 * wanted.max())
+    assert wanted.max() > 500.0 and np.ptp(azimuth) > 2.0 and not N.any()
+    assert pusher_of(plant, "pod").ahead == 0.0
+
+
+def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(podded, tmp_path):
+    off = Finding("azimuth_offset", "pod", parameters={"offset": Estimate(8.0, 0.3, "deg")})
+    extension = extend(podded, [off], tmp_path)
+    run = sc.simulate(
+        sc.read(extension.ssp), stop_time=0.2, step_size=0.1, set={"pod_thrust": 1.0, "pod_azimuth": np.radians(20.0)}
+    )
+    np.testing.assert_allclose(run["pod.ahead"].values[-1], 0.9 * np.cos(np.radians(28.0)), rtol=1e-9)
+    np.testing.assert_allclose(run["pod.aside"].values[-1], 0.9 * np.sin(np.radians(28.0)), rtol=1e-9)
+
+
+MINE = """
+cause = "worn_blades"
+sentence = "Blades have lost their edge"
+reference = "-"
+for_each = "thruster"
+
+[parameters.gain]
+of = ["{thruster}.gain"]
+unit = "kg.m"
+typical = 0.2
+relative_to = "{thruster}.gain"
+bounds = [0.3, 1.2]
+"""
+
+
+def test_a_cause_of_ones_own_can_turn_a_parameter_that_has_a_tolerance(tmp_path):
+    (tmp_path / "worn_blades.toml").write_text(MINE, encoding="utf-8")
+    found = suspects(read_catalogue(tmp_path), along()[0])
+    knobs = {suspect.component: suspect.knobs[0] for suspect in found if suspect.cause == "worn_blades"}
+    assert set(knobs) == set(boat.SIDES)
+    assert (knobs["left"].neutral, knobs["left"].tolerance) == (boat.GAIN, pytest.approx(boat.TOLERANCE))
