@@ -39,15 +39,8 @@ def write_container(
 
     Parameters
     ----------
-    system : System
-        As read.
-    path : path
-        Of the FMU.
-    step_size : float
-        Of the exchange inside. [s]
-    connectors_only : bool
-        Whether the FMU shows the system's own connectors alone. Otherwise it also shows, named as in the table of a
-        run, the outputs and parameters of all components and the inputs that nothing feeds.
+    system, path, step_size, connectors_only
+        As for `export_fmu`.
     sweeps : int
         How often the connections are passed on, at the start and after each step.
 
