@@ -56,6 +56,9 @@ def _plain(value):
     raise ValueError(f"{value!r} is no value. A value is a number, true or false, or a text.")
 
 
+LONGEST_LINE = 20_000
+"""Characters in a line of a TOML file."""
+
 MOST_STEPS = 1e8
 """Steps of a run; the times of more than these would hardly fit into memory."""
 
@@ -222,15 +225,49 @@ def read_scenario(path: str | os.PathLike) -> Scenario:
     path = Path(path)
     text = _text(path)
     try:
-        scenario = Scenario.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
+        content = toml_of(text)
+    except ValueError as error:
         raise ShipcosimError(_no_toml(path, str(error))) from error
+    try:
+        scenario = Scenario.model_validate(content)
     except ValidationError as error:
         raise ShipcosimError(_problems_of(path, text, error)) from None
     scenario._path = path
     if problems := [p for p in check_times(scenario) if p.severity == "error"]:
         raise ShipcosimError(problems)
     return scenario
+
+
+def toml_of(text: str) -> dict:
+    """Content of a TOML text.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or one that no reader comes to an end with: lines, brackets and numbers of thousands of parts.
+    """
+    if (longest := max(map(len, text.split("\n")))) > LONGEST_LINE:
+        raise ValueError(f"a line has {longest} characters, at most {LONGEST_LINE} are read")
+    try:
+        content = tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("brackets are nested too deep") from None
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError:
+        raise ValueError("a number has thousands of digits") from None
+    if any(abs(number) >= 2**64 for number in _whole_numbers(content)):
+        raise ValueError("a whole number has more than 64 bits")
+    return content
+
+
+def _whole_numbers(content):
+    """All whole numbers in what a TOML text holds."""
+    if isinstance(content, (dict, list)):
+        for part in content.values() if isinstance(content, dict) else content:
+            yield from _whole_numbers(part)
+    elif isinstance(content, int):
+        yield content
 
 
 def _text(path):

@@ -10,6 +10,7 @@ import csv
 import io
 import os
 import re
+from collections import Counter
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -323,9 +324,8 @@ def _plain(column, unit):
 
 
 def _repeated(path, names):
-    return [
-        Problem(f"{path}, column '{name}'", "is there twice.") for name in sorted(set(names)) if names.count(name) > 1
-    ]
+    counts = Counter(names)
+    return [Problem(f"{path}, column '{name}'", "is there twice.") for name in sorted(counts) if counts[name] > 1]
 
 
 def _no_time(path, names):

@@ -91,6 +91,29 @@ def test_a_log_of_few_rows(tmp_path, rows):
     assert ("fewer than two" in found or "no row" in found or "empty" in found.lower()) == (rows < 2), found
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("deep.toml", "x = " + "[" * 9000, "nested too deep"),
+        ("long.toml", "a." * 50_000 + "b = 1", "at most 20000 are read"),
+        ("digits.toml", "stop_time = " + "9" * 5000, "thousands of digits"),
+        ("bits.toml", "stop_time = 0x" + "f" * 5000, "more than 64 bits"),
+        ("deep.json", "[" * 100_000, "recursion"),
+        ("deep.yaml", "[" * 20_000, "nested deeper than 100"),
+        ("large.yaml", "a: " + "b" * 2_000_000, "too large"),
+    ],
+)
+def test_texts_that_a_reader_does_not_come_to_an_end_with(tmp_path, name, text, said):
+    found, took = checked(tmp_path, {name: text.encode()})
+    assert said in found and took < 10.0
+
+
+def test_a_table_of_very_many_columns(tmp_path):
+    head = "time,north,east," + ",".join(f"c{i}" for i in range(10_000))
+    found, took = checked(tmp_path, {"log.csv": "\n".join([head, *[",".join(["1"] * 10_003)] * 3]).encode()})
+    assert "fewer than two different times" in found and took < 10.0
+
+
 def test_names_without_end_are_told_in_short(tmp_path):
     element = f'<ssd:Elements><ssd:Component name="{"x" * 1_000_000}" source="y.fmu"/></ssd:Elements>'
     found, took = checked(tmp_path, {"SystemStructure.ssd": (HEAD + element + TAIL).encode()})

@@ -131,7 +131,9 @@ def check_log(path, channels=None):
 
     log = read_log(path, channels)
     problems = [Problem(str(path), said, severity="remark") for said in remarks(log)]
-    for finding in examine(log):
+    with np.errstate(all="ignore"):  # numbers beyond all bounds are among what it looks for
+        found = examine(log)
+    for finding in found:
         shown = [f"{first:g} to {last:g} s" for first, last in finding.segments[:3]]
         more = f" and {len(finding.segments) - 3} more" if len(finding.segments) > 3 else ""
         where = f"{path}, {', '.join(finding.channels[:3])}{', ...' if len(finding.channels) > 3 else ''}"

@@ -76,7 +76,7 @@ def parsed_settings(settings):
 def _parsed(text):
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text
 
 

@@ -8,6 +8,7 @@ source again.
 import json
 import math
 import os
+from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,7 +22,9 @@ KEYS = ("description", "defaults", "events", "end")
 EVENT_KEYS = ("time", "model", "variable", "action", "value")
 DEFAULTS = ("model", "variable", "action")
 ACTIONS = ("override", "bias", "reset")
-LARGEST = 16 << 20  # bytes
+LARGEST, LARGEST_YAML = 16 << 20, 1 << 20  # bytes; YAML is read slowly
+DEEPEST = 100  # brackets in brackets
+FAST = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 LARGEST_NUMBER = 1e300
 BOOLEANS = {"true": True, "false": False}
 
@@ -128,12 +131,15 @@ def _content(path):
         raise ShipcosimError(Problem(str(path), f"Cannot be read: {error.strerror}.")) from None
     except UnicodeDecodeError:
         raise ShipcosimError(Problem(str(path), "It is not UTF-8 text.", "Save the file in UTF-8.")) from None
-    if len(data) > LARGEST:
-        raise ShipcosimError(Problem(str(path), "The file is too large.", f"At most {LARGEST >> 20} MiB are read."))
+    largest = LARGEST if path.suffix.lower() == ".json" else LARGEST_YAML
+    if len(data) > largest:
+        raise ShipcosimError(Problem(str(path), "The file is too large.", f"At most {largest >> 20} MiB are read."))
     try:
         if path.suffix.lower() == ".json":
             return json.loads(text, object_pairs_hook=_once)
-        if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, Loader=yaml.BaseLoader)):
+        if max(accumulate((c in "[{") - (c in "]}") for c in text), default=0) > DEEPEST:
+            raise ValueError(f"brackets are nested deeper than {DEEPEST}")
+        if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, Loader=FAST)):
             raise ValueError("it uses an alias (*name)")
         return yaml.load(text, Loader=_Loader)
     except (ValueError, RecursionError, yaml.YAMLError) as error:
@@ -150,7 +156,7 @@ def _once(pairs):
     return content
 
 
-class _Loader(yaml.BaseLoader):
+class _Loader(FAST):
     def construct_mapping(self, node, deep=False):
         return _once(
             [(self.construct_object(k, deep=True), self.construct_object(v, deep=True)) for k, v in node.value]

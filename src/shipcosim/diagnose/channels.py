@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
@@ -12,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from shipcosim.diagnose.roles import ROLES, role_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario import toml_of
 
 __all__ = ["Channel", "read_channels"]
 
@@ -40,8 +40,8 @@ def read_channels(path: str | os.PathLike) -> dict[str, Channel]:
     """
     path = Path(path)
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        content = toml_of(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
     channels, problems = {}, []
     for name, entry in content.items():
