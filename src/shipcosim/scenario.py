@@ -250,13 +250,14 @@ def toml_of(text: str) -> dict:
         raise ValueError(f"a line has {longest} characters, at most {LONGEST_LINE} are read")
     try:
         content = tomllib.loads(text)
+        too_large = any(abs(number) >= 2**64 for number in _whole_numbers(content))
     except RecursionError:
-        raise ValueError("brackets are nested too deep") from None
+        raise ValueError("brackets or tables are nested too deep") from None
     except tomllib.TOMLDecodeError:
         raise
     except ValueError:
         raise ValueError("a number has thousands of digits") from None
-    if any(abs(number) >= 2**64 for number in _whole_numbers(content)):
+    if too_large:
         raise ValueError("a whole number has more than 64 bits")
     return content
 

@@ -96,6 +96,7 @@ def test_a_log_of_few_rows(tmp_path, rows):
     [
         ("deep.toml", "x = " + "[" * 9000, "nested too deep"),
         ("long.toml", "a." * 50_000 + "b = 1", "at most 20000 are read"),
+        ("dots.toml", "a." * 9000 + "b = 1", "nested too deep"),
         ("digits.toml", "stop_time = " + "9" * 5000, "thousands of digits"),
         ("bits.toml", "stop_time = 0x" + "f" * 5000, "more than 64 bits"),
         ("deep.json", "[" * 100_000, "recursion"),
