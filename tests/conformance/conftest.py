@@ -1,5 +1,7 @@
 """What the conformance tests have in common."""
 
+import importlib.util
+
 import c_fmus
 import pytest
 from conformance.cases import cases
@@ -11,3 +13,13 @@ def compiler(request, needs):
     name = getattr(request.node, "callspec", None) and request.node.callspec.params.get("name")
     if name and cases()[name].needs_compiler and c_fmus.compiler() is None:
         needs("a C compiler")
+
+
+@pytest.fixture(scope="module")
+def stated(root):
+    """Verdicts that the page states, by engine and feature."""
+    script = root / "docs" / "write_interoperability.py"
+    spec = importlib.util.spec_from_file_location("write_interoperability", script)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.recorded(module.PAGE.read_text(encoding="utf-8"))

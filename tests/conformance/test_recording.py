@@ -1,23 +1,11 @@
 """The table of docs/interoperability.md is what the engines do: run again, it comes out the same."""
 
-import importlib.util
-
 import c_fmus
 import pytest
 from conformance.cases import cases
 from conformance.recording import ENGINES, RIGHT, record, rows
 
 from shipcosim.cosim import engines_missing
-
-
-@pytest.fixture(scope="module")
-def stated(root):
-    """Verdicts that the page states, by engine and feature."""
-    script = root / "docs" / "write_interoperability.py"
-    spec = importlib.util.spec_from_file_location("write_interoperability", script)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.recorded(module.PAGE.read_text(encoding="utf-8"))
 
 
 def test_the_page_has_a_row_for_every_feature_and_no_other(stated):
