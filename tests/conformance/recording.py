@@ -17,7 +17,8 @@ if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import numpy as np
-from conformance.cases import cases, documents, fmu_of, write
+from conformance.cases import cases, documents, write
+from conformance.fmus import fmu_of
 
 import shipcosim as sc
 from shipcosim.ssp import read_fmu, read_system

@@ -1,6 +1,6 @@
 """Sound XML of systems made to go on for ever: few files or connectors that lead to ever more, or round in a circle."""
 
-from conformance.cases import SPACES
+from conformance.texts import SPACES
 
 HEAD = f'<ssd:SystemStructureDescription version="1.0" name="endless" {SPACES}><ssd:System name="endless">'
 TAIL = "</ssd:System></ssd:SystemStructureDescription>"

@@ -5,7 +5,8 @@ import zipfile
 from functools import cache
 from pathlib import Path
 
-from conformance.cases import build_part, cases, documents, fmu_of
+from conformance.cases import cases, documents
+from conformance.fmus import build_part, fmu_of
 
 CASES = ("ssm", "nested_parameters", "dictionary_file", "units", "other_ssd", "enumeration_mapping", "step_component")
 """Conformance cases that have, together, most elements of the standard."""
