@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read_log"]
 
+LATEST = 1e12  # s
 EQUATORIAL_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 6.69437999014e-3  # [m, 1] WGS 84
 
 
@@ -60,6 +61,10 @@ def read_log(path: str | os.PathLike, channels: str | os.PathLike | None = None)
     if "latitude" in signals:
         attributes |= _local_position(signals)
     time, _ = signals.pop("time")
+    if (beyond := np.abs(time) > LATEST).any() and np.isfinite(time[beyond]).any():
+        row = int(np.flatnonzero(beyond)[0])
+        found, remedy = f"is {time[row]:g} s in row {row + 2}.", f"Times are at most {LATEST:g} s, say since 1970."
+        raise ShipcosimError(Problem(f"{path}, time", found, remedy))
     if len(np.unique(time[np.isfinite(time)])) < 2:
         raise ShipcosimError(Problem(f"{path}, time", "has fewer than two different times.", "A log has many rows."))
     return make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
