@@ -79,6 +79,7 @@ def test_structure_lists_every_output_twice(described):
     outputs = ["heading", "ratio", "count"]
     assert [unknown.variable.name for unknown in description.outputs] == outputs
     assert [unknown.variable.name for unknown in description.initialUnknowns] == outputs
+    assert all(unknown.dependencies == [] for unknown in description.outputs)  # none follows an input before a step
 
 
 def test_the_head_says_what_the_fmu_is_and_can(described):

@@ -211,4 +211,6 @@ def _structure(root, variables):
     for kind in ("Outputs", "InitialUnknowns") if indices else ():
         unknowns = xml.SubElement(structure, kind)
         for index in indices:
-            xml.SubElement(unknowns, "Unknown", index=index)
+            # a step computes the outputs: an input that is set shows after it, so no algebraic loop goes through an FMU
+            known = {"dependencies": ""} if kind == "Outputs" else {}
+            xml.SubElement(unknowns, "Unknown", index=index, **known)
