@@ -53,7 +53,7 @@ def test_inputs_of_every_kind_are_made(tmp_path):
         ("import os; os.abort()", "died"),
         ("open(os.path.join(os.getcwd(), '..', 'x'), 'w')", "wrote"),
         ("x = bytearray(2**31)", "MemoryError"),
-        ("time.sleep(11)", "took"),
+        pytest.param("time.sleep(11)", "took", marks=pytest.mark.slow),
     ],
 )
 def test_what_should_not_happen_is_noticed(sabotage, said, monkeypatch):
