@@ -158,3 +158,11 @@ def test_a_cause_that_looks_like_a_known_number_is_not_testable():
     assert not_testable(None, products, columns, [(EVERYONE["mass"], [1])]) == ()
     products[1, 2] = products[2, 1] = 39.9
     assert not_testable(None, products, columns, [(EVERYONE["mass"], [1])]) == ("mass",)
+
+
+def test_a_cause_that_differs_from_part_to_part_gives_way_if_it_gains_little_and_is_unknown_if_much():
+    def strange(of):
+        return {"slow": -5.0, "from part to part": 2.0 * STRANGE if of.suspects else 0.0}
+
+    assert verdict(fit(10.0, "mass"), strange=strange).verdict == "consistent"
+    assert verdict(fit(40.0, "mass"), strange=strange).verdict == "unknown"

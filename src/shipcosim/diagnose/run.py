@@ -193,7 +193,9 @@ def _with_right_drivers(clean, case, fits, plant, catalogue):
         if at_first_sight(again) < fits[0].score:
             continue
         better = explain(again)
-        if better[0].score > fits[0].score + _FAULT and _is_explained(again, better[0]):
+        # at the ends of a segment found too long or too short a few rows stay wrong, which small causes take up
+        likely = [fit for fit in better[:3] if fit.score > fits[0].score + _FAULT]
+        if any(_is_explained(again, fit) for fit in likely):
             return fault, right, again, better
     return None
 

@@ -33,6 +33,7 @@ STRANGE = 6.0
 """An error without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
 MOST = 2
 """Causes at once that are named. Where a third is needed, one that nobody knows is likelier than three at once."""
+_LITTLE = 12.0  # nats, that a few wrong rows may give a cause
 _ROUGH = 0.02  # of the gain of large causes, whose laws are never that exact
 
 
@@ -77,7 +78,7 @@ def judge(fits, strange, chance=None):
     """
     nothing = without_causes(fits)
     fair = [fit for fit in fits if not fit.suspects or admissible(fit, fits, chance or {})]
-    best = max(fair, key=lambda fit: fit.score)
+    best = _steadiest(sorted(fair, key=lambda fit: -fit.score), strange)
     scores = [fit.score if fit.suspects else fit.score + ENOUGH for fit in fair]
     candidates = _candidates(dict(zip(fair, _weights(scores), strict=True)))
     odd = max(strange(best).values())
@@ -95,6 +96,16 @@ def judge(fits, strange, chance=None):
         findings = tuple(f for f in findings if f.label in shared)
         return Judgement("ambiguous", best, findings, candidates, same, tuple(rivals))
     return Judgement("named", best, findings, candidates, ())
+
+
+def _steadiest(ranked, strange):
+    """The best set, or one a little below it where the size of its causes differs from part to part of the log."""
+    best = ranked[0]
+    for other in ranked[1:]:
+        if strange(best).get("from part to part", 0.0) <= STRANGE or best.score - other.score > _LITTLE:
+            break
+        best = other
+    return best
 
 
 def labels(fit):
