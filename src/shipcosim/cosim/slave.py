@@ -137,6 +137,17 @@ class Slave:
         """End the simulation. That an FMU fails to is no matter any more."""
         self._is_lost = self._function("Terminate")(self.component) == FATAL
 
+    def get_strings(self, variables: Sequence) -> list[str]:
+        """Values of String variables."""
+        texts = (c_char_p * len(variables))()
+        self.call("GetString", references(variables), len(variables), texts)
+        return [(text or b"").decode() for text in texts]
+
+    def set_strings(self, variables: Sequence, values: Sequence[str]) -> None:
+        """Set String variables."""
+        texts = (c_char_p * len(variables))(*(value.encode() for value in values))
+        self.call("SetString", references(variables), len(variables), texts)
+
     def _long_setter(self, variables, buffer):
         """Setter from a buffer of 64 bits for an FMU with Integers of 32."""
         own = np.zeros(len(variables), dtype=np.int32)
@@ -228,17 +239,6 @@ class Slave2(Slave):
         do_step, component = self._function("DoStep"), self.component
         return lambda time, step_size: do_step(component, time, step_size, 1)
 
-    def get_strings(self, variables: Sequence) -> list[str]:
-        """Values of String variables."""
-        texts = (c_char_p * len(variables))()
-        self.call("GetString", _references(variables), len(variables), texts)
-        return [(text or b"").decode() for text in texts]
-
-    def set_strings(self, variables: Sequence, values: Sequence[str]) -> None:
-        """Set String variables."""
-        texts = (c_char_p * len(variables))(*(value.encode() for value in values))
-        self.call("SetString", _references(variables), len(variables), texts)
-
     def enter_initialisation(self, start_time: float, stop_time: float) -> None:
         """Enter the initialisation mode for a run between two times."""
         self.call("SetupExperiment", 0, 0.0, start_time, 1, stop_time)
@@ -249,7 +249,7 @@ class Slave2(Slave):
         return partial(
             self._function(verb + kind),
             self.component,
-            _references(variables),
+            references(variables),
             c_size_t(len(variables)),
             pointer.from_buffer(buffer),
         )
@@ -273,7 +273,8 @@ class Slave2(Slave):
         self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
 
 
-def _references(variables):
+def references(variables):
+    """Value references of variables as FMI 1.0 and 2.0 take them."""
     return (c_uint * len(variables))(*(variable.value_reference for variable in variables))
 
 

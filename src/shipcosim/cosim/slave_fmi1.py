@@ -7,14 +7,14 @@ Reference: FMI 1.0.1 for co-simulation, section 3; FMI 1.0.1 for model exchange,
 """
 
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_char, c_char_p, c_double, c_int, c_size_t, c_uint
+from ctypes import byref, c_char, c_double, c_int, c_size_t
 from functools import partial
 from math import inf
 
 import numpy as np
 
 from shipcosim.cosim.model_exchange import CONTINUOUS, EVENT, ModelExchange, Update
-from shipcosim.cosim.slave import FAILED, FATAL, OK, Slave, SlaveError
+from shipcosim.cosim.slave import FAILED, FATAL, OK, Slave, SlaveError, references
 
 TRUE, FALSE = b"\x01", b"\x00"
 
@@ -56,17 +56,6 @@ class Slave1(Slave):
         do_step, component = self._function("DoStep"), self.component
         return lambda time, step_size: do_step(component, time, step_size, TRUE)
 
-    def get_strings(self, variables: Sequence) -> list[str]:
-        """Values of String variables."""
-        texts = (c_char_p * len(variables))()
-        self.call("GetString", _references(variables), len(variables), texts)
-        return [(text or b"").decode() for text in texts]
-
-    def set_strings(self, variables: Sequence, values: Sequence[str]) -> None:
-        """Set String variables."""
-        texts = (c_char_p * len(variables))(*(value.encode() for value in values))
-        self.call("SetString", _references(variables), len(variables), texts)
-
     def enter_initialisation(self, start_time: float, stop_time: float) -> None:
         """Initialise the FMU for a run between two times."""
         self.call("InitializeSlave", start_time, TRUE, stop_time)
@@ -88,7 +77,7 @@ class Slave1(Slave):
         own = np.zeros(len(variables), dtype={"Real": np.float64, "Integer": np.int32, "Boolean": np.int8}[kind])
         signs = np.array([-1 if variable.negated and kind != "Boolean" else 1 for variable in variables])
         pointer = {"Real": c_double, "Integer": c_int, "Boolean": c_char}[kind] * len(variables)
-        arguments = _references(variables), c_size_t(len(variables)), pointer.from_buffer(own)
+        arguments = references(variables), c_size_t(len(variables)), pointer.from_buffer(own)
         return own, signs, partial(self._function(verb + kind), self.component, *arguments)
 
     @staticmethod
@@ -166,7 +155,3 @@ class Model1(ModelExchange, Slave1):
         from fmpy.fmi1 import FMU1Model
 
         return FMU1Model(**arguments)
-
-
-def _references(variables):
-    return (c_uint * len(variables))(*(variable.value_reference for variable in variables))

@@ -11,6 +11,7 @@ import numpy as np
 
 from shipcosim.diagnose import kalman
 from shipcosim.diagnose.plant import Motion, loads, motion_rates, shown
+from shipcosim.models.observer import wave_transition
 
 __all__ = [
     "SLOW_STD",
@@ -154,20 +155,23 @@ def linearise(motion, record, plant, columns):
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
     middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
-    transition = _transition(middle, record, plant)
-    over_a_step = 0.5 * record.step * (transition[..., :6, :6] + np.eye(6))
     drivers = record.drivers(plant, 0.5)
     like = plant, loads(middle, drivers, plant)
+    transition = _transition(middle, drivers, like, record.step)
+    over_a_step = 0.5 * record.step * (transition[..., :6, :6] + np.eye(6))
     for j, turns in enumerate(columns, start=1):
         up, down = (
             plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
             for share in (_SHARE, -_SHARE)
         )
-        if any(path.endswith("_lag") for path in turns):
-            rates = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
-            driven[..., :6, j] = (over_a_step @ _slope(*rates)[..., None])[..., 0]
-        elif any(not path.startswith("instruments.") for path in turns):
-            rates = (motion_rates(middle, drivers, ship, like=like) for ship in (down, up))
+        late = any(path.endswith("_lag") for path in turns)
+        if late or any(not path.startswith("instruments.") for path in turns):
+            rates = (
+                motion_rates(middle, record.drivers(ship, 0.5), ship)
+                if late
+                else motion_rates(middle, drivers, ship, like=like)
+                for ship in (down, up)
+            )
             driven[..., :6, j] = (over_a_step @ _slope(*rates)[..., None])[..., 0]
         else:
             out[..., j] = _slope(shown(motion, up), shown(motion, down))
@@ -191,10 +195,10 @@ def rows_first(motion):
 _SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
 
 
-def _transition(middle, record, plant):
-    """Transition over a step, to second order, about the middle of the step."""
-    h, drivers = record.step, record.drivers(plant, 0.5)
-    here = rows_first(motion_rates(middle, drivers, plant))
+def _transition(middle, drivers, like, h):
+    """Transition over a step, to second order, about its middle, where `like` has the ship and her loads."""
+    plant, _ = like
+    here = rows_first(motion_rates(middle, drivers, plant, like=like))
     J = np.zeros((*here.shape[:-1], 6, 6))
     for name, small in _SMALL.items():
         moved = middle._replace(**{name: getattr(middle, name) + small})
@@ -305,10 +309,7 @@ def oscillation(noise, h):
         Transition from place and velocity to place, then to velocity; what a step adds to the variance of the place, to
         the covariance of both, to the variance of the velocity.
     """
-    w, z = np.asarray(noise.wave_frequency)[..., None], WAVE_DAMPING
-    fast = w * np.sqrt(1.0 - z * z)
-    cosine, sine = np.exp(-z * w * h) * np.cos(fast * h), np.exp(-z * w * h) * np.sin(fast * h) / fast
-    a, b, c, d = cosine + z * w * sine, sine, -w * w * sine, cosine - z * w * sine
+    a, b, c, d = wave_transition(h, np.asarray(noise.wave_frequency)[..., None], WAVE_DAMPING)
     place, speed = _waves(noise)
     added = place - a * a * place - b * b * speed, -a * c * place - b * d * speed, speed - c * c * place - d * d * speed
     return (a, b, c, d), added

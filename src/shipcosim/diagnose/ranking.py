@@ -363,8 +363,9 @@ def _simplify(case, fits):
         best = max(fits.values(), key=lambda fit: fit.score)
         new = False
         for suspects in _simpler(case, best.suspects):
-            values = {k.paths[0]: _value(k, suspect, best) for suspect in suspects for k in suspect.knobs}
-            again = fitted(case, suspects, _on_all_paths(values, suspects))
+            knobs = [(knob, suspect) for suspect in suspects for knob in suspect.knobs]
+            values = {path: _value(knob, suspect, best) for knob, suspect in knobs for path in knob.paths}
+            again = fitted(case, suspects, values)
             known = fits.get(names(suspects))
             if known is None or again.score > known.score + 0.1:
                 fits[names(suspects)], new = again, True
@@ -390,9 +391,3 @@ def _value(knob, suspect, fit):
     general = next(s for s in fit.suspects if s.effect.special == suspect.cause)
     place = suspect.knobs.index(knob)
     return float(np.mean([fit.values[k.paths[0]] for k in general.knobs[place :: len(suspect.knobs)]]))
-
-
-def _on_all_paths(values, suspects):
-    """The values of every number that the suspects turn."""
-    knobs = [knob for suspect in suspects for knob in suspect.knobs]
-    return {path: values[knob.paths[0]] for knob in knobs for path in knob.paths}

@@ -120,14 +120,16 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
 
 def _rewired(clean, plant, catalogue, case):
     """Connections of the system that the log contradicts, and ship and case with them as their names say."""
-    found = []
-    for name, told in plant.wiring.odd.items() if plant.wiring else ():
+    if plant.wiring is None:
+        return [], plant, case
+    found, score = [], at_first_sight(case)
+    for name, told in plant.wiring.odd.items():
         better = replace(plant, wiring=put_right(plant.wiring, name))
         again = prepare(clean, better, catalogue)
-        gain = at_first_sight(again) - at_first_sight(case)
-        if gain > _FAULT:
+        scored = at_first_sight(again)
+        if scored > score + _FAULT:
             found.append(Finding("connection", name, "physics", 0.99, {}, note=told))
-            plant, case = better, again
+            plant, case, score = better, again, scored
     return found, plant, case
 
 
