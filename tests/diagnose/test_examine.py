@@ -204,3 +204,47 @@ def test_other_units_in_the_file_change_nothing(faulty, tmp_path):
     assert causes(again) == causes(found)
     for one, other in zip(again, found, strict=True):
         near(one.segments, *other.segments, within=1.0)
+
+
+def still(seed):
+    """A log of a ship that hardly moves: a tenth of a degree to and fro, and a few centimetres."""
+    log, calm = measured(seed=seed), measured(seed=seed, noise=0.0)
+    turned = np.mod(calm["heading"] + 180.0, 360.0) - 180.0
+    return log | {
+        "north": log["north"] - 0.99 * calm["north"],
+        "east": log["east"] - 0.99 * calm["east"],
+        "heading": np.mod(120.0 + log["heading"] - calm["heading"] + 0.01 * turned, 360.0),
+        "surge": log["surge"] - 0.99 * calm["surge"],
+        "sway": log["sway"] - 0.99 * calm["sway"],
+        "yaw_rate": log["yaw_rate"] - 0.99 * calm["yaw_rate"],
+        "wind_from": np.mod(80.0 + 4.0 * np.random.default_rng(seed).normal(size=len(log["time"])), 360.0),
+    }
+
+
+WINDS = {
+    "knots": ("wind_speed", lambda log: log["wind_speed"] * 3600 / 1852),
+    "mirrored": ("wind_from", lambda log: np.mod(-log["wind_from"], 360.0)),
+    "from north": ("wind_from", lambda log: np.mod(log["wind_from"] + log["heading"], 360.0)),
+}
+
+
+@pytest.mark.parametrize("fault", WINDS)
+def test_the_wind_of_a_ship_that_keeps_still_jumps_where_its_label_is_wrong(fault):
+    role, change = WINDS[fault]
+    log = still(seed=11)
+    assert examine(table(log)) == []
+    finding = only(log | {role: np.where(inside(log, 300, 800), change(log), log[role])})
+    assert role in finding.channels and finding.kind == "data"
+    near(finding.segments, (300.0, 800.0), within=3.0)
+
+
+def test_a_rate_that_is_rounded_away_is_told_by_the_signs_of_its_zeros():
+    log = measured(seed=12)
+    rate = np.round(np.radians(0.04 * log["yaw_rate"]), 2)
+    turned = np.mod(log["heading"] + 180.0, 360.0) - 180.0
+    log = log | {"heading": np.mod(0.04 * turned, 360.0), "yaw_rate": rate}
+    assert np.mean(rate == 0.0) > 0.9
+    finding = only(log)
+    assert (finding.cause, finding.channels, finding.segments) == ("frame", ("yaw_rate",), ())
+    assert np.isnan(repaired(table(log), [finding])["yaw_rate"].values).all()
+    assert "frame" not in [f.cause for f in examine(table(log | {"yaw_rate": np.abs(rate)}))]

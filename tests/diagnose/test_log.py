@@ -117,3 +117,8 @@ def test_an_unusable_file_is_refused_with_what_is_wrong(tmp_path, text, said):
 def test_a_bad_channel_file_is_refused_with_what_is_wrong(tmp_path, text, said):
     with pytest.raises(ShipcosimError, match=said):
         read_log(written(tmp_path, "t,u\n0,1\n1,2\n"), written(tmp_path, text, "channels.toml"))
+
+
+def test_a_zero_keeps_its_sign(tmp_path):
+    values = read_log(written(tmp_path, "time,yaw_rate [deg/s]\n0,-0.0\n1,0.0\n"))["yaw_rate"].values
+    assert np.signbit(values).tolist() == [True, False]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.examine_clock import wrong_clock
+from shipcosim.diagnose.examine_jumps import jumping_wind
 from shipcosim.diagnose.examine_labels import mislabelled
 from shipcosim.diagnose.examine_rate import silent_rate
 from shipcosim.diagnose.examine_rows import gaps, outliers, wraps
@@ -43,7 +44,7 @@ def examine(log: xarray.Dataset) -> list[Finding]:
         for label in kept:
             right = undone(right, mislabel_of(label), label.segments)
         clock = wrong_clock(right)
-    found += [*quiet, *kept, *mislabelled_wind(right), *clock]
+    found += [*quiet, *kept, *(mislabelled_wind(right) or jumping_wind(right)), *clock]
     return sorted(found, key=lambda finding: -finding.probability)
 
 

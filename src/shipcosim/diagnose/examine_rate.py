@@ -18,6 +18,7 @@ RADIAN = HEADING_LABELS[1]
 LEAST_GAIN = 60.0  # nats, of a stretch with so little noise
 QUIETER = 0.2  # noise within such a stretch over the noise elsewhere, at most
 CLIP = 4.0  # nats of a row
+LIKELY_SIGNS = 0.3  # correlation of the rate's signs with the heading's own rate; noise alone stays below 0.2
 
 
 def silent_rate(log: dict) -> list[Finding]:
@@ -34,8 +35,8 @@ def silent_rate(log: dict) -> list[Finding]:
     rate = motion.velocity[:, 0]
     fine = quantum(rate)
     bends = np.abs(np.diff(rate, n=2, prepend=rate[:2]))
-    if _is_below_its_resolution(rate) and _turns(motion, None) > 3.0 * np.std(motion.slow(rate)) + 0.5 * fine:
-        return [_finding(None, 0.85)]
+    if _is_below_its_resolution(rate, fine) and _turns(motion, None) > 3.0 * np.std(motion.slow(rate)):
+        return [_finding(None, 0.98)] if _signs_turn(motion) else []
     windows = np.array_split(bends, max(4, len(bends) // 60))
     usual = float(np.quantile([window.mean() for window in windows], 0.8))
     if usual <= 3.0 * fine:
@@ -52,10 +53,18 @@ def silent_rate(log: dict) -> list[Finding]:
     return [_finding(segment, 0.9)]
 
 
-def _is_below_its_resolution(rate):
-    """Whether nothing is left but zeros of both signs and single smallest steps."""
-    levels = np.unique(np.abs(rate))
-    return len(levels) <= 2 and len(np.unique(np.signbit(rate))) == 2
+def _is_below_its_resolution(rate, fine):
+    """Whether little is left but zeros of both signs and single smallest steps."""
+    few = np.mean(np.abs(rate) > 1.5 * fine) < 0.1 if fine else not np.any(rate)
+    return bool(few and len(np.unique(np.signbit(rate))) == 2)
+
+
+def _signs_turn(motion):
+    """Whether the signs of the rate, those of its zeros too, go as the heading turns."""
+    sign = 1.0 - 2.0 * np.signbit(motion.velocity)
+    turning = np.gradient(motion.seen, motion.time, axis=0)
+    told, seen = (motion.slow(series)[:, 0] for series in (sign, turning))
+    return bool(np.corrcoef(told, seen)[0, 1] > LIKELY_SIGNS)
 
 
 def _turns(motion, segment):

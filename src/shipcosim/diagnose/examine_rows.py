@@ -243,6 +243,8 @@ def outliers(log: dict) -> dict[str, np.ndarray]:
 
 def _far_off(values, is_angle):
     """Samples that are far from both neighbours on the same side, while those agree."""
+    if not np.isfinite(values).any():
+        return np.zeros(len(values), bool)
     change = np.diff(values)
     if is_angle:
         change = np.mod(change + 180.0, 360.0) - 180.0

@@ -104,7 +104,8 @@ def _signal(channel, name, columns):
     unit = channel.unit or stated or (role.unit if role else "")
     target = role.unit if role else unit
     factor, zero = conversion(unit, target)
-    return factor * (channel.sign * values + channel.offset) + zero, target
+    # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
+    return factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0), target
 
 
 def _is_number(text):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.diagnose.examine_rows import quantum
 from shipcosim.diagnose.tables import inside
 
 __all__ = [
@@ -124,6 +125,18 @@ def mislabel_of(finding) -> Mislabel | None:
 
 
 def undone(log: dict, mislabel: Mislabel, segments) -> dict:
-    """The log, a dict of arrays by role with `time`, with a mislabel undone in some segments, or throughout."""
+    """The log, a dict of arrays by role with `time`, with a mislabel undone in some segments, or throughout.
+
+    What was rounded away in a unit that is too large is lost: such a channel is NaN there.
+    """
     changed, here = mislabel.undo(log), inside(log["time"], segments)
+    if mislabel.scale is not None:
+        changed = {role: np.nan * v if _is_rounded_away(log[role][here]) else v for role, v in changed.items()}
     return log | {role: np.where(here, values, log[role]) for role, values in changed.items()}
+
+
+def _is_rounded_away(values):
+    """Whether a channel's noise is less than half its resolution, so that errors of rounding do not average out."""
+    values = values[np.isfinite(values)]
+    noise = np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0) if len(values) > 2 else 0.0
+    return bool(noise <= 0.5 * quantum(values))
