@@ -26,7 +26,7 @@ class EffectParameter(_Strict):
     ----------
     of : list of str
         Numbers of the ship that take its value: ``vessel.mass_scale``; ``{thruster}`` stands for the component,
-        ``{azimuths}`` for each azimuth at once.
+        ``{azimuths}`` for each azimuth thruster at once, whether it turns or not.
     unit : str
         Unit in which it is reported; that of the number is converted.
     typical : float
@@ -189,7 +189,7 @@ def _on(effect, component, plant):
 def _paths(pattern, component, plant):
     pattern = pattern.replace("vessel.", f"{plant.vessel}.", 1) if pattern.startswith("vessel.") else pattern
     if "{azimuths}" in pattern:
-        found = (pattern.replace("{azimuths}", name) for name in plant.azimuths)
+        found = (pattern.replace("{azimuths}", name) for name in plant.thrusters)
         return [path for path in found if plant.has(path)]
     return [pattern.replace("{thruster}", component or "")]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import shipcosim
-from shipcosim.diagnose.surroundings import stern_of
+from shipcosim.diagnose.surroundings import drift_arm_of, stern_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.instruments import InstrumentParameters, Shown
 from shipcosim.series import conversion
@@ -16,6 +16,10 @@ from shipcosim.ssp.edit import built_fmus
 RAMP = 30.0
 """Time over which something grows after its onset, assumed. [s]"""
 
+_BY_LENGTH = {
+    "earth_force": ("x", stern_of, "point of attack: the stern, assumed"),
+    "drift_force": ("yaw_arm", drift_arm_of, "as of the lengthened Gunnerus, by length"),
+}
 _AXES = ("X", "Y", "N")
 
 
@@ -171,10 +175,10 @@ def add_force(graft, finding, fmu, north, east, others):
     graft.put(finding, f"{name}.east", east, "N")
     for number, estimate in others.items():
         graft.put_parameter(finding, name, number, estimate)
-    if fmu == "earth_force" and "x" not in others:
-        length = graft.structure.parameters[f"{graft.ship}.length"]
-        stern = Estimated(stern_of(length), None)
-        graft.put(finding, f"{name}.x", stern, "m", note="point of attack: the stern, assumed")
+    number, of_length, note = _BY_LENGTH[fmu]
+    if number not in others:
+        given = Estimated(of_length(graft.structure.parameters[f"{graft.ship}.length"]), None)
+        graft.put(finding, f"{name}.{number}", given, "m", note=note)
     if finding.onset is not None:
         graft.put(finding, f"{name}.onset_time", Estimated(finding.onset, None), "s")
         graft.put(finding, f"{name}.ramp_time", Estimated(RAMP, None), "s", note="assumed")
@@ -252,12 +256,14 @@ _ERRORS = {name: name for name in ("heading_bias", "lever_x", "lever_y", "veloci
 
 
 def add_slipstreams(graft, finding, units):
-    """Tell each unit where its nearest neighbour is, and how that runs, as far as the system does not."""
-    values, feeds = graft.structure.parameters, {end for pair in graft.structure.connections for end in pair}
+    """Tell each unit where its neighbour is, and how that runs: the one that is wired to it, else the nearest."""
+    values, wired = graft.structure.parameters, set(graft.structure.connections)
+    feeds = {target for _, target in wired}
     place = {unit: (values[f"{unit}.x"], values[f"{unit}.y"]) for unit in units}
     for unit in units:
         here = place[unit]
-        others = sorted((other for other in units if other != unit), key=lambda o: _distance(place[o], here))
+        fed = {source.rpartition(".")[0] for source, target in wired if target == f"{unit}.neighbour_azimuth"}
+        others = sorted((o for o in units if o != unit), key=lambda o: (o not in fed, _distance(place[o], here)))
         if not others:
             graft.remark(finding, f"'{unit}' has no neighbour")
             continue

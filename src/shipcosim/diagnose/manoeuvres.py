@@ -10,6 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from shipcosim.diagnose.plant import Drivers, Motion, motion_rates
 from shipcosim.diagnose.record import Record
+from shipcosim.diagnose.thrusters import pusher_of
 
 LONGEST = 15.0
 """No manoeuvre takes longer. [min]"""
@@ -258,7 +259,7 @@ def _needed(track, time, start, wind, dp):
 def _load_of(name, force, azimuth, plant):
     unit = plant.parts[name]
     if name not in plant.azimuths:
-        azimuth = np.full_like(azimuth, 0.5 * np.pi)
+        azimuth = np.full_like(azimuth, pusher_of(plant, name).axis)
     X, Y = force * np.cos(azimuth), force * np.sin(azimuth)
     return np.stack([X, Y, unit.x * Y - getattr(unit, "y", 0.0) * X])
 
@@ -281,7 +282,7 @@ def _pushing_apart(dp):
 def _setting(name, wish, pushes, time, dp):
     """Speed and direction for forces along x and y of the ship, and for pushes; as smooth as thrusters are."""
     turns = name in dp.plant.azimuths and name not in dp.fixed
-    force, azimuth = wish[0], np.zeros(time.size)
+    force, azimuth = wish[0], np.full(time.size, dp.plant.fixed.get(name, 0.0))
     if turns:
         force, azimuth = np.hypot(*wish), np.arctan2(wish[1], wish[0])
     for inside, push, direction in pushes:

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.black_box import drives_of, part_of, problem_of, stranger_of
-from shipcosim.diagnose.surroundings import Instruments, Water, stern_of
-from shipcosim.diagnose.thrusters import neighbours_placed, thruster_loads
+from shipcosim.diagnose.surroundings import Instruments, Water, drift_arm_of, stern_of
+from shipcosim.diagnose.thrusters import fixed_of, neighbours_of, neighbours_placed, thruster_loads
+from shipcosim.diagnose.tolerances import tolerances_of
 from shipcosim.diagnose.wiring import wiring_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models import instruments, wind
@@ -91,6 +92,10 @@ class Plant:
         Where the system wires thrusters otherwise than named.
     strangers : dict of str to Stranger
         FMUs of somebody else that load the ship, with their laws once there is a log.
+    fixed : dict of str to float
+        Direction of azimuth thrusters of ours that neither the system nor the log turns. [rad]
+    neighbours : dict of str to str
+        By azimuth thruster of ours, the one whose slipstream can hit it.
     """
 
     parts: dict
@@ -100,6 +105,8 @@ class Plant:
     wind_is_true: bool = False
     wiring: Any = None
     strangers: dict = field(default_factory=dict)
+    fixed: dict = field(default_factory=dict)
+    neighbours: dict = field(default_factory=dict)
 
     @property
     def thrusters(self):
@@ -108,16 +115,16 @@ class Plant:
 
     @property
     def azimuths(self):
-        """Names of the thrusters with a direction."""
+        """Names of the thrusters that turn."""
         return [name for name in self.parts if "azimuth" in self.drives(name)]
 
     def drives(self, name):
         """What a log should have of a part: ``"rpm"``, ``"azimuth"``; nothing where it is no thruster."""
         if name in self.strangers:
             return self.strangers[name].drives
-        if isinstance(self.parts[name], AzimuthParameters):
+        if isinstance(self.parts[name], AzimuthParameters) and name not in self.fixed:
             return "rpm", "azimuth"
-        return ("rpm",) if isinstance(self.parts[name], TunnelParameters) else ()
+        return ("rpm",) if isinstance(self.parts[name], _OURS) else ()
 
     def get(self, path):
         """Value of a number."""
@@ -203,10 +210,13 @@ def plant_of(system):
     if problems := list(filter(None, (problem_of(system, name, ship.name, one) for name, one in strangers.items()))):
         raise ShipcosimError(problems)
     ours = [name for name in parts if isinstance(parts[name], _OURS)]
-    water = Water(tow_x=stern_of(parts["hull"].length))
-    parts = neighbours_placed(parts) | {"water": water, "instruments": Instruments()}
-    wiring = wiring_of(system, ship.name, ours)
-    return Plant(parts, ship.name, _tolerances(system, parts, ship.name), wiring=wiring, strangers=strangers)
+    length = parts["hull"].length
+    water = Water(tow_x=stern_of(length), drift_yaw_arm=drift_arm_of(length))
+    neighbours = neighbours_of(system, parts)
+    parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
+    found = {"wiring": wiring_of(system, ship.name, ours), "strangers": strangers}
+    found |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
+    return Plant(parts, ship.name, tolerances_of(system, parts, ship.name), **found)
 
 
 def _holds(component, kind):
@@ -218,22 +228,6 @@ def _holds(component, kind):
 def _values(component, kind):
     names = [item.name for item in fields(kind) if item.name in component.fmu.variables]
     return kind(**{name: component.start_value(name) for name in names})
-
-
-def _tolerances(system, parts, vessel):
-    """Tolerances of the system's parameter sets, where they are silent those of our defaults relative to size."""
-    found = {}
-    for part, values in parts.items():
-        place = vessel if part in ("hull", "wind") else part
-        known = system.components[place].tolerances if place in system.components else {}
-        for item in fields(values):
-            path, default = f"{place}.{item.name}", item.metadata["tolerance"]
-            if item.name in known:
-                found[path] = known[item.name]
-            elif default and isinstance(getattr(values, item.name), float):
-                share = abs(getattr(values, item.name) / item.default) if item.default else 1.0
-                found[path] = default * share
-    return {path: tolerance for path, tolerance in found.items() if tolerance > 0.0}
 
 
 def current_at(time, plant):

@@ -143,7 +143,7 @@ def _unit(log, name, plant, rows, remarks):
     if name in plant.azimuths and f"{name}_azimuth" not in log:
         remarks.append(f"No direction of '{name}' in the log: taken to point ahead.")
     if name not in plant.azimuths or f"{name}_azimuth" not in log:
-        direction = np.zeros(rows)
+        direction = np.full(rows, plant.fixed.get(name, 0.0))
     whole = np.isfinite(speed) & np.isfinite(direction)
     return (_calmed(speed), _calmed(_unwrapped(direction))), whole
 

@@ -224,6 +224,7 @@ def prepare(clean, plant, catalogue, noise=None):
     """
     plant = replace(plant, span=(float(clean["time"][0]), float(clean["time"][-1])))
     plant = replace(plant, wind_is_true="wind_speed" not in clean and "true_wind_speed" in clean)
+    plant = replace(plant, fixed={n: angle for n, angle in plant.fixed.items() if f"{n}_azimuth" not in clean})
     record, length = record_of(clean, plant), plant.parts["hull"].length
     motion = first_motion(record, plant)
     plant = lawful(plant, record, motion)

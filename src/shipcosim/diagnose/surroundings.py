@@ -5,15 +5,21 @@ from dataclasses import dataclass
 from shipcosim.models.hull import HullParameters
 from shipcosim.models.quantity import quantity
 
-__all__ = ["Instruments", "Water", "stern_of"]
+__all__ = ["Instruments", "Water", "drift_arm_of", "stern_of"]
 
 _NEUTRAL = "neutral"
 _STERN = -17.0  # m, of the lengthened Gunnerus
+_DRIFT_ARM = -1.5  # m, of the same
 
 
 def stern_of(length):
     """Where a line is made fast on a ship of some length, forward of the origin: the stern, assumed. [m]"""
     return _STERN if length == HullParameters().length else -0.5 * length
+
+
+def drift_arm_of(length):
+    """Yaw moment of the wave drift at quartering over the force on the beam, for a ship of some length. [m]"""
+    return _DRIFT_ARM * length / HullParameters().length
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class Water:
         1.0 / 3.0, "1", "wave drift in surge over that on the beam", "VERES, 33.9 m hull", tolerance=0.1
     )
     drift_yaw_arm: float = quantity(
-        -1.5,
+        _DRIFT_ARM,
         "m",
         "yaw moment of the drift at quartering over the force on the beam",
         "VERES, 33.9 m hull",

@@ -8,7 +8,7 @@ import numpy as np
 from shipcosim.models import thruster
 from shipcosim.models.thruster import AzimuthParameters, TunnelParameters
 
-__all__ = ["Pusher", "neighbours_placed", "pusher_of", "thruster_loads"]
+__all__ = ["Pusher", "fixed_of", "neighbours_of", "neighbours_placed", "pusher_of", "thruster_loads"]
 
 
 class Pusher(NamedTuple):
@@ -56,7 +56,9 @@ def pusher_of(plant, name):
         b = law.bollard
         return Pusher(b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, law.rpm_max / 60.0)
     if isinstance(unit, AzimuthParameters):
-        return Pusher(unit.x, unit.y, 0.0, True, True, *unit.bollard[:2], unit.rpm_max / 60.0)
+        turns = name not in plant.fixed
+        axis, rates = plant.fixed.get(name, 0.0), (*unit.bollard[:2], unit.rpm_max / 60.0)
+        return Pusher(unit.x, unit.y, axis, turns, turns, *rates)
     thrust = 3600.0 * unit.thrust_coefficient
     return Pusher(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
 
@@ -88,7 +90,7 @@ def _loads_of(name, units, u_r, v_r, r, plant):
     if isinstance(unit, TunnelParameters):
         return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
     state = thruster.azimuth_replay(n, azimuth, u_r, v_r, r, unit=unit)
-    neighbour = _neighbour(name, plant.parts)
+    neighbour = plant.neighbours.get(name)
     extra = {}
     if neighbour:
         n_other, azimuth_other = units[neighbour]
@@ -96,19 +98,58 @@ def _loads_of(name, units, u_r, v_r, r, plant):
     return thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)[-3:]
 
 
-def _neighbour(name, parts):
-    """The nearest other azimuth thruster, whose slipstream can hit this one."""
-    here = parts[name]
-    others = [o for o, part in parts.items() if isinstance(part, AzimuthParameters) and o != name]
-    return min(others, key=lambda o: abs(parts[o].x - here.x) + abs(parts[o].y - here.y), default=None)
+def neighbours_of(system, parts):
+    """By azimuth thruster of ours, the one whose slipstream can hit it: as the system wires it, else the nearest.
+
+    Parameters
+    ----------
+    system : System
+    parts : dict of str to dataclass
+
+    Returns
+    -------
+    dict of str to str
+    """
+    units = [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]
+    wired = {(c.target[0], c.source[0]) for c in system.connections if c.target[1].startswith("neighbour_")}
+    found = {}
+    for name in units:
+        here, others = parts[name], [other for other in units if other != name]
+        near = sorted(
+            others, key=lambda o: ((name, o) not in wired, abs(parts[o].x - here.x) + abs(parts[o].y - here.y))
+        )
+        found |= {name: near[0]} if near else {}
+    return found
 
 
-def neighbours_placed(parts):
+def neighbours_placed(parts, neighbours):
     """The parts, in which each azimuth thruster knows where its neighbour is."""
     placed = dict(parts)
-    for name, part in parts.items():
-        if isinstance(part, AzimuthParameters) and part.neighbour_x == part.neighbour_y == 0.0:
-            other = parts.get(_neighbour(name, parts))
-            if other:
-                placed[name] = replace(part, neighbour_x=other.x, neighbour_y=other.y)
+    for name, other in neighbours.items():
+        if parts[name].neighbour_x == parts[name].neighbour_y == 0.0:
+            placed[name] = replace(parts[name], neighbour_x=parts[other].x, neighbour_y=parts[other].y)
     return placed
+
+
+def fixed_of(system, parts):
+    """Azimuth thrusters of ours that a system drives and never turns, as fixed propellers, and where they point.
+
+    Parameters
+    ----------
+    system : System
+    parts : dict of str to dataclass
+
+    Returns
+    -------
+    dict of str to float
+        [rad]
+    """
+    fed, found = {connection.target for connection in system.connections}, {}
+    for name in [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]:
+        replays = bool(system.components[name].start_value("replay"))
+        kinds = ("rpm_in", "azimuth_in", "azimuth_in") if replays else ("thrust_cmd", "azimuth_cmd", "azimuth_start")
+        speed, direction, start = kinds
+        turned = (name, direction) in fed or (name, speed) not in fed
+        if not turned or parts[name].azimuth_rate == 0.0:
+            found[name] = float(system.components[name].start_value(start))
+    return found
