@@ -74,6 +74,23 @@ def test_samples_between_both_sides_of_north_are_a_heading_wrap():
     assert np.isnan(again[[row + 1 for row in crossing]]).all()
 
 
+@pytest.mark.parametrize("lost", ["value", "row"])
+def test_a_heading_wrap_is_found_where_a_sample_of_it_is_missing(lost):
+    log = measured(seed=5)
+    row = int(np.argmax(np.abs(np.diff(np.round(log["heading"], 1))) > 180.0))
+    raw = log["heading"].copy()
+    for k in range(1, 4):
+        raw[row + k] = raw[row] + (raw[row + 4] - raw[row]) * k / 4.0
+    if lost == "value":
+        raw[row + 2] = np.nan
+        log = log | {"heading": raw}
+    else:
+        log = {role: np.delete(values, row + 2) for role, values in (log | {"heading": raw}).items()}
+    assert abs(raw[row + 4] - raw[row]) > 180.0
+    found = [finding for finding in examine(table(log)) if finding.cause == "heading_wrap"]
+    assert [finding.segments for finding in found] == [((float(row + 1), float(row + 3)),)]
+
+
 @pytest.mark.parametrize("rate", [0.8, 1.2])
 def test_a_clock_that_runs_wrong_for_a_while_is_named_with_its_rate_and_undone(rate):
     log = measured(seed=6, rate=rate)

@@ -218,7 +218,7 @@ def wraps(log: dict) -> list[Finding]:
     for between in range(1, min(LONGEST_WRAP, len(heading) - 2) + 1):
         crossing = np.zeros(len(heading) - between - 1, bool)
         for a, b in ((heading, heading), (full, heading), (heading, full)):
-            crossing |= _long_way(heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine)
+            crossing |= _long_way(time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine)
         for row in np.flatnonzero(crossing):
             bad[row + 1 : row + 1 + between] = True
     segments = tuple((float(time[first]), float(time[last - 1])) for first, last in runs(bad))
@@ -226,14 +226,20 @@ def wraps(log: dict) -> list[Finding]:
     return [Finding("heading_wrap", None, "data", 1.0, {}, segments, ("heading",), note=note)] if segments else []
 
 
-def _long_way(heading, a, b, tolerance):
-    """Where the samples between a and b, both near north and on its two sides, lie on the line through south."""
-    between = len(heading) - len(a) - 1
+def _long_way(time, heading, a, b, tolerance):
+    """Where the samples between a and b, both near north and on its two sides, lie on the line through south.
+
+    Some of them may be missing.
+    """
+    n, between = len(a), len(heading) - len(a) - 1
     crossing = (np.abs(b - a) > 180.0) & (np.abs(np.mod(b - a + 180.0, 360.0) - 180.0) < 45.0)
+    some = np.zeros(n, bool)
     for k in range(1, between + 1):
-        line = a + (b - a) * k / (between + 1)
-        crossing &= np.abs(heading[k : len(a) + k] - line) < tolerance
-    return crossing
+        share = (time[k : n + k] - time[:n]) / (time[between + 1 :] - time[:n])
+        here = heading[k : n + k]
+        some |= np.isfinite(here)
+        crossing &= ~(np.abs(here - (a + (b - a) * share)) >= tolerance)
+    return crossing & some
 
 
 def outliers(log: dict) -> dict[str, np.ndarray]:
