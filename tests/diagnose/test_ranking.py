@@ -5,7 +5,7 @@ import pytest
 from diagnose import twin
 from diagnose.twin import case, fits
 
-from shipcosim.diagnose.ranking import _simplify, fitted, probes, weighed
+from shipcosim.diagnose.ranking import _one_way, _simplify, fitted, probes, weighed
 
 NAMES = {
     "current": {"current"},
@@ -103,3 +103,14 @@ def test_a_steady_current_is_weighed_beside_the_varying_one_that_contains_it():
     assert best.label == "current"
     assert best.values["water.current_north"] == pytest.approx(0.22, abs=0.02)
     assert best.values["water.current_east"] == pytest.approx(-0.12, abs=0.02)
+
+
+@pytest.mark.parametrize("forwards", [True, False])
+def test_a_current_of_next_to_nothing_at_one_end_does_not_turn_about(forwards):
+    """From the ends of log work 311, which grows from nothing: begun with the wrong direction, no fit found it."""
+    ends = np.array([0.026, 0.048]), np.array([-0.233, 0.166])
+    slow, fast = _one_way(*ends) if forwards else reversed(_one_way(*reversed(ends)))
+    assert np.array_equal(fast, ends[1])
+    assert np.hypot(*slow) == pytest.approx(np.hypot(*ends[0])) and np.dot(slow, fast) > 0.0
+    turned = np.array([0.2, 0.0]), np.array([-0.1, 0.2])
+    assert all(map(np.array_equal, _one_way(*turned), turned))

@@ -10,6 +10,7 @@ from shipcosim.diagnose.linear import beside, innovations, linearise
 
 DIRECTIONS = 12
 ROUNDS = 5
+_SLOW, _STILL = 0.35, 0.05  # of the faster end: a current this slow at first sight has no direction; where it starts
 
 
 @dataclass(frozen=True)
@@ -270,8 +271,19 @@ def _together(tries, suspect):
         north, east = values.pop("water.current_north"), values.pop("water.current_east")
         grown = values.pop("water.trend_north"), values.pop("water.trend_east")
         names = [knob.paths[0] for knob in suspect.knobs]
-        values = dict(zip(names, (north, east, north + grown[0], east + grown[1]), strict=True))
+        ends = _one_way(np.array([north, east]), np.array([north + grown[0], east + grown[1]]))
+        values = dict(zip(names, map(float, np.concatenate(ends)), strict=True))
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
+
+
+def _one_way(first, last):
+    """Ends of a current; one of next to nothing lies along the other: its own direction is chance, and stays."""
+    sizes = np.linalg.norm(first), np.linalg.norm(last)
+    if sizes[0] < _SLOW * sizes[1]:
+        first = last * max(sizes[0] / sizes[1], _STILL)
+    elif sizes[1] < _SLOW * sizes[0]:
+        last = first * max(sizes[1] / sizes[0], _STILL)
+    return first, last
 
 
 def probes(suspect):
