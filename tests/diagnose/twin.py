@@ -176,7 +176,7 @@ def drawn(seed, linear, noise, record):
     random, n = np.random.default_rng(seed), record.time.size
     calm = replace(noise, wave=np.zeros(3))
     root = np.sqrt(np.diag(_process(calm, record.step)))
-    x, rows = np.sqrt(np.diag(_uncertain(calm, ()))) * random.standard_normal(STATES), []
+    x, rows = np.sqrt(np.diag(_uncertain(calm))) * random.standard_normal(STATES), []
     for k in range(n):
         rows.append(linear.output[k] @ x + noise.white * random.standard_normal(6))
         if k < n - 1:

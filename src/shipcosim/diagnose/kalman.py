@@ -1,113 +1,194 @@
-"""The Kalman filter and the smoother over the rows of a log, compiled: the only loops that no array form takes away."""
+"""The Kalman filter and the smoother over the rows of a log, compiled: the only loops that no array form takes away.
+
+What the filter weighs measurements by depends on the problem and its noise alone, not on the columns that are filtered:
+it is computed by itself, and serves any number of columns, now or later. Rows come first in all arrays, then logs; an
+array that is the same for all logs has one.
+"""
 
 import numpy as np
 from numba import njit
 
-__all__ = ["filtered", "smoothed"]
+__all__ = ["smoothed", "weights", "whitened"]
+
+_compiled = njit(cache=True, error_model="numpy")
 
 
-@njit(cache=True, error_model="numpy")
-def filtered(A, B, H, Z, R, Q, P, known, lost, keep):
-    """Whitened innovations of every column, by logs one after the other.
+@_compiled
+def weights(A, W, H, R, Q, P, known, lost, keep):
+    """Gains of the filter.
 
     Parameters
     ----------
-    A : (m, n-1, s, s) array
+    A : (n-1, m or 1, s, s) array
         Transition of m logs.
-    B : (m, n-1, s, c) array
-        What moves the state besides, of c columns.
-    H : (m, n, o, s) array
-    Z : (m, n, o, c) array
-    R : (m, n, o) array
-        Variance of the outputs.
+    W : (m, s, s) array
+        What of it does not change from row to row, added to A.
+    H : (n, m or 1, o, s) array
+    R : (n, m, o) array
+        Variance of the outputs; infinite where there is none.
     Q, P : (m, s, s) array
         Covariance that a step adds, and that of the first state.
     known : (n,) bool array
         Whether what drives the ship over the step that follows is known; where not, `lost` is added too.
     lost : (s, s) array
     keep : bool
-        Whether the state of the first column and its covariance are wanted.
+        Whether the covariances are wanted.
 
     Returns
     -------
     tuple of arrays
-        White innovations (m, n, o, c), logarithms of the determinants of their covariance (m, n), states (m, n, s) and
-        covariances (m, n, s, s) after each row's measurement, the last two empty unless wanted.
+        What a white innovation adds to the state (n, m, s, o), what turns an innovation into a white one (n, m, o, o),
+        logarithms of the determinants of their covariance (n, m), covariances of the state after each row's measurement
+        (n, m, s, s), empty unless wanted.
     """
-    m, n, o, c = Z.shape
+    n, m, o = R.shape
     s = A.shape[-1]
-    white, logdet = np.empty(Z.shape), np.empty((m, n))
-    states, covariances = np.empty((m, n if keep else 0, s)), np.empty((m, n if keep else 0, s, s))
+    gain, root, logdet = np.empty((n, m, s, o)), np.zeros((n, m, o, o)), np.empty((n, m))
+    covariances = np.empty((n if keep else 0, m, s, s))
+    HC, S, Gt, F, T = np.empty((o, s)), np.empty((o, o)), np.empty((o, s)), np.empty((s, s)), np.empty((s, s))
     for log in range(m):
-        x, C = np.zeros((s, c)), P[log].copy()
+        C = P[log].copy()
         for k in range(n):
-            PHt = C @ H[log, k].T
-            Li = _inverse_root(H[log, k] @ PHt, R[log, k], logdet[log, k : k + 1])
-            w = Li @ (Z[log, k] - H[log, k] @ x)
-            gain = PHt @ Li.T
-            white[log, k] = w
-            x = x + gain @ w
-            C = C - gain @ gain.T
+            h = H[k, log % H.shape[1]]
+            HC[:] = 0.0
+            _add(HC, h, C, 1.0)
+            S[:] = 0.0
+            _add(S, h, HC.T, 1.0)
+            logdet[k, log] = _inverse_root(S, R[k, log], root[k, log])
+            Gt[:] = 0.0
+            _add(Gt, root[k, log], HC, 1.0)
+            gain[k, log] = Gt.T
+            _add(C, gain[k, log], Gt, -1.0)
             if keep:
-                states[log, k], covariances[log, k] = x[:, 0], C
+                covariances[k, log] = C
             if k < n - 1:
-                x = A[log, k] @ x + B[log, k]
-                C = A[log, k] @ C @ A[log, k].T + Q[log]
+                F[:] = A[k, log % A.shape[1]]
+                F += W[log]
+                T[:] = 0.0
+                _add(T, F, C, 1.0)
+                _transpose(T, C)
+                T[:] = Q[log]
                 if not known[k]:
-                    C = C + lost
-                C = 0.5 * (C + C.T)
-    return white, logdet, states, covariances
+                    T += lost
+                _add(T, F, C, 1.0)
+                _symmetric(T, C)
+    return gain, root, logdet, covariances
 
 
-@njit(cache=True, error_model="numpy")
-def _inverse_root(S, R, logdet):
-    """Inverse of the lower Cholesky factor of S + diag(R); the logarithm of its determinant goes into `logdet`."""
+@_compiled
+def whitened(A, W, B, H, Z, gain, root):
+    """Whitened innovations of every column, and the state of the first.
+
+    Parameters
+    ----------
+    A, W, H
+        As for `weights`.
+    B : (n-1, m or 1, b, c) array
+        What moves the first b states besides, of c columns.
+    Z : (n, m or 1, o, c) array
+        Outputs.
+    gain, root
+        As `weights` gives them.
+
+    Returns
+    -------
+    tuple of (n, m, o, c) array, (n, m, s) array
+        White innovations; state of the first column after each row's measurement.
+    """
+    n, _, o, c = Z.shape
+    m, s = gain.shape[1], A.shape[-1]
+    white, states = np.zeros((n, m, o, c)), np.empty((n, m, s))
+    missed, ahead, F = np.empty((o, c)), np.empty((s, c)), np.empty((s, s))
+    for log in range(m):
+        x = np.zeros((s, c))
+        for k in range(n):
+            missed[:] = Z[k, log % Z.shape[1]]
+            _add(missed, H[k, log % H.shape[1]], x, -1.0)
+            _add(white[k, log], root[k, log], missed, 1.0)
+            _add(x, gain[k, log], white[k, log], 1.0)
+            states[k, log] = x[:, 0]
+            if k < n - 1:
+                F[:] = A[k, log % A.shape[1]]
+                F += W[log]
+                ahead[:] = 0.0
+                ahead[: B.shape[2]] = B[k, log % B.shape[1]]
+                _add(ahead, F, x, 1.0)
+                x, ahead = ahead, x
+    return white, states
+
+
+@_compiled
+def smoothed(A, W, H, white, gain, root, states, covariances):
+    """Smoothed state of one column, by the adjoint form of Bryson and Frazier (1963): no matrix is inverted.
+
+    Parameters
+    ----------
+    A, W, H
+        As for `weights`.
+    white : (n, m, o) array
+    gain, root, states, covariances
+        As `weights` and `whitened` give them.
+
+    Returns
+    -------
+    (n, m, s) array
+    """
+    n, m, s = states.shape
+    found = np.empty((n, m, s))
+    for log in range(m):
+        pull = np.zeros(s)  # of what is measured later, on the state
+        for k in range(n - 1, -1, -1):
+            found[k, log] = states[k, log] + covariances[k, log] @ pull
+            left = white[k, log] - gain[k, log].T @ pull
+            pull = pull + H[k, log % H.shape[1]].T @ (root[k, log].T @ left)
+            if k > 0:
+                pull = (A[k - 1, log % A.shape[1]] + W[log]).T @ pull
+    return found
+
+
+@_compiled
+def _add(out, M, X, sign):
+    """Add M X to `out`, or take it off; entries of M that are 0 cost nothing, and most are."""
+    for i in range(M.shape[0]):
+        for j in range(M.shape[1]):
+            factor = sign * M[i, j]
+            if factor != 0.0:
+                for column in range(X.shape[1]):
+                    out[i, column] += factor * X[j, column]
+
+
+@_compiled
+def _transpose(M, out):
+    for i in range(M.shape[0]):
+        for j in range(M.shape[1]):
+            out[j, i] = M[i, j]
+
+
+@_compiled
+def _symmetric(M, out):
+    """The mean of M and its transpose."""
+    for i in range(M.shape[0]):
+        for j in range(i + 1):
+            out[i, j] = out[j, i] = 0.5 * (M[i, j] + M[j, i])
+
+
+@_compiled
+def _inverse_root(S, R, inverse):
+    """Logarithm of the determinant of S + diag(R); the inverse of its lower Cholesky factor goes into `inverse`."""
     o = S.shape[0]
-    L, Li = np.zeros((o, o)), np.zeros((o, o))
-    logdet[0] = 0.0
+    L, determinant = np.zeros((o, o)), 1.0
     for i in range(o):
         for j in range(i + 1):
             rest = S[i, j] + (R[i] if i == j else 0.0)
             for k in range(j):
                 rest -= L[i, k] * L[j, k]
             L[i, j] = np.sqrt(rest) if i == j else rest / L[j, j]
-        logdet[0] += 2.0 * np.log(L[i, i])
-        Li[i, i] = 1.0 / L[i, i]
+        if np.isfinite(R[i]):
+            determinant *= L[i, i]
+        inverse[i, i] = 1.0 / L[i, i]
         for j in range(i):
             rest = 0.0
             for k in range(j, i):
-                rest -= L[i, k] * Li[k, j]
-            Li[i, j] = rest / L[i, i]
-    return Li
-
-
-@njit(cache=True, error_model="numpy")
-def smoothed(A, b, Q, known, lost, states, covariances):
-    """Rauch-Tung-Striebel smoother of one column.
-
-    Parameters
-    ----------
-    A : (m, n-1, s, s) array
-    b : (m, n-1, s) array
-    Q, known, lost
-        As for `filtered`.
-    states, covariances
-        As it gives them.
-
-    Returns
-    -------
-    (m, n, s) array
-    """
-    m, n, s = states.shape
-    found = np.empty((m, n, s))
-    for log in range(m):
-        found[log, n - 1] = x = states[log, n - 1]
-        for k in range(n - 2, -1, -1):
-            AP = A[log, k] @ covariances[log, k]
-            ahead = AP @ A[log, k].T + Q[log]
-            if not known[k]:
-                ahead = ahead + lost
-            predicted = A[log, k] @ states[log, k] + b[log, k]
-            x = states[log, k] + AP.T @ np.linalg.solve(ahead, x - predicted)
-            found[log, k] = x
-    return found
+                rest -= L[i, k] * inverse[k, j]
+            inverse[i, j] = rest / L[i, i]
+    return 2.0 * np.log(determinant)

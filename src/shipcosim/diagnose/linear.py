@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose import kalman
-from shipcosim.diagnose.plant import Motion, loads, motion_rates, shown
+from shipcosim.diagnose.plant import Motion, loads, motion_rates, rates_apart, shown
 from shipcosim.models.observer import wave_transition
 
 __all__ = [
@@ -73,8 +73,8 @@ class Linear(NamedTuple):
     ----------
     transition : (n-1, ..., 18, 18) array
         All but that of the waves, which is a matter of the noise.
-    driven : (n-1, ..., 18, 1 + p) array
-        First column: by how much the model misses the next row of the motion.
+    driven : (n-1, ..., 6, 1 + p) array
+        Of the motion alone. First column: by how much the model misses the next row of the motion.
     output : (n, ..., 6, 18) array
     seen : (n, ..., 6, 1 + p) array
         First column: measured minus shown, 0 where nothing was measured.
@@ -90,7 +90,7 @@ class Linear(NamedTuple):
 
 
 def with_columns(linear, driven, seen):
-    """The problem with further columns behind its own, (n-1, ..., 18, p) and (n, ..., 6, p) arrays."""
+    """The problem with further columns behind its own, (n-1, ..., 6, p) and (n, ..., 6, p) arrays."""
     return linear._replace(
         driven=np.concatenate([linear.driven, driven], axis=-1), seen=np.concatenate([linear.seen, seen], axis=-1)
     )
@@ -149,8 +149,8 @@ def linearise(motion, record, plant, columns):
     n, p = record.time.size, len(columns)
     start = Motion(*(value[..., :-1] for value in motion))
     base, seen = advanced(start, record, plant), shown(motion, plant)
-    driven, out = np.zeros((n - 1, *lead, STATES, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
-    driven[..., :6, 0] = rows_first(base) - rows_first(Motion(*(value[..., 1:] for value in motion)))
+    driven, out = np.empty((n - 1, *lead, 6, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
+    driven[..., 0] = rows_first(base) - rows_first(Motion(*(value[..., 1:] for value in motion)))
     missed = np.moveaxis(record.measured, -2, 0) - rows_first(seen)
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
@@ -158,31 +158,30 @@ def linearise(motion, record, plant, columns):
     drivers = record.drivers(plant, 0.5)
     like = plant, loads(middle, drivers, plant)
     transition = _transition(middle, drivers, like, record.step)
-    over_a_step = 0.5 * record.step * (transition[..., :6, :6] + np.eye(6))
-    for j, turns in enumerate(columns, start=1):
+    slopes = np.zeros((p, 3, *lead, n - 1))
+    for j, turns in enumerate(columns):
         up, down = (
             plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
             for share in (_SHARE, -_SHARE)
         )
-        late = any(path.endswith("_lag") for path in turns)
-        if late or any(not path.startswith("instruments.") for path in turns):
-            rates = (
-                motion_rates(middle, record.drivers(ship, 0.5), ship)
-                if late
-                else motion_rates(middle, drivers, ship, like=like)
-                for ship in (down, up)
-            )
-            driven[..., :6, j] = (over_a_step @ _slope(*rates)[..., None])[..., 0]
+        if any(path.endswith("_lag") for path in turns):
+            late = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
+            slopes[j] = _apart(*late)[3:]
+        elif any(not path.startswith("instruments.") for path in turns):
+            for slope, apart in zip(slopes[j], rates_apart(down, up, middle, drivers, like), strict=True):
+                slope[...] = apart
         else:
-            out[..., j] = _slope(shown(motion, up), shown(motion, down))
-    unknown = ~record.known[:-1]
-    driven[unknown] = 0.0
-    return Linear(transition, driven, _output(motion, seen, plant), out * whole[..., None], whole)
+            out[..., 1 + j] = rows_first(_apart(shown(motion, up), shown(motion, down))) / (2.0 * _SHARE)
+    over_a_step = 0.5 * record.step * (transition[..., :6, 3:6] + np.eye(6)[:, 3:])
+    driven[..., 1:] = over_a_step @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * _SHARE)
+    driven[~record.known[:-1]] = 0.0
+    out *= whole[..., None]
+    return Linear(transition, driven, _output(motion, seen, plant), out, whole)
 
 
-def _slope(one, other):
-    """Change per unit of θ between two motions."""
-    return (rows_first(one) - rows_first(other)) / (2.0 * _SHARE)
+def _apart(one, other):
+    """One motion minus another."""
+    return Motion(*(a - b for a, b in zip(one, other, strict=True)))
 
 
 def rows_first(motion):
@@ -235,22 +234,25 @@ class Innovations(NamedTuple):
         Whitened innovations: of the log in the first column, of each θ in the others.
     log_determinant : (n, ...) array
         Of their covariance, per row.
+    filtered : (n, ..., 18) array
+        Deviations of the first column at each row by what was known until then.
+    weights : tuple of two arrays
+        By which the filter weighed; those of any columns of this problem.
     motion : Motion or None
         The smoothed motion, (..., n) arrays.
     slow : (..., n, 12) array or None
         Smoothed unexplained acceleration, slow errors and waves.
-    filtered : (n, ..., 18) array or None
-        Deviations of the first column at each row by what was known until then.
     """
 
     white: np.ndarray
     log_determinant: np.ndarray
+    filtered: np.ndarray
+    weights: tuple
     motion: Any = None
     slow: Any = None
-    filtered: Any = None
 
 
-def innovations(linear, noise, record, motion=None, *, keep=False):
+def innovations(linear, noise, record, motion=None):
     """Filter every column, and smooth the first if `motion` is given.
 
     Parameters
@@ -260,8 +262,6 @@ def innovations(linear, noise, record, motion=None, *, keep=False):
     record : Record
     motion : Motion, optional
         That the problem was linearised about.
-    keep : bool
-        Whether the filtered deviations of the first column are wanted, instead of the smoothed ones.
 
     Returns
     -------
@@ -269,35 +269,38 @@ def innovations(linear, noise, record, motion=None, *, keep=False):
     """
     lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
     A, B, H, Z = (_by_log(values, lead, 2) for values in linear[:4])
-    A = _with_waves(A, noise, record.step, lead)
-    whole, known, lost = _by_log(linear.whole, lead, 1), np.asarray(record.known), _lost()
-    R = np.where(whole, _by_log(np.asarray(noise.white)[None] ** 2, lead, 1), 1.0)
-    Q, P = (_by_log(values[None], lead, 2)[:, 0] for values in (_process(noise, record.step), _uncertain(noise, lead)))
-    kept = keep or motion is not None
-    white, logdet, *states = kalman.filtered(A, B, H * whole[..., None], Z, R, Q, P, known, lost, kept)
-    white, logdet = _rows_before(white, lead), _rows_before(logdet, lead)
-    if keep:
-        return Innovations(white, logdet, filtered=_rows_before(states[0], lead))
+    of_noise = _waves_ahead(noise, record.step), _process(noise, record.step), _uncertain(noise)
+    W, Q, P = (_of_logs(values, lead) for values in of_noise)
+    white = np.asarray(noise.white).reshape(1, -1, 6)
+    R = np.where(_by_log(linear.whole, lead, 1), white**2, np.inf)
+    R = np.require(np.broadcast_to(R, (len(R), len(W), 6)), requirements=["C", "W"])
+    known, wanted = np.asarray(record.known), motion is not None
+    *weights, log_determinant, covariances = kalman.weights(A, W, H, R, Q, P, known, _lost(), wanted)
+    white, states = kalman.whitened(A, W, B, H, Z, *weights)
+    of_logs = [values.reshape(-1, *lead, *values.shape[2:]) for values in (white, log_determinant, states)]
     if motion is None:
-        return Innovations(white, logdet)
-    found = kalman.smoothed(A, B[..., 0].copy(), Q, known, lost, *states)
-    found = found.reshape(*lead, *found.shape[1:])
-    return Innovations(white, logdet, Motion(*(v + found[..., i] for i, v in enumerate(motion))), found[..., 6:])
+        return Innovations(*of_logs, tuple(weights))
+    found = kalman.smoothed(A, W, H, white[..., 0].copy(), *weights, states, covariances)
+    found = np.moveaxis(found.reshape(-1, *lead, STATES), 0, -2)
+    smooth = Motion(*(value + found[..., i] for i, value in enumerate(motion)))
+    return Innovations(*of_logs, tuple(weights), smooth, found[..., 6:])
 
 
 def _by_log(values, lead, tail):
-    """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (m, n, *tail) array."""
-    middle = values.ndim - 1 - tail
-    values = values.reshape(len(values), *(1,) * (len(lead) - middle), *values.shape[1:])
+    """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (n, m or 1, *tail) array."""
     shape = values.shape[values.ndim - tail :]
-    values = np.moveaxis(np.broadcast_to(values, (len(values), *lead, *shape)), 0, len(lead))
+    if np.prod(values.shape[1 : values.ndim - tail]) > 1:
+        middle = values.ndim - 1 - tail
+        values = values.reshape(len(values), *(1,) * (len(lead) - middle), *values.shape[1:])
+        values = np.broadcast_to(values, (len(values), *lead, *shape))
     # one kind of array only: for each other kind the filter would be compiled anew
-    return np.require(values, requirements=["C", "W"]).reshape(-1, values.shape[len(lead)], *shape)
+    return np.require(values, requirements=["C", "W"]).reshape(len(values), -1, *shape)
 
 
-def _rows_before(values, lead):
-    """(m, n, ...) array as (n, *lead, ...)."""
-    return np.moveaxis(values.reshape(*lead, *values.shape[1:]), len(lead), 0)
+def _of_logs(values, lead):
+    """(..., 18, 18) array that broadcasts to the logs, as (m, 18, 18) array."""
+    values = np.broadcast_to(values, (*lead, STATES, STATES))
+    return np.require(values, requirements=["C", "W"]).reshape(-1, STATES, STATES)
 
 
 def oscillation(noise, h):
@@ -315,13 +318,13 @@ def oscillation(noise, h):
     return (a, b, c, d), added
 
 
-def _with_waves(A, noise, h, lead):
-    """Transitions (m, n-1, 18, 18) with that of the waves."""
-    A = A.copy()
-    a, b, c, d = (np.broadcast_to(entry[..., 0], lead).reshape(-1, 1, 1) for entry in oscillation(noise, h)[0])
-    A[..., range(12, 15), range(12, 15)], A[..., range(12, 15), range(15, 18)] = a, b
-    A[..., range(15, 18), range(12, 15)], A[..., range(15, 18), range(15, 18)] = c, d
-    return A
+def _waves_ahead(noise, h):
+    """What the waves have of a transition, (..., 18, 18)."""
+    a, b, c, d = oscillation(noise, h)[0]
+    W = np.zeros((*a.shape[:-1], STATES, STATES))
+    W[..., range(12, 15), range(12, 15)], W[..., range(12, 15), range(15, 18)] = a, b
+    W[..., range(15, 18), range(12, 15)], W[..., range(15, 18), range(15, 18)] = c, d
+    return W
 
 
 def _process(noise, h):
@@ -342,13 +345,13 @@ def _waves(noise):
     return speed / np.asarray(noise.wave_frequency)[..., None] ** 2, speed
 
 
-def _uncertain(noise, lead):
+def _uncertain(noise):
     """Covariance at the first row."""
     walk = np.asarray(noise.walk) ** 2 * 600.0
     white = np.broadcast_to(np.asarray(noise.white) ** 2, (*walk.shape[:-1], 6))
     waves = (np.broadcast_to(values, walk.shape) for values in _waves(noise))
     first = np.concatenate([100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape), *waves], axis=-1)
-    return np.broadcast_to(first, (*lead, STATES))[..., None] * np.eye(STATES)
+    return first[..., None] * np.eye(STATES)
 
 
 def _lost():

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.linear import STATES, innovations, with_columns
+from shipcosim.diagnose.linear import innovations, with_columns
 from shipcosim.diagnose.plant import shown
 
 __all__ = ["HATS", "PERIODS", "unexplained"]
@@ -119,8 +119,8 @@ def _with(linear, accelerations, channels, case):
     """The problem with a column for each acceleration, and for each error of a channel."""
     h, n = case.record.step, case.record.time.size
     size = _SIZE * np.array([1.0, 1.0, _LEVER / case.plant.parts["hull"].length])
-    driven = np.zeros((n - 1, STATES, accelerations.shape[-1]))
+    driven = np.zeros((n - 1, 6, accelerations.shape[-1]))
     driven[:, 3:6] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
-    driven = np.concatenate([driven, np.zeros((n - 1, STATES, channels.shape[-1]))], axis=-1)
+    driven = np.concatenate([driven, np.zeros((n - 1, 6, channels.shape[-1]))], axis=-1)
     seen = np.concatenate([np.zeros((n, 6, accelerations.shape[-1])), channels], axis=-1)
     return with_columns(linear, driven, seen)

@@ -35,10 +35,13 @@ __all__ = [
     "loads",
     "motion_rates",
     "plant_of",
+    "rates_apart",
     "shown",
 ]
 
 _OURS = (AzimuthParameters, TunnelParameters)
+_CURRENT = tuple(f"{of}_{to}" for of in ("current", "trend") for to in ("north", "east"))
+_CURRENT += tuple(f"{to}_{at}" for to in ("north", "east") for at in ("start", "end"))
 
 
 class Motion(NamedTuple):
@@ -282,9 +285,14 @@ def loads(motion, drivers, plant, like=None):
 
 def _alike(plant, other, found):
     """Those of another ship's loads that this one has too."""
-    if plant.parts["water"] is not other.parts["water"]:
+    if not _same_current(plant, other):
         return {"wind": found["wind"]} if "wind" in found and plant.parts["wind"] is other.parts["wind"] else {}
     return {name: load for name, load in found.items() if plant.parts.get(name) is other.parts.get(name, 0)}
+
+
+def _same_current(plant, other):
+    one, two = plant.parts["water"], other.parts["water"]
+    return one is two or all(getattr(one, name) == getattr(two, name) for name in _CURRENT)
 
 
 def _stranger_loads(name, motion, drivers, through, plant):
@@ -327,6 +335,33 @@ def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0), like=None):
     u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=plant.parts["hull"])
     north, east = to_ned(motion.psi, motion.u, motion.v)
     return Motion(north, east, motion.r, u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot)
+
+
+def rates_apart(one, other, motion, drivers, like):
+    """Rates of the velocity of one ship minus those of another in the same motion.
+
+    Parameters
+    ----------
+    one, other : Plant
+    motion : Motion
+    drivers : Drivers
+    like : tuple of Plant, dict
+        As for `loads`.
+
+    Returns
+    -------
+    tuple of three arrays
+        [m/s2, m/s2, rad/s2]
+    """
+    hull = one.parts["hull"]
+    if hull is not other.parts["hull"] or not _same_current(one, other):
+        rates = (motion_rates(motion, drivers, plant, like=like)[3:] for plant in (one, other))
+        return tuple(a - b for a, b in zip(*rates, strict=True))
+    mine, theirs = (loads(motion, drivers, plant, like) for plant in (one, other))
+    pairs = [(mine[name], theirs[name]) for name in mine if mine[name] is not theirs[name]]
+    X, Y, N = (sum(a[axis] - b[axis] for a, b in pairs) for axis in range(3))
+    i11, i22, i26, i62, i66 = hull.inverse_mass
+    return i11 * X, i22 * Y + i26 * N, i62 * Y + i66 * N
 
 
 def shown(motion, plant):

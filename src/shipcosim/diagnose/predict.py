@@ -171,7 +171,7 @@ def observed(problems, noise, record, motions, plants):
     Known
         Of (k, n, ...) arrays.
     """
-    found = np.moveaxis(innovations(stacked(problems), noise, record, keep=True).filtered, 0, 1)
+    found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
     about = np.stack([np.stack(motion, axis=-1) for motion in motions])
     force = np.stack([one[:, _FORCE] @ mass_matrix(plant).T for one, plant in zip(found, plants, strict=True)])
     return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)

@@ -89,7 +89,7 @@ def _loads_of(name, units, u_r, v_r, r, plant):
     unit, (n, azimuth) = plant.parts[name], units[name]
     if isinstance(unit, TunnelParameters):
         return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
-    state = thruster.azimuth_replay(n, azimuth, u_r, v_r, r, unit=unit)
+    state = thruster.azimuth_given(n, azimuth, unit=unit)
     neighbour = plant.neighbours.get(name)
     extra = {}
     if neighbour:

@@ -201,10 +201,28 @@ def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
     Thruster
         With the real shaft speed and the given direction.
     """
-    n = n - unit.rpm_offset / 60.0
+    thruster = azimuth_given(n, azimuth, unit=unit)
+    n = thruster.n
     u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
     thrust, torque = propeller_loads(u_a, n, propeller=unit)
-    return Thruster(n, 0.0 * n, thrust, azimuth, torque + unit.friction * _TURN * n, False)
+    return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n)
+
+
+def azimuth_given(n, azimuth, *, unit):
+    """As `azimuth_replay`, where its thrust and torque are not asked for: both 0.
+
+    Parameters
+    ----------
+    n, azimuth : float or (...) array or tensor
+        Shaft speed and direction of positive thrust as given. [rev/s, rad]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+    """
+    return at_rest(azimuth)._replace(n=n - unit.rpm_offset / 60.0)
 
 
 def azimuth_loads(thruster, u_r, v_r, r, neighbour_azimuth=0.0, neighbour_rpm=0.0, *, unit):
