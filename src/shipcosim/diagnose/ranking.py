@@ -132,9 +132,22 @@ def prepared(case, rounds=3):
     motion = case.motion
     for _ in range(rounds):
         alone = linearise(motion, case.record, case.plant, [])
-        motion = innovations(alone, case.noise, case.record, motion).motion
+        motion = _smoothed(alone, innovations(alone, case.noise, case.record), case, motion)
     base = linearise(motion, case.record, case.plant, [column.turns for column in case.basis])
     return replace(case, motion=motion, base=base)
+
+
+def _smoothed(linear, filtered, case, motion):
+    """The motion to linearise about next: that of the ship as the problem has her, as far as she can follow the log.
+
+    Where she cannot, the measurements rule: jolts are as much larger as the innovations' mean square is. Otherwise a
+    boat whose propeller has lost a third of its thrust is smoothed far off her track, and nothing is found about that.
+    """
+    alone = linear._replace(driven=linear.driven[..., :1], seen=linear.seen[..., :1])
+    misfit = (filtered.white[..., 0] ** 2).sum((0, -1)) / linear.whole.sum((0, -1))
+    jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(case.noise.jolt)
+    noise = replace(case.noise, jolt=jolt, walk=np.broadcast_to(case.noise.walk, jolt.shape))
+    return innovations(alone, noise, case.record, motion).motion
 
 
 def _key(column):
@@ -179,7 +192,7 @@ def _own(case, suspects):
 
 def _posterior(case, suspects, values, columns, linear, plant, motion):
     """The fit about some values."""
-    filtered = innovations(linear, case.noise, case.record, motion)
+    filtered = innovations(linear, case.noise, case.record)
     products, centre = gram(filtered), _centre(columns, plant, case.plant)
     prior = np.array([column.prior for column in columns])
     score, theta, covariance = evidence(products.products, prior, centre)
@@ -187,7 +200,7 @@ def _posterior(case, suspects, values, columns, linear, plant, motion):
     values, knobs = dict(values), [knob for suspect in suspects for knob in suspect.knobs]
     deviations = np.sqrt(np.diag(covariance))[theta.size - len(knobs) :]
     std = {knob.paths[0]: float(d * knob.typical) for knob, d in zip(knobs, deviations, strict=True)}
-    rest = (columns, linear, products, theta, covariance, centre, plant, filtered.motion)
+    rest = (columns, linear, products, theta, covariance, centre, plant, _smoothed(linear, filtered, case, motion))
     return Fit(tuple(suspects), values, std, score, *rest)
 
 
