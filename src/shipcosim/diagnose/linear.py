@@ -27,6 +27,7 @@ __all__ = [
     "linearise",
     "oscillation",
     "rows_first",
+    "runge_kutta",
     "with_columns",
 ]
 
@@ -102,7 +103,7 @@ def beside(linear, extra):
 
 
 def advanced(motion, record, plant):
-    """The motion one row later, from each row but the last, by one Runge-Kutta step.
+    """The motion one row later, from each row but the last, by a Runge-Kutta step or, for a small ship, several.
 
     Parameters
     ----------
@@ -115,16 +116,43 @@ def advanced(motion, record, plant):
     -------
     Motion
     """
-    h = record.step
-    here, half, there = (record.drivers(plant, share) for share in (0.0, 0.5, 1.0))
+    parts = record.substeps(plant)
+    for i in range(parts):
+        drivers = [record.drivers(plant, (i + share) / parts) for share in (0.0, 0.5, 1.0)]
+        motion = runge_kutta(motion, record.step / parts, drivers, plant)
+    return motion
+
+
+def runge_kutta(motion, h, drivers, plant, load=lambda psi: (0.0, 0.0, 0.0)):
+    """The motion a step of h later.
+
+    Parameters
+    ----------
+    motion : Motion
+    h : float
+        [s]
+    drivers : sequence of three Drivers
+        At the beginning, the middle and the end.
+    plant : Plant
+    load : callable or sequence of three callables, optional
+        Further load by the heading. [N, N, N.m]
+
+    Returns
+    -------
+    Motion
+    """
+    loads_at = load if isinstance(load, (list, tuple)) else (load, load, load)
 
     def moved(rates, by):
         return Motion(*(value + by * rate for value, rate in zip(motion, rates, strict=True)))
 
-    k1 = motion_rates(motion, here, plant)
-    k2 = motion_rates(moved(k1, 0.5 * h), half, plant)
-    k3 = motion_rates(moved(k2, 0.5 * h), half, plant)
-    k4 = motion_rates(moved(k3, h), there, plant)
+    def rates(where, i):
+        return motion_rates(where, drivers[i], plant, loads_at[i](where.psi))
+
+    k1 = rates(motion, 0)
+    k2 = rates(moved(k1, 0.5 * h), 1)
+    k3 = rates(moved(k2, 0.5 * h), 1)
+    k4 = rates(moved(k3, h), 2)
     slopes = zip(motion, k1, k2, k3, k4, strict=True)
     return Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
 
@@ -157,7 +185,7 @@ def linearise(motion, record, plant, columns):
     middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
     drivers = record.drivers(plant, 0.5)
     like = plant, loads(middle, drivers, plant)
-    transition = _transition(middle, drivers, like, record.step)
+    transition = _transition(middle, drivers, like, record)
     slopes = np.zeros((p, 3, *lead, n - 1))
     for j, turns in enumerate(columns):
         up, down = (
@@ -172,8 +200,7 @@ def linearise(motion, record, plant, columns):
                 slope[...] = apart
         else:
             out[..., 1 + j] = rows_first(_apart(shown(motion, up), shown(motion, down))) / (2.0 * _SHARE)
-    over_a_step = 0.5 * record.step * (transition[..., :6, 3:6] + np.eye(6)[:, 3:])
-    driven[..., 1:] = over_a_step @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * _SHARE)
+    driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * _SHARE)
     driven[~record.known[:-1]] = 0.0
     out *= whole[..., None]
     return Linear(transition, driven, _output(motion, seen, plant), out, whole)
@@ -194,19 +221,27 @@ def rows_first(motion):
 _SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
 
 
-def _transition(middle, drivers, like, h):
-    """Transition over a step, to second order, about its middle, where `like` has the ship and her loads."""
+def _transition(middle, drivers, like, record):
+    """Transition over a step, of second order about its middle, where `like` has the ship and her loads.
+
+    For a small ship that of a part of the step, doubled until it is whole.
+    """
     plant, _ = like
     here = rows_first(motion_rates(middle, drivers, plant, like=like))
     J = np.zeros((*here.shape[:-1], 6, 6))
     for name, small in _SMALL.items():
         moved = middle._replace(**{name: getattr(middle, name) + small})
         J[..., Motion._fields.index(name)] = (rows_first(motion_rates(moved, drivers, plant)) - here) / small
+    parts = record.substeps(plant)
+    h = record.step / parts
+    moves = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
+    pushed = 0.5 * h * (moves + np.eye(6))
+    for _ in range(round(np.log2(parts))):
+        moves, pushed = moves @ moves, pushed + moves @ pushed
     A = np.zeros((*here.shape[:-1], STATES, STATES))
-    A[..., :6, :6] = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
-    A[..., :6, 6:9] = 0.5 * h * (A[..., :6, 3:6] + np.eye(6)[:, 3:])
+    A[..., :6, :6], A[..., :6, 6:9] = moves, pushed[..., 3:]
     A[..., range(6, 9), range(6, 9)] = 1.0
-    A[..., range(9, 12), range(9, 12)] = np.exp(-h / SLOW_TIME)
+    A[..., range(9, 12), range(9, 12)] = np.exp(-record.step / SLOW_TIME)
     return A
 
 

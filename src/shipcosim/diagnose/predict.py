@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.linear import Linear, advanced, innovations, rows_first
-from shipcosim.diagnose.plant import Motion, motion_rates, shown
+from shipcosim.diagnose.linear import Linear, advanced, innovations, rows_first, runge_kutta
+from shipcosim.diagnose.plant import Motion, shown
 from shipcosim.models.instruments import motion_of
 from shipcosim.models.kinematics import to_body, to_ned
 
@@ -203,17 +203,14 @@ def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True, 
     Motion
         Of (len(horizons), ..., s) arrays.
     """
-    drivers = [record.drivers(plant, share) for share in (0.0, 0.5, 1.0)]
-    load = _held(motion, force, earth, fades)
-    h, kept = record.step, []
+    parts = record.substeps(plant)
+    drivers = [record.drivers(plant, 0.5 * i / parts) for i in range(2 * parts + 1)]
+    load, h, kept = _held(motion, force, earth, fades), record.step / parts, []
     for k in range(horizons[-1]):
-        here, half, there = (_at(one, rows + k) for one in drivers)
-        k1 = _rates(motion, here, plant, load(k * h))
-        k2 = _rates(_moved(motion, k1, 0.5 * h), half, plant, load(k * h + 0.5 * h))
-        k3 = _rates(_moved(motion, k2, 0.5 * h), half, plant, load(k * h + 0.5 * h))
-        k4 = _rates(_moved(motion, k3, h), there, plant, load(k * h + h))
-        slopes = zip(motion, k1, k2, k3, k4, strict=True)
-        motion = _bounded(Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes)))
+        for i in range(parts):
+            during = [_at(one, rows + k) for one in drivers[2 * i : 2 * i + 3]]
+            loads = [load(k * record.step + (i + share) * h) for share in (0.0, 0.5, 1.0)]
+            motion = _bounded(runge_kutta(motion, h, during, plant, loads))
         if k + 1 in horizons:
             kept.append(motion)
     return Motion(*(np.stack(channel) for channel in zip(*kept, strict=True)))
@@ -230,14 +227,6 @@ def _held(motion, force, earth, fades):
         return lambda psi: (*to_body(np.where(earth, psi - start, 0.0), X, Y), N)
 
     return load
-
-
-def _rates(motion, drivers, plant, load):
-    return motion_rates(motion, drivers, plant, load(motion.psi))
-
-
-def _moved(motion, rates, by):
-    return Motion(*(value + by * rate for value, rate in zip(motion, rates, strict=True)))
 
 
 def _bounded(motion):

@@ -11,6 +11,7 @@ from shipcosim.errors import Problem, ShipcosimError
 __all__ = ["CHANNELS", "Record", "first_motion", "record_of"]
 
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s on Gunnerus
+_ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
@@ -44,6 +45,11 @@ class Record:
     def step(self):
         """Time from row to row. [s]"""
         return float(self.time[1] - self.time[0])
+
+    def substeps(self, plant):
+        """Into how many equal steps a row is parted to move a ship, so that one small or stiff does not run away."""
+        rows = self.step / (_ONE_STEP * np.sqrt(plant.parts["hull"].length))
+        return 2 ** int(np.ceil(np.log2(max(rows, 1.0)) - 1e-9))
 
     def drivers(self, plant, share=0.0):
         """What drives the ship at each row but the last, or a share of a step after it.

@@ -41,7 +41,8 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
         Motion, and speed and direction by thruster; (m, n) arrays.
     """
     h, n = record.step, record.time.size
-    base = [record.drivers(ships, share) for share in (0.0, 0.5)]
+    parts = record.substeps(ships)
+    base = [record.drivers(ships, 0.5 * i / parts) for i in range(2 * parts)]
     ship = Motion(*(np.zeros(count) + value[..., 0] for value in track))
     integral, told = np.zeros((3, count)), {name: np.zeros((2, count)) for name in ships.thrusters}
     rows, units = [], {name: [] for name in ships.thrusters}
@@ -52,7 +53,9 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
         for name, pair in dp.speeds(told, record, k).items():
             units[name].append(pair)
         if k < n - 1:
-            ship = _moved(ship, base, k, {name: series[-1] for name, series in units.items()}, ships, h)
+            told_now = {name: series[-1] for name, series in units.items()}
+            for i in range(parts):
+                ship = _moved(ship, base[2 * i : 2 * i + 2], k, told_now, ships, h / parts)
             if jolts is not None:
                 ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
             ship = dp.bounded(ship)
