@@ -173,6 +173,8 @@ def test_named_cause_gains_over_the_plain_model_and_the_bias_observer(lossy):
     assert gain["after_m"] < 0.5 * gain["before_m"] and gain["after_m"] < gain["bias_observer_m"]
     assert gain["ci95"][0] <= gain["share_of_explainable"] <= gain["ci95"][1]
     assert lossy.story.simulated is not None  # by co-simulation of the extended system
+    for name, errors in lossy.story.unseen_errors.items():
+        assert errors.sizes["segment"] <= lossy.story.unseen[name].rows.size and "difference" in errors
 
 
 def test_extended_system_differs_from_the_given_one_in_the_named_number_alone(lossy, root, built):

@@ -11,7 +11,15 @@ from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.effects import read_catalogue, suspects
 from shipcosim.diagnose.force import missing_force
 from shipcosim.diagnose.gain import MODELS, baseline, beyond_observer, by_condition, compare, gain, rms
-from shipcosim.diagnose.heldout import HORIZONS, conditions, first_rows, sorted_by, starts, trained, without_headings
+from shipcosim.diagnose.heldout import (
+    HORIZONS,
+    conditions,
+    first_rows,
+    sorted_by,
+    starts,
+    trained,
+    without_headings,
+)
 from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.noise import first_noise
@@ -21,6 +29,7 @@ from shipcosim.diagnose.ranking import Case, fitted, prepared, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.replays import Replayed, simulated
+from shipcosim.diagnose.unseen import compare_unseen, unseen
 from shipcosim.ssp import read_system, with_values
 
 CONTRACT = {"horizon_s", "before_m", "bias_observer_m", "after_m", "noise_floor_m", "share_of_explainable", "ci95"}
@@ -84,6 +93,20 @@ def test_a_healthy_log_gains_nothing(loss, twin):
     assert found["after_m"] == found["before_m"]
     assert found["share_of_explainable"] == 0.0 and found["ci95"] == [0.0, 0.0]
     assert found["before_m"] < 0.5 * gain(loss.errors)["before_m"]
+
+
+def test_both_sides_have_the_same_observers_so_that_without_a_cause_nothing_is_beyond_them(twin, loss):
+    assert twin.observers["extended_observer"] == twin.observers["bias_observer"]
+    assert twin.errors.sel(model="extended_observer").equals(
+        twin.errors.sel(model="bias_observer").assign_coords(model="extended_observer")
+    )
+    assert not beyond_observer(twin.errors) > 0.0
+    errors = loss.errors.copy(deep=True)
+    for model, missed in (("plain", 9.0), ("bias_observer", 3.0), ("extended", 8.0), ("extended_observer", 1.5)):
+        errors["position"].loc[{"model": model}] = missed
+    errors["position"].loc[{"model": "floor"}] = 1.0
+    assert beyond_observer(errors) == pytest.approx(0.75)
+    assert gain(errors)["after_m"] == 8.0  # the cause alone: what an observer does is not the name's doing
 
 
 def test_with_the_cause_named_the_ship_is_as_predictable_as_her_healthy_twin(loss, twin):
@@ -198,6 +221,36 @@ def test_unseen_headings_are_predicted_with_what_the_others_taught(diagnosed):
     comparison = compare(case, fit, train=without_headings(case.record, most, np.radians(80.0)))
     assert comparison.errors["heading_known"].mean() < 0.5
     assert rms(comparison.errors, "position", "extended") < rms(comparison.errors, "position", "plain")
+
+
+def test_a_condition_is_held_out_wherever_it_is_in_the_log(diagnosed):
+    case, fit, _ = diagnosed("thrust_loss")
+    record = case.record
+    time = np.arange(record.time.size)
+    dead = {
+        name: (np.where((time > 300) & (time <= 600), 0.0, np.maximum(np.abs(n), 1.0)), a)
+        for name, (n, a) in record.units.items()
+    }
+    train = unseen(replace(record, units=dead))["free drift"]
+    assert np.array_equal(np.flatnonzero(~train), np.arange(301, 601))
+
+
+def test_headings_that_nothing_was_fitted_on_are_15_deg_away_from_those(diagnosed):
+    case, fit, _ = diagnosed("thrust_loss", seed=2008)
+    found = compare_unseen(case, fit)
+    assert set(found) == {"other headings"}
+    comparison = found["other headings"]
+    heading = np.degrees(case.motion.psi)
+    known = np.unique(heading[comparison.train].round() % 360.0)
+    apart = np.abs((heading[comparison.rows][:, None] - known + 180.0) % 360.0 - 180.0).min(axis=1)
+    assert comparison.train.mean() > 0.5 and apart.min() > 14.0 and apart.size == comparison.errors.sizes["segment"]
+    assert gain(comparison.errors)["share_of_explainable"] > 0.5
+
+
+def test_an_interval_needs_blocks(loss):
+    few = loss.errors.isel(segment=slice(0, 24))
+    assert gain(few, fewest=2)["ci95"] is None and gain(few)["ci95"] is not None
+    assert gain(few, fewest=2)["share_of_explainable"] == gain(few)["share_of_explainable"]
 
 
 def test_no_gain_is_claimed_from_a_handful_of_rows(diagnosed):

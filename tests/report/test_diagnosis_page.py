@@ -18,7 +18,7 @@ from shipcosim.diagnose.run import diagnose
 from shipcosim.report.diagnosis import Story, render, write_diagnosis
 from shipcosim.report.diagnosis_causes import manoeuvre_rows, not_testable_rows, whiteness
 from shipcosim.report.diagnosis_data import log_panels, track_panel
-from shipcosim.report.diagnosis_error import error_panels, error_table, force_panels
+from shipcosim.report.diagnosis_error import condition_table, error_panels, error_table, force_panels
 from shipcosim.ssp import read_system
 
 SECTIONS = ("log", "error", "causes", "extension", "gain")
@@ -185,6 +185,23 @@ def test_every_link_of_the_chain_is_on_the_page(story):
     gain = story.diagnosis.gain
     assert f"{100 * gain['share_of_explainable']:.0f} %" in text
     assert "The system could not be extended" in text  # this story has none
+
+
+def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(story):
+    errors, some = story.comparison.errors, story.comparison.errors.isel(segment=slice(0, 12))
+    head, rows = condition_table(errors, {"free drift": some})
+    assert [row[0] for row in rows] == [
+        "the later part",
+        *(f"of it {name}" for name in np.unique(errors["regime"])),
+        "free drift, not fitted on",
+    ]
+    assert sum(int(row[1]) for row in rows[1:-1]) == int(rows[0][1]) == errors.sizes["segment"]
+    place = head.index("with the cause and a bias observer [m]")
+    squares = some["position"].sel(model="extended_observer", horizon=60) ** 2
+    assert float(rows[-1][place]) == pytest.approx(float(np.sqrt(squares.mean())), abs=0.06)
+    assert rows[-1][-1].endswith(" %")  # a minute of predictions: no interval
+    text = render(replace(story, unseen_errors={"free drift": some}))
+    assert "free drift, not fitted on" in text and "too little of another quarter of headings for it" in text
 
 
 def test_diagnosis_without_predictions_or_forces_still_makes_a_page(story):

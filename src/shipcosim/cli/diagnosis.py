@@ -5,6 +5,7 @@ import json
 import tempfile
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from shipcosim.cli.project import build_stale, check_is_system, find_project
@@ -152,6 +153,7 @@ def _with_errors(story):
     """Errors of predictions, and the force that the model lacks."""
     from shipcosim.diagnose.force import missing_force
     from shipcosim.diagnose.gain import baseline, compare, gain
+    from shipcosim.diagnose.unseen import compare_unseen
 
     details, named = story.details, _is_named(story.diagnosis)
     case, fit = details.case, details.fit
@@ -164,7 +166,9 @@ def _with_errors(story):
         diagnosis = replace(diagnosis, baseline=baseline(errors), gain=gain(errors) if named else None)
     force = missing_force(case, case.plant, case.motion)
     left = missing_force(case, fit.plant, fit.motion) if named else None
-    return replace(story, diagnosis=diagnosis, comparison=comparison, force=force, force_left=left)
+    unseen = compare_unseen(case, fit) if named and comparison is not None else {}
+    story = replace(story, diagnosis=diagnosis, comparison=comparison, force=force, force_left=left)
+    return replace(story, unseen=unseen, unseen_errors={name: one.errors for name, one in unseen.items()})
 
 
 def _extended(story, given, stage, about, effects, fmus):
@@ -185,28 +189,37 @@ def _extended(story, given, stage, about, effects, fmus):
 
 def _simulated(story, given, effects, fmus, link):
     """The errors again as co-simulations, with what was fitted on the training rows."""
-    from shipcosim.diagnose.effects import read_catalogue
-    from shipcosim.diagnose.extension import extend
     from shipcosim.diagnose.gain import baseline, gain
-    from shipcosim.diagnose.replays import Replayed, simulated
-    from shipcosim.ssp import read_system
+    from shipcosim.diagnose.replays import MOST
 
-    comparison, plain, extended = story.comparison, Replayed(story.system), None
-    if comparison is None or (comparison.fit.suspects and story.extension is None):
+    if story.comparison is None or (story.comparison.fit.suspects and story.extension is None):
         return story
+    run = partial(_co_simulated, story, given, effects, fmus, lambda n, of: link(LINKS[3], n, of))
     try:
-        with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
-            if comparison.fit.suspects:
-                about = {"span": comparison.fit.plant.span}
-                catalogue = read_catalogue(effects)
-                made = extend(given, _findings(comparison.fit), folder, log_attributes=about, catalogue=catalogue)
-                extended = Replayed(read_system(str(made.ssp), fmus=fmus), made.signals)
-            errors = simulated(comparison, plain, extended, progress=lambda n, of: link(LINKS[3], n, of))
+        errors = run(story.comparison, MOST)
+        unseen = {name: run(one, MOST // 2) for name, one in story.unseen.items()}
     except ShipcosimError as error:
         return replace(story, remarks=(*story.remarks, *(_said("not co-simulated", p) for p in error.problems)))
     named = story.diagnosis.gain is not None
     diagnosis = replace(story.diagnosis, baseline=baseline(errors), gain=gain(errors) if named else None)
-    return replace(story, diagnosis=diagnosis, simulated=errors)
+    return replace(story, diagnosis=diagnosis, simulated=errors, unseen_errors=unseen)
+
+
+def _co_simulated(story, given, effects, fmus, progress, comparison, most):
+    """Errors of one comparison, by the system and by the one extended by what it was fitted with."""
+    from shipcosim.diagnose.effects import read_catalogue
+    from shipcosim.diagnose.extension import extend
+    from shipcosim.diagnose.replays import Replayed, simulated
+    from shipcosim.ssp import read_system
+
+    extended = None
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        if comparison.fit.suspects:
+            about = {"span": comparison.fit.plant.span}
+            catalogue = read_catalogue(effects)
+            made = extend(given, _findings(comparison.fit), folder, log_attributes=about, catalogue=catalogue)
+            extended = Replayed(read_system(str(made.ssp), fmus=fmus), made.signals)
+        return simulated(comparison, Replayed(story.system), extended, most=most, progress=progress)
 
 
 def _findings(fit):

@@ -177,7 +177,7 @@ def _observed(case, about_fit, motion, seen, plants):
     about = {name: case.motion if name == "plain" else motion for name in plants}
     linear = {name: restarted(about_fit, motion, record, plant) for name, plant in plants.items()}
     linear["plain"] = case.base_of([])
-    choices = {"plain": _BOTH, "extended": _EARTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
+    choices = {"plain": _BOTH, "extended": _BOTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
     each = [(name, frame, time) for name in plants for frame, time in choices[name]]
     problems = [
         earth_fixed(linear[name], about[name], plants[name]) if frame == "earth" else linear[name]
@@ -217,7 +217,7 @@ def baseline(errors):
     }
 
 
-def gain(errors, seed=1):
+def gain(errors, seed=1, fewest=1):
     """The entry ``gain`` of diagnosis.json: root mean square position errors after 60 s.
 
     Parameters
@@ -226,17 +226,20 @@ def gain(errors, seed=1):
         Of a `Comparison`, or from `simulated`.
     seed : int
         Of the bootstrap.
+    fewest : int
+        Blocks that it needs.
 
     Returns
     -------
     dict
-        ``share_of_explainable`` and ``ci95`` are None where there was nothing to explain.
+        ``share_of_explainable`` and ``ci95`` are None where nothing was to explain, the second with too few blocks.
     """
-    squares = _squares(errors)
+    squares, times = _squares(errors), errors["start_time"].values
     before, rival, after, floor = _roots(squares.mean(1))
     share = _share(before, after, floor)
-    drawn = _roots(_resampled(squares, errors["start_time"].values, seed))
+    drawn = _roots(_resampled(squares, times, seed))
     some = np.isfinite(share)
+    sure = some and _blocks(times).max() + 1 >= fewest
     return {
         "horizon_s": int(HORIZONS[-1]),
         "before_m": float(before),
@@ -244,14 +247,14 @@ def gain(errors, seed=1):
         "after_m": float(after),
         "noise_floor_m": float(floor),
         "share_of_explainable": float(share) if some else None,
-        "ci95": [float(q) for q in np.nanquantile(_share(*drawn[[0, 2, 3]]), (0.025, 0.975))] if some else None,
+        "ci95": [float(q) for q in np.nanquantile(_share(*drawn[[0, 2, 3]]), (0.025, 0.975))] if sure else None,
     }
 
 
 def beyond_observer(errors):
-    """Share of what the bias observer leaves of the explainable error that the extended model removes; or NaN."""
-    _, rival, after, floor = _roots(_squares(errors).mean(1))
-    return float(_share(rival, after, floor))
+    """Share of what the bias observer leaves of the explainable error that the cause takes away beside one; or NaN."""
+    rival, after = (rms(errors, "position", model) for model in ("bias_observer", "extended_observer"))
+    return float(_share(rival, after, min(rms(errors, "position", "floor"), after)))
 
 
 def by_condition(errors, names, channel="position", horizon=HORIZONS[-1]):
@@ -272,13 +275,27 @@ def by_condition(errors, names, channel="position", horizon=HORIZONS[-1]):
     dict of value to dict of str to float
         By value and model; and ``"segments"``, how many there are.
     """
-    found = {}
-    for value in np.unique(errors[names].values):
-        part = errors.isel(segment=np.flatnonzero(errors[names].values == value))
-        found[value.item()] = {model: rms(part, channel, model, horizon) for model in MODELS} | {
-            "segments": part.sizes["segment"]
-        }
-    return found
+    return {
+        value: {model: rms(part, channel, model, horizon) for model in MODELS} | {"segments": part.sizes["segment"]}
+        for value, part in parts(errors, names).items()
+    }
+
+
+def parts(errors, names="regime"):
+    """The errors of a comparison by conditions of the segments.
+
+    Parameters
+    ----------
+    errors : xarray.Dataset
+    names : str
+        Coordinate of the segments.
+
+    Returns
+    -------
+    dict of value to xarray.Dataset
+    """
+    values = errors[names].values
+    return {value.item(): errors.isel(segment=np.flatnonzero(values == value)) for value in np.unique(values)}
 
 
 def _squares(errors):
@@ -299,9 +316,14 @@ def _share(before, after, floor):
     return np.where(some, (before - after) / np.where(some, worth, 1.0), np.nan)
 
 
+def _blocks(times):
+    """Number of the block that each segment is in."""
+    return np.unique((times - times[0]) // _BLOCK, return_inverse=True)[1]
+
+
 def _resampled(squares, times, seed):
     """Mean squares of draws of blocks, (4, draws) array."""
-    _, block = np.unique((times - times[0]) // _BLOCK, return_inverse=True)
+    block = _blocks(times)
     blocks = block.max() + 1
     sums = np.stack([np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))])
     draws = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=_DRAWS)

@@ -40,6 +40,12 @@ def without_headings(record, middle, width=np.pi / 2.0):
     return np.abs(np.angle(np.exp(1j * (record.measured[:, 2] - middle)))) > 0.5 * width
 
 
+def is_idle(record):
+    """Rows on which no thruster turns, (n,) bool array."""
+    speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
+    return np.all([n < _IDLE * n.max() for n in speeds], axis=0) if speeds else np.ones(record.time.size, bool)
+
+
 def in_rows(record):
     """The horizons in rows."""
     return [max(1, round(time / record.step)) for time in HORIZONS]
@@ -146,8 +152,7 @@ def conditions(record, seen, rows, train, plant):
     spans = rows[:, None] + np.arange(in_rows(record)[-1] + 1)
     way = np.hypot(np.diff(seen.x[spans], axis=1), np.diff(seen.y[spans], axis=1)).sum(1)
     turn = np.ptp(seen.psi[spans], axis=1)
-    speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
-    idle = np.all([(n[spans] < _IDLE * n.max()).all(1) for n in speeds], axis=0)
+    idle = is_idle(record)[spans].all(1)
     regime = np.select(
         [idle, turn > _TURNING, way > _MOVING * HORIZONS[-1]], ["drifting", "turning", "moving"], "holding"
     )

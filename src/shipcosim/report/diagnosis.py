@@ -1,7 +1,7 @@
 """The page of a diagnosis: one HTML file that shows every link of the chain and opens anywhere."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
 from string import Template
@@ -48,6 +48,10 @@ class Story:
         What the plain model lacks over time, and what it lacks with the causes in it.
     remarks : tuple of str
         What else needs to be known.
+    unseen : dict of str to Comparison
+        By condition, predictions on it with nothing fitted on it.
+    unseen_errors : dict of str to xarray.Dataset
+        Their errors, as co-simulations where those were run.
     """
 
     diagnosis: Any
@@ -61,6 +65,8 @@ class Story:
     force: Any = None
     force_left: Any = None
     remarks: tuple = ()
+    unseen: Any = field(default_factory=dict)
+    unseen_errors: Any = field(default_factory=dict)
 
     @property
     def effects(self):

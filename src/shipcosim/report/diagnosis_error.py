@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from shipcosim.diagnose.gain import gain, parts
 from shipcosim.report.diagnosis_data import TIME, line, panel, rounded
 from shipcosim.report.diagnosis_units import plain
 
@@ -9,6 +10,7 @@ MODELS = {
     "plain": ("plain model", "vermillion"),
     "bias_observer": ("plain model with bias observer", "orange"),
     "extended": ("with the cause", "blue"),
+    "extended_observer": ("with the cause and a bias observer", "green"),
     "floor": ("noise floor", "faint"),
 }
 CHANNELS = {
@@ -24,6 +26,8 @@ FORCES = (
     ("Missing force, earth frame", (("north", "towards north", "blue"), ("east", "towards east", "orange"))),
 )
 BINS = 24
+BLOCKS = 3  # of 120 s, for an interval of a part of the predictions
+HELD = {"other headings": "headings not fitted on", "free drift": "free drift, not fitted on"}
 
 
 def rms(values):
@@ -83,6 +87,40 @@ def error_table(errors, models=("plain", "floor")):
         ]
         rows.append([name, str(which.size), *cells])
     return head, rows
+
+
+def condition_table(errors, unseen):
+    """Position errors after the longest horizon with each model, by condition, and the share that the causes remove.
+
+    Parameters
+    ----------
+    errors : xarray.Dataset
+        On the rows that were held out in time.
+    unseen : dict of str to xarray.Dataset
+        By condition that nothing was fitted on.
+
+    Returns
+    -------
+    tuple of list of str and list of list of str
+        Head and rows.
+    """
+    head = ["Held out", "Predictions", *(f"{name} [m]" for name, _ in MODELS.values()), "explainable error removed"]
+    groups = {"the later part": errors} | {f"of it {name}": part for name, part in parts(errors).items()}
+    groups |= {HELD[name]: part for name, part in unseen.items()}
+    rows = []
+    for name, part in groups.items():
+        last = part["position"].isel(horizon=-1)
+        cells = [plain(rms(last.sel(model=model)), 2) for model in MODELS]
+        rows.append([name, str(part.sizes["segment"]), *cells, removed(gain(part, fewest=BLOCKS))])
+    return head, rows
+
+
+def removed(entry):
+    """Share of the explainable error that causes remove, with its interval, of an entry of `gain`."""
+    if entry["share_of_explainable"] is None:
+        return "nothing to remove"
+    sure = " ({:.0f} to {:.0f} %)".format(*(100 * end for end in entry["ci95"])) if entry["ci95"] else ""
+    return f"{100 * entry['share_of_explainable']:.0f} %{sure}"
 
 
 def force_panels(force, left, thrusters):

@@ -202,11 +202,11 @@ def _before_after(name, value, system, extended):
 
 def gain_section(story, figures):
     """What was gained?"""
-    gain, models = story.diagnosis.gain, _judged(story, ("plain", "bias_observer", "extended", "floor"))
+    gain, models = story.diagnosis.gain, _judged(story, tuple(error.MODELS))
     if story.errors is None:
         return parts.section("gain", "5 The gain", parts.lead("There was too little data to measure it."))
     if story.extension is None or gain is None:
-        models.remove("extended")
+        models = [model for model in models if not model.startswith("extended")]
     how = (
         f"Each prediction is a co-simulation of the {'extended ' if 'extended' in models else ''}system"
         if story.simulated is not None
@@ -214,13 +214,28 @@ def gain_section(story, figures):
     )
     text = (
         f"{how}, on rows that the causes were not fitted on: position errors after 60 s, beside the honest rival, the "
-        "plain model with a slowly estimated force as DP systems have."
+        "plain model with a slowly estimated force as DP systems have. An observer helps the model with the cause "
+        "too: with one on both sides, the difference is what the cause is worth to a DP."
     )
     content = [parts.lead(text), _gain_table(gain), figures.grid(error.gain_panels(story.errors, models))]
+    if gain:
+        content += [
+            parts.subheading("By condition"),
+            parts.table(*error.condition_table(story.errors, story.unseen_errors), tight=range(1, 8)),
+            parts.lead(_not_there(story.unseen_errors)),
+        ]
     if story.simulated is not None and "difference" in story.simulated:
         apart = float(story.simulated["difference"].isel(horizon=-1).max())
         content.append(parts.lead(f"Co-simulation and array form differ by at most {plain(apart, 2)} m after 60 s."))
     return parts.section("gain", "5 The gain", *content)
+
+
+def _not_there(unseen):
+    """How conditions were held out, and which this log does not have."""
+    said = "Conditions not fitted on are held out of the fit wherever in the log they are. Intervals hold 95 %."
+    lacks = {"other headings": "another quarter of headings", "free drift": "a drift without thrust"}
+    missing = [text for name, text in lacks.items() if name not in unseen]
+    return f"{said} The log has too little of {' and of '.join(missing)} for it." if missing else said
 
 
 def _gain_table(gain):
@@ -233,8 +248,7 @@ def _gain_table(gain):
         ("Noise floor", parts.metres(gain["noise_floor_m"])),
     ]
     if gain["share_of_explainable"] is not None:
-        low, high = (f"{100 * edge:.0f}" for edge in gain["ci95"])
-        rows.append(("Explainable error removed", f"{100 * gain['share_of_explainable']:.0f} % ({low} to {high} %)"))
+        rows.append(("Explainable error removed", error.removed(gain)))
     return parts.table(["Position error after 60 s", "Root mean square"], rows)
 
 

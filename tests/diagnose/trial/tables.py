@@ -94,10 +94,10 @@ def _of_ambiguous(result, judged):
     return judged.contained if judged.verdict == "ambiguous" else None
 
 
-def _worse(name):
+def _worse(name, after):
     def hit(result, judged):
-        gain = (result["diagnosis"] or UNJUDGED).get(name)
-        return gain["after_m"] > gain["bias_observer_m"] if gain and judged.named else None
+        gain = (result["diagnosis"] or UNJUDGED).get(name) or {}
+        return gain[after] > gain["bias_observer_m"] if after in gain and judged.named else None
 
     return hit
 
@@ -112,12 +112,12 @@ def _error(pairs):
     return f"{100 * np.median(errors):.1f} % ({len(errors)})" if errors else ""
 
 
-def _removed(name, floor):
+def _removed(name, after, floor):
     def cell(pairs):
-        gains = [result["diagnosis"].get(name) for result, judged in pairs if judged.right]
-        left = [(gain["bias_observer_m"], gain["after_m"], gain[floor]) for gain in gains if gain]
+        gains = [result["diagnosis"].get(name) or {} for result, judged in pairs if judged.right]
+        left = [(gain["bias_observer_m"], gain[after], gain[floor]) for gain in gains if after in gain]
         shares = [
-            (rival - after) / (rival - min(least, after)) for rival, after, least in left if least < LITTLE * rival
+            (rival - missed) / (rival - min(least, missed)) for rival, missed, least in left if least < LITTLE * rival
         ]
         return f"{100 * np.median(shares):.0f} % ({len(shares)})" if shares else ""
 
@@ -129,7 +129,24 @@ def _seconds(pairs):
     return f"{np.median(seconds):.0f} s, at most {max(seconds):.0f} s" if seconds else ""
 
 
-REMOVED = "error at 60 s removed beyond the bias observer, {}, of what {}, median"
+GAINS = (("DP", "gain", ("95", "90", "")), ("free drift", "drift", ("90", "85", "")))
+EXPLAINED = "error at 60 s removed beyond the bias observer, {}, of what the cause explains, median"
+NOT_NOISE = "the same, of what is not noise"
+ALONE = "the same, the cause without an observer"
+
+
+def _gain_rows(place, name, wanted):
+    """Rows of one kind of gain: with an observer on both sides, and with one only beside the plain model."""
+    none, with_one = ("", "", ""), "after_observer_m"
+    return (
+        Row(EXPLAINED.format(place), "drift", wanted, cell=_removed(name, with_one, "twin_observer_m")),
+        Row(NOT_NOISE, "drift", none, cell=_removed(name, with_one, "noise_floor_m")),
+        Row(ALONE, "drift", none, cell=_removed(name, "after_m", "twin_m")),
+        Row(f"worse than the bias observer: {place}", "drift", ("2", "2", "2"), _worse(name, with_one)),
+        Row(ALONE, "drift", none, _worse(name, "after_m")),
+    )
+
+
 ROWS = (
     Row("right cause named", "one", ("98", "88", "as honest"), _right),
     Row("right, or said not testable", "one", ("", "", ""), lambda r, s: s.right or (s.excused and not s.alarm)),
@@ -158,12 +175,7 @@ ROWS = (
     Row("the same, with segment", "data", ("95", "95", "95"), lambda r, s: s.right and s.located),
     Row("parameter error, median", "one", ("5", "7", ""), cell=_error),
     Row("within two sigma", "one", ("90-97", "90-97", ""), cell=_two_sigma),
-    Row(REMOVED.format("DP", "the cause explains"), "drift", ("95", "90", ""), cell=_removed("gain", "twin_m")),
-    Row(REMOVED.format("drift", "the cause explains"), "drift", ("90", "85", ""), cell=_removed("drift", "twin_m")),
-    Row(REMOVED.format("DP", "is not noise"), "drift", ("", "", ""), cell=_removed("gain", "noise_floor_m")),
-    Row(REMOVED.format("drift", "is not noise"), "drift", ("", "", ""), cell=_removed("drift", "noise_floor_m")),
-    Row("worse than the bias observer: DP", "drift", ("2", "2", "2"), _worse("gain")),
-    Row("the same, free drift", "drift", ("2", "2", "2"), _worse("drift")),
+    *(row for place, name, wanted in GAINS for row in _gain_rows(place, name, wanted)),
     Row("twice the mismatch: right", "mismatch", ("", "", ""), _right),
     Row("twice the mismatch: right when it names one", "mismatch", ("99", "98", "95"), _precise),
     Row("twice the mismatch: false alarm on healthy data", "healthy_mismatch", ("", "", ""), _alarm),

@@ -11,6 +11,11 @@ import pandas as pd
 ROOT = Path(__file__).resolve().parents[3]
 UNTIL = 2400.0  # end of the log that is diagnosed, where a drift follows it [s]
 SHARE = 0.65  # of it that is fitted on, for the gain under DP
+_BESIDE = {  # what the entry of diagnosis.json does not have: of the log (0) or of its twin (1), by which model
+    "after_observer_m": (0, "extended_observer"),
+    "twin_m": (1, "plain"),
+    "twin_observer_m": (1, "bias_observer"),
+}
 
 
 @cache
@@ -51,7 +56,8 @@ class WithGain:
 def with_drift(path):
     """The diagnosis of a log until `UNTIL`; its gain there, and in the drift at the end, which it has not seen.
 
-    Both in the array form, where a cause of the physics is named. ``twin_m`` is what the plain model misses on the
+    Both in the array form, where a cause of the physics is named. ``after_observer_m`` is missed with
+    the causes and a bias observer; ``twin_m`` and ``twin_observer_m`` by the plain model, without and with one, on the
     healthy twin of the log, which lies beside it, see `twin_of`.
     """
     from shipcosim.diagnose.gain import compare
@@ -103,5 +109,7 @@ def _gain(compared, healthy, chosen):
         if not len(some):
             return None
         parts.append(one.errors.isel(segment=some))
-    errors, twins = parts
-    return gain(errors) | {"twin_m": rms(twins, "position", "plain"), "segments": errors.sizes["segment"]}
+    (errors, twins), found = parts, {}
+    for name, (one, model) in _BESIDE.items():
+        found[name] = rms((errors, twins)[one], "position", model)
+    return gain(errors) | found | {"segments": errors.sizes["segment"]}
