@@ -5,7 +5,7 @@ Trained on the rows that the diagnosis' own gain trains on, and judged on the sa
 
 import numpy as np
 import torch
-from diagnose.trial.tools import system
+from diagnose.trial.tools import system, with_drift
 
 from shipcosim.diagnose.gain import compare, gain
 from shipcosim.diagnose.heldout import in_rows
@@ -17,6 +17,11 @@ from shipcosim.diagnose.run import diagnose
 HIDDEN, EPOCHS, PATIENCE = 24, 600, 60
 RATE, DECAY = 3e-3, 1e-3
 SMOOTH = 21  # rows over which the missing acceleration is averaged for training
+
+
+def with_network(path):
+    """The tool of the set ``drift`` with the network beside, under DP and in the drift: ``network_m`` of its gains."""
+    return with_drift(path, missed)
 
 
 def gains(path):
@@ -36,12 +41,17 @@ def gains(path):
     comparison = compare(details.case, details.fit)
     if comparison is None:
         return None
-    plain = comparison.predictors["plain"]
-    network = trained(details.case, plain, comparison.train)
-    found = predicted(plain, comparison.rows, network, in_rows(plain.record)[-1])
-    ends = comparison.rows + in_rows(plain.record)[-1]
-    off = missing(shown(found, plain.plant), comparison.seen, ends)["position"]
+    off = missed(details.case, comparison)
     return gain(comparison.errors) | {"network_m": float(np.sqrt((off**2).mean()))}
+
+
+def missed(case, comparison):
+    """Position errors after 60 s of the plain model with a network, on the predictions of a comparison, (s,) array."""
+    plain = comparison.predictors["plain"]
+    network = trained(case, plain, comparison.train)
+    last = in_rows(plain.record)[-1]
+    found = predicted(plain, comparison.rows, network, last)
+    return missing(shown(found, plain.plant), comparison.seen, comparison.rows + last)["position"]
 
 
 def features(motion, drivers):

@@ -10,7 +10,7 @@ from truth import draw
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.effects import read_catalogue, suspects
 from shipcosim.diagnose.force import missing_force
-from shipcosim.diagnose.gain import MODELS, baseline, beyond_observer, by_condition, compare, gain, rms
+from shipcosim.diagnose.gain import MODELS, baseline, beyond_observer, by_condition, chance_of_more, compare, gain, rms
 from shipcosim.diagnose.heldout import (
     HORIZONS,
     conditions,
@@ -251,6 +251,17 @@ def test_an_interval_needs_blocks(loss):
     few = loss.errors.isel(segment=slice(0, 24))
     assert gain(few, fewest=2)["ci95"] is None and gain(few)["ci95"] is not None
     assert gain(few, fewest=2)["share_of_explainable"] == gain(few)["share_of_explainable"]
+
+
+def test_a_model_is_surely_worse_only_where_most_draws_say_so(loss):
+    assert chance_of_more(loss.errors, "plain", "extended") > 0.95
+    assert chance_of_more(loss.errors, "extended", "plain") < 0.05
+    errors = loss.errors.copy(deep=True)
+    times = errors["start_time"].values
+    odd = ((times - times[0]) // 120.0).astype(int) % 2 == 1
+    errors["position"].loc[{"model": "plain"}] = np.where(odd, 1.1, 1.0)
+    errors["position"].loc[{"model": "extended"}] = np.where(odd, 1.0, 1.1)
+    assert 0.2 < chance_of_more(errors, "plain", "extended") < 0.8
 
 
 def test_no_gain_is_claimed_from_a_handful_of_rows(diagnosed):

@@ -257,6 +257,13 @@ def beyond_observer(errors):
     return float(_share(rival, after, min(rms(errors, "position", "floor"), after)))
 
 
+def chance_of_more(errors, model, rival, seed=1):
+    """How sure it is that one model misses more than another after the longest horizon: share of bootstrap draws."""
+    squares = errors["position"].isel(horizon=-1).sel(model=[model, rival]).values ** 2
+    one, other = _resampled(squares, errors["start_time"].values, seed)
+    return float((one > other).mean())
+
+
 def by_condition(errors, names, channel="position", horizon=HORIZONS[-1]):
     """Root mean square errors of all models by conditions of the segments.
 
@@ -322,7 +329,7 @@ def _blocks(times):
 
 
 def _resampled(squares, times, seed):
-    """Mean squares of draws of blocks, (4, draws) array."""
+    """Mean squares of draws of blocks, (models, draws) array."""
     block = _blocks(times)
     blocks = block.max() + 1
     sums = np.stack([np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))])

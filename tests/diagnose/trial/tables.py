@@ -13,6 +13,7 @@ from .scoring import named_rightly, score
 UNJUDGED = {"verdict": "error", "findings": []}
 Z = 1.959964
 LITTLE = 0.95  # of what the observer misses would be missed anyway: next to nothing to remove
+CHANCE = 0.975  # of the draws of a bootstrap
 SURE = (0.0, 0.5, 0.8, 0.9, 0.95, 1.0)  # edges of the bins of stated probabilities
 
 
@@ -102,6 +103,14 @@ def _worse(name, after):
     return hit
 
 
+def _surely_worse(name):
+    def hit(result, judged):
+        gain = (result["diagnosis"] or UNJUDGED).get(name) or {}
+        return gain["chance_worse"] > CHANCE if "chance_worse" in gain and judged.named else None
+
+    return hit
+
+
 def _two_sigma(pairs):
     hits = [inside for _, judged in pairs if judged.right for inside in judged.within.values()]
     return _cell(sum(hits), len(hits))
@@ -112,12 +121,12 @@ def _error(pairs):
     return f"{100 * np.median(errors):.1f} % ({len(errors)})" if errors else ""
 
 
-def _removed(name, after, floor):
+def _removed(name, after, floor, before="bias_observer_m"):
     def cell(pairs):
         gains = [result["diagnosis"].get(name) or {} for result, judged in pairs if judged.right]
-        left = [(gain["bias_observer_m"], gain[after], gain[floor]) for gain in gains if after in gain]
+        left = [(gain[before], gain[after], gain[floor]) for gain in gains if after in gain]
         shares = [
-            (rival - missed) / (rival - min(least, missed)) for rival, missed, least in left if least < LITTLE * rival
+            (first - missed) / (first - min(least, missed)) for first, missed, least in left if least < LITTLE * first
         ]
         return f"{100 * np.median(shares):.0f} % ({len(shares)})" if shares else ""
 
@@ -133,17 +142,24 @@ GAINS = (("DP", "gain", ("95", "90", "")), ("free drift", "drift", ("90", "85", 
 EXPLAINED = "error at 60 s removed beyond the bias observer, {}, of what the cause explains, median"
 NOT_NOISE = "the same, of what is not noise"
 ALONE = "the same, the cause without an observer"
+SHARE = "share of what a perfect model would gain, {}, {}, median"
+SHARED = {"causes": "after_m", "bias observer": "bias_observer_m", "nameless network": "network_m"}
 
 
 def _gain_rows(place, name, wanted):
-    """Rows of one kind of gain: with an observer on both sides, and with one only beside the plain model."""
+    """Rows of one kind of gain: with an observer on both sides, with one only beside the plain model, and shares."""
     none, with_one = ("", "", ""), "after_observer_m"
     return (
         Row(EXPLAINED.format(place), "drift", wanted, cell=_removed(name, with_one, "twin_observer_m")),
         Row(NOT_NOISE, "drift", none, cell=_removed(name, with_one, "noise_floor_m")),
         Row(ALONE, "drift", none, cell=_removed(name, "after_m", "twin_m")),
         Row(f"worse than the bias observer: {place}", "drift", ("2", "2", "2"), _worse(name, with_one)),
+        Row("the same, by more than chance", "drift", none, _surely_worse(name)),
         Row(ALONE, "drift", none, _worse(name, "after_m")),
+        *(
+            Row(SHARE.format(place, label), "drift", none, cell=_removed(name, after, "twin_m", "before_m"))
+            for label, after in SHARED.items()
+        ),
     )
 
 

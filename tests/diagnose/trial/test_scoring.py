@@ -156,19 +156,23 @@ def test_what_was_named_is_counted_by_how_sure_it_was():
 def test_removed_beyond_the_observer_is_of_what_it_leaves_and_right_answers_only():
     def answer(observer, after, floor, cause="mass", alone=1.0):
         gain = {"bias_observer_m": observer, "after_m": alone, "noise_floor_m": 0.5 * floor, "twin_m": 0.0}
-        gain |= {"after_observer_m": after, "twin_observer_m": floor}
+        gain |= {"after_observer_m": after, "twin_observer_m": floor, "before_m": 4.0, "network_m": 3.0}
+        gain["chance_worse"] = 0.99 if after > 1.2 * observer else 0.6
         diagnosis = named(found(cause)) | {"gain": gain, "drift": None}
         return {"kind": "work", "set": "drift", "answer": [hidden("mass")], "span": SPAN, "diagnosis": diagnosis}
 
     results = [answer(2.0, 0.7, 0.7), answer(2.0, 0.96, 0.7), answer(2.0, 0.7, 0.7, "tow"), answer(0.7, 0.7, 0.69)]
     rows = [row for row in tables.ROWS if row.name == "drift"]
-    beside, noise, alone, worse, worse_alone = rows[:5]
+    beside, noise, alone, worse, surely, worse_alone, *shares = rows[: len(rows) // 2]
     cells = [tables.content(row, results, "work") for row in (beside, noise, alone)]
     assert cells == ["90 % (2)", "63 % (3)", "50 % (3)"]
-    assert [tables.content(row, results, "work") for row in rows[5:]] == [""] * 5  # no drift
+    assert [tables.content(row, results, "work") for row in shares] == ["75 % (3)", "50 % (3)", "25 % (3)"]
+    assert not any(tables.content(row, results, "work") for row in rows[len(rows) // 2 :])  # no drift
     assert tables.rates(results, "drift", "work", worse.hit) == (0, 4)
     assert tables.rates(results, "drift", "work", worse_alone.hit) == (1, 4)
-    assert tables.rates([answer(1.0, 1.1, 0.5)], "drift", "work", worse.hit) == (1, 1)
+    more = [answer(1.0, 1.1, 0.5), answer(1.0, 1.3, 0.5)]
+    assert tables.rates(more, "drift", "work", worse.hit) == (2, 2)
+    assert tables.rates(more, "drift", "work", surely.hit) == (1, 2)
 
 
 def test_after_the_manoeuvre_the_truth_must_be_named_or_in_the_set():

@@ -53,12 +53,23 @@ class WithGain:
         return self.diagnosis.as_json() | {"drift": self.drift}
 
 
-def with_drift(path):
+def with_drift(path, nameless=None):
     """The diagnosis of a log until `UNTIL`; its gain there, and in the drift at the end, which it has not seen.
 
     Both in the array form, where a cause of the physics is named. ``after_observer_m`` is missed with
-    the causes and a bias observer; ``twin_m`` and ``twin_observer_m`` by the plain model, without and with one, on the
-    healthy twin of the log, which lies beside it, see `twin_of`.
+    the causes and a bias observer, ``chance_worse`` is how sure that is more than the plain model misses with one;
+    ``twin_m`` and ``twin_observer_m`` by the plain model, without and with an observer, on the healthy twin of the log,
+    which lies beside it, see `twin_of`.
+
+    Parameters
+    ----------
+    path : path
+    nameless : callable, optional
+        Of a case and a comparison: position errors of another model after 60 s, for ``network_m``.
+
+    Returns
+    -------
+    WithGain
     """
     from shipcosim.diagnose.gain import compare
     from shipcosim.diagnose.run import diagnose
@@ -69,11 +80,11 @@ def with_drift(path):
     diagnosis, details = diagnose(head, system())
     if diagnosis.verdict != "named" or not details.fit.suspects:
         return WithGain(diagnosis)
-    under_dp = compare(details.case, details.fit)
+    under_dp = details.case, compare(details.case, details.fit)
     adrift = _compared(path, details, UNTIL)
-    healthy = [_compared(twin_of(path), replace(details, fit=None), until) for until in (SHARE * UNTIL, UNTIL)]
-    under_dp = _gain(under_dp, healthy[0], lambda errors: errors["start_time"].values <= UNTIL - 60.0)
-    adrift = _gain(adrift, healthy[1], lambda errors: errors["regime"].values == "drifting")
+    healthy = [_compared(twin_of(path), replace(details, fit=None), until)[1] for until in (SHARE * UNTIL, UNTIL)]
+    under_dp = _gain(*under_dp, healthy[0], lambda errors: errors["start_time"].values <= UNTIL - 60.0, nameless)
+    adrift = _gain(*adrift, healthy[1], lambda errors: errors["regime"].values == "drifting", nameless)
     return WithGain(replace(diagnosis, gain=under_dp), adrift)
 
 
@@ -83,7 +94,7 @@ def twin_of(path):
 
 
 def _compared(path, details, until):
-    """Predictions on a log after some time, of the causes of a diagnosis, fitted until then."""
+    """Case of a log, and predictions on it after some time by the causes of a diagnosis, fitted until then."""
     from shipcosim.diagnose.effects import read_catalogue
     from shipcosim.diagnose.examine import examine
     from shipcosim.diagnose.gain import compare
@@ -96,12 +107,12 @@ def _compared(path, details, until):
     log = read_log(path)
     case = prepare(repaired(log, examine(log)), plant_of(system()), read_catalogue(None), details.case.noise)
     fit = fitted(case, details.fit.suspects, details.fit.values) if details.fit else fitted(case)
-    return compare(case, fit, train=case.record.time <= until)
+    return case, compare(case, fit, train=case.record.time <= until)
 
 
-def _gain(compared, healthy, chosen):
+def _gain(case, compared, healthy, chosen, nameless):
     """The gain on some of the predictions, and how many; None where there are none."""
-    from shipcosim.diagnose.gain import gain, rms
+    from shipcosim.diagnose.gain import chance_of_more, gain, rms
 
     parts = []
     for one in (compared, healthy):
@@ -112,4 +123,8 @@ def _gain(compared, healthy, chosen):
     (errors, twins), found = parts, {}
     for name, (one, model) in _BESIDE.items():
         found[name] = rms((errors, twins)[one], "position", model)
+    found["chance_worse"] = chance_of_more(errors, "extended_observer", "bias_observer")
+    if nameless:
+        missed = nameless(case, compared)[chosen(compared.errors)]
+        found["network_m"] = float(np.sqrt((missed**2).mean()))
     return gain(errors) | found | {"segments": errors.sizes["segment"]}
