@@ -324,9 +324,9 @@ def innovations(linear, noise, record, motion=None):
 def _by_log(values, lead, tail):
     """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (n, m or 1, *tail) array."""
     shape = values.shape[values.ndim - tail :]
-    if np.prod(values.shape[1 : values.ndim - tail]) > 1:
-        middle = values.ndim - 1 - tail
-        values = values.reshape(len(values), *(1,) * (len(lead) - middle), *values.shape[1:])
+    own = values.shape[1 : values.ndim - tail]
+    if own != lead and np.prod(own) > 1:
+        values = values.reshape(len(values), *(1,) * (len(lead) - len(own)), *own, *shape)
         values = np.broadcast_to(values, (len(values), *lead, *shape))
     # one kind of array only: for each other kind the filter would be compiled anew
     return np.require(values, requirements=["C", "W"]).reshape(len(values), -1, *shape)

@@ -21,6 +21,7 @@ from shipcosim.models.earth import drift_force, earth_force
 from shipcosim.models.hull import HullParameters
 from shipcosim.models.kinematics import to_body, to_ned
 from shipcosim.models.maths import cos, sin, wrap
+from shipcosim.models.quantity import acts
 from shipcosim.models.thruster import AzimuthParameters, TunnelParameters
 from shipcosim.models.vessel import accelerations
 from shipcosim.models.wind import WindParameters
@@ -169,7 +170,7 @@ class Plant:
     def _where(self, path):
         place, _, name = path.rpartition(".")
         for part in ("hull", "wind") if place == self.vessel else (place,):
-            if part in self.parts and any(item.name == name for item in fields(self.parts[part])):
+            if part in self.parts and name in self.parts[part].__dataclass_fields__:
                 return part, name
         raise KeyError(path)
 
@@ -246,6 +247,13 @@ def current_at(time, plant):
     return north, east
 
 
+def _current_along(psi, time, plant):
+    """Velocity of the water in the ship's axes. [m/s]"""
+    if not any(acts(getattr(plant.parts["water"], name)) for name in _CURRENT):
+        return 0.0, 0.0
+    return to_body(psi, *current_at(time, plant))
+
+
 def loads(motion, drivers, plant, like=None):
     """Loads on the ship by name: each thruster, wind, drift, tow.
 
@@ -264,8 +272,7 @@ def loads(motion, drivers, plant, like=None):
         X, Y, N. [N, N, N.m]
     """
     parts, found = plant.parts, {}
-    c_north, c_east = current_at(drivers.time, plant)
-    u_c, v_c = to_body(motion.psi, c_north, c_east)
+    u_c, v_c = _current_along(motion.psi, drivers.time, plant)
     u_r, v_r, r = motion.u - u_c, motion.v - v_c, motion.r
     same = _alike(plant, *like) if like else {}
     for name in [name for name in parts if isinstance(parts[name], _OURS)]:
@@ -330,11 +337,16 @@ def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0), like=None):
     Motion
         Rates.
     """
-    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, drivers, plant, like).values(), strict=True))
-    u_c, v_c = to_body(motion.psi, *current_at(drivers.time, plant))
-    u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=plant.parts["hull"])
     north, east = to_ned(motion.psi, motion.u, motion.v)
-    return Motion(north, east, motion.r, u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot)
+    return Motion(north, east, motion.r, *_accelerations(motion, drivers, plant, extra, like))
+
+
+def _accelerations(motion, drivers, plant, extra, like):
+    """Rates of the velocity over ground."""
+    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, drivers, plant, like).values(), strict=True))
+    u_c, v_c = _current_along(motion.psi, drivers.time, plant)
+    u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=plant.parts["hull"])
+    return u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot
 
 
 def rates_apart(one, other, motion, drivers, like):
@@ -355,7 +367,7 @@ def rates_apart(one, other, motion, drivers, like):
     """
     hull = one.parts["hull"]
     if hull is not other.parts["hull"] or not _same_current(one, other):
-        rates = (motion_rates(motion, drivers, plant, like=like)[3:] for plant in (one, other))
+        rates = (_accelerations(motion, drivers, plant, (0.0, 0.0, 0.0), like) for plant in (one, other))
         return tuple(a - b for a, b in zip(*rates, strict=True))
     mine, theirs = (loads(motion, drivers, plant, like) for plant in (one, other))
     pairs = [(mine[name], theirs[name]) for name in mine if mine[name] is not theirs[name]]

@@ -42,20 +42,22 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
     """
     h, n = record.step, record.time.size
     parts = record.substeps(ships)
-    base = [record.drivers(ships, 0.5 * i / parts) for i in range(2 * parts)]
+    drivers = [record.drivers(ships, (i + 0.5) / parts) for i in range(parts)]
     ship = Motion(*(np.zeros(count) + value[..., 0] for value in track))
-    integral, told = np.zeros((3, count)), {name: np.zeros((2, count)) for name in ships.thrusters}
+    shares = dp.shares({name: azimuth for name, (_, azimuth) in record.units.items()}, held or {})
+    shares = np.moveaxis(shares, -3, 0)
+    told, integral, rates = np.zeros((shares.shape[-2], count)), np.zeros((3, count)), Motion(*np.zeros((6, count)))
     rows, units = [], {name: [] for name in ships.thrusters}
     for k in range(n):
         rows.append(ship)
         load, integral = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
-        told = dp.answer(told, load, record, k, {name: where[..., k] for name, where in (held or {}).items()})
-        for name, pair in dp.speeds(told, record, k).items():
+        told = dp.answer(told, load, shares[k])
+        speeds = dp.speeds(told, record, k)
+        for name, pair in speeds.items():
             units[name].append(pair)
         if k < n - 1:
-            told_now = {name: series[-1] for name, series in units.items()}
-            for i in range(parts):
-                ship = _moved(ship, base[2 * i : 2 * i + 2], k, told_now, ships, h / parts)
+            for part in drivers:
+                ship, rates = _moved(ship, rates, _at(part, k, speeds), ships, h / parts, dp)
             if jolts is not None:
                 ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
             ship = dp.bounded(ship)
@@ -64,17 +66,17 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
     return motion, series
 
 
-def _moved(ship, base, k, units, plant, h):
-    """The ships a step later, by the middle of the step."""
+def _at(drivers, k, units):
+    """What drives the ships over a step: the wind of the record, and thrusters as they are told."""
+    wind = (None, None) if drivers.wind_speed is None else (drivers.wind_speed[..., k], drivers.wind_from[..., k])
+    return Drivers(drivers.time[k], units, *wind)
 
-    def at(drivers):
-        wind = (None, None) if drivers.wind_speed is None else (drivers.wind_speed[..., k], drivers.wind_from[..., k])
-        return Drivers(drivers.time[k], units, *wind)
 
-    first = motion_rates(ship, at(base[0]), plant)
-    middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(ship, first, strict=True)))
-    rates = motion_rates(middle, at(base[1]), plant)
-    return Motion(*(value + h * rate for value, rate in zip(ship, rates, strict=True)))
+def _moved(ship, last, drivers, plant, h, dp):
+    """The ships a step later by the rates in its middle, where those of the last step lead; and the rates."""
+    middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(ship, last, strict=True)))
+    rates = motion_rates(dp.bounded(middle), drivers, plant)
+    return Motion(*(value + h * rate for value, rate in zip(ship, rates, strict=True))), rates
 
 
 class Dp:
@@ -116,52 +118,59 @@ class Dp:
         wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
         return np.clip(wanted, -self.most[:, None], self.most[:, None]), integral
 
-    def answer(self, told, load, record, k, held):
-        """Change of each thruster's force along and across its axis, after a step."""
-        forces = self.shared(load, {name: record.units[name][1][..., k] for name in told}, held)
-        share = min(self.h / self.delay, 1.0)
-        return {name: value + share * (forces[name] - value) for name, value in told.items()}
+    def answer(self, told, load, shares):
+        """Change of the thrusters' forces after a step, (k, m) array. [N]"""
+        return told + min(self.h / self.delay, 1.0) * (_times(shares, load) - told)
 
-    def shared(self, load, azimuths, held):
-        """A load on the ship as forces along and across the axes of her thrusters.
+    def shares(self, azimuths, held):
+        """What each thruster takes of a load on the ship, along and, where it turns, across its axis.
 
         Parameters
         ----------
-        load : (3, m) array
-        azimuths : dict of str to float or (m,) array
+        azimuths : dict of str to (...) array
             Where each thruster points.
-        held : dict of str to bool or (m,) bool array
+        held : dict of str to (...) bool array
             Thrusters that take no part.
 
         Returns
         -------
-        dict of str to (2, m) array
-            [N]
+        (..., k, 3) array
+            For k forces, in the order of the thrusters.
         """
-        columns, places = [], []
-        for name, azimuth in azimuths.items():
-            unit = self.pushers[name]
-            angle = unit.axis + (azimuth if unit.pointed else 0.0) + np.zeros(np.shape(azimuth))
-            for i in range(2 if unit.turns and name not in self.fixed else 1):
+        columns, eases = [], []
+        for name, unit in self.pushers.items():
+            angle = unit.axis + (azimuths[name] if unit.pointed else 0.0 * azimuths[name])
+            alone = held.get(name, False) if unit.ahead else True
+            for i in range(self._forces(name)):
                 c, s = np.cos(angle + 0.5 * np.pi * i), np.sin(angle + 0.5 * np.pi * i)
-                alone = held.get(name, False) if unit.ahead else True
-                ease = np.where(alone, 0.0, _ACROSS if i else 1.0)
-                columns.append(ease[..., None] * np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
-                places.append((name, i, ease))
+                columns.append(np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
+                eases.append(np.where(alone, 0.0, _ACROSS if i else 1.0)[..., None] + np.zeros(3))
         scale = np.array([1.0, 1.0, 4.0 / self.plant.parts["hull"].length])
-        B = scale[:, None] * np.stack(np.broadcast_arrays(*columns), axis=-1)
-        Bt = np.swapaxes(B, -1, -2)
-        inner = np.linalg.solve(B @ Bt + 1e-2 * np.eye(3), (scale[:, None] * load).T[..., None])
-        forces = (Bt @ inner)[..., 0].T
-        found = {name: np.zeros((2, load.shape[1])) for name in azimuths}
-        for (name, i, ease), force in zip(places, forces, strict=True):
-            found[name][i] = ease * force
+        ease = np.stack(np.broadcast_arrays(*eases), axis=-2)
+        Bt = ease * scale * np.stack(np.broadcast_arrays(*columns), axis=-2)
+        return ease * scale * (Bt @ np.linalg.inv(np.swapaxes(Bt, -1, -2) @ Bt + 1e-2 * np.eye(3)))
+
+    def shared(self, load, azimuths, held):
+        """A load on the ship, (3, m) array, as forces along and across the axes of her thrusters, (2, m) arrays. [N]"""
+        return self._by_thruster(_times(self.shares(azimuths, held), load))
+
+    def _forces(self, name):
+        """In how many directions a thruster pushes as the DP wants."""
+        return 2 if self.pushers[name].turns and name not in self.fixed else 1
+
+    def _by_thruster(self, forces):
+        """Forces along and across the axis of each thruster."""
+        found, place = {}, 0
+        for name in self.pushers:
+            own = forces[place : place + self._forces(name)]
+            found[name] = own if len(own) > 1 else np.concatenate([own, np.zeros_like(own)])
+            place += len(own)
         return found
 
     def speeds(self, told, record, k):
         """Speed and direction of each thruster: those that it is told anyway, changed by what the DP adds."""
         found = {}
-        for name, (along, across) in told.items():
+        for name, (along, across) in self._by_thruster(told).items():
             unit, n, azimuth = self.pushers[name], record.units[name][0][..., k], record.units[name][1][..., k]
             if not unit.ahead:
                 found[name] = n + 0.0 * along, azimuth + 0.0 * along
@@ -182,3 +191,8 @@ class Dp:
         """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
         unit = self.pushers[name]
         return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern))
+
+
+def _times(shares, load):
+    """Forces (k, m) of a load (3, m) by shares (1 or m, k, 3) or (k, 3)."""
+    return (shares @ load.T[..., None])[..., 0].T
