@@ -43,7 +43,7 @@ def jumping_wind(log: dict) -> list[Finding]:
         gain, first, last = _best_pair(logged, undone)
         if gain > LEAST_GAIN:
             segment = float(part["time"][first]), float(part["time"][last])
-            found.append((gain, label, segment, _unsteadiness(part, undone, slice(first, last))))
+            found.append((gain, label, segment, _unsteadiness(undone[first:last])))
     if not found:
         return []
     most = max(gain for gain, *_ in found)
@@ -53,15 +53,14 @@ def jumping_wind(log: dict) -> list[Finding]:
 
 
 def _wind(part):
-    """The apparent wind as a vector in the earth's frame. [m/s]"""
-    return part["wind_speed"] * np.exp(1j * np.radians(part["wind_from"] + part["heading"]))
+    """The wind over ground as a vector: the one that a fast craft meets changes with her speed. [m/s]"""
+    apparent = part["wind_speed"] * np.exp(1j * np.radians(part["wind_from"] + part["heading"]))
+    return apparent - (part["surge"] + 1j * part["sway"]) * np.exp(1j * np.radians(part["heading"]))
 
 
-def _unsteadiness(part, apparent, here):
+def _unsteadiness(wind):
     """Change of the wind over ground in a segment: what is too much in it goes with the ship. [m2/s2]"""
-    velocity = (part["surge"] + 1j * part["sway"]) * np.exp(1j * np.radians(part["heading"]))
-    over_ground = (apparent - velocity)[here]
-    return float(np.mean(np.abs(over_ground[LATER:] - over_ground[:-LATER]) ** 2))
+    return float(np.mean(np.abs(wind[LATER:] - wind[:-LATER]) ** 2))
 
 
 def _best_pair(logged, undone):

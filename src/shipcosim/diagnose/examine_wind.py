@@ -17,6 +17,7 @@ LEAST_GAIN_WHOLE = 5.0  # nats, of a unit of the whole log, among three
 AVERAGING = 8.0  # [s] of a bell over the ship's velocity; wind sensors average, and waves shake the mast
 NEAR, SURE = 0.3, 0.18  # of the slope of the wind on the ship's velocity: agreement, largest deviation
 BESIDE, JUMP = 240.0, 0.35  # [s] beside an end of a segment; of the logarithm of the wind speed, against another unit
+ON = 0.6  # of the change of the wind over ground at the ends of a segment as labelled, that may be left put right
 STEADIER = 0.08  # by which the steadiness of the wind must grow; so the ship must have turned
 BOW, MIRRORED, NORTH = "from the bow", "mirrored", "from north"
 SLOPES = {BOW: {"apparent": 1.0, "kn": 1852.0 / 3600.0, "m/s": 3600.0 / 1852.0, "over ground": 0.0}}
@@ -102,7 +103,7 @@ def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     """The mislabel that the slope on the ship's velocity leaves over."""
     y, x = whitener(wind), whitener(slow)
     if frame == BOW:
-        return _unit(time, y, x, whitener(smooth), np.hypot(*wind.T))
+        return _unit(time, y, x, whitener(smooth), wind, slow)
     slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
     kinds = SLOPES[frame]
     weights = {kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12 for kind, b in kinds.items()}
@@ -110,7 +111,7 @@ def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     return [_named(LABEL[frame, kind], segment, gain, weights[kind] / sum(weights.values()))]
 
 
-def _unit(time, y, x, smooth, speed):
+def _unit(time, y, x, smooth, wind, slow):
     """Another unit, or the wind over ground with its direction from the bow, if the slope clearly says so."""
     found = []
     for kind, b in SLOPES[BOW].items():
@@ -122,7 +123,8 @@ def _unit(time, y, x, smooth, speed):
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
         near = all(abs(one - b) < max(NEAR * b, 0.2) for one in (slope, also))
-        near &= b == 0.0 or _jumps(time, speed, segment, b)
+        near &= b == 0.0 or _jumps(time, np.hypot(*wind.T), segment, b)
+        near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
         if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
             found.append(_named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0))
     return sorted(found, key=lambda finding: -finding.probability)[:1]
@@ -130,13 +132,31 @@ def _unit(time, y, x, smooth, speed):
 
 def _jumps(time, speed, segment, factor):
     """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log."""
+    here, beside = _about(time, segment)
+    if not here.any() or not beside.any():
+        return True
+    return bool(abs(np.log(np.median(speed[here]) / np.median(speed[beside]) / factor)) < JUMP)
+
+
+def _goes_on(time, labelled, right, segment):
+    """Whether the wind over ground beside a segment goes on in it if put right, rather than as labelled.
+
+    The ship's own way makes the wind that she meets stronger and weaker too, most of all that of a fast small craft.
+    """
+    here, beside = _about(time, segment)
+    if not here.any() or not beside.any():
+        return True
+    usual = labelled[beside].mean(axis=0)
+    off, off_labelled = (np.hypot(*(wind[here].mean(axis=0) - usual)) for wind in (right, labelled))
+    return bool(off < ON * off_labelled)
+
+
+def _about(time, segment):
+    """Rows of a segment that are near one of its ends, and those outside of it; none of the whole log."""
     if segment is None:
-        return True
-    here = inside(time, [segment])
-    near = inside(time, [(end - BESIDE, end + BESIDE) for end in segment])
-    if not (near & here).any() or not (near & ~here).any():
-        return True
-    return bool(abs(np.log(np.median(speed[near & here]) / np.median(speed[near & ~here]) / factor)) < JUMP)
+        return np.zeros((2, len(time)), bool)
+    here, near = inside(time, [segment]), inside(time, [(end - BESIDE, end + BESIDE) for end in segment])
+    return near & here, near & ~here
 
 
 def _slope(y, x):
