@@ -19,6 +19,7 @@ from shipcosim.diagnose.linear import (
     advanced,
     innovations,
     linearise,
+    log_likelihoods,
     oscillation,
     rows_first,
 )
@@ -239,6 +240,17 @@ def test_log_likelihood_is_that_of_the_joint_normal():
     assert found.log_determinant.sum() == pytest.approx(np.linalg.slogdet(S)[1], rel=1e-9)
     white = found.white.reshape(-1, 3)
     np.testing.assert_allclose(white.T @ white, deviations.T @ np.linalg.solve(S, deviations), rtol=1e-8)
+
+
+def test_log_likelihoods_under_several_noises_are_those_of_the_joint_normal():
+    linear, noise, record = tiny()
+    levels = noise.white, noise.jolt, noise.walk, noise.wave
+    noises = Noise(*(np.stack([2.0 * level, level]) for level in levels), np.array([0.7, noise.wave_frequency]))
+    S, deviations, _, _ = dense()
+    expected = -0.5 * (deviations[:, 0] @ np.linalg.solve(S, deviations[:, 0]) + np.linalg.slogdet(S)[1])
+    other, alone = log_likelihoods(linear, noises, record)
+    assert alone == pytest.approx(expected, rel=1e-9)
+    assert other != pytest.approx(expected, rel=1e-2)
 
 
 def test_smoothed_motion_is_the_mean_given_all_measurements():

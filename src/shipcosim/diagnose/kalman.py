@@ -8,7 +8,7 @@ array that is the same for all logs has one.
 import numpy as np
 from numba import njit
 
-__all__ = ["smoothed", "weights", "whitened"]
+__all__ = ["log_likelihoods", "smoothed", "weights", "whitened"]
 
 _compiled = njit(cache=True, error_model="numpy")
 
@@ -144,6 +144,106 @@ def smoothed(A, W, H, white, gain, root, states, covariances):
             if k > 0:
                 pull = (A[k - 1, log % A.shape[1]] + W[log]).T @ pull
     return found
+
+
+@_compiled
+def log_likelihoods(A, W, b, H, z, whole, R, Q, P, known, lost):
+    """Log-likelihood of one log under several noises, side by side, up to a constant.
+
+    Outputs are taken one after the other, which comes to the same: no matrix is inverted.
+
+    Parameters
+    ----------
+    A : (n-1, s, s) array
+    W : (s, s, m) array
+        What of the transition is a matter of the noise, added to A.
+    b : (n-1, r) array
+        What moves the first states besides.
+    H : (n, o, s) array
+    z : (n, o) array
+    whole : (n, o) bool array
+        Where there is an output.
+    R : (o, m) array
+        Variance of the outputs.
+    Q, P : (s, s, m) array
+    known, lost
+        As for `weights`.
+
+    Returns
+    -------
+    (m,) array
+    """
+    (n, o, s), m = H.shape, R.shape[1]
+    x, C, found = np.zeros((s, m)), P.copy(), np.zeros(m)
+    ahead, T = np.zeros((s, m)), np.zeros((s, s, m))
+    rows, rows_ahead = C.reshape(s, s * m), T.reshape(s, s * m)
+    for k in range(n):
+        for i in range(o):
+            if whole[k, i]:
+                _take_in(x, C, rows, H[k, i], z[k, i], R[i], found)
+        if k < n - 1:
+            ahead[:] = 0.0
+            for i in range(b.shape[1]):
+                ahead[i] += b[k, i]
+            _add_each(ahead, A[k], W, x)
+            x[:] = ahead
+            T[:] = 0.0
+            _add_each(rows_ahead, A[k], W, rows)
+            for i in range(s):
+                for j in range(s):
+                    C[i, j] = T[j, i]
+            T[:] = Q
+            if not known[k]:
+                for i in range(s):
+                    T[i, i] += lost[i, i]  # and nothing beside the diagonal
+            _add_each(rows_ahead, A[k], W, rows)
+            C[:] = T
+    return found
+
+
+@_compiled
+def _take_in(x, C, rows, h, z, R, found):
+    """Take in one output: state, covariance and log-likelihood after it; `rows` is C with the logs in its rows."""
+    s, m = x.shape
+    seen, missed, S = np.zeros(s * m), np.empty(m), R.copy()
+    missed[:] = z
+    for j in range(s):
+        if h[j] != 0.0:
+            for log in range(m):
+                missed[log] -= h[j] * x[j, log]
+            for place in range(s * m):
+                seen[place] += h[j] * rows[j, place]
+    Ch = seen.reshape(s, m)
+    for j in range(s):
+        if h[j] != 0.0:
+            for log in range(m):
+                S[log] += h[j] * Ch[j, log]
+    for log in range(m):
+        found[log] -= 0.5 * (missed[log] * missed[log] / S[log] + np.log(S[log]))
+        S[log] = 1.0 / S[log]
+    share = np.empty(m)
+    for i in range(s):
+        for log in range(m):
+            share[log] = Ch[i, log] * S[log]
+            x[i, log] += share[log] * missed[log]
+        for j in range(s):
+            for log in range(m):
+                C[i, j, log] -= share[log] * Ch[j, log]
+
+
+@_compiled
+def _add_each(out, A, W, X):
+    """Add (A + W) X to `out`, both (s, c m) arrays with the logs in each column, of which A is the same for all."""
+    s, m = len(X), W.shape[2]
+    for i in range(s):
+        for j in range(s):
+            if A[i, j] != 0.0:
+                for place in range(X.shape[1]):
+                    out[i, place] += A[i, j] * X[j, place]
+            if W[i, j, 0] != 0.0:
+                for first in range(0, X.shape[1], m):
+                    for log in range(m):
+                        out[i, first + log] += W[i, j, log] * X[j, first + log]
 
 
 @_compiled

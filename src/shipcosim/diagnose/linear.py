@@ -25,6 +25,7 @@ __all__ = [
     "beside",
     "innovations",
     "linearise",
+    "log_likelihoods",
     "oscillation",
     "rows_first",
     "runge_kutta",
@@ -319,6 +320,28 @@ def innovations(linear, noise, record, motion=None):
     found = np.moveaxis(found.reshape(-1, *lead, STATES), 0, -2)
     smooth = Motion(*(value + found[..., i] for i, value in enumerate(motion)))
     return Innovations(*of_logs, tuple(weights), smooth, found[..., 6:])
+
+
+def log_likelihoods(linear, noises, record):
+    """Log-likelihood of the first column of a problem of one log under several noises, up to a constant.
+
+    Parameters
+    ----------
+    linear : Linear
+    noises : Noise
+        Of (m, ...) arrays.
+    record : Record
+
+    Returns
+    -------
+    (m,) array
+    """
+    of_noise = _waves_ahead(noises, record.step), _process(noises, record.step), _uncertain(noises)
+    W, Q, P = (np.ascontiguousarray(np.moveaxis(values, 0, -1)) for values in of_noise)
+    R = np.ascontiguousarray(noises.white.T) ** 2
+    b, z = (np.ascontiguousarray(values[..., 0]) for values in (linear.driven, linear.seen))
+    known = np.asarray(record.known)
+    return kalman.log_likelihoods(linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, known, _lost())
 
 
 def _by_log(values, lead, tail):

@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from shipcosim.diagnose.linear import Linear, Noise, innovations, oscillation
+from shipcosim.diagnose.linear import Linear, Noise, log_likelihoods, oscillation
 
 __all__ = ["explained", "first_noise", "tuned", "waves_of"]
 
@@ -77,7 +77,7 @@ def tuned(noise, linear, record, theta, *, most_walk, rounds=4):
         steps = np.zeros((2 * len(_GROUPS) + 1, len(_GROUPS)))
         for i in range(len(_GROUPS)):
             steps[1 + 2 * i, i], steps[2 + 2 * i, i] = _STRIDE, -_STRIDE
-        score = _likelihood(left, _scaled(noise, steps), record)
+        score = log_likelihoods(left, _scaled(noise, steps), record)
         up, down = score[1::2], score[2::2]
         slope, bend = (up - down) / (2 * _STRIDE), (up + down - 2 * score[0]) / _STRIDE**2
         move = np.where(bend < -1e-3, -slope / np.minimum(bend, -1e-3), np.sign(slope) * _LONGEST)
@@ -85,7 +85,7 @@ def tuned(noise, linear, record, theta, *, most_walk, rounds=4):
         tries = _scaled(noise, _SHARES[:, None] * move)
         frequency = np.clip(tries.wave_frequency, *_FREQUENCIES[[0, -1]])
         tries = replace(tries, walk=np.minimum(tries.walk, most_walk), wave_frequency=frequency)
-        scores = _likelihood(left, tries, record)
+        scores = log_likelihoods(left, tries, record)
         move = _SHARES[scores.argmax()] * move
         noise = _of(tries, scores.argmax())
         if np.abs(move).max() < 0.05:
@@ -100,17 +100,12 @@ def _begun(noise, left, record):
     many = _scaled(noise, np.zeros((len(rows), len(_GROUPS))))
     many.white[:, 3:] *= white[:, None]
     tries = replace(many, wave=many.wave * wave[:, None], wave_frequency=frequency)
-    return _of(tries, _likelihood(left, tries, record).argmax())
+    return _of(tries, log_likelihoods(left, tries, record).argmax())
 
 
 def _of(noise, which):
     """One of several."""
     return Noise(*(getattr(noise, part.name)[which] for part in fields(Noise)))
-
-
-def _likelihood(left, noise, record):
-    found = innovations(left, noise, record)
-    return -0.5 * ((found.white[..., 0] ** 2).sum((0, -1)) + found.log_determinant.sum(0))
 
 
 def waves_of(noise, h, shape, rng):
