@@ -12,13 +12,14 @@ from truth import draw
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.finding import Candidate, Diagnosis, Finding, Prescription
 from shipcosim.diagnose.force import missing_force
-from shipcosim.diagnose.gain import baseline, compare, gain
+from shipcosim.diagnose.gain import baseline, compare, gain, rms
 from shipcosim.diagnose.manoeuvres import Manoeuvre, library
 from shipcosim.diagnose.run import diagnose
 from shipcosim.report.diagnosis import Story, render, write_diagnosis
 from shipcosim.report.diagnosis_causes import manoeuvre_rows, not_testable_rows, whiteness
 from shipcosim.report.diagnosis_data import log_panels, track_panel
 from shipcosim.report.diagnosis_error import condition_table, error_panels, error_table, force_panels
+from shipcosim.report.diagnosis_parts import metres
 from shipcosim.ssp import read_system
 
 SECTIONS = ("log", "error", "causes", "extension", "gain")
@@ -202,6 +203,8 @@ def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(story)
     assert rows[-1][-1].endswith(" %")  # a minute of predictions: no interval
     text = render(replace(story, unseen_errors={"free drift": some}))
     assert "free drift, not fitted on" in text and "too little of another quarter of headings for it" in text
+    known = metres(rms(errors, "position", "calibrated"))
+    assert f"{known} would be missed over the later part instead of" in text
 
 
 def test_diagnosis_without_predictions_or_forces_still_makes_a_page(story):
