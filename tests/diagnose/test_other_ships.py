@@ -1,0 +1,234 @@
+"""Ships that the diagnosis was not made for: a ferry with four azimuths, a USV whose two propellers never turn."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from diagnose import ferry, twin, usv
+from scipy.integrate import solve_ivp
+
+import shipcosim as sc
+from shipcosim.diagnose.effects import read_catalogue, suspects
+from shipcosim.diagnose.examine import examine
+from shipcosim.diagnose.extension import extend
+from shipcosim.diagnose.finding import Estimate, Finding
+from shipcosim.diagnose.linear import advanced, linearise
+from shipcosim.diagnose.noise import first_noise
+from shipcosim.diagnose.null import healthy_records
+from shipcosim.diagnose.plant import Drivers, Motion, loads, motion_rates, plant_of
+from shipcosim.diagnose.ranking import Case
+from shipcosim.diagnose.record import first_motion, record_of
+from shipcosim.diagnose.run import diagnose
+from shipcosim.diagnose.thrusters import pusher_of
+from shipcosim.models.thruster import AzimuthParameters
+from shipcosim.series import write_table
+
+LOSS = Estimate(0.3, 0.02, "1")
+LEFT_TOE = usv.SIDES["left"][1]
+short_ferry = cache(lambda: ferry.log(minutes=5.0))
+short_usv = cache(lambda: usv.log(minutes=3.0))
+
+
+@cache
+def along(ship, log):
+    """Plant of a system, record and motion of a log of her."""
+    plant = plant_of(ship().checked())
+    record = record_of(log(), plant)
+    return plant, record, first_motion(record, plant)
+
+
+def test_a_propeller_that_nothing_turns_pushes_where_the_system_points_it():
+    plant, record, _ = along(usv.structure, short_usv)
+    assert plant.thrusters == ["left", "right"] and plant.azimuths == []
+    assert not any("irection" in remark for remark in record.remarks)
+    units = {"left": (10.0, LEFT_TOE), "right": (0.0, 0.0)}
+    X, Y, N = loads(Motion(*np.zeros(6)), Drivers(0.0, units, None, None), plant)["left"]
+    np.testing.assert_allclose(record.units["left"][1], LEFT_TOE)
+    assert X > 0.0 and pytest.approx(np.tan(LEFT_TOE)) == Y / X
+    assert pytest.approx(-2.2 * Y + 0.7 * X) == N
+    assert (pusher_of(plant, "left").axis, pusher_of(plant, "left").turns) == (LEFT_TOE, False)
+
+
+def test_a_propeller_that_nothing_turns_can_lose_thrust_astern_and_has_no_offset_of_direction():
+    plant, *_ = along(usv.structure, short_usv)
+    labels = {suspect.label for suspect in suspects(read_catalogue(), plant)}
+    assert {"thrust_loss of left", "rpm_offset of right", "reverse_loss"} <= labels
+    assert not {"azimuth_offset of left", "azimuth_offset of right"} & labels
+
+
+def test_a_small_craft_is_moved_from_row_to_row_as_an_integrator_with_small_steps_moves_her():
+    """Side forces of the propellers turn her away within a third of a row: one step of a row runs away."""
+    plant, record, motion = along(usv.structure, short_usv)
+    rows = np.arange(40, 100, 10)
+    found = np.stack(advanced(Motion(*(value[:-1] for value in motion)), record, plant))[:, rows]
+    right = np.stack([_integrated(motion, record, plant, row) for row in rows], axis=-1)
+    assert (np.abs(found - right) < [[2e-3], [2e-3], [1e-3], [5e-3], [2e-3], [1e-3]]).all()
+
+
+def _integrated(motion, record, plant, row):
+    def rates(t, state):
+        drivers = record.drivers(plant, t)
+        units = {name: tuple(series[row] for series in pair) for name, pair in drivers.units.items()}
+        here = Drivers(drivers.time[row], units, drivers.wind_speed[row], drivers.wind_from[row])
+        return np.array(motion_rates(Motion(*state), here, plant)) * record.step
+
+    return solve_ivp(rates, (0.0, 1.0), [value[row] for value in motion], rtol=1e-8, atol=1e-10).y[:, -1]
+
+
+def test_columns_of_a_small_craft_are_what_her_motion_changes_by():
+    plant, record, motion = along(usv.structure, short_usv)
+    turns = [{"left.thrust_loss": 0.1}, {"hull.drag_scale": 0.5}, {"right.rpm_offset": 10.0}]
+    linear = linearise(motion, record, plant, turns)
+    start = Motion(*(value[:-1] for value in motion))
+    for column, change in enumerate(turns, start=1):
+        other = plant.with_values({path: plant.get(path) + by for path, by in change.items()})
+        real = np.stack(advanced(start, record, other)) - np.stack(advanced(start, record, plant))
+        told = -np.moveaxis(linear.driven[:, :6, column], 0, -1)
+        apart = np.sqrt(((real - told) ** 2).sum(1) / (real**2).sum(1))
+        assert apart[3] < 0.3 and (column == 2 or apart[5] < 0.4)  # surge; yaw rate, which drag hardly changes
+
+
+def test_a_ship_of_our_own_size_is_still_moved_by_one_step_a_row():
+    record = record_of(twin.logs()["healthy"], twin.plant())
+    assert record.substeps(twin.plant()) == 1
+    assert record.substeps(along(usv.structure, short_usv)[0]) == 4
+
+
+def test_healthy_ferries_drawn_with_places_of_their_thrusters_keep_to_the_track():
+    plant, record, motion = along(ferry.structure, short_ferry)
+    case = Case(record, plant, (), first_noise(record, 96.0), motion)
+    healthy = healthy_records(case, motion, 4, np.random.default_rng(0))
+    off = np.hypot(healthy.measured[..., 0] - motion.x, healthy.measured[..., 1] - motion.y)
+    assert off.shape == (4, record.time.size) and off.max() < 10.0
+
+
+def test_the_slipstream_is_that_of_the_unit_which_the_system_wires():
+    system = ferry.structure()
+    for kind in ("azimuth", "rpm"):
+        system.connect(f"aft_port.{kind}", f"fore_port.neighbour_{kind}")
+    plant = plant_of(system.checked())
+    assert plant.neighbours["fore_port"] == "aft_port"
+    assert plant.neighbours["fore_starboard"] == "fore_port"
+    assert plant.get("fore_port.neighbour_x") == -42.0
+
+
+def test_what_no_set_says_is_known_in_proportion_to_the_ship():
+    plants = along(ferry.structure, short_ferry)[0], along(usv.structure, short_usv)[0], twin.plant()
+    at = {"hull": ("fore_port", "ship"), "usv": ("left", "hull"), "ours": ("port", "vessel")}
+    for plant, (unit, vessel) in zip(plants, at.values(), strict=True):
+        most = plant.get(f"{unit}.rpm_max") / AzimuthParameters.rpm_max
+        assert plant.tolerances[f"{unit}.rpm_offset"] == pytest.approx(0.1 * most)
+        length = plant.get(f"{vessel}.length") / 33.9
+        assert plant.get("water.drift_yaw_arm") == pytest.approx(-1.5 * length)
+        lever = next(s for s in suspects(read_catalogue(), plant) if s.cause == "lever_arm").knobs[0]
+        assert lever.typical == pytest.approx(4.0 * length, rel=1e-3)
+    without = usv.structure()
+    without.set("hull.N_vvv", -80.0)
+    assert plant_of(without.checked()).tolerances["hull.N_vvv"] == pytest.approx(4.0)  # 5 %: ours has none
+
+
+def test_the_wind_that_a_fast_craft_meets_is_no_fault_of_its_labels():
+    assert examine(usv.log(minutes=12.0, seed=106)) == []
+
+
+@pytest.mark.parametrize(
+    "finding",
+    [
+        Finding("tow", parameters={n: Estimate(v, 200.0, "N") for n, v in (("north", -12e3), ("east", 8e3))}),
+        Finding("wave_drift", parameters={n: Estimate(v, 200.0, "N") for n, v in (("north", -9e3), ("east", 8e3))}),
+        pytest.param(Finding("thruster_interaction", parameters={"loss": LOSS}), marks=pytest.mark.slow),
+        pytest.param(Finding("thrust_loss", "aft_port", parameters={"loss": LOSS}), marks=pytest.mark.slow),
+    ],
+    ids=lambda finding: finding.cause,
+)
+def test_the_ferry_with_a_cause_runs(finding, tmp_path):
+    extension = extend(ferry.structure(), [finding], tmp_path)
+    run = sc.simulate(sc.read(extension.ssp), stop_time=20.0, set={"fore_port_rpm": 60.0, "aft_port_rpm": 90.0})
+    assert np.isfinite(run["ship.x"].values).all() and run["ship.u"].values[-1] > 0.0
+    if finding.cause == "wave_drift":
+        assert extension.values["wave_drift.yaw_arm"] == pytest.approx(-1.5 * 96.0 / 33.9)
+
+
+HIDDEN = {
+    "thrust_loss of fore_starboard": ({"fore_starboard.thrust_loss": 0.3}, {}, {"loss": 0.3}),
+    "azimuth_offset of aft_port": ({"aft_port.azimuth_offset": np.radians(8.0)}, {}, {"offset": 8.0}),
+    "current": (
+        {"environment.current_speed": 0.25, "environment.current_to": -0.64},
+        {},
+        {"north": 0.2005, "east": -0.1493},
+    ),
+    "mass": ({"ship.mass_scale": 1.2}, {}, {"scale": 1.2}),
+    "wind_scale": ({"ship.wind_load_scale": 1.35}, {}, {"scale": 1.35}),
+    "lever_arm": ({}, {"errors": {"lever_x": 15.0, "lever_y": 3.0}}, {"x": 15.0, "y": 3.0}),
+    "tow": ({}, {"push": (-12e3, 8e3, -48.0)}, {"north": -12e3, "east": 8e3}),
+}
+
+
+def found_in(log, ship, tmp_path):
+    write_table(log, tmp_path / "log.csv")
+    return diagnose(tmp_path / "log.csv", ship().checked())[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("label", HIDDEN)
+def test_what_is_wrong_with_the_ferry_is_named(label, tmp_path):
+    wrong, around, truth = HIDDEN[label]
+    diagnosis = found_in(ferry.log(ferry=ferry.structure(**wrong), seed=10, **around), ferry.structure, tmp_path)
+    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == ("named", [label])
+    _holds(diagnosis.findings[0], truth)
+
+
+def _holds(finding, truth):
+    for name, value in truth.items():
+        estimate = finding.parameters[name]
+        assert abs(estimate.estimate - value) < 3.0 * estimate.std
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ferry.LEGS)
+def test_the_healthy_ferry_is_consistent(kind, tmp_path):
+    assert found_in(ferry.log(kind, seed=21), ferry.structure, tmp_path).verdict == "consistent"
+
+
+@pytest.mark.slow
+def test_swapped_channels_of_two_of_four_units_are_a_fault_of_the_log(tmp_path):
+    log, swap = ferry.log(seed=10), {}
+    for kind in ("rpm", "azimuth"):
+        one, other = f"fore_port_{kind}", f"aft_starboard_{kind}"
+        swap |= {one: log[other], other: log[one]}
+    (finding,) = found_in(log.assign(swap), ferry.structure, tmp_path).findings
+    assert finding.cause == "channel_swap" and set(finding.channels) == set(swap)
+
+
+@pytest.mark.slow
+def test_the_wrong_lever_in_the_ferrys_model_is_a_connection_to_put_right(tmp_path):
+    wrong = ferry.structure()
+    wrong.disconnect("aft_port.tau_N", "ship.tau_N_3")
+    wrong.connect("aft_port.tau_N", "ship.tau_N_3", factor=-1.0)
+    diagnosis = found_in(ferry.log(seed=10), lambda: wrong, tmp_path)
+    assert [finding.label for finding in diagnosis.findings] == ["connection of aft_port"]
+
+
+ABOARD = {
+    "thrust_loss of right": ({"right.thrust_loss": 0.4}, {}, {"loss": 0.4}),
+    "thrust_loss of left": ({"left.thrust_loss": 0.25}, {}, {"loss": 0.25}),
+    "reverse_loss": ({"left.reverse_loss": 0.35, "right.reverse_loss": 0.35}, {}, {"loss": 0.35}),
+    "drag": ({"hull.drag_scale": 2.0}, {}, {"scale": 2.0}),
+    "current": ({}, {"current": (0.25, -0.2)}, {"north": 0.25, "east": -0.2}),
+    "heading_bias": ({}, {"errors": {"heading_bias": np.radians(4.0)}}, {"offset": 4.0}),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("label", ABOARD)
+def test_what_is_wrong_with_the_usv_is_named(label, tmp_path):
+    wrong, around, truth = ABOARD[label]
+    diagnosis = found_in(usv.log(usv=usv.structure(**wrong), seed=30, **around), usv.structure, tmp_path)
+    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == ("named", [label])
+    _holds(diagnosis.findings[0], truth)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", [1.0, 0.2])
+def test_the_healthy_usv_is_consistent(rate, tmp_path):
+    assert found_in(usv.log(seed=30, rate=rate), usv.structure, tmp_path).verdict == "consistent"
