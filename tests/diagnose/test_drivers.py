@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.drivers import _best_run, suspected
+from shipcosim.diagnose.drivers import best_run, suspected
 
 FIRST, LAST = 120.0, 260.0
 
@@ -56,8 +56,8 @@ def test_right_channels_are_not_suspected(name):
     assert suspected(twin.logs()[name], twin.ready(twin.logs()[name])) == []
 
 
-def test_the_best_run_is_the_one_of_all_runs_that_adds_up_to_most():
+def test_thebest_run_is_the_one_of_all_runs_that_adds_up_to_most():
     gain = np.random.default_rng(0).normal(-0.1, 1.0, 80)
     runs = {(a, b): gain[a : b + 1].sum() for a in range(80) for b in range(a + 9, 80)}
-    first, last, total = _best_run(gain, 10)
+    first, last, total = best_run(gain, 10)
     assert (first, last) == max(runs, key=runs.get) and total == pytest.approx(max(runs.values()))

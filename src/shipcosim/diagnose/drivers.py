@@ -14,7 +14,7 @@ from shipcosim.diagnose.linear import innovations, linearise
 from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, negative, undone
 from shipcosim.diagnose.record import record_of
 
-__all__ = ["suspected"]
+__all__ = ["best_run", "suspected", "where_best", "with_label"]
 
 _SHORTEST = 60.0  # s
 _WHOLE = 0.85  # of the log
@@ -37,16 +37,10 @@ def suspected(clean, case):
     """
     base, found = _by_row(case, case.record), []
     for mislabel in _mislabels(clean, case.plant):
-        gain = _by_row(case, record_of(_put_right(clean, mislabel, ()), case.plant)) - base
-        first, last, total = _best_run(gain, round(_SHORTEST / case.record.step))
+        gain = _by_row(case, record_of(with_label(clean, mislabel), case.plant)) - base
+        total, finding = where_best(gain, mislabel, case.record)
         if total > 10.0:
-            time = case.record.time
-            whole = last - first > _WHOLE * time.size
-            segments = () if whole else ((float(time[first]), float(time[last])),)
-            finding = Finding(
-                mislabel.cause, None, "data", 0.99, {}, segments, mislabel.channels, note=mislabel.sentence
-            )
-            found.append((total, finding, _put_right(clean, mislabel, segments)))
+            found.append((total, finding, with_label(clean, mislabel, finding.segments)))
     return sorted(found, key=lambda entry: -entry[0])
 
 
@@ -82,24 +76,32 @@ def _swapped(pairs):
     return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
 
 
-def _put_right(clean, mislabel, segments):
-    """The log with a fault of labels undone, in segments or everywhere."""
+def with_label(clean, mislabel, segments=()):
+    """A repaired log with a fault of labels undone, in segments or everywhere."""
     table = {"time": clean["time"].values} | {str(name): clean[name].values for name in clean.data_vars}
     fixed = undone(table, mislabel, segments)
     return clean.assign({role: clean[role].copy(data=fixed[role]) for role in mislabel.channels})
 
 
 def _by_row(case, record):
-    """Log-likelihood of each row, known numbers fitted within their tolerances."""
+    """Log-likelihood of each row, known numbers fitted within their tolerances; what that costs is shared by all."""
     columns = case.known(())
     linear = linearise(case.motion, record, case.plant, [column.turns for column in columns])
     found = innovations(linear, case.noise, record)
     theta = evidence(gram(found).products, np.ones(len(columns)))[1]
     left = found.white[..., 0] - found.white[..., 1:] @ theta
-    return -0.5 * ((left**2).sum(-1) + found.log_determinant)
+    return -0.5 * ((left**2).sum(-1) + found.log_determinant + (theta**2).sum() / len(left))
 
 
-def _best_run(gain, least):
+def where_best(gain, mislabel, record, shortest=_SHORTEST):
+    """Sum of the gains of rows where a mislabel explains most, and the finding of it there."""
+    first, last, total = best_run(gain, round(shortest / record.step))
+    whole = last - first > _WHOLE * record.time.size
+    segments = () if whole else ((float(record.time[first]), float(record.time[last])),)
+    return total, Finding(mislabel.cause, None, "data", 0.99, {}, segments, mislabel.channels, note=mislabel.sentence)
+
+
+def best_run(gain, least):
     """First and last row of the run of at least `least` rows whose gains add up to most, and the sum."""
     total = np.concatenate([[0.0], np.cumsum(gain)])
     lowest, first, best = 0, 0, (0, 0, -np.inf)

@@ -53,7 +53,7 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
     log = log.isel(time=usable_rows(log["time"].values))
     logged = log["time"].values
     step = usual_step(logged)
-    time = _true_time(logged, findings)
+    time = _true_time(logged, findings, step)
     channels = {str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()}
     channels = _put_right(logged, channels, findings)
     _check_span(time, step)
@@ -76,13 +76,18 @@ def _check_span(time, step):
         raise ShipcosimError(Problem("time", found, "Leave out the rows whose times are wrong, or cut the log there."))
 
 
-def _true_time(logged, findings):
-    """Times of the rows by a clock that runs right, from the same start."""
+def _true_time(logged, findings, step):
+    """Times of the rows by a clock that runs right, from the same start.
+
+    A segment of wrong clock lasts a whole number of steps, less than its rate is sure to; so the rows after it need no
+    interpolation, which would smooth their noise.
+    """
     rates = np.ones(len(logged) - 1)
     for finding in findings:
-        if finding.cause == "clock":
-            here = inside(logged[1:], finding.segments) & inside(logged[:-1], finding.segments)
-            rates[here] = finding.parameters["rate"].estimate
+        for segment in finding.segments or [(-np.inf, np.inf)] if finding.cause == "clock" else ():
+            here = inside(logged[1:], [segment]) & inside(logged[:-1], [segment])
+            lasts = finding.parameters["rate"].estimate * np.diff(logged)[here].sum()
+            rates[here] *= finding.parameters["rate"].estimate * max(round(lasts / step), 1) * step / max(lasts, step)
     return logged[0] + np.r_[0.0, np.cumsum(rates * np.diff(logged))]
 
 

@@ -14,6 +14,7 @@ from shipcosim.diagnose.finding import Diagnosis, Finding
 from shipcosim.diagnose.law import lawful
 from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.log import read_log
+from shipcosim.diagnose.mislabels import mislabel_of
 from shipcosim.diagnose.nameless import unexplained
 from shipcosim.diagnose.noise import first_noise, tuned
 from shipcosim.diagnose.null import null_gains
@@ -23,12 +24,15 @@ from shipcosim.diagnose.prescription import prescribe
 from shipcosim.diagnose.ranking import Case, at_first_sight, explain, fitted, prepared, probes, weighed, without_causes
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
+from shipcosim.diagnose.sensors import relabelled
+from shipcosim.diagnose.timing import clock_by_answer, with_rate
 from shipcosim.diagnose.verdict import MOST, STRANGE, gained, judge, not_testable
 from shipcosim.diagnose.wiring import put_right
 
 __all__ = ["Details", "diagnose", "prepare"]
 
 _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
+_UNIT = 3.0  # nats that another unit has to gain over the scale of the same channel, which is free to be anything
 _LIKE_WIND = ("wind_scale", "wind_direction", "wave_drift", "tow")  # steady forces, from the earth or the air
 _FAULTS = 2  # of the drivers' channels, at most
 _WITHOUT_WIND = 40.0  # nats more that a cause has to gain where the wind could be it (assumed)
@@ -100,6 +104,8 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         say("which causes explain it?")
         case = prepare(clean, plant, catalogue)
         plant = replace(plant, strangers=case.plant.strangers)
+        faults, clean, case = _with_right_sensors(log, faults, clean, case, plant, catalogue)
+        faults, clean, case = _with_right_clock(log, faults, clean, case, plant, catalogue)
         wrong, plant, case = _rewired(clean, plant, catalogue, case)
         fits = explain(case)
         clean, case, fits, more, began = _looked_closer(clean, case, fits, plant, catalogue)
@@ -116,6 +122,32 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
             prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals and not plant.strangers else None,
         )
         return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
+
+
+def _with_right_sensors(log, faults, clean, case, plant, catalogue):
+    """Faults, log and case with the channels of the navigation labelled as the ship's answer says."""
+    better = relabelled(log, faults, case)
+    if better is None:
+        return faults, clean, case
+    right = repaired(log, better.faults)
+    again = prepare(right, plant, catalogue)
+    if at_first_sight(again) + better.stretch < at_first_sight(case) + _FAULT:
+        return faults, clean, case
+    return better.faults, right, again
+
+
+def _with_right_clock(log, faults, clean, case, plant, catalogue):
+    """Faults, log and case with the segments of a wrong clock that the ship's answer tells of."""
+    others = [fault for fault in faults if fault.cause != "clock"]
+    as_logged = case if len(others) == len(faults) else prepare(repaired(log, others), plant, catalogue)
+    clock = clock_by_answer(as_logged)
+    if clock is None:
+        return faults, clean, case
+    clean = repaired(log, [*others, clock])
+    case = prepare(clean, plant, catalogue)
+    faults = [*others, with_rate(case, clock, clean["logged_time"].values)]
+    clean = repaired(log, faults)
+    return faults, clean, prepare(clean, plant, catalogue, case.noise)
 
 
 def _rewired(clean, plant, catalogue, case):
@@ -196,10 +228,17 @@ def _with_right_drivers(clean, case, fits, plant, catalogue):
             continue
         better = explain(again)
         # at the ends of a segment found too long or too short a few rows stay wrong, which small causes take up
-        likely = [fit for fit in better[:3] if fit.score > fits[0].score + _FAULT]
+        likely = [fit for fit in better[:3] if fit.score > fits[0].score + _price(fault, fits[0])]
         if any(_is_explained(again, fit) for fit in likely):
             return fault, right, again, better
     return None
+
+
+def _price(fault, fit):
+    """What a fault of the drivers' channels has to gain over a fit: little, if it is a unit and the fit a scale."""
+    label = mislabel_of(fault)
+    is_scale = any(suspect.cause == "wind_scale" for suspect in fit.suspects)
+    return _UNIT if label is not None and label.scale is not None and is_scale else _FAULT
 
 
 def _is_explained(case, fit):

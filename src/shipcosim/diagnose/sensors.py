@@ -1,0 +1,116 @@
+"""Channels of the navigation that are not what they are labelled, told by how the ship answers thrusters and wind.
+
+A ship that hardly moves tells little by position against velocity, and at one heading a wrong sign of north is that of
+surge. With her own law of motion each label is as likely as the motion that it tells of.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.diagnose.drivers import where_best, with_label
+from shipcosim.diagnose.linear import innovations, linearise
+from shipcosim.diagnose.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_of
+from shipcosim.diagnose.motion import filter_for, is_clear, position_motion
+from shipcosim.diagnose.noise import first_noise
+from shipcosim.diagnose.record import CHANNELS, first_motion, record_of
+from shipcosim.diagnose.repair import repaired
+from shipcosim.diagnose.tables import inside
+
+__all__ = ["Relabelled", "relabelled"]
+
+LABELS = (HEADING_LABELS[0], *POSITION_LABELS)
+LEAST_GAIN = 30.0  # nats of rows; healthy logs gain up to 7 in a stretch, faulty ones up to 20 by another label
+BETTER = 15.0  # nats more than what was found by position against velocity
+SHORTEST = 180.0  # [s]; along shorter stretches other causes look like labels
+CALM = 0.2  # of the jolts that noise is first taken to have; under a wrong label they grow to cover it
+
+
+@dataclass(frozen=True)
+class Relabelled:
+    """Faults of a log with its navigation labelled as the ship's answer says.
+
+    Attributes
+    ----------
+    faults : list of Finding
+    stretch : float
+        Log-density of the log as it is over that of the log with its units put right, the same values in both. [nats]
+    """
+
+    faults: list
+    stretch: float
+
+
+def relabelled(log, faults, case):
+    """The likeliest labels of the navigation, if they are not those that the faults say.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        As read.
+    faults : list of Finding
+        As from `examine`.
+    case : Case
+        Of the log with these faults repaired.
+
+    Returns
+    -------
+    Relabelled or None
+    """
+    told = [fault for fault in faults if mislabel_of(fault) in LABELS]
+    others = [fault for fault in faults if fault not in told]
+    if len(told) > 1:
+        return None
+    plain = repaired(log, others)
+    if not told and _is_clear(plain):
+        return None
+    if told:
+        calm = CALM * first_noise(case.record, case.plant.parts["hull"].length).jolt
+        case = replace(case, noise=replace(case.noise, jolt=np.minimum(case.noise.jolt, calm)))
+    base = _by_row(case, record_of(plain, case.plant))
+    labels = [label for label in LABELS if set(label.channels) <= set(plain)]
+    gains = {label: _gain(plain, label, case) - base for label in labels}
+    found = [where_best(gain, label, case.record, SHORTEST) for label, gain in gains.items()]
+    total, best = max(found, key=lambda one: one[0])
+    so_far = sum(float(gains[mislabel_of(one)][inside(case.record.time, one.segments)].sum()) for one in told)
+    if total < LEAST_GAIN or total < so_far + BETTER:
+        return None
+    return Relabelled([*others, best], _stretch(best, case) - sum(_stretch(one, case) for one in told))
+
+
+def _is_clear(plain):
+    """Whether the ship moves so much that position against velocity has said what there is to say."""
+    table = {"time": plain["time"].values} | {str(name): plain[name].values for name in plain.data_vars}
+    motion = position_motion(table)
+    return motion is not None and is_clear(motion, filter_for(motion)[0])
+
+
+def _gain(plain, label, case):
+    """Log-likelihood of each row with a label put right, as a density of what was logged."""
+    places, noise = [CHANNELS.index(role) for role in label.channels], case.noise
+    white, wave, scale = np.array(noise.white), np.array(noise.wave), np.ones(len(CHANNELS))
+    if label.scale is not None:
+        scale[places] = label.scale
+    if label.cause == "channel_swap":
+        white[places] = white[places[::-1]]
+    noise = replace(noise, white=white * scale, wave=wave * scale[3:])
+    whole = np.isfinite(case.record.measured)
+    record = record_of(with_label(plain, label), case.plant)
+    return _by_row(replace(case, noise=noise), record) + whole @ np.log(scale)
+
+
+def _by_row(case, record):
+    """Log-likelihood of each row, about the motion that the record itself tells of."""
+    motion = first_motion(record, case.plant)
+    for _ in range(2):
+        motion = innovations(linearise(motion, record, case.plant, []), case.noise, record, motion).motion
+    found = innovations(linearise(motion, record, case.plant, []), case.noise, record)
+    return -0.5 * ((found.white[..., 0] ** 2).sum(-1) + found.log_determinant)
+
+
+def _stretch(finding, case):
+    """Logarithm of the factors by which a finding changes the values of its channels."""
+    scale = mislabel_of(finding).scale or 1.0
+    places = [CHANNELS.index(role) for role in finding.channels]
+    here = np.isfinite(case.record.measured[:, places]) & inside(case.record.time, finding.segments)[:, None]
+    return float(np.log(scale) * here.sum())

@@ -1,0 +1,145 @@
+"""Segments in which the clock runs wrong, told by how the ship answers thrusters and wind.
+
+With ρ true seconds per logged second, a step moves the ship ρ times as far, and changes her velocity ρ times as much.
+Each block of a log has a column for its own ρ; where a run of blocks agrees on one, the clock was wrong.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.diagnose.evidence import gram
+from shipcosim.diagnose.finding import Estimate, Finding
+from shipcosim.diagnose.linear import innovations, rows_first, with_columns
+from shipcosim.diagnose.plant import Motion, motion_rates
+from shipcosim.diagnose.ranking import Column, fitted, probes, weighed
+
+__all__ = ["clock_by_answer", "with_rate"]
+
+SLAB = 0.25  # typical size of ρ - 1
+BLOCK = 12.0  # [s]
+SHORTEST, LARGEST_SHARE = 60.0, 0.5  # [s]; of the log: longer is a scale, not a segment
+LEAST_GAIN = 8.0  # nats, after the cost of choosing the segment
+RIVAL = 5.0  # nats more than the likeliest cause
+PLAUSIBLE = 0.65, 1.5  # ρ
+SMALLEST = 0.08  # of ρ - 1, below which it is no fault
+UNSURE = 0.03  # of ρ - 1, for what the ends of segments leave open
+
+
+@dataclass(frozen=True)
+class _Blocks:
+    """Match of each block's column with the log, and the columns' Gram matrix, known numbers integrated out."""
+
+    edges: np.ndarray
+    match: np.ndarray
+    gram: np.ndarray
+
+    def of_runs(self):
+        """Match and energy of every run of blocks, from its first block to before its last: (k + 1, k + 1) arrays."""
+        matches = np.r_[0.0, np.cumsum(self.match)]
+        grams = np.pad(np.cumsum(np.cumsum(self.gram, axis=0), axis=1), ((1, 0), (1, 0)))
+        own = np.diag(grams)
+        return matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T
+
+    def with_run(self, first, last):
+        """Inner products of a run with every other: (k + 1, k + 1) array."""
+        sums = np.r_[0.0, np.cumsum(self.gram[:, first:last].sum(axis=1))]
+        return sums[None, :] - sums[:, None]
+
+
+def clock_by_answer(case):
+    """A clock that runs wrong at one rate in a segment or two, if nothing else explains as much.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    Finding or None
+    """
+    record, known = case.record, case.known(())
+    edges = np.linspace(record.time[0], record.time[-1], max(int(np.ptp(record.time) / BLOCK), 4) + 1)
+    gain, finding = _most_likely(_blocks(case, edges, known))
+    if finding is None:
+        return None
+    rival, suspect, _ = weighed(case, fitted(case))[0]
+    if gain < rival + RIVAL:
+        return None
+    beside = [*known, *(column for group in probes(suspect) for column in group)] if rival > 0.0 else known
+    return _most_likely(_blocks(case, edges, beside))[1] and finding
+
+
+def with_rate(case, finding, logged):
+    """A finding on the clock with its rate settled: the first is about a motion that the wrong clock has bent.
+
+    Parameters
+    ----------
+    case : Case
+        Of the log with the finding repaired.
+    finding : Finding
+    logged : (n,) array
+        Time as logged of each row. [s]
+    """
+    time = case.record.time
+    inner = np.interp(np.ravel(finding.segments), logged, np.linspace(time[0], time[-1], len(logged)))
+    blocks = _blocks(case, np.r_[time[0], inner, time[-1]], case.known(()))
+    own = np.arange(1, len(inner), 2)
+    more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + SLAB**-2)
+    rate = finding.parameters["rate"]
+    return replace(finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))})
+
+
+def _most_likely(blocks):
+    """Gain of the likeliest runs of blocks, less the cost of choosing them, and the finding; 0 and None without."""
+    match, energy = blocks.of_runs()
+    count = len(blocks.edges) - 1
+    span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
+    block = blocks.edges[1] - blocks.edges[0]
+    allowed = (span * block >= SHORTEST) & (span <= LARGEST_SHARE * count)
+    cost = 2.0 * np.log(count)
+    gain, runs = 0.0, []
+    for _ in range(2):
+        at = _best(match, energy, allowed)
+        nats = _nats(match[at], energy[at]) - cost * (1 + len(runs))
+        if nats < gain + LEAST_GAIN * (not runs) or np.isneginf(nats):
+            break
+        gain, runs, value = nats, [*runs, at], match[at] / (energy[at] + SLAB**-2)
+        std = (energy[at] + SLAB**-2) ** -0.5
+        match, energy = match[at] + match, energy[at] + energy + 2.0 * blocks.with_run(*at)
+        first, last = at
+        allowed = allowed & ((np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last))
+    if not runs or not PLAUSIBLE[0] < 1.0 + value < PLAUSIBLE[1] or abs(value) < SMALLEST:
+        return 0.0, None
+    segments = tuple(sorted((float(blocks.edges[a]), float(blocks.edges[b])) for a, b in runs))
+    rate = {"rate": Estimate(1.0 + float(value), float(np.hypot(std, UNSURE * value)), "1")}
+    note = "the ship answers thrusters and wind at another rate than logged"
+    return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
+
+
+def _nats(match, energy):
+    precision = np.maximum(energy, 0.0) + SLAB**-2
+    return 0.5 * match**2 / precision - 0.5 * np.log(precision * SLAB**2)
+
+
+def _best(match, energy, allowed):
+    nats = np.where(allowed, _nats(match, energy), -np.inf)
+    return np.unravel_index(np.argmax(nats), nats.shape)
+
+
+def _blocks(case, edges, columns: list[Column]):
+    """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
+    record, count, others = case.record, len(edges) - 1, len(columns)
+    middle = Motion(*(0.5 * (value[:-1] + value[1:]) for value in case.motion))
+    moved = record.step * rows_first(motion_rates(middle, record.drivers(case.plant, 0.5), case.plant))
+    moved[~record.known[:-1]] = 0.0
+    place = np.clip(np.searchsorted(edges, record.time[:-1], side="right") - 1, 0, count - 1)
+    base = case.base_of(columns)
+    driven = np.zeros((*base.driven.shape[:2], count))
+    driven[np.arange(len(moved)), :6, place] = -moved
+    linear = with_columns(base, driven, np.zeros((*base.seen.shape[:2], count)))
+    products = gram(innovations(linear, case.noise, record)).products
+    theirs, own = slice(1, 1 + others), slice(1 + others, None)
+    inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
+    left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])
+    return _Blocks(edges, left[own, 0], left[own, own])

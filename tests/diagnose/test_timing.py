@@ -1,0 +1,38 @@
+"""A clock that runs wrong while a ship keeps still is told by how she answers, at its rate; a right one is not."""
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.repair import repaired
+from shipcosim.diagnose.timing import clock_by_answer, with_rate
+
+FIRST, LAST, RATE = 150.0, 300.0, 1.3
+
+
+def hurried(log):
+    """The log as a clock writes it that counts a second in FIRST to LAST of its own time while RATE pass."""
+    time = log["time"].values
+    pace = np.where((time[1:] > FIRST) & (time[1:] <= LAST), RATE, 1.0)
+    true = np.r_[0.0, np.cumsum(pace * np.diff(time))] + time[0]
+    rows = true <= time[-1]
+    table = {str(name): np.interp(true[rows], time, log[name].values) for name in log.data_vars}
+    for name in ("heading", "wind_from"):
+        table[name] = np.mod(np.interp(true[rows], time, np.unwrap(log[name].values, period=360.0)), 360.0)
+    return log.isel(time=rows).assign({name: ("time", values, log[name].attrs) for name, values in table.items()})
+
+
+def test_a_right_clock_is_not_suspected():
+    log = twin.logs()["healthy"]
+    assert clock_by_answer(twin.ready(log)) is None
+
+
+def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
+    log = hurried(twin.logs()["healthy"])
+    finding = clock_by_answer(twin.ready(log))
+    assert (finding.cause, finding.channels) == ("clock", ("time",))
+    ((first, last),) = finding.segments
+    assert abs(first - FIRST) < 20.0 and abs(last - LAST) < 20.0
+    right = repaired(log, [finding])
+    settled = with_rate(twin.ready(right), finding, right["logged_time"].values).parameters["rate"]
+    assert settled.estimate == pytest.approx(RATE, abs=0.05)
