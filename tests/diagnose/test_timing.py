@@ -1,11 +1,13 @@
 """A clock that runs wrong while a ship keeps still is told by how she answers, at its rate; a right one is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.repair import repaired
-from shipcosim.diagnose.timing import clock_by_answer, with_rate
+from shipcosim.diagnose.timing import clock_by_answer, is_testable, with_rate
 
 FIRST, LAST, RATE = 150.0, 300.0, 1.3
 
@@ -36,3 +38,13 @@ def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
     right = repaired(log, [finding])
     settled = with_rate(twin.ready(right), finding, right["logged_time"].values).parameters["rate"]
     assert settled.estimate == pytest.approx(RATE, abs=0.05)
+
+
+def test_a_clock_is_testable_where_the_ship_moves_and_not_where_nothing_happens():
+    case = twin.ready(twin.logs()["healthy"])
+    assert is_testable(case)
+    motion = case.motion
+    still = motion._replace(**{name: 0.0 * getattr(motion, name) for name in ("u", "v", "r")})
+    units = {name: (0.0 * speed, angle) for name, (speed, angle) in case.record.units.items()}
+    calm = replace(case.record, units=units, wind=tuple(0.0 * series for series in case.record.wind))
+    assert not is_testable(replace(case, motion=still, record=calm))

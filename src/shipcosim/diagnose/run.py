@@ -25,7 +25,7 @@ from shipcosim.diagnose.ranking import Case, at_first_sight, explain, fitted, pr
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.sensors import relabelled
-from shipcosim.diagnose.timing import clock_by_answer, with_rate
+from shipcosim.diagnose.timing import clock_by_answer, is_testable, with_rate
 from shipcosim.diagnose.verdict import MOST, STRANGE, gained, judge, not_testable
 from shipcosim.diagnose.wiring import put_right
 
@@ -325,4 +325,4 @@ def _not_testable(case, fits):
             groups.append((suspect, list(range(len(columns), len(columns) + len(group)))))
             columns.extend(group)
     products = gram(innovations(case.base_of(columns), case.noise, case.record)).products
-    return not_testable(case, products, columns, groups)
+    return (*not_testable(case, products, columns, groups), *(() if is_testable(case) else ("clock",)))

@@ -14,7 +14,7 @@ from shipcosim.diagnose.linear import innovations, rows_first, with_columns
 from shipcosim.diagnose.plant import Motion, motion_rates
 from shipcosim.diagnose.ranking import Column, fitted, probes, weighed
 
-__all__ = ["clock_by_answer", "with_rate"]
+__all__ = ["clock_by_answer", "is_testable", "with_rate"]
 
 SLAB = 0.25  # typical size of ρ - 1
 BLOCK = 12.0  # [s]
@@ -23,6 +23,7 @@ LEAST_GAIN = 8.0  # nats, after the cost of choosing the segment
 RIVAL = 5.0  # nats more than the likeliest cause
 PLAUSIBLE = 0.65, 1.5  # ρ
 SMALLEST = 0.08  # of ρ - 1, below which it is no fault
+TYPICAL, LASTS = 0.2, 240.0  # of ρ - 1, [s]; a wrong clock that a log should be able to show
 UNSURE = 0.03  # of ρ - 1, for what the ends of segments leave open
 
 
@@ -58,8 +59,7 @@ def clock_by_answer(case):
     -------
     Finding or None
     """
-    record, known = case.record, case.known(())
-    edges = np.linspace(record.time[0], record.time[-1], max(int(np.ptp(record.time) / BLOCK), 4) + 1)
+    known, edges = case.known(()), _edges(case)
     gain, finding = _most_likely(_blocks(case, edges, known))
     if finding is None:
         return None
@@ -88,6 +88,21 @@ def with_rate(case, finding, logged):
     more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + SLAB**-2)
     rate = finding.parameters["rate"]
     return replace(finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))})
+
+
+def is_testable(case):
+    """Whether a typical wrong clock, at any time of the log with even odds, would have gained enough to be seen."""
+    blocks = _blocks(case, _edges(case), case.known(()))
+    count = len(blocks.edges) - 1
+    span = max(int(LASTS / (blocks.edges[1] - blocks.edges[0])), 1)
+    energy = np.median(np.diagonal(blocks.of_runs()[1], offset=span))
+    return bool(_nats(TYPICAL * energy, energy) - 2.0 * np.log(count) > LEAST_GAIN)
+
+
+def _edges(case):
+    """Even edges of blocks."""
+    time = case.record.time
+    return np.linspace(time[0], time[-1], max(int(np.ptp(time) / BLOCK), 4) + 1)
 
 
 def _most_likely(blocks):
