@@ -13,14 +13,14 @@ from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.linear import SLOW_STD, SLOW_TIME, innovations
 from shipcosim.diagnose.noise import waves_of
 from shipcosim.diagnose.plant import shown
-from shipcosim.diagnose.ranking import gains, prepared, probes
+from shipcosim.diagnose.ranking import gains, prepared
 from shipcosim.diagnose.record import Record, first_motion
 from shipcosim.diagnose.sailing import Dp, sailed
 
 __all__ = ["healthy_records", "null_gains"]
 
 
-def null_gains(case, motion, wanted, *, count=50, seed=0, batch=10):
+def null_gains(case, motion, wanted, *, count=50, seed=0, batch=5):
     """Gain of suspects on healthy logs like this one.
 
     Parameters
@@ -48,9 +48,7 @@ def null_gains(case, motion, wanted, *, count=50, seed=0, batch=10):
         record = _some(records, slice(first, first + batch))
         here = prepared(replace(case, record=record, motion=first_motion(record, case.plant)), rounds=1)
         columns = case.known(())
-        added = [column for suspect in wanted for group in probes(suspect) for column in group]
-        linear = here.base_of([*columns, *added])
-        for products in gram(innovations(linear, case.noise, record)).products:
+        for products in gram(innovations(here.base, case.noise, record)).products:
             for gain, suspect, _ in gains(products, columns, np.zeros(len(columns)), wanted, case.plant):
                 found[suspect.label].append(gain)
     return {label: np.array(values) for label, values in found.items()}
