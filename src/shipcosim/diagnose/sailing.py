@@ -56,14 +56,26 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
         for name, pair in speeds.items():
             units[name].append(pair)
         if k < n - 1:
-            for part in drivers:
-                ship, rates = _moved(ship, rates, _at(part, k, speeds), ships, h / parts, dp)
+            for i, part in enumerate(drivers):
+                # a small ship answers within a row, through which a log's thrusters go on evenly
+                now = dp.speeds(told, record, k + (i + 0.5) / parts) if parts > 1 else speeds
+                ship, rates = _moved(ship, rates, _at(part, k, now), ships, h / parts, dp)
             if jolts is not None:
                 ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
             ship = dp.bounded(ship)
     motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
     series = {name: tuple(np.stack(s, axis=-1) for s in zip(*pairs, strict=True)) for name, pairs in units.items()}
     return motion, series
+
+
+def _between(series, row):
+    """A series at a row, or linearly between two."""
+    low = min(int(row), series.shape[-1] - 2)
+    return (
+        series[..., int(row)]
+        if row == int(row)
+        else (low + 1 - row) * series[..., low] + (row - low) * series[..., low + 1]
+    )
 
 
 def _at(drivers, k, units):
@@ -168,10 +180,13 @@ class Dp:
         return found
 
     def speeds(self, told, record, k):
-        """Speed and direction of each thruster: those that it is told anyway, changed by what the DP adds."""
+        """Speed and direction of each thruster: those that it is told anyway, changed by what the DP adds.
+
+        The row may be a broken number, for a time between two.
+        """
         found = {}
         for name, (along, across) in self._by_thruster(told).items():
-            unit, n, azimuth = self.pushers[name], record.units[name][0][..., k], record.units[name][1][..., k]
+            unit, (n, azimuth) = self.pushers[name], (_between(series, k) for series in record.units[name])
             if not unit.ahead:
                 found[name] = n + 0.0 * along, azimuth + 0.0 * along
                 continue
