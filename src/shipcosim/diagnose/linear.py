@@ -103,6 +103,9 @@ def beside(linear, extra):
     return with_columns(linear, extra.driven[..., 1:], extra.seen[..., 1:])
 
 
+_FASTEST = {"u": 100.0, "v": 100.0, "r": 10.0}  # m/s, rad/s: what runs away under a wrong label stays a number
+
+
 def advanced(motion, record, plant):
     """The motion one row later, from each row but the last, by a Runge-Kutta step or, for a small ship, several.
 
@@ -121,6 +124,8 @@ def advanced(motion, record, plant):
     for i in range(parts):
         drivers = [record.drivers(plant, (i + share) / parts) for share in (0.0, 0.5, 1.0)]
         motion = runge_kutta(motion, record.step / parts, drivers, plant)
+        fast = {name: np.clip(getattr(motion, name), -most, most) for name, most in _FASTEST.items()}
+        motion = motion._replace(**fast)
     return motion
 
 
