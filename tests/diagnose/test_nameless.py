@@ -81,3 +81,26 @@ def test_what_a_p_value_can_say_at_most_is_bounded():
     """Chi-squared of 8 parts at 31.8, p = 1e-4: -log(-e p log p) = 5.99."""
     sizes = 0.5 + np.sqrt(chi2.isf(1e-4, 8) / 8.0 * (1.0 / 400.0 + 0.05**2)) * np.array([1.0, -1.0] * 4)
     assert nameless._unsteady(fit_of_parts(sizes)) == pytest.approx(5.99, abs=0.01)
+
+
+def fit_of_numbers(theta, covariance):
+    """A fit without a cause whose known numbers are off by `theta` tolerances."""
+    return SimpleNamespace(suspects=(), columns=[None] * len(theta), theta=np.array(theta), covariance=covariance)
+
+
+def test_numbers_off_as_their_tolerances_say_are_no_surprise():
+    """Drawn from the prior and seen through measurements of many precisions, one in a thousand is strange at most."""
+    random = np.random.default_rng(3)
+    seen, turned = random.standard_normal((60, 20)), np.diag(np.geomspace(1e-2, 3.0, 20))
+    precision = turned @ seen.T @ seen @ turned / 30.0
+    covariance = np.linalg.inv(np.eye(20) + precision)
+    strange = 0
+    for _ in range(2000):
+        pull = precision @ random.standard_normal(20) + np.linalg.cholesky(precision) @ random.standard_normal(20)
+        strange += nameless._beyond(fit_of_numbers(covariance @ pull, covariance)) > STRANGE
+    assert strange <= 2
+
+
+def test_numbers_far_beyond_their_tolerances_are_strange():
+    assert nameless._beyond(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20))) > STRANGE
+    assert nameless._beyond(fit_of_numbers([2.0, -2.0, *[0.5] * 18], 0.1 * np.eye(20))) < 1.0

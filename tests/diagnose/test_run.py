@@ -60,7 +60,8 @@ def test_what_a_diagnosis_rests_on_comes_with_it(diagnosed):
     diagnosis, details = diagnosed("current")
     assert details.fit in details.fits and details.fit.label == "current"
     assert details.log.sizes["time"] == details.clean.sizes["time"] == 361
-    assert set(details.strange) == {"slow", "with the heading", "periodic", "in a channel", "from part to part"}
+    kinds = {"slow", "with the heading", "periodic", "in a channel", "from part to part", "beyond tolerances"}
+    assert set(details.strange) == kinds
     assert "current" not in diagnosis.not_testable
     gain = details.fit.score - next(fit.score for fit in details.fits if not fit.suspects)
     assert gain > 100.0 and details.chance == {}

@@ -22,7 +22,8 @@ def unexplained(case, fit):
 
     Forces of three kinds: slow ones in the body frame (a few hats over time), ones that go with the heading, and single
     sinusoids of any period, for which the search over periods is paid. Channels that are off by a constant, by a
-    factor, or drift. And whether the causes of the fit are as large in each part of the log.
+    factor, or drift. Whether the causes of the fit are as large in each part of the log. And whether the numbers of the
+    ship lie, taken together, within their tolerances.
 
     Parameters
     ----------
@@ -51,14 +52,13 @@ def unexplained(case, fit):
             place += basis.shape[-1]
             scores.append(evidence(products, here, centre)[0] - nothing)
         found[kind] = float(max(scores) - np.log(len(scores)))
-    return found | {"from part to part": _unsteady(fit)}
+    return found | {"from part to part": _unsteady(fit), "beyond tolerances": _beyond(fit)}
 
 
 def _unsteady(fit):
     """Evidence that a cause's size differs from part to part of the log by more than a tenth. [nats]
 
-    Each part pulls at the estimate; what it would pull by chance is known. The least likely pull is turned into the
-    most evidence that its p-value can be: -log(-e p log p) (Sellke, Bayarri and Berger 2001).
+    Each part pulls at the estimate; what it would pull by chance is known, and the least likely pull counts.
     """
     blocks, place, unlikely = fit.products.blocks, len(fit.columns), []
     for suspect in reversed(fit.suspects):
@@ -70,8 +70,25 @@ def _unsteady(fit):
             pull = blocks[:, 1 + i, 0] - blocks[:, 1 + i, 1:] @ fit.left
             chance = known * (1.0 + (_STEADY * size) ** 2 * known) + 1e-9
             unlikely.append(chi2.logsf((pull**2 / chance).sum(), len(blocks)))
-    p = min(unlikely, default=0.0) + np.log(max(len(unlikely), 1))
-    return float(-1.0 - p - np.log(-p)) if p < -1.0 else 0.0
+    return _most_evidence(min(unlikely, default=0.0) + np.log(max(len(unlikely), 1)))
+
+
+def _beyond(fit):
+    """Evidence that the known numbers lie farther off what they are known as than their tolerances say. [nats]
+
+    In units of the tolerances the posterior mean has, in each direction, the variance that the log took from that of
+    the prior; the sum of its squares is taken as a scaled chi-square of the same mean and variance.
+    """
+    known = len(fit.columns) - sum(len(suspect.knobs) for suspect in fit.suspects)
+    told = np.clip(1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known]), 1e-9, None)
+    mean, half_variance = told.sum(), (told**2).sum()
+    squares = (fit.theta[:known] ** 2).sum()
+    return _most_evidence(chi2.logsf(squares * mean / half_variance, mean**2 / half_variance))
+
+
+def _most_evidence(log_p):
+    """The most evidence that a p-value can be: -log(-e p log p) (Sellke, Bayarri and Berger 2001). [nats]"""
+    return float(-1.0 - log_p - np.log(-log_p)) if log_p < -1.0 else 0.0
 
 
 def _bases(case, fit):

@@ -7,6 +7,7 @@ import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.linear import beside, innovations, linearise
+from shipcosim.diagnose.noise import explained
 
 DIRECTIONS = 12
 ROUNDS = 5
@@ -132,22 +133,21 @@ def prepared(case, rounds=3):
     motion = case.motion
     for _ in range(rounds):
         alone = linearise(motion, case.record, case.plant, [])
-        motion = _smoothed(alone, innovations(alone, case.noise, case.record), case, motion)
+        motion = _smoothed(alone, innovations(alone, case.noise, case.record).white[..., 0], case, motion)
     base = linearise(motion, case.record, case.plant, [column.turns for column in case.basis])
     return replace(case, motion=motion, base=base)
 
 
-def _smoothed(linear, filtered, case, motion):
+def _smoothed(linear, white, case, motion):
     """The motion to linearise about next: that of the ship as the problem has her, as far as she can follow the log.
 
     Where she cannot, the measurements rule: jolts are as much larger as the innovations' mean square is. Otherwise a
     boat whose propeller has lost a third of its thrust is smoothed far off her track, and nothing is found about that.
     """
-    alone = linear._replace(driven=linear.driven[..., :1], seen=linear.seen[..., :1])
-    misfit = (filtered.white[..., 0] ** 2).sum((0, -1)) / linear.whole.sum((0, -1))
+    misfit = (white**2).sum((0, -1)) / linear.whole.sum((0, -1))
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(case.noise.jolt)
     noise = replace(case.noise, jolt=jolt, walk=np.broadcast_to(case.noise.walk, jolt.shape))
-    return innovations(alone, noise, case.record, motion).motion
+    return innovations(linear, noise, case.record, motion).motion
 
 
 def _key(column):
@@ -200,7 +200,10 @@ def _posterior(case, suspects, values, columns, linear, plant, motion):
     values, knobs = dict(values), [knob for suspect in suspects for knob in suspect.knobs]
     deviations = np.sqrt(np.diag(covariance))[theta.size - len(knobs) :]
     std = {knob.paths[0]: float(d * knob.typical) for knob, d in zip(knobs, deviations, strict=True)}
-    rest = (columns, linear, products, theta, covariance, centre, plant, _smoothed(linear, filtered, case, motion))
+    left = theta - centre
+    white = filtered.white[..., 0] - filtered.white[..., 1:] @ left
+    motion = _smoothed(explained(linear, left), white, case, motion)
+    rest = (columns, linear, products, theta, covariance, centre, plant, motion)
     return Fit(tuple(suspects), values, std, score, *rest)
 
 

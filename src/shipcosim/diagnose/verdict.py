@@ -35,6 +35,7 @@ MOST = 2
 """Causes at once that are named. Where a third is needed, one that nobody knows is likelier than three at once."""
 _LITTLE = 12.0  # nats, that a few wrong rows may give a cause
 _ROUGH = 0.02  # of the gain of large causes, whose laws are never that exact
+_AS_THEY_ARE = ("from part to part", "beyond tolerances")  # errors without a name that allow for that themselves
 
 
 @dataclass(frozen=True)
@@ -81,8 +82,7 @@ def judge(fits, strange, chance=None):
     best = _steadiest(sorted(fair, key=lambda fit: -fit.score), strange)
     scores = [fit.score if fit.suspects else fit.score + ENOUGH for fit in fair]
     candidates = _candidates(dict(zip(fair, _weights(scores), strict=True)))
-    odd = max(strange(best).values())
-    if len(best.suspects) > MOST or odd > max(STRANGE, _ROUGH * (best.score - nothing.score)):
+    if len(best.suspects) > MOST or _is_odd(strange(best), best.score - nothing.score):
         return Judgement("unknown", best, (), candidates, ())
     if not best.suspects:
         return Judgement("consistent", best, (), candidates, ())
@@ -96,6 +96,12 @@ def judge(fits, strange, chance=None):
         findings = tuple(f for f in findings if f.label in shared)
         return Judgement("ambiguous", best, findings, candidates, same, tuple(rivals))
     return Judgement("named", best, findings, candidates, ())
+
+
+def _is_odd(gains, worth):
+    """Whether errors without a name gain more than the worth of the causes lets one expect."""
+    rough = max(STRANGE, _ROUGH * worth)
+    return any(gain > (STRANGE if kind in _AS_THEY_ARE else rough) for kind, gain in gains.items())
 
 
 def _steadiest(ranked, strange):

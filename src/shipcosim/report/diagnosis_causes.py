@@ -17,6 +17,7 @@ STRANGE_KINDS = {
     "slow": "a slow force in the ship's frame",
     "with the heading": "a force that goes with the heading",
     "from part to part": "the best cause's size, from part to part of the log",
+    "beyond tolerances": "the ship's numbers, farther off than their tolerances say",
     "periodic": "a periodic force",
     "in a channel": "an error of a channel",
 }
