@@ -174,8 +174,8 @@ def test_reversal_reverses_each_azimuth_thruster_in_turn_for_most_of_a_minute():
 
 def test_free_drift_has_idle_thrusters_for_three_minutes():
     time, _, units = sailing(pick("free drift"))
-    idle = np.all([np.abs(n) < 0.01 for n, _ in units.values()], axis=0)
-    assert idle.sum() * (time[1] - time[0]) > 150.0
+    idle = np.all([np.abs(n) < 1.0 for n, _ in units.values()], axis=0)
+    assert idle.sum() * (time[1] - time[0]) > 170.0
 
 
 def test_circle_turns_once_round_on_the_spot():
