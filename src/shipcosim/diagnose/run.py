@@ -176,8 +176,8 @@ def _looked_closer(clean, case, fits, plant, catalogue):
     faults, began, healthy = [], None, _is_healthy(case, fits[0])
     while len(faults) < _FAULTS and not healthy:
         better = _with_right_drivers(clean, case, fits, plant, catalogue)
-        if better is None:
-            break
+        if better is None or any(set(better[0].channels) & set(fault.channels) for fault in faults):
+            break  # nothing, or what a channel already put right elsewhere cannot be: something else is wrong with it
         fault, clean, case, fits = better
         faults.append(fault)
         healthy = _is_healthy(case, fits[0])

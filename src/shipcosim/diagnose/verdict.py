@@ -29,7 +29,7 @@ APART = 3.0
 """Sets of causes closer than this cannot be told apart. [nats]"""
 TESTABLE = 8.0
 """What a cause of typical size would have to gain, or this log could not have shown it. [nats]"""
-STRANGE = 6.0
+STRANGE = 8.0
 """An error without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
 MOST = 2
 """Causes at once that are named. Where a third is needed, one that nobody knows is likelier than three at once."""
@@ -82,7 +82,8 @@ def judge(fits, strange, chance=None):
     best = _steadiest(sorted(fair, key=lambda fit: -fit.score), strange)
     scores = [fit.score if fit.suspects else fit.score + ENOUGH for fit in fair]
     candidates = _candidates(dict(zip(fair, _weights(scores), strict=True)))
-    if len(best.suspects) > MOST or _is_odd(strange(best), best.score - nothing.score):
+    worth = best.score - nothing.score
+    if len(best.suspects) > MOST or all(_is_odd(strange(fit), worth) for fit in (best, *_with_a_trifle(best, fits))):
         return Judgement("unknown", best, (), candidates, ())
     if not best.suspects:
         return Judgement("consistent", best, (), candidates, ())
@@ -121,7 +122,7 @@ def labels(fit):
 def admissible(fit, fits, chance):
     """Whether each cause of a set is large enough to matter, within its bounds, and gains more than by chance."""
     for suspect in fit.suspects:
-        size = np.hypot.reduce([(fit.values[k.paths[0]] - k.neutral) / k.typical for k in suspect.knobs])
+        size = _size(suspect, fit)
         sure = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in suspect.knobs]) / np.sqrt(len(suspect.knobs))
         at_bound = any(
             fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in suspect.knobs
@@ -131,6 +132,21 @@ def admissible(fit, fits, chance):
         if gained(suspect, fit, fits) < ENOUGH + max(chance.get(suspect.label, 0.0), 0.0):
             return False
     return True
+
+
+def _size(suspect, fit):
+    """Of a cause in a fit, in units of its typical size."""
+    return np.hypot.reduce([(fit.values[k.paths[0]] - k.neutral) / k.typical for k in suspect.knobs])
+
+
+def _with_a_trifle(best, fits):
+    """The likeliest fit with one more cause that is too small to matter, if any: what is odd without it has a name."""
+    for fit in sorted(fits, key=lambda fit: -fit.score):
+        more = [suspect for suspect in fit.suspects if suspect not in best.suspects]
+        if len(more) == 1 and len(fit.suspects) == len(best.suspects) + 1 and fit.score > best.score + ENOUGH:
+            if _size(more[0], fit) < more[0].effect.least:
+                return [fit]
+    return []
 
 
 def gained(suspect, fit, fits):
