@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from .drive import Thruster, at_rest, drive_step
+from .drive import at_rest, drive_step
 from .kinematics import load_at, velocity_at
 from .maths import clip, cos, exp, hypot, pi, sin, sqrt, where, wrap
 from .propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
