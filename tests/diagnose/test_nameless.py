@@ -104,3 +104,7 @@ def test_numbers_off_as_their_tolerances_say_are_no_surprise():
 def test_numbers_far_beyond_their_tolerances_are_strange():
     assert nameless._beyond(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20))) > STRANGE
     assert nameless._beyond(fit_of_numbers([2.0, -2.0, *[0.5] * 18], 0.1 * np.eye(20))) < 1.0
+
+
+def test_what_is_beyond_all_chance_is_strange_by_a_number():
+    assert STRANGE < nameless._beyond(fit_of_numbers([300.0] * 20, 0.1 * np.eye(20))) < 700.0

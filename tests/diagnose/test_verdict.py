@@ -166,3 +166,13 @@ def test_a_cause_that_differs_from_part_to_part_gives_way_if_it_gains_little_and
 
     assert verdict(fit(10.0, "mass"), strange=strange).verdict == "consistent"
     assert verdict(fit(40.0, "mass"), strange=strange).verdict == "unknown"
+
+
+def test_what_a_cause_too_small_to_matter_explains_is_no_error_without_a_name():
+    def strange(of):
+        return {"slow": 20.0 if not of.suspects else -5.0}
+
+    trifle = fit(40.0, "mass", size=0.9 * EVERYONE["mass"].effect.least)
+    assert verdict(trifle, strange=strange).verdict == "consistent"
+    assert verdict(fit(40.0, "mass", mass_scale=2.5), strange=strange).verdict == "unknown"
+    assert verdict(trifle, strange=lambda _: {"slow": 20.0}).verdict == "unknown"

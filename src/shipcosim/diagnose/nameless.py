@@ -14,6 +14,7 @@ PERIODS = 28
 _STEADY = 0.1  # of a cause's size, by which its law may be wrong from part to part (assumed)
 _SIZE = 1e-3  # m/s2, of a force that matters; 500 N on 500 t
 _OFF = (1.0, 1.0, np.radians(1.0), 0.03, 0.03, np.radians(0.03))  # of a channel: m, m, rad, m/s, m/s, rad/s
+_LEAST_LOG = -700.0  # of a p-value; smaller ones are 0 to the machine
 _LEVER = 4.0  # lengths of a ship over its radius of gyration, to turn that into a rate of yaw
 
 
@@ -88,6 +89,7 @@ def _beyond(fit):
 
 def _most_evidence(log_p):
     """The most evidence that a p-value can be: -log(-e p log p) (Sellke, Bayarri and Berger 2001). [nats]"""
+    log_p = max(log_p, _LEAST_LOG)
     return float(-1.0 - log_p - np.log(-log_p)) if log_p < -1.0 else 0.0
 
 
