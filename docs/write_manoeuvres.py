@@ -9,10 +9,10 @@ import numpy as np
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.effects import read_catalogue, suspects
-from shipcosim.diagnose.linear import Noise
 from shipcosim.diagnose.manoeuvres import library
 from shipcosim.diagnose.plant import plant_of
 from shipcosim.diagnose.prescription import testability
+from shipcosim.diagnose.whitening import Noise
 from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from shipcosim.diagnose import linear as problem
-from shipcosim.diagnose.linear import STATES, Linear, Noise, innovations, log_likelihoods
+from shipcosim.diagnose.linear import STATES, Linear
+from shipcosim.diagnose.whitening import Noise, innovations, log_likelihoods
 
 ROWS, COLUMNS, LEVELS, REPEATS = 2400, 60, 24, 5
 COLUMNS_TO_REACH, LEVELS_TO_REACH = 3.0, 3.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.linear import Innovations
+from shipcosim.diagnose.whitening import Innovations
 
 
 def problem(n, truth, seed=0):

@@ -74,6 +74,17 @@ def test_samples_between_both_sides_of_north_are_a_heading_wrap():
     assert np.isnan(again[[row + 1 for row in crossing]]).all()
 
 
+def test_a_heading_wrap_is_found_where_a_sample_beside_it_is_missing():
+    log = measured(seed=5)
+    row = int(np.argmax(np.abs(np.diff(np.round(log["heading"], 1))) > 180.0))
+    raw = log["heading"].copy()
+    for k in range(1, 4):
+        raw[row + k] = raw[row] + (raw[row + 4] - raw[row]) * k / 4.0
+    raw[row + 4 : row + 6] = np.nan
+    found = [finding for finding in examine(table(log | {"heading": raw})) if finding.cause == "heading_wrap"]
+    assert [finding.segments for finding in found] == [((float(row + 1), float(row + 3)),)]
+
+
 @pytest.mark.parametrize("lost", ["value", "row"])
 def test_a_heading_wrap_is_found_where_a_sample_of_it_is_missing(lost):
     log = measured(seed=5)

@@ -7,24 +7,20 @@ import pytest
 from diagnose import twin
 from scipy.linalg import expm
 
-from shipcosim.diagnose.linear import (
-    STATES,
+from shipcosim.diagnose.linear import STATES, Linear, advanced, linearise, rows_first
+from shipcosim.diagnose.plant import Motion, motion_rates, shown
+from shipcosim.diagnose.record import first_motion, record_of
+from shipcosim.diagnose.whitening import (
     WAVE_DAMPING,
-    Linear,
     Noise,
     _lost,
     _process,
     _uncertain,
     _waves_ahead,
-    advanced,
     innovations,
-    linearise,
     log_likelihoods,
     oscillation,
-    rows_first,
 )
-from shipcosim.diagnose.plant import Motion, motion_rates, shown
-from shipcosim.diagnose.record import first_motion, record_of
 
 NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]), 2.0 * twin.WHITE[3:], 1.1)
 WRONG = {

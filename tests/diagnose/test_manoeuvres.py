@@ -9,15 +9,17 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.effects import read_catalogue, suspects
-from shipcosim.diagnose.linear import Noise, innovations, linearise
+from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.manoeuvres import LONGEST, Manoeuvre, cannot_turn, library, planned, step_for, true_wind
 from shipcosim.diagnose.plant import Motion, Plant, plant_of
 from shipcosim.diagnose.prescription import CLEAR, prescribe, separations
 from shipcosim.diagnose.prescription import testability as nats_of
-from shipcosim.diagnose.ranking import Case, Column, explain, prepared
+from shipcosim.diagnose.ranking import Case, Column, prepared
 from shipcosim.diagnose.record import Record, first_motion
 from shipcosim.diagnose.sailing import Dp, sailed
+from shipcosim.diagnose.search import explain
 from shipcosim.diagnose.verdict import judge
+from shipcosim.diagnose.whitening import Noise, innovations
 from shipcosim.models.wind import apparent_wind
 
 NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]))

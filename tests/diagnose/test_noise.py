@@ -7,9 +7,10 @@ import pytest
 from diagnose import twin
 from scipy.stats import chi2
 
-from shipcosim.diagnose.linear import Noise, innovations, linearise
+from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.noise import explained, first_noise, tuned
 from shipcosim.diagnose.record import first_motion, record_of
+from shipcosim.diagnose.whitening import Noise, innovations
 
 TRUTH = Noise(2.0 * twin.WHITE, np.array([0.02, 0.02, 2e-3]), np.array([1e-3, 1e-3, 5e-5]), 4.0 * twin.WHITE[3:], 1.2)
 NO_LIMIT = np.full(3, 1.0)

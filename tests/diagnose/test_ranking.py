@@ -5,7 +5,8 @@ import pytest
 from diagnose import twin
 from diagnose.twin import case, fits
 
-from shipcosim.diagnose.ranking import _one_way, _simplify, fitted, probes, weighed
+from shipcosim.diagnose.ranking import _one_way, fitted, probes, weighed
+from shipcosim.diagnose.search import _simplify
 
 NAMES = {
     "current": {"current"},

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.diagnose import timing
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.timing import clock_by_answer, is_testable, with_rate
 
@@ -48,3 +49,14 @@ def test_a_clock_is_testable_where_the_ship_moves_and_not_where_nothing_happens(
     units = {name: (0.0 * speed, angle) for name, (speed, angle) in case.record.units.items()}
     calm = replace(case.record, units=units, wind=tuple(0.0 * series for series in case.record.wind))
     assert not is_testable(replace(case, motion=still, record=calm))
+
+
+def test_a_compass_that_deviates_with_the_heading_is_no_clock():
+    """While she turns it tells of more or less turning, as a wrong clock would; her way goes on at the right rate."""
+    log = twin.logs()["healthy"]
+    heading = log["heading"].values
+    deviated = np.mod(heading + 15.0 * np.sin(np.radians(heading) + 4.5), 360.0)
+    case = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
+    gain, finding = timing._most_likely(timing._blocks(case, timing._edges(case), case.known(())))
+    assert gain > 30.0 and finding.cause == "clock"
+    assert not timing._is_said_by_both(case, finding, case.known(())) and clock_by_answer(case) is None

@@ -14,11 +14,12 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.effects import read_catalogue
-from shipcosim.diagnose.linear import STATES, _process, _uncertain
+from shipcosim.diagnose.linear import STATES
 from shipcosim.diagnose.noise import waves_of
 from shipcosim.diagnose.plant import Drivers, Motion, motion_rates, plant_of, shown
-from shipcosim.diagnose.ranking import explain
 from shipcosim.diagnose.run import prepare
+from shipcosim.diagnose.search import explain
+from shipcosim.diagnose.whitening import _process, _uncertain
 from shipcosim.models.wind import apparent_wind
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system

@@ -10,9 +10,10 @@ import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.linear import innovations, linearise
+from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, negative, undone
 from shipcosim.diagnose.record import record_of
+from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["best_run", "suspected", "where_best", "with_label"]
 

@@ -15,6 +15,7 @@ SHORTEST_GAP = 10.0  # [s] below it is an ordinary dropout
 FEWEST_ROWS = 5
 CHANCE = 1e-7  # of a run that long anywhere in the log
 LONGEST_WRAP = 6  # samples
+NEAR_NORTH, SPINNING = 45.0, 15.0  # deg off north; deg/s, faster than a ship turns
 LEAP, FEWEST_LEAPS = 5.0, 3  # times the way told, rows: a single leap can be another reference
 LEAPING = "the ship leaps many times faster than she goes"
 NO_ROWS, NO_VALUES, HELD, STRAIGHT = (
@@ -221,6 +222,7 @@ def wraps(log: dict) -> list[Finding]:
             crossing |= _long_way(time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine)
         for row in np.flatnonzero(crossing):
             bad[row + 1 : row + 1 + between] = True
+    bad |= _round_south(log)
     segments = tuple((float(time[first]), float(time[last - 1])) for first, last in runs(bad))
     note = "samples lie on the long way round between both sides of north"
     return [Finding("heading_wrap", None, "data", 1.0, {}, segments, ("heading",), note=note)] if segments else []
@@ -240,6 +242,25 @@ def _long_way(time, heading, a, b, tolerance):
         some |= np.isfinite(here)
         crossing &= ~(np.abs(here - (a + (b - a) * share)) >= tolerance)
     return crossing & some
+
+
+def _round_south(log):
+    """Samples of the same kind where those at the ends are missing: far from north between some that are near it.
+
+    They come and go within a few rows, much faster than the ship turns.
+    """
+    bad, known = np.zeros(len(log["heading"]), bool), np.flatnonzero(np.isfinite(log["heading"]))
+    time, heading = log["time"][known], np.mod(log["heading"][known] + 180.0, 360.0) - 180.0
+    change = np.abs(np.mod(np.diff(heading) + 180.0, 360.0) - 180.0) / np.diff(time)
+    turning = np.nan_to_num(np.abs(log["yaw_rate"][known])) if "yaw_rate" in log else np.zeros(len(known))
+    longest = (2 * LONGEST_WRAP + 1.5) * np.median(np.diff(log["time"]))
+    for first, last in runs(np.abs(heading) > NEAR_NORTH):
+        if first == 0 or last == len(known) or time[last] - time[first - 1] > longest:
+            continue
+        fastest = max(change[first - 1], change[last - 1])
+        if fastest > max(SPINNING, 3.0 * turning[first - 1 : last + 1].max()):
+            bad[known[first:last]] = True
+    return bad
 
 
 def outliers(log: dict) -> dict[str, np.ndarray]:

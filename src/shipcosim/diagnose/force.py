@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.linear import innovations, linearise
+from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.predict import mass_matrix
 from shipcosim.diagnose.thrusters import pusher_of
+from shipcosim.diagnose.whitening import innovations
 from shipcosim.models.kinematics import to_body, to_ned
 
 _LEARNING = 10.0  # s, how fast the force may change; faster, noise is taken for force

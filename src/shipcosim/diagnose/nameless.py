@@ -4,8 +4,9 @@ import numpy as np
 from scipy.stats import chi2
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.linear import innovations, with_columns
+from shipcosim.diagnose.linear import with_columns
 from shipcosim.diagnose.plant import shown
+from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["HATS", "PERIODS", "unexplained"]
 

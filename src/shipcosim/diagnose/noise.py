@@ -4,7 +4,8 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from shipcosim.diagnose.linear import Linear, Noise, log_likelihoods, oscillation
+from shipcosim.diagnose.linear import Linear
+from shipcosim.diagnose.whitening import Noise, log_likelihoods, oscillation
 
 __all__ = ["explained", "first_noise", "tuned", "waves_of"]
 

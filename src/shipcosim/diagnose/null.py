@@ -10,12 +10,13 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.diagnose.evidence import gram
-from shipcosim.diagnose.linear import SLOW_STD, SLOW_TIME, innovations
+from shipcosim.diagnose.linear import SLOW_STD, SLOW_TIME
 from shipcosim.diagnose.noise import waves_of
 from shipcosim.diagnose.plant import shown
 from shipcosim.diagnose.ranking import gains, prepared
 from shipcosim.diagnose.record import Record, first_motion
 from shipcosim.diagnose.sailing import Dp, sailed
+from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["healthy_records", "null_gains"]
 

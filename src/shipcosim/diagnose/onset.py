@@ -3,8 +3,10 @@
 import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.linear import beside, innovations
-from shipcosim.diagnose.ranking import at_first_sight, explain, fitted, probes, without_causes
+from shipcosim.diagnose.linear import beside
+from shipcosim.diagnose.ranking import fitted, probes
+from shipcosim.diagnose.search import at_first_sight, explain, without_causes
+from shipcosim.diagnose.whitening import innovations
 
 _BLOCK = 60.0  # s
 _BLIND = 2  # blocks after an onset, in which the filter still answers to it

@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.linear import Linear, advanced, innovations, rows_first, runge_kutta
+from shipcosim.diagnose.linear import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.plant import Motion, shown
+from shipcosim.diagnose.whitening import innovations
 from shipcosim.models.instruments import motion_of
 from shipcosim.models.kinematics import to_body, to_ned
 

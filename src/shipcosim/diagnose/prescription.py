@@ -8,11 +8,12 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.evidence import evidence
 from shipcosim.diagnose.finding import Prescription
-from shipcosim.diagnose.linear import beside, innovations, linearise, rows_first
+from shipcosim.diagnose.linear import beside, linearise, rows_first
 from shipcosim.diagnose.manoeuvres import cannot_turn, library, planned, rows_of, sized, step_for, true_wind
 from shipcosim.diagnose.plant import Motion, current_at, shown
 from shipcosim.diagnose.ranking import Case, probes
 from shipcosim.diagnose.sailing import Dp, sailed
+from shipcosim.diagnose.whitening import innovations
 
 CLEAR = 10.0
 """Expected difference in log-evidence that separates two causes. [nats]

@@ -12,7 +12,6 @@ from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.examine import examine
 from shipcosim.diagnose.finding import Diagnosis, Finding
 from shipcosim.diagnose.law import lawful
-from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.mislabels import mislabel_of
 from shipcosim.diagnose.nameless import unexplained
@@ -21,12 +20,14 @@ from shipcosim.diagnose.null import null_gains
 from shipcosim.diagnose.onset import from_onset
 from shipcosim.diagnose.plant import plant_of
 from shipcosim.diagnose.prescription import prescribe
-from shipcosim.diagnose.ranking import Case, at_first_sight, explain, fitted, prepared, probes, weighed, without_causes
+from shipcosim.diagnose.ranking import Case, fitted, prepared, probes, weighed
 from shipcosim.diagnose.record import first_motion, record_of
 from shipcosim.diagnose.repair import repaired
+from shipcosim.diagnose.search import at_first_sight, explain, without_causes
 from shipcosim.diagnose.sensors import relabelled
 from shipcosim.diagnose.timing import clock_by_answer, is_testable, with_rate
 from shipcosim.diagnose.verdict import MOST, STRANGE, gained, judge, not_testable
+from shipcosim.diagnose.whitening import innovations
 from shipcosim.diagnose.wiring import put_right
 
 __all__ = ["Details", "diagnose", "prepare"]

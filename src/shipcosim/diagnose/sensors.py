@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shipcosim.diagnose.drivers import where_best, with_label
-from shipcosim.diagnose.linear import innovations, linearise
+from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_of
 from shipcosim.diagnose.motion import filter_for, is_clear, position_motion
 from shipcosim.diagnose.noise import first_noise
 from shipcosim.diagnose.record import CHANNELS, first_motion, record_of
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.tables import inside
+from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["Relabelled", "relabelled"]
 

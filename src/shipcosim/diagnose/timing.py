@@ -10,9 +10,11 @@ import numpy as np
 
 from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.finding import Estimate, Finding
-from shipcosim.diagnose.linear import innovations, rows_first, with_columns
+from shipcosim.diagnose.linear import rows_first, with_columns
 from shipcosim.diagnose.plant import Motion, motion_rates
 from shipcosim.diagnose.ranking import Column, fitted, probes, weighed
+from shipcosim.diagnose.tables import inside
+from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["clock_by_answer", "is_testable", "with_rate"]
 
@@ -25,6 +27,8 @@ PLAUSIBLE = 0.65, 1.5  # ρ
 SMALLEST = 0.08  # of ρ - 1, below which it is no fault
 TYPICAL, LASTS = 0.2, 240.0  # of ρ - 1, [s]; a wrong clock that a log should be able to show
 UNSURE = 0.03  # of ρ - 1, for what the ends of segments leave open
+WAY, TURNING = [0, 1, 3, 4], [2, 5]  # states of the motion
+ALIKE = 0.3  # of ρ - 1, by which both sides may differ beyond chance
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,21 @@ def clock_by_answer(case):
     if gain < rival + RIVAL:
         return None
     beside = [*known, *(column for group in probes(suspect) for column in group)] if rival > 0.0 else known
-    return _most_likely(_blocks(case, edges, beside))[1] and finding
+    if _most_likely(_blocks(case, edges, beside))[1] is None or not _is_said_by_both(case, finding, known):
+        return None
+    return finding
+
+
+def _is_said_by_both(case, finding, known):
+    """Whether the ship's way and her turning do not contradict each other: a compass can be wrong alone."""
+    here = inside(0.5 * (case.record.time[:-1] + case.record.time[1:]), finding.segments)
+    moved, driven = _moved(case), np.zeros((len(here), 6, 2))
+    for side, states in enumerate((WAY, TURNING)):
+        driven[:, states, side] = -moved[:, states] * here[:, None]
+    match, gram = _left(case, known, driven)
+    covariance = np.linalg.inv(gram + SLAB**-2 * np.eye(2))
+    (way, turning), (one, other) = covariance @ match, np.sqrt(np.diag(covariance))
+    return abs(way - turning) < 3.0 * np.hypot(one, other) + ALIKE * abs(finding.parameters["rate"].estimate - 1.0)
 
 
 def with_rate(case, finding, logged):
@@ -144,17 +162,26 @@ def _best(match, energy, allowed):
 
 def _blocks(case, edges, columns: list[Column]):
     """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
-    record, count, others = case.record, len(edges) - 1, len(columns)
-    middle = Motion(*(0.5 * (value[:-1] + value[1:]) for value in case.motion))
+    count, moved = len(edges) - 1, _moved(case)
+    place = np.clip(np.searchsorted(edges, case.record.time[:-1], side="right") - 1, 0, count - 1)
+    driven = np.zeros((len(moved), 6, count))
+    driven[np.arange(len(moved)), :, place] = -moved
+    return _Blocks(edges, *_left(case, columns, driven))
+
+
+def _moved(case):
+    """What each step moves the ship, (n-1, 6) array."""
+    record, middle = case.record, Motion(*(0.5 * (value[:-1] + value[1:]) for value in case.motion))
     moved = record.step * rows_first(motion_rates(middle, record.drivers(case.plant, 0.5), case.plant))
-    moved[~record.known[:-1]] = 0.0
-    place = np.clip(np.searchsorted(edges, record.time[:-1], side="right") - 1, 0, count - 1)
-    base = case.base_of(columns)
-    driven = np.zeros((*base.driven.shape[:2], count))
-    driven[np.arange(len(moved)), :6, place] = -moved
-    linear = with_columns(base, driven, np.zeros((*base.seen.shape[:2], count)))
-    products = gram(innovations(linear, case.noise, record)).products
+    return np.where(record.known[:-1, None], moved, 0.0)
+
+
+def _left(case, columns, driven):
+    """Match with the log of further columns, (n-1, 6, k), and their Gram matrix, less what other columns explain."""
+    base, others = case.base_of(columns), len(columns)
+    linear = with_columns(base, driven, np.zeros((*base.seen.shape[:2], driven.shape[-1])))
+    products = gram(innovations(linear, case.noise, case.record)).products
     theirs, own = slice(1, 1 + others), slice(1 + others, None)
     inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
     left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])
-    return _Blocks(edges, left[own, 0], left[own, own])
+    return left[own, 0], left[own, own]

@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcosim.diagnose.evidence import evidence
 from shipcosim.diagnose.finding import Candidate, Estimate, Finding
-from shipcosim.diagnose.ranking import names, without_causes
+from shipcosim.diagnose.search import names, without_causes
 
 __all__ = [
     "APART",

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from shipcosim.diagnose.linear import innovations
 from shipcosim.diagnose.noise import explained
-from shipcosim.diagnose.ranking import without_causes
+from shipcosim.diagnose.search import without_causes
 from shipcosim.diagnose.verdict import ENOUGH, STRANGE
+from shipcosim.diagnose.whitening import innovations
 from shipcosim.report.diagnosis_data import TIME, line, panel, rounded
 from shipcosim.report.diagnosis_units import plain, span
 from shipcosim.report.diagnosis_words import title

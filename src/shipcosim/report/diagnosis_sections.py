@@ -4,7 +4,7 @@ import numpy as np
 
 from shipcosim.diagnose.gain import rms
 from shipcosim.diagnose.manoeuvres import cannot_turn, library
-from shipcosim.diagnose.ranking import without_causes
+from shipcosim.diagnose.search import without_causes
 from shipcosim.diagnose.verdict import gained
 from shipcosim.report import diagnosis_causes as causes
 from shipcosim.report import diagnosis_error as error
