@@ -85,6 +85,15 @@ def test_a_heading_wrap_is_found_where_a_sample_beside_it_is_missing():
     assert [finding.segments for finding in found] == [((float(row + 1), float(row + 3)),)]
 
 
+def test_samples_of_a_heading_wrap_that_lie_near_north_are_cut_out_with_it():
+    log = measured(seed=5)
+    row = int(np.argmax(np.abs(np.diff(np.round(log["heading"], 1))) > 180.0))
+    raw = log["heading"].copy()
+    raw[row + 1 : row + 3] = raw[row] + (raw[row + 3] - raw[row]) * np.array([0.08, 0.6])
+    found = [finding for finding in examine(table(log | {"heading": raw})) if finding.cause == "heading_wrap"]
+    assert [finding.segments for finding in found] == [((float(row + 1), float(row + 2)),)]
+
+
 @pytest.mark.parametrize("lost", ["value", "row"])
 def test_a_heading_wrap_is_found_where_a_sample_of_it_is_missing(lost):
     log = measured(seed=5)

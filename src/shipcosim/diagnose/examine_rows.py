@@ -257,8 +257,10 @@ def _round_south(log):
     for first, last in runs(np.abs(heading) > NEAR_NORTH):
         if first == 0 or last == len(known) or time[last] - time[first - 1] > longest:
             continue
-        fastest = max(change[first - 1], change[last - 1])
-        if fastest > max(SPINNING, 3.0 * turning[first - 1 : last + 1].max()):
+        limit = max(SPINNING, 3.0 * turning[first - 1 : last + 1].max())
+        if max(change[first - 1], change[last - 1]) > limit:
+            first -= first > 1 and change[first - 2] > limit  # samples near north may lie on the line too
+            last += last < len(change) and change[last] > limit
             bad[known[first:last]] = True
     return bad
 
