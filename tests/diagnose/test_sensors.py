@@ -7,7 +7,7 @@ from diagnose import twin
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.mislabels import POSITION_LABELS, negative
-from shipcosim.diagnose.sensors import relabelled
+from shipcosim.diagnose.sensors import _matters, relabelled
 
 
 def said(label):
@@ -40,3 +40,12 @@ def test_units_stretch_the_density_of_their_channels():
     assert better.faults[0].note == "surge and sway are in kn, not m/s"
     rows = 2 * np.isfinite(healthy["surge"].values).sum()
     np.testing.assert_allclose(better.stretch, -rows * np.log(3600.0 / 1852.0), rtol=1e-6)
+
+
+def test_near_north_earth_fixed_is_body_fixed_and_no_fault():
+    healthy = twin.logs()["healthy"]
+    earth = next(label for label in POSITION_LABELS if "velocity towards north" in label.sentence)
+    for heading, matters in ((20.0, False), (90.0, True)):
+        kept = healthy.assign(heading=("time", np.full(healthy.sizes["time"], heading), healthy["heading"].attrs))
+        assert _matters(kept, earth) is matters
+    assert _matters(kept, negative("surge"))

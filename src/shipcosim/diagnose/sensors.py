@@ -24,6 +24,7 @@ LABELS = (HEADING_LABELS[0], *POSITION_LABELS)
 LEAST_GAIN = 30.0  # nats of rows; healthy logs gain up to 7 in a stretch, faulty ones up to 20 by another label
 BETTER = 15.0  # nats more than what was found by position against velocity
 SHORTEST = 180.0  # [s]; along shorter stretches other causes look like labels
+MATERIAL = 0.7  # of the root mean square of channels, by which another frame must change them
 CALM = 0.2  # of the jolts that noise is first taken to have; under a wrong label they grow to cover it
 
 
@@ -69,7 +70,9 @@ def relabelled(log, faults, case):
         calm = CALM * first_noise(case.record, case.plant.parts["hull"].length).jolt
         case = replace(case, noise=replace(case.noise, jolt=np.minimum(case.noise.jolt, calm)))
     base = _by_row(case, record_of(plain, case.plant))
-    labels = [label for label in LABELS if set(label.channels) <= set(plain)]
+    known = [mislabel_of(one) for one in told]
+    there = [label for label in LABELS if set(label.channels) <= set(plain)]
+    labels = [label for label in there if label in known or _matters(plain, label)]
     gains = {label: _gain(plain, label, case) - base for label in labels}
     found = [where_best(gain, label, case.record, SHORTEST) for label, gain in gains.items()]
     total, best = max(found, key=lambda one: one[0])
@@ -77,6 +80,15 @@ def relabelled(log, faults, case):
     if total < LEAST_GAIN or total < so_far + BETTER:
         return None
     return Relabelled([*others, best], _stretch(best, case) - sum(_stretch(one, case) for one in told))
+
+
+def _matters(plain, label):
+    """Whether a label, put right, makes its channels other ones: at a heading near north earth-fixed is body-fixed."""
+    right, changed, size = with_label(plain, label), 0.0, 0.0
+    for role in label.channels:
+        changed += np.nansum((right[role].values - plain[role].values) ** 2)
+        size += np.nansum(plain[role].values ** 2)
+    return label.scale is not None or bool(changed > MATERIAL**2 * size)
 
 
 def _is_clear(plain):
