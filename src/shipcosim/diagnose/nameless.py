@@ -8,7 +8,10 @@ from shipcosim.diagnose.linear import with_columns
 from shipcosim.diagnose.plant import shown
 from shipcosim.diagnose.whitening import innovations
 
-__all__ = ["HATS", "PERIODS", "unexplained"]
+__all__ = ["FORCES", "HATS", "PERIODS", "unexplained"]
+
+FORCES = ("slow", "with the heading", "periodic")
+"""Kinds of errors without a name that push the ship."""
 
 HATS = 8
 PERIODS = 28

@@ -14,7 +14,7 @@ from shipcosim.diagnose.finding import Diagnosis, Finding
 from shipcosim.diagnose.law import lawful
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.mislabels import mislabel_of
-from shipcosim.diagnose.nameless import unexplained
+from shipcosim.diagnose.nameless import FORCES, unexplained
 from shipcosim.diagnose.noise import first_noise, tuned
 from shipcosim.diagnose.null import null_gains
 from shipcosim.diagnose.onset import from_onset
@@ -202,7 +202,7 @@ def _judged(case, fits):
         if fit not in strange:
             strange[fit] = unexplained(case, fit)
         # where nobody knows the wind, a force that nobody explains is no surprise
-        return {kind: gain for kind, gain in strange[fit].items() if kind == "in a channel" or not unknown_wind}
+        return {kind: gain for kind, gain in strange[fit].items() if kind not in FORCES or not unknown_wind}
 
     chance = {suspect.label: _WITHOUT_WIND for suspect in case.suspects if unknown_wind}
     judgement = judge(fits, beside, chance)
