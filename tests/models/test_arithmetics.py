@@ -158,6 +158,10 @@ CASES = [
         constants=dict(width=0.4),
     ),
     *(
+        Case(thruster.azimuth_given, [(n, 0.4) for n in (2.0, -1.0)], constants=dict(unit=unit))
+        for unit in (PORT, LOSSY)
+    ),
+    *(
         Case(thruster.azimuth_replay, [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER], constants=dict(unit=unit))
         for unit in (PORT, LOSSY)
     ),
