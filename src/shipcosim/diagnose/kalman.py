@@ -197,7 +197,9 @@ def log_likelihoods(A, W, b, H, z, whole, R, Q, P, known, lost):
                 for i in range(s):
                     T[i, i] += lost[i, i]  # and nothing beside the diagonal
             _add_each(rows_ahead, A[k], W, rows)
-            C[:] = T
+            for i in range(s):
+                for j in range(s):  # else what rounding makes of it grows over a long log
+                    C[i, j] = 0.5 * (T[i, j] + T[j, i])
     return found
 
 
