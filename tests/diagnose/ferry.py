@@ -9,7 +9,6 @@ from diagnose import twin
 from scipy.ndimage import gaussian_filter1d
 
 import shipcosim as sc
-from shipcosim.models.instruments import shown
 from shipcosim.models.wind import WindParameters
 from shipcosim.series import make_table
 
@@ -39,7 +38,6 @@ HULL = {
 AZIMUTH = {"diameter": 2.2, "rpm_max": 220.0, "thrust_max": 150e3, "thrust_min": -80e3}
 WHITE = np.array([0.25, 0.25, np.radians(0.1), 0.02, 0.02, np.radians(0.03)])
 SLOW = np.array([0.15, 0.15, np.radians(0.1)])
-NEUTRAL = {"heading_bias": 0.0, "lever_x": 0.0, "lever_y": 0.0, "velocity_scale": 1.0}
 LEGS = {  # where to be from when on: s, m, m, deg
     "trial": (
         (0, 0, 0, 0),
@@ -170,10 +168,7 @@ def log(kind="trial", minutes=30.0, seed=0, ferry=None, errors=None, push=(), fr
     columns += [("true_wind_speed", speed, "m/s", ""), ("true_wind_from", np.degrees(from_), "deg", "")]
     run = sc.simulate(ferry, stop_time=float(time[-1]), step_size=STEP, inputs=make_table(time, columns))
     rows = slice(None, None, round(1.0 / STEP))
-    motion = [run[f"ship.{name}"].values[rows] for name in ("x", "y", "psi", "u", "v", "r")]
-    motion[2] = np.unwrap(motion[2])
-    seen = np.stack(shown(*motion, **{name: (errors or {}).get(name, d) for name, d in NEUTRAL.items()}))
-    seen[2] = motion[2] + (errors or {}).get("heading_bias", 0.0)
+    seen = twin.seen(run, "ship", rows, errors)
     seen += noise(seen.shape[1], seen[2], random)
     return table(run, rows, seen, random)
 

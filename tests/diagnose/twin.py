@@ -20,6 +20,7 @@ from shipcosim.diagnose.plant import Drivers, Motion, motion_rates, plant_of, sh
 from shipcosim.diagnose.run import prepare
 from shipcosim.diagnose.search import explain
 from shipcosim.diagnose.whitening import _process, _uncertain
+from shipcosim.models import instruments
 from shipcosim.models.wind import apparent_wind
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system
@@ -42,6 +43,19 @@ PLANTED = {
     "tow": {"water.tow_north": -2500.0, "water.tow_east": 1500.0},
     "azimuth_offset": {"starboard.azimuth_offset": np.radians(9.0)},
 }
+
+
+def seen(run, ship, rows, errors=None):
+    """What instruments with some errors show of the motion of a component in a co-simulation, headings without jumps.
+
+    (6, n) array, before noise.
+    """
+    motion = [run[f"{ship}.{name}"].values[rows] for name in ("x", "y", "psi", "u", "v", "r")]
+    motion[2] = np.unwrap(motion[2])
+    given = {"heading_bias": 0.0, "lever_x": 0.0, "lever_y": 0.0, "velocity_scale": 1.0} | (errors or {})
+    found = np.stack(instruments.shown(*motion, **given))
+    found[2] = motion[2] + given["heading_bias"]
+    return found
 
 
 @cache

@@ -6,7 +6,6 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.signal import lfilter
 
 import shipcosim as sc
-from shipcosim.models.instruments import shown
 from shipcosim.models.wind import WindParameters
 from shipcosim.series import make_table
 
@@ -102,11 +101,7 @@ def log(minutes=20.0, seed=0, usv=None, rate=1.0, errors=None, current=(0.0, 0.0
     ]
     run = sc.simulate(usv or structure(), stop_time=float(time[-1]), step_size=STEP, inputs=make_table(time, columns))
     rows = slice(None, None, round(rate / STEP))
-    motion = [run[f"hull.{name}"].values[rows] for name in ("x", "y", "psi", "u", "v", "r")]
-    motion[2] = np.unwrap(motion[2])
-    neutral = {"heading_bias": 0.0, "lever_x": 0.0, "lever_y": 0.0, "velocity_scale": 1.0}
-    seen = np.stack(shown(*motion, **(neutral | (errors or {}))))
-    seen[2] = motion[2] + (errors or {}).get("heading_bias", 0.0)
+    seen = twin.seen(run, "hull", rows, errors)
     seen = seen + boat.WHITE[:, None] * random.standard_normal(seen.shape)
     slow = gaussian_filter1d(random.standard_normal((2, seen.shape[1])), 100.0 / rate)
     seen[:2] += 0.1 * slow / slow.std(axis=1, keepdims=True)

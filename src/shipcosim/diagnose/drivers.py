@@ -13,6 +13,7 @@ from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.linear import linearise
 from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, negative, undone
 from shipcosim.diagnose.record import record_of
+from shipcosim.diagnose.tables import arrays_of
 from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["best_run", "suspected", "where_best", "with_label"]
@@ -79,8 +80,7 @@ def _swapped(pairs):
 
 def with_label(clean, mislabel, segments=()):
     """A repaired log with a fault of labels undone, in segments or everywhere."""
-    table = {"time": clean["time"].values} | {str(name): clean[name].values for name in clean.data_vars}
-    fixed = undone(table, mislabel, segments)
+    fixed = undone(arrays_of(clean), mislabel, segments)
     return clean.assign({role: clean[role].copy(data=fixed[role]) for role in mislabel.channels})
 
 

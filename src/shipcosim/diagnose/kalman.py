@@ -189,17 +189,13 @@ def log_likelihoods(A, W, b, H, z, whole, R, Q, P, known, lost):
             x[:] = ahead
             T[:] = 0.0
             _add_each(rows_ahead, A[k], W, rows)
-            for i in range(s):
-                for j in range(s):
-                    C[i, j] = T[j, i]
+            _transpose(T, C)
             T[:] = Q
             if not known[k]:
                 for i in range(s):
                     T[i, i] += lost[i, i]  # and nothing beside the diagonal
             _add_each(rows_ahead, A[k], W, rows)
-            for i in range(s):
-                for j in range(s):  # else what rounding makes of it grows over a long log
-                    C[i, j] = 0.5 * (T[i, j] + T[j, i])
+            _symmetric(T, C)  # else what rounding makes of it grows over a long log
     return found
 
 

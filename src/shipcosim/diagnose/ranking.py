@@ -1,4 +1,4 @@
-"""Which causes explain a log: every cause is weighed, the likely ones are fitted, others are sought beside them."""
+"""Which causes explain a log: how a set of them is fitted, and what each further one would gain beside it."""
 
 from dataclasses import dataclass, replace
 from typing import Any

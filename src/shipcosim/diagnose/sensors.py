@@ -15,7 +15,7 @@ from shipcosim.diagnose.motion import filter_for, is_clear, position_motion
 from shipcosim.diagnose.noise import first_noise
 from shipcosim.diagnose.record import CHANNELS, first_motion, record_of
 from shipcosim.diagnose.repair import repaired
-from shipcosim.diagnose.tables import inside
+from shipcosim.diagnose.tables import arrays_of, inside
 from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["Relabelled", "relabelled"]
@@ -93,8 +93,7 @@ def _matters(plain, label):
 
 def _is_clear(plain):
     """Whether the ship moves so much that position against velocity has said what there is to say."""
-    table = {"time": plain["time"].values} | {str(name): plain[name].values for name in plain.data_vars}
-    motion = position_motion(table)
+    motion = position_motion(arrays_of(plain))
     return motion is not None and is_clear(motion, filter_for(motion)[0])
 
 

@@ -1,8 +1,8 @@
-"""Rows of a log: which are usable, how far apart they are, which lie in some segments."""
+"""Rows of a log: which are usable, how far apart they are, which lie in some segments; its arrays."""
 
 import numpy as np
 
-__all__ = ["inside", "usable_rows", "usual_step"]
+__all__ = ["arrays_of", "inside", "usable_rows", "usual_step"]
 
 
 def usable_rows(time: np.ndarray) -> np.ndarray:
@@ -22,3 +22,8 @@ def inside(time: np.ndarray, segments) -> np.ndarray:
     if not segments:
         return np.ones(len(time), bool)
     return np.any([(time >= first) & (time <= last) for first, last in segments], axis=0)
+
+
+def arrays_of(log):
+    """A log as a dict of arrays by role, with its `time`."""
+    return {"time": log["time"].values} | {str(name): log[name].values for name in log.data_vars}

@@ -82,8 +82,8 @@ def _is_said_by_both(case, finding, known):
     moved, driven = _moved(case), np.zeros((len(here), 6, 2))
     for side, states in enumerate((WAY, TURNING)):
         driven[:, states, side] = -moved[:, states] * here[:, None]
-    match, gram = _left(case, known, driven)
-    covariance = np.linalg.inv(gram + SLAB**-2 * np.eye(2))
+    match, inner = _left(case, known, driven)
+    covariance = np.linalg.inv(inner + SLAB**-2 * np.eye(2))
     (way, turning), (one, other) = covariance @ match, np.sqrt(np.diag(covariance))
     return abs(way - turning) < 3.0 * np.hypot(one, other) + ALIKE * abs(finding.parameters["rate"].estimate - 1.0)
 
