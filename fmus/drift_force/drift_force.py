@@ -25,6 +25,5 @@ class DriftForce(Fmu):
     def _write(self, t):
         drift, begin = self.drift, self.begin
         share = onset(t, onset_time=begin.onset_time, ramp_time=begin.ramp_time)
-        self.tau_X, self.tau_Y, self.tau_N = drift_force(
-            self.psi, share * drift.north, share * drift.east, surge_share=drift.surge_share, yaw_arm=drift.yaw_arm
-        )
+        law = {"surge_share": drift.surge_share, "sway_power": drift.sway_power, "yaw_arm": drift.yaw_arm}
+        self.tau_X, self.tau_Y, self.tau_N = drift_force(self.psi, share * drift.north, share * drift.east, **law)

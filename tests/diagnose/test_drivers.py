@@ -1,10 +1,12 @@
 """Channels of thrusters and wind that are not what they are labelled are told by the ship's answer, and where."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.drivers import best_run, suspected
+from shipcosim.diagnose.drivers import best_run, settled, suspected, with_label
 
 FIRST, LAST = 120.0, 260.0
 
@@ -18,8 +20,8 @@ def changed(channels, part=True):
 
 
 def best(log):
-    _, finding, right = suspected(log, twin.ready(log))[0]
-    return finding, right
+    _, mislabel, finding = suspected(log, twin.ready(log))[0]
+    return finding, with_label(log, mislabel, finding.segments)
 
 
 def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
@@ -31,6 +33,17 @@ def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
     time = healthy["time"].values
     inner = (time > FIRST + 20.0) & (time < LAST - 20.0)
     np.testing.assert_array_equal(right["tunnel_rpm"].values[inner], healthy["tunnel_rpm"].values[inner])
+
+
+def test_the_ends_of_a_segment_are_settled_to_the_row():
+    """From ends that are half a minute off, about the motion that the log tells of with those."""
+    log = changed({"tunnel_rpm": -twin.logs()["healthy"]["tunnel_rpm"].values})
+    _, mislabel, finding = suspected(log, twin.ready(log))[0]
+    finding = replace(finding, segments=((FIRST + 25.0, LAST - 30.0),))
+    for _ in range(2):
+        finding = settled(log, mislabel, finding, twin.ready(with_label(log, mislabel, finding.segments)))
+    ((first, last),) = finding.segments
+    assert abs(first - FIRST) <= 2.0 and abs(last - LAST) <= 2.0
 
 
 def test_a_tunnel_of_the_other_sign_throughout_has_no_segment():

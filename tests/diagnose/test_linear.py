@@ -1,5 +1,6 @@
 """The linear problem is the derivative of the ship's motion; its filter and smoother are those of Gaussian theory."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -72,6 +73,21 @@ def test_transition_is_the_derivative_of_a_step(state):
     up, down = (rows_first(rows) for rows in moved)
     found = linear.transition[:, :6, Motion._fields.index(state)]
     close(found, (up - down) / (2 * small), positions=0.08, velocities=0.04)
+
+
+def test_a_slow_end_of_a_varying_current_is_not_turned_round_by_its_own_columns():
+    """Both columns together, along the end itself, do what growing by a tenth does; the typical size is 15 times it."""
+    record, plant, motion, _ = about()
+    ends = {"water.north_start": 0.15, "water.east_start": -0.1, "water.north_end": 0.012, "water.east_end": -0.008}
+    slow = replace(plant, span=(record.time[0], record.time[-1])).with_values(ends)
+    linear = linearise(motion, record, slow, [{name: 0.2} for name in ends])
+    ahead = (
+        advanced(start_of_steps(motion), record, slow.with_values({name: by * ends[name] for name in list(ends)[2:]}))
+        for by in (1.05, 0.95)
+    )
+    up, down = (rows_first(rows) for rows in ahead)
+    found = linear.driven[..., 3] * 0.012 / 0.2 - linear.driven[..., 4] * 0.008 / 0.2
+    close(found, (down - up) / 0.1, positions=0.1, velocities=0.1)
 
 
 def test_unexplained_acceleration_moves_the_ship_as_a_force_that_lasts_over_the_step():

@@ -139,6 +139,18 @@ def test_line_and_waves_load_the_ship_by_their_closed_forms():
     np.testing.assert_allclose(found["drift"], expected, atol=1e-9)
 
 
+def test_drift_swells_about_its_place_in_the_log_and_nowhere_else():
+    """Eight places in 700 s are 100 s apart."""
+    time = np.arange(0.0, 701.0, 50.0)
+    still = {name: (np.zeros_like(time), np.zeros_like(time)) for name in twin.plant().thrusters}
+    ship = replace(twin.plant().with_values({"water.drift_north": 2000.0}), span=(0.0, 700.0))
+    where, at = Motion(*[np.full_like(time, 0.4)] + [np.zeros_like(time)] * 5), Drivers(time, still, None, None)
+    plain = np.array(loads(where, at, ship)["drift"])
+    swollen = np.array(loads(where, at, ship.with_values({"water.drift_swell_4": 0.2}))["drift"])
+    share = 1.0 + 0.2 * np.interp(time, [200.0, 300.0, 400.0], [0.0, 1.0, 0.0])
+    np.testing.assert_allclose(swollen, share * plain, atol=1e-9)
+
+
 def test_true_wind_and_apparent_wind_of_a_moving_ship_load_her_alike():
     plant, ship = twin.plant(), Motion(0.0, 0.0, 0.6, 2.0, -0.5, 0.01)
     still = {name: (0.0, 0.0) for name in plant.thrusters}

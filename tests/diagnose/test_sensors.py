@@ -19,14 +19,14 @@ def test_another_label_than_was_found_first_is_taken():
     healthy = twin.logs()["healthy"]
     log = healthy.assign(east=("time", -healthy["east"].values, healthy["east"].attrs))
     swap = next(label for label in POSITION_LABELS if label.channels == ("surge", "sway") and label.scale is None)
-    better = relabelled(log, [said(swap)], twin.ready(healthy))
+    better, *_ = relabelled(log, [said(swap)], twin.ready(healthy))
     assert [(fault.cause, fault.channels, fault.segments) for fault in better.faults] == [("sign", ("east",), ())]
 
 
 def test_what_was_found_rightly_stays():
     healthy = twin.logs()["healthy"]
     log = healthy.assign(east=("time", -healthy["east"].values, healthy["east"].attrs))
-    assert relabelled(log, [said(negative("east"))], twin.ready(healthy)) is None
+    assert relabelled(log, [said(negative("east"))], twin.ready(healthy)) == []
 
 
 def test_units_stretch_the_density_of_their_channels():
@@ -36,7 +36,7 @@ def test_units_stretch_the_density_of_their_channels():
     case = twin.ready(healthy)
     loud = replace(case, noise=replace(case.noise, white=case.noise.white * [1, 1, 1, 1.944, 1.944, 1]))
     swap = said(next(label for label in POSITION_LABELS if label.cause == "channel_swap"))
-    better = relabelled(log, [swap], loud)
+    better, *_ = relabelled(log, [swap], loud)
     assert better.faults[0].note == "surge and sway are in kn, not m/s"
     rows = 2 * np.isfinite(healthy["surge"].values).sum()
     np.testing.assert_allclose(better.stretch, -rows * np.log(3600.0 / 1852.0), rtol=1e-6)

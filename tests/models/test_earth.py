@@ -47,6 +47,12 @@ def test_drift_on_port_mirrors_drift_on_starboard_and_doubles_with_the_force():
     np.testing.assert_allclose(drift_force(-AROUND, 2000.0, 0.0), (2.0 * X, 2.0 * Y, 2.0 * N))
 
 
+def test_a_sway_power_of_one_is_the_component_across():
+    X, Y, N = np.array(drift_force(-AROUND, 1000.0, 0.0, sway_power=1.0))
+    np.testing.assert_allclose(Y, 1000.0 * np.sin(AROUND), atol=1e-9)
+    np.testing.assert_allclose((X, N), np.array(drift_force(-AROUND, 1000.0, 0.0))[[0, 2]])
+
+
 def test_no_waves_no_drift():
     assert drift_force(0.4, 0.0, 0.0) == (0.0, 0.0, 0.0)
 

@@ -1,9 +1,11 @@
 """Channels of thrusters and wind that are not what they are labelled: only the ship's answer can tell.
 
 Each way in which they could be wrong is undone, over all the log, and the likelihood row by row compared with that of
-the log as it is: where the difference adds up most is the segment in which they are wrong.
+the log as it is: where the difference adds up most is about the segment in which they are wrong. Its ends are settled
+about a motion that is smoothed with it put right: there every wrong row tells.
 """
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -16,10 +18,13 @@ from shipcosim.diagnose.record import record_of
 from shipcosim.diagnose.tables import arrays_of
 from shipcosim.diagnose.whitening import innovations
 
-__all__ = ["best_run", "suspected", "where_best", "with_label"]
+__all__ = ["best_run", "settled", "suspected", "where_best", "with_label"]
 
 _SHORTEST = 60.0  # s
 _WHOLE = 0.85  # of the log
+_EVERY = 60.0  # s, between the places where an end of a segment is sought
+_FIRST_STEP = 32  # rows, by which it is then moved
+_WORTH = 5.0  # nats that another segment has to gain
 
 
 def suspected(clean, case):
@@ -34,16 +39,70 @@ def suspected(clean, case):
 
     Returns
     -------
-    list of (float, Finding, xarray.Dataset)
-        Gain in log-likelihood [nats], what would be wrong, and the log with it put right.
+    list of (float, Mislabel, Finding)
+        Gain in log-likelihood [nats], what would be wrong, and about where.
     """
     base, found = _by_row(case, case.record), []
     for mislabel in _mislabels(clean, case.plant):
         gain = _by_row(case, record_of(with_label(clean, mislabel), case.plant)) - base
         total, finding = where_best(gain, mislabel, case.record)
         if total > 10.0:
-            found.append((total, finding, with_label(clean, mislabel, finding.segments)))
+            found.append((total, mislabel, finding))
     return sorted(found, key=lambda entry: -entry[0])
+
+
+def settled(clean, mislabel, finding, case):
+    """A finding with the ends of its segment where the log is likeliest.
+
+    Parameters
+    ----------
+    clean : xarray.Dataset
+        Repaired log, the finding not put right.
+    mislabel : Mislabel
+    finding : Finding
+        With one segment.
+    case : Case
+        Of the log with the finding put right.
+
+    Returns
+    -------
+    Finding
+        The same one if no other segment is worth it.
+    """
+    time, seen = case.record.time, {}
+    least, last = round(_SHORTEST / case.record.step), time.size - 1
+
+    def segment(ends):
+        return ((float(time[ends[0]]), float(time[ends[1]])),)
+
+    def likelihood(ends):
+        if not 0 <= ends[0] <= ends[1] - least <= last - least:
+            return -np.inf
+        if ends not in seen:
+            seen[ends] = _likelihood(case, record_of(with_label(clean, mislabel, segment(ends)), case.plant))
+        return seen[ends]
+
+    first = ends = tuple(int(i) for i in np.searchsorted(time, finding.segments[0]))
+    places = [*range(0, last, round(_EVERY / case.record.step)), last]
+    for _ in range(2):
+        for i in (0, 1):
+            ends = max([ends, *(_moved(ends, i, place) for place in places)], key=likelihood)
+    step = _FIRST_STEP
+    while step:
+        near = [_moved(ends, i, ends[i] + by) for i in (0, 1) for by in (-step, step)]
+        best = max(near, key=likelihood)
+        ends, step = (best, step) if likelihood(best) > likelihood(ends) else (ends, step // 2)
+    return finding if likelihood(ends) < likelihood(first) + _WORTH else replace(finding, segments=segment(ends))
+
+
+def _moved(ends, i, place):
+    return (place, ends[1]) if i == 0 else (ends[0], place)
+
+
+def _likelihood(case, record):
+    """Log-likelihood of a log about the motion of another, up to a constant. [nats]"""
+    found = innovations(linearise(case.motion, record, case.plant, []), case.noise, record)
+    return float(gram(found).free)
 
 
 def _mislabels(clean, plant):

@@ -100,7 +100,8 @@ def compare(case, fit, *, train=None):
     part = fitted(trained(case, train), fit.suspects, fit.values, rounds=3 if fit.suspects else 1)
     linear = linearise(fit.motion, record, fit.plant, [])
     seen = reference(linear, fit.motion, case.noise, record, fit.plant)
-    plants = {"plain": case.plant, "extended": part.plant, "calibrated": calibrated(part), "floor": calibrated(fit)}
+    extended = case.plant.with_values(part.values)
+    plants = {"plain": case.plant, "extended": extended, "calibrated": calibrated(part), "floor": calibrated(fit)}
     models = _observed(case, linear, fit.motion, seen, plants)
     if not fit.suspects:
         models["extended"] = models["plain"]

@@ -157,10 +157,11 @@ def linearise(motion, record, plant, columns):
     like = plant, loads(middle, drivers, plant)
     transition = _transition(middle, drivers, like, record)
     slopes = np.zeros((p, 3, *lead, n - 1))
+    shares = np.array([_small(turns, plant) for turns in columns]).reshape(p)
     for j, turns in enumerate(columns):
         up, down = (
             plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
-            for share in (_SHARE, -_SHARE)
+            for share in (shares[j], -shares[j])
         )
         if any(path.endswith("_lag") for path in turns):
             late = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
@@ -169,11 +170,22 @@ def linearise(motion, record, plant, columns):
             for slope, apart in zip(slopes[j], rates_apart(down, up, middle, drivers, like), strict=True):
                 slope[...] = apart
         else:
-            out[..., 1 + j] = rows_first(_apart(shown(motion, up), shown(motion, down))) / (2.0 * _SHARE)
-    driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * _SHARE)
+            out[..., 1 + j] = rows_first(_apart(shown(motion, up), shown(motion, down))) / (2.0 * shares[j])
+    driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
     driven[~record.known[:-1]] = 0.0
     out *= whole[..., None]
     return Linear(transition, driven, _output(motion, seen, plant), out, whole)
+
+
+def _small(turns, plant):
+    """Share of a column's size for differences; a slow end of a varying current must not be turned round by it."""
+    found = _SHARE
+    for path, size in turns.items():
+        _, _, end = path.rpartition("_")
+        if path in (f"water.north_{end}", f"water.east_{end}"):
+            speed = np.hypot(plant.get(f"water.north_{end}"), plant.get(f"water.east_{end}"))
+            found = min(found, max(_SHARE * speed / abs(size), 1e-4)) if speed else found
+    return found
 
 
 def _apart(one, other):

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.black_box import drives_of, part_of, problem_of, stranger_of
-from shipcosim.diagnose.surroundings import Instruments, Water, drift_arm_of, stern_of
+from shipcosim.diagnose.surroundings import Instruments, Water, drift_arm_of, stern_of, swell_of
 from shipcosim.diagnose.thrusters import fixed_of, neighbours_of, neighbours_placed, thruster_loads
 from shipcosim.diagnose.tolerances import tolerances_of
 from shipcosim.diagnose.wiring import wiring_of
@@ -283,8 +283,9 @@ def loads(motion, drivers, plant, like=None):
         found["wind"] = same.get("wind") or _wind_loads(motion, drivers, plant)
     water = parts["water"]
     if np.any(water.drift_north) or np.any(water.drift_east):
-        law = {"surge_share": water.drift_surge_share, "yaw_arm": water.drift_yaw_arm}
-        found["drift"] = drift_force(motion.psi, water.drift_north, water.drift_east, **law)
+        law = {name: getattr(water, f"drift_{name}") for name in ("surge_share", "sway_power", "yaw_arm")}
+        swell = swell_of(drivers.time, plant.span, water)
+        found["drift"] = drift_force(motion.psi, swell * water.drift_north, swell * water.drift_east, **law)
     if np.any(water.tow_north) or np.any(water.tow_east):
         found["tow"] = earth_force(motion.psi, water.tow_north, water.tow_east, x=water.tow_x)
     return found

@@ -12,6 +12,7 @@ from shipcosim.diagnose.whitening import innovations
 
 DIRECTIONS = 12
 ROUNDS = 5
+_FAR = 3.0  # tolerances, beyond which nothing is linearised about
 _SLOW, _STILL = 0.35, 0.05  # of the faster end: a current this slow at first sight has no direction; where it starts
 
 
@@ -171,13 +172,13 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     -------
     Fit
     """
-    values, motion, fit = dict(values or {}), case.motion, None
+    values, about, motion, fit = dict(values or {}), {}, case.motion, None
     columns = case.known(suspects) + _own(case, suspects)
     for _ in range(rounds):
-        plant = case.plant.with_values(values)
+        plant = case.plant.with_values(values | about)
         linear = linearise(motion, case.record, plant, [column.turns for column in columns])
         last, fit = fit, _posterior(case, suspects, values, columns, linear, plant, motion)
-        motion, values = fit.motion, _next(fit)
+        motion, values, about = fit.motion, _next(fit), _about(fit)
         moved = [abs(values[k.paths[0]] - fit.plant.get(k.paths[0])) / k.typical for s in suspects for k in s.knobs]
         if max(moved, default=0.0) < 0.02 and last and abs(fit.score - last.score) < 1.0:
             break
@@ -214,6 +215,16 @@ def _next(fit):
     found = dict(fit.values)
     for knob, theta in zip(knobs, fit.theta[fit.theta.size - len(knobs) :], strict=True):
         found.update(dict.fromkeys(knob.paths, float(np.clip(knob.neutral + theta * knob.typical, *knob.bounds))))
+    return found
+
+
+def _about(fit):
+    """What is only known within a tolerance about the causes, at the posterior's mean: no line through neutral does."""
+    wanted = {path for suspect in fit.suspects for path in suspect.effect.companions}
+    found = {}
+    for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
+        for path, size in column.turns.items() if wanted & set(column.turns) else ():
+            found[path] = fit.plant.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
     return found
 
 

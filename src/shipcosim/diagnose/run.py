@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.drivers import suspected
+from shipcosim.diagnose.drivers import settled, suspected, with_label
 from shipcosim.diagnose.effects import read_catalogue, suspects
 from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.examine import examine
 from shipcosim.diagnose.finding import Diagnosis, Finding
 from shipcosim.diagnose.law import lawful
 from shipcosim.diagnose.log import read_log
-from shipcosim.diagnose.mislabels import mislabel_of
+from shipcosim.diagnose.mislabels import WIND_LABELS, mislabel_of
 from shipcosim.diagnose.nameless import FORCES, unexplained
 from shipcosim.diagnose.noise import first_noise, tuned
 from shipcosim.diagnose.null import null_gains
@@ -36,6 +36,7 @@ _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes 
 _UNIT = 3.0  # nats that another unit has to gain over the scale of the same channel, which is free to be anything
 _LIKE_WIND = ("wind_scale", "wind_direction", "wave_drift", "tow")  # steady forces, from the earth or the air
 _FAULTS = 2  # of the drivers' channels, at most
+_SUSPECTS, _SETTLING = 3, 3  # of those, that are tried; how often the segment of one is settled, at most
 _WITHOUT_WIND = 40.0  # nats more that a cause has to gain where the wind could be it (assumed)
 _GUSTS = 10.0  # times as fast may an unexplained force walk where nobody knows the wind
 _SURE = 100.0  # nats, far above what any healthy log gained
@@ -107,6 +108,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         plant = replace(plant, strangers=case.plant.strangers)
         faults, clean, case = _with_right_sensors(log, faults, clean, case, plant, catalogue)
         faults, clean, case = _with_right_clock(log, faults, clean, case, plant, catalogue)
+        faults, clean, case = _with_right_ends(log, faults, clean, case, plant, catalogue)
         wrong, plant, case = _rewired(clean, plant, catalogue, case)
         fits = explain(case)
         clean, case, fits, more, began = _looked_closer(clean, case, fits, plant, catalogue)
@@ -127,14 +129,15 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
 
 def _with_right_sensors(log, faults, clean, case, plant, catalogue):
     """Faults, log and case with the channels of the navigation labelled as the ship's answer says."""
-    better = relabelled(log, faults, case)
-    if better is None:
-        return faults, clean, case
-    right = repaired(log, better.faults)
-    again = prepare(right, plant, catalogue)
-    if at_first_sight(again) + better.stretch < at_first_sight(case) + _FAULT:
-        return faults, clean, case
-    return better.faults, right, again
+    best, enough = None, None
+    for better in relabelled(log, faults, case):
+        enough = at_first_sight(case) + _FAULT if enough is None else enough
+        right = repaired(log, better.faults)
+        again = prepare(right, plant, catalogue)
+        score = at_first_sight(again) + better.stretch
+        if score > enough:
+            best, enough = (better.faults, right, again), score
+    return best or (faults, clean, case)
 
 
 def _with_right_clock(log, faults, clean, case, plant, catalogue):
@@ -223,16 +226,41 @@ def _by_chance(case, fit, fits):
 
 def _with_right_drivers(clean, case, fits, plant, catalogue):
     """The likeliest fault of thrusters' or the wind's channels, and all with it put right; None if there is none."""
-    for _, fault, right in suspected(clean, case)[:2]:
-        again = prepare(right, plant, catalogue, case.noise)
+    likely, simple = [], max(fit.score for fit in fits if len(fit.suspects) < 2)
+    for _, mislabel, fault in suspected(clean, case)[:_SUSPECTS]:
+        again = prepare(with_label(clean, mislabel, fault.segments), plant, catalogue)
+        sight = at_first_sight(again)
+        if sight > simple + _FAULT:
+            likely.append((sight, mislabel, fault, again))
+    for _, mislabel, fault, again in sorted(likely, key=lambda entry: -entry[0])[:2]:
+        fault, right, again = _settled(clean, mislabel, fault, again, plant, catalogue)
         if at_first_sight(again) < fits[0].score:
             continue
         better = explain(again)
-        # at the ends of a segment found too long or too short a few rows stay wrong, which small causes take up
-        likely = [fit for fit in better[:3] if fit.score > fits[0].score + _price(fault, fits[0])]
-        if any(_is_explained(again, fit) for fit in likely):
+        close = [fit for fit in better[:3] if fit.score > fits[0].score + _price(fault, fits[0])]
+        if any(_is_explained(again, fit) for fit in close):
             return fault, right, again, better
     return None
+
+
+def _with_right_ends(log, faults, clean, case, plant, catalogue):
+    """Faults, log and case with the segment of a wrongly labelled wind as the ship's answer says."""
+    for i, fault in enumerate(faults):
+        if mislabel_of(fault) in WIND_LABELS and len(fault.segments) == 1:
+            raw = repaired(log, faults[:i] + faults[i + 1 :])
+            moved, clean, case = _settled(raw, mislabel_of(fault), fault, case, plant, catalogue)
+            faults = [*faults[:i], moved, *faults[i + 1 :]]
+    return faults, clean, case
+
+
+def _settled(clean, mislabel, fault, case, plant, catalogue):
+    """A fault of labels with its segment settled, the log with that put right, and its case."""
+    for _ in range(_SETTLING if fault.segments else 0):
+        moved = settled(clean, mislabel, fault, case)
+        if moved is fault:
+            break
+        fault, case = moved, prepare(with_label(clean, mislabel, moved.segments), plant, catalogue)
+    return fault, with_label(clean, mislabel, fault.segments), case
 
 
 def _price(fault, fit):

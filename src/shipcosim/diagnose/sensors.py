@@ -25,6 +25,7 @@ LEAST_GAIN = 30.0  # nats of rows; healthy logs gain up to 7 in a stretch, fault
 BETTER = 15.0  # nats more than what was found by position against velocity
 SHORTEST = 180.0  # [s]; along shorter stretches other causes look like labels
 MATERIAL = 0.7  # of the root mean square of channels, by which another frame must change them
+LIKELY = 4  # labels that are worth a closer look
 CALM = 0.2  # of the jolts that noise is first taken to have; under a wrong label they grow to cover it
 
 
@@ -44,7 +45,10 @@ class Relabelled:
 
 
 def relabelled(log, faults, case):
-    """The likeliest labels of the navigation, if they are not those that the faults say.
+    """The likeliest labels of the navigation, where they are not those that the faults say.
+
+    Each in its likeliest stretch and throughout: row by row it is told with the noise of the log as it is, which a
+    wrong label throughout swells.
 
     Parameters
     ----------
@@ -57,15 +61,13 @@ def relabelled(log, faults, case):
 
     Returns
     -------
-    Relabelled or None
+    list of Relabelled
     """
     told = [fault for fault in faults if mislabel_of(fault) in LABELS]
     others = [fault for fault in faults if fault not in told]
-    if len(told) > 1:
-        return None
     plain = repaired(log, others)
-    if not told and _is_clear(plain):
-        return None
+    if len(told) > 1 or (not told and _is_clear(plain)):
+        return []
     if told:
         calm = CALM * first_noise(case.record, case.plant.parts["hull"].length).jolt
         case = replace(case, noise=replace(case.noise, jolt=np.minimum(case.noise.jolt, calm)))
@@ -75,11 +77,11 @@ def relabelled(log, faults, case):
     labels = [label for label in there if label in known or _matters(plain, label)]
     gains = {label: _gain(plain, label, case) - base for label in labels}
     found = [where_best(gain, label, case.record, SHORTEST) for label, gain in gains.items()]
-    total, best = max(found, key=lambda one: one[0])
     so_far = sum(float(gains[mislabel_of(one)][inside(case.record.time, one.segments)].sum()) for one in told)
-    if total < LEAST_GAIN or total < so_far + BETTER:
-        return None
-    return Relabelled([*others, best], _stretch(best, case) - sum(_stretch(one, case) for one in told))
+    likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > max(LEAST_GAIN, so_far + BETTER)]
+    tried = {(one.note, one.segments): one for part in likely[:LIKELY] for one in (part, replace(part, segments=()))}
+    less = sum(_stretch(one, case) for one in told)
+    return [Relabelled([*others, one], _stretch(one, case) - less) for one in tried.values()]
 
 
 def _matters(plain, label):

@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from shipcosim.models.hull import HullParameters
 from shipcosim.models.quantity import quantity
 
-__all__ = ["Instruments", "Water", "drift_arm_of", "stern_of"]
+__all__ = ["Instruments", "Water", "drift_arm_of", "stern_of", "swell_of"]
 
 _NEUTRAL = "neutral"
+_SWELLS = 8
 _STERN = -17.0  # m, of the lengthened Gunnerus
 _DRIFT_ARM = -1.5  # m, of the same
 
@@ -20,6 +23,12 @@ def stern_of(length):
 def drift_arm_of(length):
     """Yaw moment of the wave drift at quartering over the force on the beam, for a ship of some length. [m]"""
     return _DRIFT_ARM * length / HullParameters().length
+
+
+def _swell(k):
+    """What wave drift swells by about one of some places in the log, evenly spaced from its first to its last row."""
+    means = f"by what share the drift swells at place {k} of {_SWELLS} along the log"
+    return quantity(0.0, "1", means, "groups of waves over minutes, assumed", tolerance=0.15)
 
 
 @dataclass(frozen=True)
@@ -39,6 +48,9 @@ class Water:
     drift_surge_share: float = quantity(
         1.0 / 3.0, "1", "wave drift in surge over that on the beam", "VERES, 33.9 m hull", tolerance=0.1
     )
+    drift_sway_power: float = quantity(
+        2.0, "1", "power of the sine in the sway of the drift", "short waves; VERES, 33.9 m hull: 1.7", tolerance=0.6
+    )
     drift_yaw_arm: float = quantity(
         _DRIFT_ARM,
         "m",
@@ -46,6 +58,14 @@ class Water:
         "VERES, 33.9 m hull",
         tolerance=0.5,
     )
+    drift_swell_1: float = _swell(1)
+    drift_swell_2: float = _swell(2)
+    drift_swell_3: float = _swell(3)
+    drift_swell_4: float = _swell(4)
+    drift_swell_5: float = _swell(5)
+    drift_swell_6: float = _swell(6)
+    drift_swell_7: float = _swell(7)
+    drift_swell_8: float = _swell(8)
     tow_north: float = quantity(0.0, "N", "pull of a line towards north", _NEUTRAL)
     tow_east: float = quantity(0.0, "N", "pull of a line towards east", _NEUTRAL)
     tow_x: float = quantity(_STERN, "m", "where the line is made fast", "the stern")
@@ -62,5 +82,33 @@ class Instruments:
     navigation_lag: float = quantity(0.0, "s", "by how much the navigation's channels are late", _NEUTRAL)
     thruster_lag: float = quantity(0.0, "s", "by how much the thrusters' channels are late", _NEUTRAL)
     wind_lag: float = quantity(
-        1.25, "s", "half the time over which the wind sensor averages", "2 to 3 s", tolerance=0.3
+        1.25,
+        "s",
+        "half the time over which the wind sensor averages, less what the hull averages",
+        "2 to 3 s",
+        tolerance=0.6,
     )
+
+
+def swell_of(time, span, water):
+    """The drift over its mean, piecewise linear between the places where it swells.
+
+    Parameters
+    ----------
+    time : array
+        [s]
+    span : (float, float)
+        First and last row of the log. [s]
+    water : Water
+
+    Returns
+    -------
+    array or float
+        1 where nothing swells.
+    """
+    swells = [getattr(water, f"drift_swell_{k}") for k in range(1, _SWELLS + 1)]
+    if not np.any(swells):
+        return 1.0
+    first, last = span
+    at = np.clip((time - first) / (last - first), 0.0, 1.0) * (_SWELLS - 1)
+    return 1.0 + sum(swell * np.clip(1.0 - abs(at - k), 0.0, None) for k, swell in enumerate(swells))

@@ -12,7 +12,7 @@ from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.linear import rows_first, with_columns
 from shipcosim.diagnose.plant import Motion, motion_rates
-from shipcosim.diagnose.ranking import Column, fitted, probes, weighed
+from shipcosim.diagnose.ranking import Column, fitted, prepared, weighed
 from shipcosim.diagnose.tables import inside
 from shipcosim.diagnose.whitening import innovations
 
@@ -67,12 +67,14 @@ def clock_by_answer(case):
     gain, finding = _most_likely(_blocks(case, edges, known))
     if finding is None:
         return None
-    rival, suspect, _ = weighed(case, fitted(case))[0]
-    if gain < rival + RIVAL:
+    rival, suspect, values = weighed(case, fitted(case))[0]
+    if gain < rival + RIVAL or not _is_said_by_both(case, finding, known):
         return None
-    beside = [*known, *(column for group in probes(suspect) for column in group)] if rival > 0.0 else known
-    if _most_likely(_blocks(case, edges, beside))[1] is None or not _is_said_by_both(case, finding, known):
-        return None
+    if rival > 0.0:
+        fit = fitted(case, (suspect,), values)
+        beside = prepared(replace(case, plant=fit.plant, motion=fit.motion))
+        if _most_likely(_blocks(beside, edges, known))[1] is None:
+            return None
     return finding
 
 

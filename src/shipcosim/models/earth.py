@@ -6,7 +6,7 @@ from .kinematics import load_at, to_body
 from .maths import clip, hypot
 from .quantity import quantity
 
-_SURGE_SHARE, _YAW_ARM = 1.0 / 3.0, -1.5
+_SURGE_SHARE, _SWAY_POWER, _YAW_ARM = 1.0 / 3.0, 2.0, -1.5
 _TINY = 1e-30  # N
 _SOON = 1e-6  # s, so that the time of an onset belongs to it, however a master adds up its steps
 _VERES = "fitted to the drift table of gunnerus-33m9, Tp 4 to 7 s"
@@ -37,6 +37,13 @@ class DriftForceParameters:
     north: float = quantity(0.0, "N", "force on the beam, towards north where the waves travel", "neutral")
     east: float = quantity(0.0, "N", "force on the beam, towards east where the waves travel", "neutral")
     surge_share: float = quantity(_SURGE_SHARE, "1", "force in following waves over that on the beam", _VERES)
+    sway_power: float = quantity(
+        _SWAY_POWER,
+        "1",
+        "power of the sine of the waves' direction from the bow in sway",
+        "waves much shorter than the ship (Faltinsen 1990, ch. 5)",
+        minimum=1.0,
+    )
     yaw_arm: float = quantity(
         _YAW_ARM, "m", "yaw moment in waves from 45 deg to port of the stern, over the force on the beam", _VERES
     )
@@ -94,16 +101,17 @@ def earth_force(psi, north, east, *, x=-17.0, y=0.0):
     return load_at(x, y, *to_body(psi, north, east))
 
 
-def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, yaw_arm=_YAW_ARM):
+def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, sway_power=_SWAY_POWER, yaw_arm=_YAW_ARM):
     """Mean drift load of waves that travel in a fixed direction over the earth.
 
     With A the force on the beam and γ the direction the waves travel, seen from the bow,
 
-        X = c A cos γ,  Y = A sin γ abs(sin γ),  N = d A sin 2γ.
+        X = c A cos γ,  Y = A sin γ abs(sin γ)**(p - 1),  N = d A sin 2γ.
 
     Fitted to the table of the lengthened Gunnerus over all γ, in JONSWAP seas with peak periods of 4 to 7 s, c is 0.19
     to 0.33, d -1.60 to -1.38 m and the factor of Y 1.00 to 1.01. What the fits leave is 9 to 21 % of X, 11 % of Y and
-    10 to 27 % of N (rms over rms). c = 1/3 belongs to the longer waves, d = -1.5 m to the middle.
+    10 to 27 % of N (rms over rms). c = 1/3 belongs to the longer waves, d = -1.5 m to the middle. That is with p = 2,
+    of waves much shorter than the ship; a power that is fitted too is 1.67 to 1.75.
 
     Parameters
     ----------
@@ -113,6 +121,8 @@ def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, yaw_arm=_YAW_ARM)
         A as a vector in the direction the waves travel. [N]
     surge_share : float
         c. [1]
+    sway_power : float
+        p, at least 1. [1]
     yaw_arm : float
         d. [m]
 
@@ -132,4 +142,5 @@ def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, yaw_arm=_YAW_ARM)
     """
     forward, starboard = to_body(psi, north, east)
     A = hypot(north, east) + _TINY
-    return surge_share * forward, starboard * abs(starboard) / A, 2.0 * yaw_arm * starboard * forward / A
+    sway = starboard * (abs(starboard) / A) ** (sway_power - 1.0)
+    return surge_share * forward, sway, 2.0 * yaw_arm * starboard * forward / A
