@@ -190,12 +190,13 @@ def drawn(seed, linear, noise, record):
     """A linear problem whose log is drawn from itself."""
     random, n = np.random.default_rng(seed), record.time.size
     calm = replace(noise, wave=np.zeros(3))
-    root = np.sqrt(np.diag(_process(calm, record.step)))
+    each, turns = np.linalg.eigh(_process(calm, record.step))
+    root = turns * np.sqrt(np.maximum(each, 0.0))
     x, rows = np.sqrt(np.diag(_uncertain(calm))) * random.standard_normal(STATES), []
     for k in range(n):
         rows.append(linear.output[k] @ x + noise.white * random.standard_normal(6))
         if k < n - 1:
-            x = linear.transition[k] @ x + root * random.standard_normal(STATES)
+            x = linear.transition[k] @ x + root @ random.standard_normal(STATES)
     moved = waves_of(noise, record.step, (n, 1), random)[:, 0]
     rows = np.stack(rows) + (linear.output[..., 12:] @ moved[..., None])[..., 0]
     return linear._replace(driven=np.zeros((n - 1, STATES, 1)), seen=rows[..., None])

@@ -12,6 +12,7 @@ from shipcosim.diagnose.whitening import innovations
 
 DIRECTIONS = 12
 ROUNDS = 5
+_BENT = {"instruments.wind_lag"}  # whose effect is not linear within its tolerance, in quick gusts
 _FAR = 3.0  # tolerances, beyond which nothing is linearised about
 _SLOW, _STILL = 0.35, 0.05  # of the faster end: a current this slow at first sight has no direction; where it starts
 
@@ -219,8 +220,8 @@ def _next(fit):
 
 
 def _about(fit):
-    """What is only known within a tolerance about the causes, at the posterior's mean: no line through neutral does."""
-    wanted = {path for suspect in fit.suspects for path in suspect.effect.companions}
+    """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
+    wanted = _BENT | {path for suspect in fit.suspects for path in suspect.effect.companions}
     found = {}
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
         for path, size in column.turns.items() if wanted & set(column.turns) else ():

@@ -36,9 +36,10 @@ _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes 
 _UNIT = 3.0  # nats that another unit has to gain over the scale of the same channel, which is free to be anything
 _LIKE_WIND = ("wind_scale", "wind_direction", "wave_drift", "tow")  # steady forces, from the earth or the air
 _FAULTS = 2  # of the drivers' channels, at most
-_SUSPECTS, _SETTLING = 3, 3  # of those, that are tried; how often the segment of one is settled, at most
+_SUSPECTS, _SETTLING = 3, 2  # of those, that are tried; how often the segment of one is settled, at most
 _WITHOUT_WIND = 40.0  # nats more that a cause has to gain where the wind could be it (assumed)
 _GUSTS = 10.0  # times as fast may an unexplained force walk where nobody knows the wind
+_BLIND = 25.0  # nats, that a cause may gain by chance where that cannot be tried (assumed)
 _SURE = 100.0  # nats, far above what any healthy log gained
 _MOST_WALK = 3e-5  # m/s2.5: some 400 N on Gunnerus in ten minutes
 
@@ -131,7 +132,7 @@ def _with_right_sensors(log, faults, clean, case, plant, catalogue):
     """Faults, log and case with the channels of the navigation labelled as the ship's answer says."""
     best, enough = None, None
     for better in relabelled(log, faults, case):
-        enough = at_first_sight(case) + _FAULT if enough is None else enough
+        enough = explain(case, most=1)[0].score + _FAULT if enough is None else enough
         right = repaired(log, better.faults)
         again = prepare(right, plant, catalogue)
         score = at_first_sight(again) + better.stretch
@@ -209,6 +210,8 @@ def _judged(case, fits):
 
     chance = {suspect.label: _WITHOUT_WIND for suspect in case.suspects if unknown_wind}
     judgement = judge(fits, beside, chance)
+    if judgement.verdict == "unknown" and judge([without_causes(fits)], beside).verdict == "unknown":
+        return judgement, strange[judgement.fit], chance  # whatever its causes gain by chance
     more = _by_chance(case, judgement.fit, fits)
     if more:
         chance = {label: chance.get(label, 0.0) + gain for label, gain in more.items()}
@@ -217,25 +220,29 @@ def _judged(case, fits):
 
 
 def _by_chance(case, fit, fits):
-    """What causes gain on healthy logs like this one, where that could matter: mean and three deviations."""
+    """What causes gain on healthy logs like this one, where that could matter: mean and three deviations.
+
+    Where no healthy ship keeps to the log's track, as one that cannot go sideways, nobody knows: it is assumed.
+    """
     if not any(gained(suspect, fit, fits) < _SURE for suspect in fit.suspects):
         return {}
     found = null_gains(case, fit.motion, fit.suspects)
-    return {label: float(max(values.mean() + 3.0 * values.std(), values.max())) for label, values in found.items()}
+    return {
+        label: float(max(values.mean() + 3.0 * values.std(), values.max())) if values.size else _BLIND
+        for label, values in found.items()
+    }
 
 
 def _with_right_drivers(clean, case, fits, plant, catalogue):
     """The likeliest fault of thrusters' or the wind's channels, and all with it put right; None if there is none."""
-    likely, simple = [], max(fit.score for fit in fits if len(fit.suspects) < 2)
+    likely = []
     for _, mislabel, fault in suspected(clean, case)[:_SUSPECTS]:
         again = prepare(with_label(clean, mislabel, fault.segments), plant, catalogue)
         sight = at_first_sight(again)
-        if sight > simple + _FAULT:
+        if sight > fits[0].score:
             likely.append((sight, mislabel, fault, again))
-    for _, mislabel, fault, again in sorted(likely, key=lambda entry: -entry[0])[:2]:
+    for _, mislabel, fault, again in sorted(likely, key=lambda entry: -entry[0]):
         fault, right, again = _settled(clean, mislabel, fault, again, plant, catalogue)
-        if at_first_sight(again) < fits[0].score:
-            continue
         better = explain(again)
         close = [fit for fit in better[:3] if fit.score > fits[0].score + _price(fault, fits[0])]
         if any(_is_explained(again, fit) for fit in close):

@@ -47,8 +47,8 @@ class Relabelled:
 def relabelled(log, faults, case):
     """The likeliest labels of the navigation, where they are not those that the faults say.
 
-    Each in its likeliest stretch and throughout: row by row it is told with the noise of the log as it is, which a
-    wrong label throughout swells.
+    Each in its likeliest stretch, and but for units throughout: row by row it is told with the noise of the log as it
+    is, which a wrong label throughout swells.
 
     Parameters
     ----------
@@ -79,9 +79,14 @@ def relabelled(log, faults, case):
     found = [where_best(gain, label, case.record, SHORTEST) for label, gain in gains.items()]
     so_far = sum(float(gains[mislabel_of(one)][inside(case.record.time, one.segments)].sum()) for one in told)
     likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > max(LEAST_GAIN, so_far + BETTER)]
-    tried = {(one.note, one.segments): one for part in likely[:LIKELY] for one in (part, replace(part, segments=()))}
+    tried = {(one.note, one.segments): one for part in likely[:LIKELY] for one in _stretches(part)}
     less = sum(_stretch(one, case) for one in told)
     return [Relabelled([*others, one], _stretch(one, case) - less) for one in tried.values()]
+
+
+def _stretches(found):
+    """A label in its stretch and throughout; a unit throughout is a scale, which is a cause of its own."""
+    return (found,) if mislabel_of(found).scale is not None else (found, replace(found, segments=()))
 
 
 def _matters(plain, label):

@@ -171,6 +171,7 @@ def _process(noise, h):
     Q = np.concatenate([place, jolt, walk, slow, still, still], axis=-1)[..., None] * np.eye(STATES)
     _, (Q[..., range(12, 15), range(12, 15)], both, Q[..., range(15, 18), range(15, 18)]) = oscillation(noise, h)
     Q[..., range(12, 15), range(15, 18)] = Q[..., range(15, 18), range(12, 15)] = both
+    Q[..., 2, 5] = Q[..., 5, 2] = 0.5 * h * jolt[..., 2]  # along surge and sway it would turn with the ship
     return Q
 
 
