@@ -15,8 +15,9 @@ from shipcosim.diagnose.extension import extend
 from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.law import bollard_of, lawful
 from shipcosim.diagnose.plant import Motion, loads, plant_of
+from shipcosim.diagnose.preparing import prepare
 from shipcosim.diagnose.record import first_motion, record_of
-from shipcosim.diagnose.run import diagnose, prepare
+from shipcosim.diagnose.run import diagnose
 from shipcosim.diagnose.thrusters import pusher_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import write_table

@@ -234,6 +234,8 @@ def test_what_is_wrong_with_the_usv_is_named(label, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rate", [1.0, pytest.param(0.2, marks=open_fault("yaw inertia and lags lie beyond their tolerances: unknown"))])
+@pytest.mark.parametrize(
+    "rate", [1.0, pytest.param(0.2, marks=open_fault("yaw inertia and lags lie beyond their tolerances: unknown"))]
+)
 def test_the_healthy_usv_is_consistent(rate, tmp_path):
     assert found_in(usv.log(seed=30, rate=rate), usv.structure, tmp_path).verdict == "consistent"

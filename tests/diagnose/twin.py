@@ -17,7 +17,7 @@ from shipcosim.diagnose.effects import read_catalogue
 from shipcosim.diagnose.linear import STATES
 from shipcosim.diagnose.noise import waves_of
 from shipcosim.diagnose.plant import Drivers, Motion, motion_rates, plant_of, shown
-from shipcosim.diagnose.run import prepare
+from shipcosim.diagnose.preparing import prepare
 from shipcosim.diagnose.search import explain
 from shipcosim.diagnose.whitening import _process, _uncertain
 from shipcosim.models import instruments

@@ -100,9 +100,9 @@ def _compared(path, details, until):
     from shipcosim.diagnose.gain import compare
     from shipcosim.diagnose.log import read_log
     from shipcosim.diagnose.plant import plant_of
+    from shipcosim.diagnose.preparing import prepare
     from shipcosim.diagnose.ranking import fitted
     from shipcosim.diagnose.repair import repaired
-    from shipcosim.diagnose.run import prepare
 
     log = read_log(path)
     case = prepare(repaired(log, examine(log)), plant_of(system()), read_catalogue(None), details.case.noise)
