@@ -1,6 +1,6 @@
 """What may be said of sets of causes with given evidence: named, ambiguous, unknown or nothing."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,8 @@ class Fitted:
     score: float
     values: Any
     std: Any
+    theta: tuple = ()
+    columns: tuple = ()
 
 
 def fit(score, *labels, size=1.0, std=0.05, **values):
@@ -52,6 +54,14 @@ def test_a_cause_far_above_the_rest_is_named():
     assert found.verdict == "named" and named(found) == [("thrust_loss", "port")]
     assert found.findings[0].probability == 0.99 and found.indistinguishable == ()
     assert found.findings[0].parameters["loss"].estimate == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(("off", "says"), [((1.0, -1.5, 0.5), "named"), ((-2.6, -1.2, 2.6), "consistent")])
+def test_a_cause_of_another_shape_is_another_cause(off, says):
+    """In units of the tolerances; the second would be exceeded by one right drift in six hundred."""
+    drift = fit(40.0, "wave_drift")
+    columns = tuple(Column({path: 1.0}) for path in drift.suspects[0].effect.shape)
+    assert verdict(replace(drift, theta=off, columns=columns)).verdict == says
 
 
 def test_estimates_are_in_the_units_of_the_contract():

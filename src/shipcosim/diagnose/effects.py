@@ -62,6 +62,8 @@ class Effect(_Strict):
         An effect below this share of its typical size is not named.
     companions : list of str
         Numbers that are only known within their tolerance and only matter where this cause acts.
+    shape : list of str
+        Companions that, taken together, must lie within their tolerances: with another shape it is another cause.
     replaces : list of str
         Numbers that this cause speaks for: their tolerance is left out where it acts.
     special : str, optional
@@ -76,6 +78,7 @@ class Effect(_Strict):
     law: Literal["linear", "vector", "turning"] = "linear"
     least: float = 0.2
     companions: list[str] = []
+    shape: list[str] = []
     replaces: list[str] = []
     special: str | None = None
     parameters: dict[str, EffectParameter]

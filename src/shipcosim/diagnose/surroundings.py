@@ -82,11 +82,7 @@ class Instruments:
     navigation_lag: float = quantity(0.0, "s", "by how much the navigation's channels are late", _NEUTRAL)
     thruster_lag: float = quantity(0.0, "s", "by how much the thrusters' channels are late", _NEUTRAL)
     wind_lag: float = quantity(
-        1.25,
-        "s",
-        "half the time over which the wind sensor averages, less what the hull averages",
-        "2 to 3 s",
-        tolerance=0.6,
+        1.25, "s", "half the time over which the wind sensor averages", "2 to 3 s", tolerance=0.3
     )
 
 

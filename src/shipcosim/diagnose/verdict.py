@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.stats import chi2
 
 from shipcosim.diagnose.evidence import evidence
 from shipcosim.diagnose.finding import Candidate, Estimate, Finding
@@ -33,6 +34,7 @@ STRANGE = 8.0
 """An error without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
 MOST = 2
 """Causes at once that are named. Where a third is needed, one that nobody knows is likelier than three at once."""
+_ANOTHER = 0.01  # probability of a shape as far from the known one, below which it is that of something else
 _LITTLE = 12.0  # nats, that a few wrong rows may give a cause
 _ROUGH = 0.02  # of the gain of large causes, whose laws are never that exact
 _AS_THEY_ARE = ("from part to part", "beyond tolerances")  # errors without a name that allow for that themselves
@@ -120,18 +122,25 @@ def labels(fit):
 
 
 def admissible(fit, fits, chance):
-    """Whether each cause of a set is large enough to matter, within its bounds, and gains more than by chance."""
+    """Whether each cause of a set is large enough, within its bounds, in its shape, and gains more than by chance."""
     for suspect in fit.suspects:
         size = _size(suspect, fit)
         sure = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in suspect.knobs]) / np.sqrt(len(suspect.knobs))
         at_bound = any(
             fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in suspect.knobs
         )
-        if size < suspect.effect.least or size < 3.0 * sure or at_bound:
+        if size < suspect.effect.least or size < 3.0 * sure or at_bound or not _in_shape(suspect, fit):
             return False
         if gained(suspect, fit, fits) < ENOUGH + max(chance.get(suspect.label, 0.0), 0.0):
             return False
     return True
+
+
+def _in_shape(suspect, fit):
+    """Whether what tells a cause's shape lies within its tolerances, taken together."""
+    shape = set(suspect.effect.shape)
+    squares = sum(t**2 for t, column in zip(fit.theta, fit.columns, strict=True) if set(column.turns) & shape)
+    return not shape or bool(chi2.sf(squares, len(shape)) > _ANOTHER)
 
 
 def _size(suspect, fit):
