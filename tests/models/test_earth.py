@@ -4,6 +4,7 @@ from math import pi, radians
 
 import numpy as np
 import pytest
+from scipy.optimize import curve_fit
 
 from shipcosim.models import waves
 from shipcosim.models.earth import drift_force, earth_force, onset
@@ -65,6 +66,17 @@ def test_drift_law_is_that_of_the_ships_table_in_seas_of_any_direction(period):
     A = waves.mean_drift(-0.5 * pi, sea, waves.drift_table(DRIFT_33M9))[1]
     off = np.abs(np.array(drift_force(AROUND, A, 0.0)) - table).max(axis=1) / A
     assert np.all(off < (0.11, 0.12, 0.36)), off
+
+
+def test_a_fitted_sway_power_of_the_ships_table_is_a_little_less_than_that_of_short_waves():
+    """For each peak period, with the factor that goes with it."""
+    table, powers = waves.drift_table(DRIFT_33M9), []
+    for period in (4.0, 4.5, 5.0, 5.5, 6.0, 7.0):
+        sea = waves.components(0.5, period, pi, 3.3, 1)
+        Y = np.array(waves.mean_drift(AROUND, sea, table))[1] / waves.mean_drift(-0.5 * pi, sea, table)[1]
+        law = curve_fit(lambda psi, A, p: A * drift_force(psi, 1.0, 0.0, sway_power=p)[1], AROUND, Y, p0=(1.0, 2.0))[0]
+        powers.append(law[1])
+    assert (min(powers), max(powers)) == pytest.approx((1.67, 1.75), abs=0.01)
 
 
 def test_an_effect_grows_from_its_onset_over_its_ramp():

@@ -28,15 +28,15 @@ _SETTLING = 2  # times that the segment of one is settled, at most
 
 def with_right_sensors(log, faults, clean, case, plant, catalogue):
     """Faults, log and case with the channels of the navigation labelled as the ship's answer says."""
-    best, enough = None, None
-    for better in relabelled(log, faults, case):
-        enough = explain(case, most=1)[0].score + _FAULT if enough is None else enough
+    found, likely = (faults, clean, case), relabelled(log, faults, case)
+    enough = explain(case, most=1)[0].score + _FAULT if likely else None
+    for better in likely:
         right = repaired(log, better.faults)
         again = prepare(right, plant, catalogue)
         score = at_first_sight(again) + better.stretch
         if score > enough:
-            best, enough = (better.faults, right, again), score
-    return best or (faults, clean, case)
+            found, enough = (better.faults, right, again), score
+    return found
 
 
 def with_right_clock(log, faults, clean, case, plant, catalogue):
@@ -97,12 +97,14 @@ def with_right_drivers(clean, case, fits, plant, catalogue):
 
 def _settled(clean, mislabel, fault, case, plant, catalogue):
     """A fault of labels with its segment settled, the log with that put right, and its case."""
+    right = with_label(clean, mislabel, fault.segments)
     for _ in range(_SETTLING if fault.segments else 0):
         moved = settled(clean, mislabel, fault, case)
         if moved is fault:
             break
-        fault, case = moved, prepare(with_label(clean, mislabel, moved.segments), plant, catalogue)
-    return fault, with_label(clean, mislabel, fault.segments), case
+        fault, right = moved, with_label(clean, mislabel, moved.segments)
+        case = prepare(right, plant, catalogue)
+    return fault, right, case
 
 
 def _price(fault, fit):

@@ -6,6 +6,7 @@ from scipy.stats import chi2
 from shipcosim.diagnose.evidence import evidence, gram
 from shipcosim.diagnose.linear import with_columns
 from shipcosim.diagnose.plant import shown
+from shipcosim.diagnose.surroundings import hats
 from shipcosim.diagnose.whitening import innovations
 
 __all__ = ["FORCES", "HATS", "PERIODS", "unexplained"]
@@ -101,15 +102,14 @@ def _bases(case, fit):
     """Accelerations in the body frame over the rows: by kind a list of (n, 3, p) arrays."""
     time, psi = case.record.time, fit.motion.psi
     n = time.size
-    at = np.linspace(0.0, HATS - 1.0, n)
-    hats = np.clip(1.0 - np.abs(at[:, None] - np.arange(HATS)), 0.0, None)
+    slow = hats(np.linspace(0.0, 1.0, n), HATS).T
     c, s = np.cos(psi), np.sin(psi)
     heading = np.stack([c, s, np.cos(2 * psi), np.sin(2 * psi), c**3, s**3], axis=-1)
     span = time[-1] - time[0]
     periods = np.geomspace(20.0, span, PERIODS)
     waves = [np.stack([np.sin(2 * np.pi * time / p), np.cos(2 * np.pi * time / p)], axis=-1) for p in periods]
     return {
-        "slow": [_each_axis(hats)],
+        "slow": [_each_axis(slow)],
         "with the heading": [_each_axis(heading)],
         "periodic": [_each_axis(wave) for wave in waves],
     }

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.black_box import drives_of, part_of, problem_of, stranger_of
-from shipcosim.diagnose.surroundings import Instruments, Water, drift_arm_of, stern_of, swell_of
+from shipcosim.diagnose.surroundings import Instruments, Water, drift_arm_of, share_of, stern_of, swell_of
 from shipcosim.diagnose.thrusters import fixed_of, neighbours_of, neighbours_placed, thruster_loads
 from shipcosim.diagnose.tolerances import tolerances_of
 from shipcosim.diagnose.wiring import wiring_of
@@ -237,7 +237,7 @@ def _values(component, kind):
 def current_at(time, plant):
     """Velocity of the water towards north and east. [m/s]"""
     water, (first, last) = plant.parts["water"], plant.span
-    share = np.clip((time - first) / (last - first), 0.0, 1.0)
+    share = share_of(time, plant.span)
     north = water.current_north + water.trend_north * share
     east = water.current_east + water.trend_east * share
     ends = (water.north_start, water.east_start, water.north_end, water.east_end)

@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.models.hull import HullParameters
 from shipcosim.models.quantity import quantity
 
-__all__ = ["Instruments", "Water", "drift_arm_of", "stern_of", "swell_of"]
+__all__ = ["Instruments", "Water", "drift_arm_of", "hats", "share_of", "stern_of", "swell_of"]
 
 _NEUTRAL = "neutral"
 _SWELLS = 8
@@ -86,6 +86,18 @@ class Instruments:
     )
 
 
+def share_of(time, span):
+    """How much of a log has passed at some times: 0 before its first row, 1 after its last."""
+    first, last = span
+    return np.clip((time - first) / (last - first), 0.0, 1.0)
+
+
+def hats(share, count):
+    """Hat functions over shares of a log, of which each is 1 at its own of evenly spaced places: (count, ...) array."""
+    places = np.arange(count).reshape(-1, *[1] * np.ndim(share))
+    return np.clip(1.0 - np.abs(np.asarray(share) * (count - 1) - places), 0.0, None)
+
+
 def swell_of(time, span, water):
     """The drift over its mean, piecewise linear between the places where it swells.
 
@@ -105,6 +117,4 @@ def swell_of(time, span, water):
     swells = [getattr(water, f"drift_swell_{k}") for k in range(1, _SWELLS + 1)]
     if not np.any(swells):
         return 1.0
-    first, last = span
-    at = np.clip((time - first) / (last - first), 0.0, 1.0) * (_SWELLS - 1)
-    return 1.0 + sum(swell * np.clip(1.0 - abs(at - k), 0.0, None) for k, swell in enumerate(swells))
+    return 1.0 + sum(swell * hat for swell, hat in zip(swells, hats(share_of(time, span), _SWELLS), strict=True))
