@@ -59,4 +59,4 @@ def test_a_compass_that_deviates_with_the_heading_is_no_clock():
     case = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
     gain, finding = timing._most_likely(timing._blocks(case, timing._edges(case), case.known(())))
     assert gain > 30.0 and finding.cause == "clock"
-    assert not timing._is_said_by_both(case, finding, case.known(())) and clock_by_answer(case) is None
+    assert not timing._is_said_by_all(case, finding, case.known(())) and clock_by_answer(case) is None

@@ -6,11 +6,12 @@ is larger than that for any cause that would leave it as it is.
 
 from dataclasses import replace
 
-from shipcosim.diagnose.drivers import settled, suspected, with_label
+from shipcosim.diagnose.drivers import likelihood, settled, suspected, with_label
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.mislabels import WIND_LABELS, mislabel_of
 from shipcosim.diagnose.nameless import unexplained
 from shipcosim.diagnose.preparing import prepare
+from shipcosim.diagnose.record import record_of
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.search import at_first_sight, explain
 from shipcosim.diagnose.sensors import relabelled
@@ -18,7 +19,7 @@ from shipcosim.diagnose.timing import clock_by_answer, with_rate
 from shipcosim.diagnose.verdict import MOST, STRANGE
 from shipcosim.diagnose.wiring import put_right
 
-__all__ = ["rewired", "with_right_clock", "with_right_drivers", "with_right_ends", "with_right_sensors"]
+__all__ = ["rewired", "with_right_clock", "with_right_drivers", "with_right_wind", "with_right_sensors"]
 
 _FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
 _UNIT = 3.0  # nats that another unit has to gain over the scale of the same channel, which is free to be anything
@@ -53,14 +54,33 @@ def with_right_clock(log, faults, clean, case, plant, catalogue):
     return faults, clean, prepare(clean, plant, catalogue, case.noise)
 
 
-def with_right_ends(log, faults, clean, case, plant, catalogue):
-    """Faults, log and case with the segment of a wrongly labelled wind as the ship's answer says."""
+def with_right_wind(log, faults, clean, case, plant, catalogue):
+    """Faults, log and case with a wrongly labelled wind as the ship's answer says: what it is instead, and where."""
     for i, fault in enumerate(faults):
-        if mislabel_of(fault) in WIND_LABELS and len(fault.segments) == 1:
+        if mislabel_of(fault) in WIND_LABELS and len(fault.segments) < 2:
             raw = repaired(log, faults[:i] + faults[i + 1 :])
-            moved, clean, case = _settled(raw, mislabel_of(fault), fault, case, plant, catalogue)
-            faults = [*faults[:i], moved, *faults[i + 1 :]]
+            fault, case = _counted_otherwise(raw, fault, case, plant, catalogue)
+            fault, clean, case = _settled(raw, mislabel_of(fault), fault, case, plant, catalogue)
+            faults = [*faults[:i], fault, *faults[i + 1 :]]
     return faults, clean, case
+
+
+def _counted_otherwise(raw, told, case, plant, catalogue):
+    """A fault of the wind's direction, and its case, by the likeliest label of those that could be meant."""
+    if mislabel_of(told).scale is not None:
+        return told, case
+    rights = {
+        label: with_label(raw, label, told.segments)
+        for label in WIND_LABELS
+        if label.scale is None and set(label.channels) <= set(raw)
+    }
+    label = max(rights, key=lambda label: likelihood(case, record_of(rights[label], plant)))
+    if label is mislabel_of(told):
+        return told, case
+    again = prepare(rights[label], plant, catalogue)
+    if at_first_sight(again) < at_first_sight(case) + _FAULT:
+        return told, case
+    return replace(told, cause=label.cause, channels=label.channels, note=label.sentence), again
 
 
 def rewired(clean, plant, catalogue, case):
@@ -79,15 +99,24 @@ def rewired(clean, plant, catalogue, case):
 
 
 def with_right_drivers(clean, case, fits, plant, catalogue):
-    """The likeliest fault of thrusters' or the wind's channels, and all with it put right; None if there is none."""
+    """The likeliest fault of thrusters' or the wind's channels, and all with it put right; None if there is none.
+
+    The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is held against
+    all causes; further ones only where they are better than those even so.
+    """
     likely = []
     for _, mislabel, fault in suspected(clean, case)[:_SUSPECTS]:
         again = prepare(with_label(clean, mislabel, fault.segments), plant, catalogue)
-        sight = at_first_sight(again)
-        if sight > fits[0].score:
-            likely.append((sight, mislabel, fault, again))
-    for _, mislabel, fault, again in sorted(likely, key=lambda entry: -entry[0]):
+        likely.append((at_first_sight(again), mislabel, fault, again))
+    likely.sort(key=lambda entry: -entry[0])
+    if likely and likely[0][0] < at_first_sight(case) + _price(likely[0][2], fits[0]):
+        return None
+    for place, (sight, mislabel, fault, again) in enumerate(likely):
+        if place > 0 and sight < fits[0].score:
+            break
         fault, right, again = _settled(clean, mislabel, fault, again, plant, catalogue)
+        if at_first_sight(again) < fits[0].score:
+            continue
         better = explain(again)
         close = [fit for fit in better[:3] if fit.score > fits[0].score + _price(fault, fits[0])]
         if any(_is_explained(again, fit) for fit in close):
@@ -98,7 +127,7 @@ def with_right_drivers(clean, case, fits, plant, catalogue):
 def _settled(clean, mislabel, fault, case, plant, catalogue):
     """A fault of labels with its segment settled, the log with that put right, and its case."""
     right = with_label(clean, mislabel, fault.segments)
-    for _ in range(_SETTLING if fault.segments else 0):
+    for _ in range(_SETTLING):
         moved = settled(clean, mislabel, fault, case)
         if moved is fault:
             break

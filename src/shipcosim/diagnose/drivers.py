@@ -18,13 +18,14 @@ from shipcosim.diagnose.record import record_of
 from shipcosim.diagnose.tables import arrays_of
 from shipcosim.diagnose.whitening import innovations
 
-__all__ = ["best_run", "settled", "suspected", "where_best", "with_label"]
+__all__ = ["best_run", "likelihood", "settled", "suspected", "where_best", "with_label"]
 
 _SHORTEST = 60.0  # s
 _WHOLE = 0.85  # of the log
 _EVERY = 60.0  # s, between the places where an end of a segment is sought
 _FIRST_STEP = 32  # rows, by which it is then moved
 _WORTH = 5.0  # nats that another segment has to gain
+_PART = 15.0  # nats that a segment has to gain over the whole log
 
 
 def suspected(clean, case):
@@ -60,7 +61,7 @@ def settled(clean, mislabel, finding, case):
         Repaired log, the finding not put right.
     mislabel : Mislabel
     finding : Finding
-        With one segment.
+        With one segment, or throughout.
     case : Case
         Of the log with the finding put right.
 
@@ -75,32 +76,34 @@ def settled(clean, mislabel, finding, case):
     def segment(ends):
         return ((float(time[ends[0]]), float(time[ends[1]])),)
 
-    def likelihood(ends):
+    def worth(ends):
         if not 0 <= ends[0] <= ends[1] - least <= last - least:
             return -np.inf
         if ends not in seen:
-            seen[ends] = _likelihood(case, record_of(with_label(clean, mislabel, segment(ends)), case.plant))
+            seen[ends] = likelihood(case, record_of(with_label(clean, mislabel, segment(ends)), case.plant))
         return seen[ends]
 
-    first = ends = tuple(int(i) for i in np.searchsorted(time, finding.segments[0]))
+    whole = (0, last)
+    first = ends = tuple(int(i) for i in np.searchsorted(time, finding.segments[0])) if finding.segments else whole
     places = [*range(0, last, round(_EVERY / case.record.step)), last]
     for _ in range(2):
         for i in (0, 1):
-            ends = max([ends, *(_moved(ends, i, place) for place in places)], key=likelihood)
+            ends = max([ends, *(_moved(ends, i, place) for place in places)], key=worth)
     step = _FIRST_STEP
     while step:
         near = [_moved(ends, i, ends[i] + by) for i in (0, 1) for by in (-step, step)]
-        best = max(near, key=likelihood)
-        ends, step = (best, step) if likelihood(best) > likelihood(ends) else (ends, step // 2)
-    return finding if likelihood(ends) < likelihood(first) + _WORTH else replace(finding, segments=segment(ends))
+        best = max(near, key=worth)
+        ends, step = (best, step) if worth(best) > worth(ends) else (ends, step // 2)
+    price = _PART if first == whole else _WORTH
+    return finding if worth(ends) < worth(first) + price else replace(finding, segments=segment(ends))
 
 
 def _moved(ends, i, place):
     return (place, ends[1]) if i == 0 else (ends[0], place)
 
 
-def _likelihood(case, record):
-    """Log-likelihood of a log about the motion of another, up to a constant. [nats]"""
+def likelihood(case, record):
+    """Log-likelihood of a record about the motion of a case, up to a constant. [nats]"""
     found = innovations(linearise(case.motion, record, case.plant, []), case.noise, record)
     return float(gram(found).free)
 

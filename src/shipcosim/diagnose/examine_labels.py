@@ -166,14 +166,25 @@ def _slopes(motion: Motion, channels, whitener: Filter, segment):
 
 def _refined(log, motion_of, whitener, best):
     """The segment with each end where the log with it undone is likeliest; None for the whole log."""
-    segment = best.segment
-    for end in (0, 1) if segment else ():
-        places = log["time"][np.abs(log["time"] - segment[end]) <= REACH * np.median(np.diff(log["time"]))]
-        tries = [(t, segment[1]) if end == 0 else (segment[0], t) for t in places]
-        levels = np.stack([motion_of(undone(log, best.mislabel, [one])).level for one in tries], axis=2)
-        white = np.clip(whitener(levels), -CLIP, CLIP)
-        segment = tries[int(np.argmin(np.sum(white**2, axis=(0, 1))))]
-    return tuple(float(t) for t in segment) if segment else None
+    if best.segment is None:
+        return None
+    ends = [int(i) for i in np.searchsorted(log["time"], best.segment)]
+    for end in (0, 1):
+        while True:  # as long as the likeliest place is the last one tried
+            near = _near(ends, end, len(log["time"]))
+            segments = [tuple(log["time"][[place, ends[1]] if end == 0 else [ends[0], place]]) for place in near]
+            levels = np.stack([motion_of(undone(log, best.mislabel, [one])).level for one in segments], axis=2)
+            white = np.clip(whitener(levels), -CLIP, CLIP)
+            before, ends[end] = ends[end], near[int(np.argmin(np.sum(white**2, axis=(0, 1))))]
+            if abs(ends[end] - before) < REACH:
+                break
+    return tuple(float(t) for t in log["time"][ends])
+
+
+def _near(ends, end, count):
+    """Rows at which an end of a segment is sought."""
+    first, last = (0, ends[1] - 1) if end == 0 else (ends[0] + 1, count - 1)
+    return range(max(ends[end] - REACH, first), min(ends[end] + REACH, last) + 1)
 
 
 def _finding(segment, best, suspects):

@@ -9,8 +9,8 @@ from shipcosim.diagnose.corrections import (
     rewired,
     with_right_clock,
     with_right_drivers,
-    with_right_ends,
     with_right_sensors,
+    with_right_wind,
 )
 from shipcosim.diagnose.effects import read_catalogue, suspects
 from shipcosim.diagnose.evidence import gram
@@ -103,7 +103,7 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         plant = replace(plant, strangers=case.plant.strangers)
         faults, clean, case = with_right_sensors(log, faults, clean, case, plant, catalogue)
         faults, clean, case = with_right_clock(log, faults, clean, case, plant, catalogue)
-        faults, clean, case = with_right_ends(log, faults, clean, case, plant, catalogue)
+        faults, clean, case = with_right_wind(log, faults, clean, case, plant, catalogue)
         wrong, plant, case = rewired(clean, plant, catalogue, case)
         fits = explain(case)
         clean, case, fits, more, began = _looked_closer(clean, case, fits, plant, catalogue)

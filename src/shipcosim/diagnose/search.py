@@ -18,7 +18,7 @@ def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
     likely : int
         Candidates that are fitted at each stage.
     near : float
-        Candidates this far below the best are still fitted, or 70 % of its gain: at first sight what is not linear, as
+        Candidates this far below the best are still fitted, or 85 % of its gain: at first sight what is not linear, as
         a current, gains too little. [nats]
     enough : float
         What a further cause has to gain. [nats]
@@ -37,7 +37,7 @@ def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
             gains = weighed(case, fit)
             most_gain = gains[0][0]
             for gain, suspect, values in gains[: likely if stage == 0 else likely // 2]:
-                if gain < max(most_gain - max(near, 0.7 * most_gain), -2.0 if stage == 0 else enough - 2.0):
+                if gain < max(most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0):
                     break
                 suspects = (*fit.suspects, suspect)
                 key = names(suspects)

@@ -7,6 +7,7 @@ Each block of a log has a column for its own ρ; where a run of blocks agrees on
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from shipcosim.diagnose.evidence import gram
 from shipcosim.diagnose.finding import Estimate, Finding
@@ -27,8 +28,9 @@ PLAUSIBLE = 0.65, 1.5  # ρ
 SMALLEST = 0.08  # of ρ - 1, below which it is no fault
 TYPICAL, LASTS = 0.2, 240.0  # of ρ - 1, [s]; a wrong clock that a log should be able to show
 UNSURE = 0.03  # of ρ - 1, for what the ends of segments leave open
-WAY, TURNING = [0, 1, 3, 4], [2, 5]  # states of the motion
-ALIKE = 0.3  # of ρ - 1, by which both sides may differ beyond chance
+ASPECTS = [0, 1], [3, 4], [2], [5]  # states of the motion: way and speed, heading and rate of turn
+APART = 0.15  # of ρ - 1, by which what an aspect tells may be off beyond chance
+CHANCE = 0.01  # that aspects of a wrong clock differ more
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def clock_by_answer(case):
     if finding is None:
         return None
     rival, suspect, values = weighed(case, fitted(case))[0]
-    if gain < rival + RIVAL or not _is_said_by_both(case, finding, known):
+    if gain < rival + RIVAL or not _is_said_by_all(case, finding, known):
         return None
     if rival > 0.0:
         fit = fitted(case, (suspect,), values)
@@ -78,16 +80,22 @@ def clock_by_answer(case):
     return finding
 
 
-def _is_said_by_both(case, finding, known):
-    """Whether the ship's way and her turning do not contradict each other: a compass can be wrong alone."""
+def _is_said_by_all(case, finding, known):
+    """Whether way, speed, heading and turning tell of one rate.
+
+    A compass can be wrong alone, and so can a force: it changes the speed, but how far the ship comes at her speed
+    tells of the clock.
+    """
     here = inside(0.5 * (case.record.time[:-1] + case.record.time[1:]), finding.segments)
-    moved, driven = _moved(case), np.zeros((len(here), 6, 2))
-    for side, states in enumerate((WAY, TURNING)):
-        driven[:, states, side] = -moved[:, states] * here[:, None]
+    moved, driven = _moved(case), np.zeros((len(here), 6, len(ASPECTS)))
+    for aspect, states in enumerate(ASPECTS):
+        driven[:, states, aspect] = -moved[:, states] * here[:, None]
     match, inner = _left(case, known, driven)
-    covariance = np.linalg.inv(inner + SLAB**-2 * np.eye(2))
-    (way, turning), (one, other) = covariance @ match, np.sqrt(np.diag(covariance))
-    return abs(way - turning) < 3.0 * np.hypot(one, other) + ALIKE * abs(finding.parameters["rate"].estimate - 1.0)
+    covariance = np.linalg.pinv(inner)
+    told, apart = covariance @ match, APART * (finding.parameters["rate"].estimate - 1.0)
+    weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
+    rest = told - weight.sum(axis=0) @ told / weight.sum()
+    return bool(rest @ weight @ rest < chi2.isf(CHANCE, len(ASPECTS) - 1))
 
 
 def with_rate(case, finding, logged):
