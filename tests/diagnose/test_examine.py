@@ -176,6 +176,18 @@ def test_a_mislabelled_channel_is_named_and_put_right(fault, segment):
         assert np.nanmax(np.abs(off)) < 1e-6
 
 
+def test_a_segment_ends_at_the_leap_though_the_ship_has_lain_still_there_for_minutes():
+    log, random = measured(seed=9), np.random.default_rng(1)
+    still = np.flatnonzero(log["time"] > 700.0)
+    for role, noise in {"north": 0.2, "east": 0.2, "heading": 0.1}.items():
+        log[role][still] = log[role][still[0]] + noise * random.normal(size=len(still))
+    for role, noise in {"surge": 0.02, "sway": 0.02, "yaw_rate": 0.05}.items():
+        log[role][still] = noise * random.normal(size=len(still))
+    log["east"][inside(log, 300.0, 850.0)] *= -1.0
+    found = [finding for finding in examine(table(log)) if finding.channels == ("east",)]
+    assert [(finding.cause, finding.segments) for finding in found] == [("sign", ((300.0, 850.0),))]
+
+
 def test_rows_lost_between_even_times_are_a_gap():
     """As in a real log: the stamps go on evenly while the ship is minutes further three rows later."""
     log = measured(seed=9)

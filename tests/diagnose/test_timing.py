@@ -7,6 +7,7 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose import timing
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.repair import repaired
 from shipcosim.diagnose.timing import clock_by_answer, is_testable, with_rate
 
@@ -60,3 +61,15 @@ def test_a_compass_that_deviates_with_the_heading_is_no_clock():
     gain, finding = timing._most_likely(timing._blocks(case, timing._edges(case), case.known(())))
     assert gain > 30.0 and finding.cause == "clock"
     assert not timing._is_said_by_all(case, finding, case.known(())) and clock_by_answer(case) is None
+
+
+def test_thrusters_that_push_less_for_a_while_are_no_clock():
+    """The speed answers at another rate then, but she comes as far at her speed as before."""
+    log = twin.logs()["healthy"]
+    here = (log["time"].values > FIRST) & (log["time"].values < LAST)
+    told = {role: ("time", np.where(here, 1.25, 1.0) * log[role].values) for role in log.data_vars if "_rpm" in role}
+    clock = Finding("clock", None, "data", 0.98, {"rate": Estimate(0.8, 0.02, "1")}, ((FIRST, LAST),), ("time",))
+    case = twin.ready(log.assign(told))
+    assert not timing._is_said_by_all(case, clock, case.known(()))
+    slow, told = twin.ready(hurried(log)), {"rate": Estimate(RATE, 0.02, "1")}
+    assert timing._is_said_by_all(slow, replace(clock, parameters=told), slow.known(()))

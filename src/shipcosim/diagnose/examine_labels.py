@@ -32,7 +32,7 @@ SEGMENT_COST = 16.0  # nats, for the choice of both ends
 CLIP = 5.0  # standard deviations beyond which an innovation counts no more
 NEAR, FAR, SURE = 0.3, 0.35, 0.2  # slopes nearer to 1 than this agree, farther off they do not; largest deviation
 SHORTEST = 60.0  # [s] of a segment
-REACH = 25  # rows on both sides in which an end of a segment is sought
+REACH = 25  # rows on both sides in which an end of a segment is sought; and where the log leaps
 
 
 @dataclass(frozen=True)
@@ -165,26 +165,20 @@ def _slopes(motion: Motion, channels, whitener: Filter, segment):
 
 
 def _refined(log, motion_of, whitener, best):
-    """The segment with each end where the log with it undone is likeliest; None for the whole log."""
+    """The segment with each end where the log with it undone is likeliest and leaps least; None for the whole log."""
     if best.segment is None:
         return None
-    ends = [int(i) for i in np.searchsorted(log["time"], best.segment)]
+    motion, ends = motion_of(log), [int(i) for i in np.searchsorted(log["time"], best.segment)]
+    leaps = np.searchsorted(log["time"], motion.time[motion.starts])
     for end in (0, 1):
-        while True:  # as long as the likeliest place is the last one tried
-            near = _near(ends, end, len(log["time"]))
-            segments = [tuple(log["time"][[place, ends[1]] if end == 0 else [ends[0], place]]) for place in near]
-            levels = np.stack([motion_of(undone(log, best.mislabel, [one])).level for one in segments], axis=2)
-            white = np.clip(whitener(levels), -CLIP, CLIP)
-            before, ends[end] = ends[end], near[int(np.argmin(np.sum(white**2, axis=(0, 1))))]
-            if abs(ends[end] - before) < REACH:
-                break
+        places = sorted({*range(ends[end] - REACH, ends[end] + REACH + 1), *(leaps - end)})
+        places = [k for k in places if 0 <= k < len(log["time"]) and (k < ends[1] if end == 0 else k > ends[0])]
+        segments = [log["time"][[k, ends[1]] if end == 0 else [ends[0], k]] for k in places]
+        tried = [motion_of(undone(log, best.mislabel, [one])) for one in segments]
+        white = np.clip(whitener(np.stack([one.level for one in tried], axis=2)), -CLIP, CLIP)
+        left = CLIP**2 * np.array([one.starts.sum() for one in tried])
+        ends[end] = places[int(np.argmin(np.sum(white**2, axis=(0, 1)) + left))]
     return tuple(float(t) for t in log["time"][ends])
-
-
-def _near(ends, end, count):
-    """Rows at which an end of a segment is sought."""
-    first, last = (0, ends[1] - 1) if end == 0 else (ends[0] + 1, count - 1)
-    return range(max(ends[end] - REACH, first), min(ends[end] + REACH, last) + 1)
 
 
 def _finding(segment, best, suspects):
