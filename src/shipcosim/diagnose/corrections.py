@@ -6,7 +6,10 @@ is larger than that for any cause that would leave it as it is.
 
 from dataclasses import replace
 
+import numpy as np
+
 from shipcosim.diagnose.drivers import likelihood, settled, suspected, with_label
+from shipcosim.diagnose.examine_wind import leaps
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.mislabels import WIND_LABELS, mislabel_of
 from shipcosim.diagnose.nameless import unexplained
@@ -34,7 +37,9 @@ def with_right_sensors(log, faults, clean, case, plant, catalogue):
     for better in likely:
         right = repaired(log, better.faults)
         again = prepare(right, plant, catalogue)
-        score = at_first_sight(again) + better.stretch
+        if at_first_sight(again) + better.stretch < enough:
+            continue
+        score = explain(again, most=1)[0].score + better.stretch
         if score > enough:
             found, enough = (better.faults, right, again), score
     return found
@@ -109,19 +114,28 @@ def with_right_drivers(clean, case, fits, plant, catalogue):
         again = prepare(with_label(clean, mislabel, fault.segments), plant, catalogue)
         likely.append((at_first_sight(again), mislabel, fault, again))
     likely.sort(key=lambda entry: -entry[0])
-    if likely and likely[0][0] < at_first_sight(case) + _price(likely[0][2], fits[0]):
+    if likely and likely[0][0] < min(fits[0].score, at_first_sight(case) + _FAULT):
         return None
     for place, (sight, mislabel, fault, again) in enumerate(likely):
         if place > 0 and sight < fits[0].score:
             break
         fault, right, again = _settled(clean, mislabel, fault, again, plant, catalogue)
-        if at_first_sight(again) < fits[0].score:
+        if at_first_sight(again) < fits[0].score or not _shows(clean, mislabel, fault):
             continue
         better = explain(again)
         close = [fit for fit in better[:3] if fit.score > fits[0].score + _price(fault, fits[0])]
         if any(_is_explained(again, fit) for fit in close):
             return fault, right, again, better
     return None
+
+
+def _shows(clean, mislabel, fault):
+    """Whether another unit of the wind in a part of a log shows at its ends: what takes her wind away does not."""
+    if mislabel not in WIND_LABELS or mislabel.scale is None or not fault.segments:
+        return True
+    speed = clean["wind_speed"].values
+    known = np.isfinite(speed)
+    return leaps(clean["time"].values[known], speed[known], fault.segments[0], 1.0 / mislabel.scale)
 
 
 def _settled(clean, mislabel, fault, case, plant, catalogue):

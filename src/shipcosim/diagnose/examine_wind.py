@@ -10,7 +10,7 @@ from shipcosim.diagnose.mislabels import WIND_LABELS
 from shipcosim.diagnose.motion import Filter, Motion, filter_for, whiteness
 from shipcosim.diagnose.tables import inside
 
-__all__ = ["mislabelled_wind"]
+__all__ = ["leaps", "mislabelled_wind"]
 
 ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
 LEAST_GAIN_WHOLE = 5.0  # nats, of a unit of the whole log, among three
@@ -123,15 +123,25 @@ def _unit(time, y, x, smooth, wind, slow):
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
         near = all(abs(one - b) < max(NEAR * b, 0.2) for one in (slope, also))
-        near &= b == 0.0 or _jumps(time, np.hypot(*wind.T), segment, b)
+        near &= b == 0.0 or leaps(time, np.hypot(*wind.T), segment, b)
         near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
         if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
             found.append(_named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0))
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 
 
-def _jumps(time, speed, segment, factor):
-    """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log."""
+def leaps(time, speed, segment, factor):
+    """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log.
+
+    Parameters
+    ----------
+    time, speed : (n,) arrays
+        [s, m/s]
+    segment : (float, float) or None
+        [s]
+    factor : float
+        Logged wind speed inside over that outside.
+    """
     here, beside = _about(time, segment)
     if not here.any() or not beside.any():
         return True
