@@ -5,6 +5,7 @@ import pytest
 from diagnose.logs import measured, table
 
 from shipcosim.diagnose.examine import examine
+from shipcosim.diagnose.examine_wind import leaps
 from shipcosim.diagnose.log import read_log
 from shipcosim.diagnose.repair import repaired
 
@@ -285,6 +286,15 @@ def test_the_wind_of_a_ship_that_keeps_still_jumps_where_its_label_is_wrong(faul
     finding = only(log | {role: np.where(inside(log, 300, 800), change(log), log[role])})
     assert role in finding.channels and finding.kind == "data"
     near(finding.segments, (300.0, 800.0), within=3.0)
+
+
+@pytest.mark.parametrize("segment", [(300.0, 700.0), (0.0, 500.0), None])
+def test_another_unit_of_the_wind_leaps_at_its_ends_and_a_lee_does_not(segment):
+    time, random = np.arange(1200.0), np.random.default_rng(2)
+    speed = 9.0 + np.cumsum(0.1 * random.normal(size=len(time)))
+    here = (time >= segment[0]) & (time <= segment[1]) if segment else np.ones(len(time), bool)
+    assert leaps(time, np.where(here, 3600.0 / 1852.0, 1.0) * speed, segment, 3600.0 / 1852.0)
+    assert leaps(time, speed, segment, 3600.0 / 1852.0) == (segment is None)
 
 
 def test_a_rate_that_is_rounded_away_is_told_by_the_signs_of_its_zeros():
