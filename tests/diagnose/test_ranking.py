@@ -6,7 +6,7 @@ from diagnose import twin
 from diagnose.twin import case, fits
 
 from shipcosim.diagnose.ranking import _one_way, fitted, probes, weighed
-from shipcosim.diagnose.search import _simplify
+from shipcosim.diagnose.search import _simplify, names
 
 NAMES = {
     "current": {"current"},
@@ -115,3 +115,12 @@ def test_a_current_of_next_to_nothing_at_one_end_does_not_turn_about(forwards):
     assert np.hypot(*slow) == pytest.approx(np.hypot(*ends[0])) and np.dot(slow, fast) > 0.0
     turned = np.array([0.2, 0.0]), np.array([-0.1, 0.2])
     assert all(map(np.array_equal, _one_way(*turned), turned))
+
+
+def test_late_commands_are_found_beside_a_lost_thrust_though_their_lag_gains_nothing_at_first_sight():
+    log = twin.logs()["thrust_loss"]
+    late = {role: log[role] for role in log.data_vars if role.endswith(("_rpm", "_azimuth"))}
+    late = {role: series.copy(data=np.r_[[series.values[0]] * 2, series.values[:-2]]) for role, series in late.items()}
+    best = twin.explained(log.assign(late))[1][0]
+    assert names(best.suspects) == {"thrust_loss of port", "thruster_lag"}
+    assert best.values["instruments.thruster_lag"] == pytest.approx(2.0, abs=0.5)

@@ -6,6 +6,8 @@ from shipcosim.diagnose.ranking import fitted, weighed
 
 __all__ = ["at_first_sight", "explain", "names", "without_causes"]
 
+STRAIN = 2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
+
 
 def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
     """The sets of causes that explain a log best.
@@ -36,9 +38,11 @@ def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
         for fit in front:
             gains = weighed(case, fit)
             most_gain = gains[0][0]
-            for gain, suspect, values in gains[: likely if stage == 0 else likely // 2]:
-                if gain < max(most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0):
-                    break
+            least = max(most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0)
+            first, strained = likely if stage == 0 else likely // 2, _strained(fit)
+            for place, (gain, suspect, values) in enumerate(gains):
+                if (place >= first or gain < least) and not any(strained & set(knob.paths) for knob in suspect.knobs):
+                    continue
                 suspects = (*fit.suspects, suspect)
                 key = names(suspects)
                 if key not in fits and key not in tried:
@@ -50,6 +54,12 @@ def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
             break
     _simplify(case, fits)
     return sorted(fits.values(), key=lambda fit: -fit.score)
+
+
+def _strained(fit):
+    """Numbers that a fit has far from what is known of them: what they do may be bent there, as a lag's."""
+    known = zip(fit.columns, fit.theta, strict=True)
+    return {path for column, theta in known if abs(theta) > STRAIN for path in column.turns}
 
 
 def at_first_sight(case):
