@@ -179,6 +179,8 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
         plant = case.plant.with_values(values | about)
         linear = linearise(motion, case.record, plant, [column.turns for column in columns])
         last, fit = fit, _posterior(case, suspects, values, columns, linear, plant, motion)
+        if not (np.isfinite(fit.score) and np.all(np.isfinite(fit.motion))):  # no ship with this cause makes this track
+            return replace(last or fit, score=-np.inf)
         motion, values, about = fit.motion, _next(fit), _about(fit)
         moved = [abs(values[k.paths[0]] - fit.plant.get(k.paths[0])) / k.typical for s in suspects for k in s.knobs]
         if max(moved, default=0.0) < 0.02 and last and abs(fit.score - last.score) < 1.0:
