@@ -7,8 +7,7 @@ from diagnose import twin
 from shipcosim.diagnose.corrections import with_right_wind
 from shipcosim.diagnose.drivers import with_label
 from shipcosim.diagnose.effects import read_catalogue
-from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import WIND_LABELS
+from shipcosim.diagnose.mislabels import WIND_LABELS, finding_of
 
 FROM_NORTH, OVER_GROUND_FROM_NORTH = WIND_LABELS[1], WIND_LABELS[3]
 
@@ -35,7 +34,7 @@ def over_ground_from_north(log):
 )
 def test_a_wind_told_to_be_counted_from_north_is_over_ground_too_where_the_ship_says_so(hidden, label):
     log = hidden(twin.logs()["healthy"])
-    told = Finding("frame", None, "data", 0.99, {}, (), FROM_NORTH.channels, note=FROM_NORTH.sentence)
+    told = finding_of(FROM_NORTH, 0.99)
     clean = with_label(log, FROM_NORTH)
     case = twin.ready(clean)
     (found,), clean, case = with_right_wind(log, [told], clean, case, twin.plant(), read_catalogue())

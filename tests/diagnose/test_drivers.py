@@ -7,8 +7,7 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.drivers import best_run, settled, suspected, with_label
-from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import WIND_LABELS
+from shipcosim.diagnose.mislabels import WIND_LABELS, finding_of
 
 KNOTS = next(label for label in WIND_LABELS if "in kn," in label.sentence)
 FIRST, LAST = 120.0, 260.0
@@ -52,7 +51,7 @@ def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
 @pytest.mark.parametrize("part", [True, False], ids=["in a part", "throughout"])
 def test_what_is_told_throughout_is_settled_to_the_part_where_it_is_so(part):
     log = changed({"wind_speed": 3600.0 / 1852.0 * twin.logs()["healthy"]["wind_speed"].values}, part)
-    told = Finding("frame", None, "data", 0.99, {}, (), KNOTS.channels, note=KNOTS.sentence)
+    told = finding_of(KNOTS, 0.99)
     found = settled(log, KNOTS, told, twin.ready(with_label(log, KNOTS)))
     np.testing.assert_allclose(found.segments, [(FIRST, LAST)] if part else np.zeros(0), atol=10.0)
 

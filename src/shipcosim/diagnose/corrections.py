@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim.diagnose.drivers import likelihood, settled, suspected, with_label
 from shipcosim.diagnose.examine_wind import leaps
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import WIND_LABELS, mislabel_of
+from shipcosim.diagnose.mislabels import WIND_LABELS, finding_of, mislabel_of, possible
 from shipcosim.diagnose.nameless import unexplained
 from shipcosim.diagnose.preparing import prepare
 from shipcosim.diagnose.record import record_of
@@ -74,18 +74,15 @@ def _counted_otherwise(raw, told, case, plant, catalogue):
     """A fault of the wind's direction, and its case, by the likeliest label of those that could be meant."""
     if mislabel_of(told).scale is not None:
         return told, case
-    rights = {
-        label: with_label(raw, label, told.segments)
-        for label in WIND_LABELS
-        if label.scale is None and set(label.channels) <= set(raw)
-    }
+    directions = [label for label in possible(WIND_LABELS, raw) if label.scale is None]
+    rights = {label: with_label(raw, label, told.segments) for label in directions}
     label = max(rights, key=lambda label: likelihood(case, record_of(rights[label], plant)))
     if label is mislabel_of(told):
         return told, case
     again = prepare(rights[label], plant, catalogue)
     if at_first_sight(again) < at_first_sight(case) + _FAULT:
         return told, case
-    return replace(told, cause=label.cause, channels=label.channels, note=label.sentence), again
+    return finding_of(label, told.probability, *told.segments), again
 
 
 def rewired(clean, plant, catalogue, case):
@@ -113,12 +110,11 @@ def with_right_drivers(clean, case, fits, plant, catalogue):
     for _, mislabel, fault in suspected(clean, case)[:_SUSPECTS]:
         again = prepare(with_label(clean, mislabel, fault.segments), plant, catalogue)
         likely.append((at_first_sight(again), mislabel, fault, again))
-    likely.sort(key=lambda entry: -entry[0])
-    if likely and likely[0][0] < min(fits[0].score, at_first_sight(case) + _FAULT):
-        return None
-    for place, (sight, mislabel, fault, again) in enumerate(likely):
-        if place > 0 and sight < fits[0].score:
-            break
+    least = min(fits[0].score, at_first_sight(case) + _FAULT) if likely else 0.0
+    for sight, mislabel, fault, again in sorted(likely, key=lambda entry: -entry[0]):
+        if sight < least:
+            return None
+        least = fits[0].score
         fault, right, again = _settled(clean, mislabel, fault, again, plant, catalogue)
         if at_first_sight(again) < fits[0].score or not _shows(clean, mislabel, fault):
             continue
@@ -131,11 +127,11 @@ def with_right_drivers(clean, case, fits, plant, catalogue):
 
 def _shows(clean, mislabel, fault):
     """Whether another unit of the wind in a part of a log shows at its ends: what takes her wind away does not."""
-    if mislabel not in WIND_LABELS or mislabel.scale is None or not fault.segments:
+    if mislabel not in WIND_LABELS or mislabel.scale is None:
         return True
     speed = clean["wind_speed"].values
     known = np.isfinite(speed)
-    return leaps(clean["time"].values[known], speed[known], fault.segments[0], 1.0 / mislabel.scale)
+    return leaps(clean["time"].values[known], speed[known], next(iter(fault.segments), None), 1.0 / mislabel.scale)
 
 
 def _settled(clean, mislabel, fault, case, plant, catalogue):

@@ -11,9 +11,8 @@ from itertools import combinations
 import numpy as np
 
 from shipcosim.diagnose.evidence import evidence, gram
-from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.linear import linearise
-from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, negative, undone
+from shipcosim.diagnose.mislabels import WIND_LABELS, Mislabel, finding_of, negative, possible, undone
 from shipcosim.diagnose.record import record_of
 from shipcosim.diagnose.tables import arrays_of
 from shipcosim.diagnose.whitening import innovations
@@ -121,7 +120,7 @@ def _mislabels(clean, plant):
     if "wind_from" in clean:
         motion = all(role in clean for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
-        found += [label for label in labels if all(role in clean for role in label.channels)]
+        found += possible(labels, clean)
     return found
 
 
@@ -160,8 +159,8 @@ def where_best(gain, mislabel, record, shortest=_SHORTEST):
     """Sum of the gains of rows where a mislabel explains most, and the finding of it there."""
     first, last, total = best_run(gain, round(shortest / record.step))
     whole = last - first > _WHOLE * record.time.size
-    segments = () if whole else ((float(record.time[first]), float(record.time[last])),)
-    return total, Finding(mislabel.cause, None, "data", 0.99, {}, segments, mislabel.channels, note=mislabel.sentence)
+    segment = None if whole else (float(record.time[first]), float(record.time[last]))
+    return total, finding_of(mislabel, 0.99, segment)
 
 
 def best_run(gain, least):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import WIND_LABELS
+from shipcosim.diagnose.mislabels import WIND_LABELS, finding_of
 
 __all__ = ["jumping_wind"]
 
@@ -49,7 +49,7 @@ def jumping_wind(log: dict) -> list[Finding]:
     most = max(gain for gain, *_ in found)
     gain, label, segment, _ = min((entry for entry in found if entry[0] > most - TIED), key=lambda entry: entry[3])
     probability = float(0.99 / (1.0 + np.exp(-gain)))
-    return [Finding(label.cause, None, "data", probability, {}, (segment,), label.channels, note=label.sentence)]
+    return [finding_of(label, probability, segment)]
 
 
 def _wind(part):

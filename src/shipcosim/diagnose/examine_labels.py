@@ -12,7 +12,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import HEADING_LABELS, POSITION_LABELS, Mislabel, mislabel_of, undone
+from shipcosim.diagnose.mislabels import (
+    HEADING_LABELS,
+    POSITION_LABELS,
+    Mislabel,
+    finding_of,
+    mislabel_of,
+    possible,
+    undone,
+)
 from shipcosim.diagnose.motion import (
     Filter,
     Motion,
@@ -69,7 +77,7 @@ def _best(log, motion_of, labels):
     plain = motion_of(log)
     if plain is None:
         return None
-    labels = [label for label in labels if set(label.channels) <= set(log)]
+    labels = possible(labels, log)
     others = [motion_of(log | label.undo(log)) for label in labels]
     levels = np.stack([plain.level, *(other.level for other in others)], axis=2)
     filters = filter_for(plain, levels)
@@ -185,6 +193,4 @@ def _finding(segment, best, suspects):
     rough = max(s.rough for s in suspects)
     others = [(s.gain - best.gain) / rough for s in suspects if s is not best]
     probability = float(1.0 / (1.0 + np.exp(LEAST_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others))))
-    segments = (segment,) if segment else ()
-    label = best.mislabel
-    return Finding(label.cause, None, "data", probability, {}, segments, label.channels, note=label.sentence)
+    return finding_of(best.mislabel, probability, segment)

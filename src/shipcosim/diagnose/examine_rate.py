@@ -9,7 +9,7 @@ import numpy as np
 from shipcosim.diagnose.examine_labels import best_segment, in_segment
 from shipcosim.diagnose.examine_rows import quantum
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import HEADING_LABELS
+from shipcosim.diagnose.mislabels import HEADING_LABELS, finding_of
 from shipcosim.diagnose.motion import heading_motion
 
 __all__ = ["silent_rate"]
@@ -36,7 +36,7 @@ def silent_rate(log: dict) -> list[Finding]:
     fine = quantum(rate)
     bends = np.abs(np.diff(rate, n=2, prepend=rate[:2]))
     if _is_below_its_resolution(rate, fine) and _turns(motion, None) > 3.0 * np.std(motion.slow(rate)):
-        return [_finding(None, 0.98)] if _signs_turn(motion) else []
+        return [finding_of(RADIAN, 0.98)] if _signs_turn(motion) else []
     windows = np.array_split(bends, max(4, len(bends) // 60))
     usual = float(np.quantile([window.mean() for window in windows], 0.8))
     if usual <= 3.0 * fine:
@@ -50,7 +50,7 @@ def silent_rate(log: dict) -> list[Finding]:
     told = np.std(in_segment(motion.slow(rate), motion.time, segment))
     if inner > QUIETER * outer or not _turns(motion, segment) > 3.0 * told:
         return []
-    return [_finding(segment, 0.9)]
+    return [finding_of(RADIAN, 0.9, segment)]
 
 
 def _is_below_its_resolution(rate, fine):
@@ -72,8 +72,3 @@ def _turns(motion, segment):
     rate = motion.slow(np.gradient(motion.seen[:, 0], motion.time))
     smooth = in_segment(motion.slow(rate), motion.time, segment)
     return float(1.4826 * np.median(np.abs(smooth - np.median(smooth))))
-
-
-def _finding(segment, probability):
-    segments = (segment,) if segment else ()
-    return Finding(RADIAN.cause, None, "data", probability, {}, segments, RADIAN.channels, note=RADIAN.sentence)

@@ -6,7 +6,7 @@ import numpy as np
 
 from shipcosim.diagnose.examine_labels import CLIP, LEAST_GAIN, best_segment, in_segment
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.mislabels import WIND_LABELS
+from shipcosim.diagnose.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.motion import Filter, Motion, filter_for, whiteness
 from shipcosim.diagnose.tables import inside
 
@@ -176,5 +176,4 @@ def _slope(y, x):
 
 def _named(label, segment, gain, share):
     probability = float(share / (1.0 + np.exp(LEAST_GAIN - 6.0 - gain)))
-    segments = (segment,) if segment else ()
-    return Finding(label.cause, None, "data", probability, {}, segments, label.channels, note=label.sentence)
+    return finding_of(label, probability, segment)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.diagnose.examine_rows import quantum
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.tables import inside
 
 __all__ = [
@@ -16,8 +17,10 @@ __all__ = [
     "POSITION_LABELS",
     "WIND_LABELS",
     "Mislabel",
+    "finding_of",
     "mislabel_of",
     "negative",
+    "possible",
     "undone",
 ]
 
@@ -117,6 +120,17 @@ WIND_LABELS = (
     _in_unit(("wind_speed",), 1.0 / KNOT, "wind_speed is in m/s, not kn"),
 )
 MISLABELS = (*HEADING_LABELS, *POSITION_LABELS, *WIND_LABELS)
+
+
+def possible(labels, log) -> list[Mislabel]:
+    """Those of some mislabels whose channels a log has."""
+    return [label for label in labels if all(role in log for role in label.channels)]
+
+
+def finding_of(mislabel: Mislabel, probability: float, segment=None) -> Finding:
+    """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
+    segments = (segment,) if segment else ()
+    return Finding(mislabel.cause, None, "data", probability, {}, segments, mislabel.channels, note=mislabel.sentence)
 
 
 def mislabel_of(finding) -> Mislabel | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from shipcosim.diagnose.drivers import where_best, with_label
 from shipcosim.diagnose.linear import linearise
-from shipcosim.diagnose.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_of
+from shipcosim.diagnose.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_of, possible
 from shipcosim.diagnose.motion import filter_for, is_clear, position_motion
 from shipcosim.diagnose.noise import first_noise
 from shipcosim.diagnose.record import CHANNELS, first_motion, record_of
@@ -73,8 +73,7 @@ def relabelled(log, faults, case):
         case = replace(case, noise=replace(case.noise, jolt=np.minimum(case.noise.jolt, calm)))
     base = _by_row(case, record_of(plain, case.plant))
     known = [mislabel_of(one) for one in told]
-    there = [label for label in LABELS if set(label.channels) <= set(plain)]
-    labels = [label for label in there if label in known or _matters(plain, label)]
+    labels = [label for label in possible(LABELS, plain) if label in known or _matters(plain, label)]
     gains = {label: _gain(plain, label, case) - base for label in labels}
     found = [where_best(gain, label, case.record, SHORTEST) for label, gain in gains.items()]
     so_far = sum(float(gains[mislabel_of(one)][inside(case.record.time, one.segments)].sum()) for one in told)
