@@ -124,3 +124,12 @@ def test_late_commands_are_found_beside_a_lost_thrust_though_their_lag_gains_not
     best = twin.explained(log.assign(late))[1][0]
     assert names(best.suspects) == {"thrust_loss of port", "thruster_lag"}
     assert best.values["instruments.thruster_lag"] == pytest.approx(2.0, abs=0.5)
+
+
+def test_a_fit_starts_within_the_bounds_of_its_numbers():
+    """At first sight a number can be far beyond them, where no ship follows the log and the filter ends in NaN."""
+    (suspect,) = (one for one in case("healthy").suspects if one.cause == "reverse_loss")
+    (knob,) = suspect.knobs
+    starts = dict.fromkeys(knob.paths, knob.bounds[1]), dict.fromkeys(knob.paths, 1000.0 * knob.bounds[1])
+    bound, beyond = (fitted(case("healthy"), (suspect,), start) for start in starts)
+    assert (beyond.score, beyond.values) == (bound.score, bound.values)

@@ -165,7 +165,7 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     case : Case
     suspects : tuple of Suspect
     values : dict of str to float, optional
-        To start from.
+        To start from, brought within bounds.
     rounds : int
         Of linearisation.
 
@@ -173,14 +173,12 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     -------
     Fit
     """
-    values, about, motion, fit = dict(values or {}), {}, case.motion, None
+    values, about, motion, fit = _bounded(suspects, dict(values or {})), {}, case.motion, None
     columns = case.known(suspects) + _own(case, suspects)
     for _ in range(rounds):
         plant = case.plant.with_values(values | about)
         linear = linearise(motion, case.record, plant, [column.turns for column in columns])
         last, fit = fit, _posterior(case, suspects, values, columns, linear, plant, motion)
-        if not (np.isfinite(fit.score) and np.all(np.isfinite(fit.motion))):  # no ship with this cause makes this track
-            return replace(last or fit, score=-np.inf)
         motion, values, about = fit.motion, _next(fit), _about(fit)
         moved = [abs(values[k.paths[0]] - fit.plant.get(k.paths[0])) / k.typical for s in suspects for k in s.knobs]
         if max(moved, default=0.0) < 0.02 and last and abs(fit.score - last.score) < 1.0:
@@ -217,8 +215,14 @@ def _next(fit):
     knobs = [knob for suspect in fit.suspects for knob in suspect.knobs]
     found = dict(fit.values)
     for knob, theta in zip(knobs, fit.theta[fit.theta.size - len(knobs) :], strict=True):
-        found.update(dict.fromkeys(knob.paths, float(np.clip(knob.neutral + theta * knob.typical, *knob.bounds))))
-    return found
+        found.update(dict.fromkeys(knob.paths, float(knob.neutral + theta * knob.typical)))
+    return _bounded(fit.suspects, found)
+
+
+def _bounded(suspects, values):
+    """Values with the numbers that some suspects turn within their bounds."""
+    bounds = {path: knob.bounds for suspect in suspects for knob in suspect.knobs for path in knob.paths}
+    return {path: float(np.clip(v, *bounds[path])) if path in bounds else v for path, v in values.items()}
 
 
 def _about(fit):

@@ -111,6 +111,20 @@ def _surely_worse(name):
     return hit
 
 
+def _needlessly_worse(name):
+    """Surely worse than the observer, though a perfect model with one, on the healthy twin, is not."""
+    surely_worse = _surely_worse(name)
+
+    def hit(result, judged):
+        worse = surely_worse(result, judged)
+        if not worse:
+            return worse
+        gain = result["diagnosis"][name]
+        return gain["twin_observer_m"] <= gain["bias_observer_m"]
+
+    return hit
+
+
 def _two_sigma(pairs):
     hits = [inside for _, judged in pairs if judged.right for inside in judged.within.values()]
     return _cell(sum(hits), len(hits))
@@ -155,6 +169,7 @@ def _gain_rows(place, name, wanted):
         Row(ALONE, "drift", none, cell=_removed(name, "after_m", "twin_m")),
         Row(f"worse than the bias observer: {place}", "drift", ("2", "2", "2"), _worse(name, with_one)),
         Row("the same, by more than chance", "drift", none, _surely_worse(name)),
+        Row("and where a perfect model is not worse itself", "drift", none, _needlessly_worse(name)),
         Row(ALONE, "drift", none, _worse(name, "after_m")),
         *(
             Row(SHARE.format(place, label), "drift", none, cell=_removed(name, after, "twin_m", "before_m"))

@@ -163,7 +163,7 @@ def test_removed_beyond_the_observer_is_of_what_it_leaves_and_right_answers_only
 
     results = [answer(2.0, 0.7, 0.7), answer(2.0, 0.96, 0.7), answer(2.0, 0.7, 0.7, "tow"), answer(0.7, 0.7, 0.69)]
     rows = [row for row in tables.ROWS if row.name == "drift"]
-    beside, noise, alone, worse, surely, worse_alone, *shares = rows[: len(rows) // 2]
+    beside, noise, alone, worse, surely, needlessly, worse_alone, *shares = rows[: len(rows) // 2]
     cells = [tables.content(row, results, "work") for row in (beside, noise, alone)]
     assert cells == ["90 % (2)", "63 % (3)", "50 % (3)"]
     assert [tables.content(row, results, "work") for row in shares] == ["75 % (3)", "50 % (3)", "25 % (3)"]
@@ -173,6 +173,8 @@ def test_removed_beyond_the_observer_is_of_what_it_leaves_and_right_answers_only
     more = [answer(1.0, 1.1, 0.5), answer(1.0, 1.3, 0.5)]
     assert tables.rates(more, "drift", "work", worse.hit) == (2, 2)
     assert tables.rates(more, "drift", "work", surely.hit) == (1, 2)
+    more += [answer(1.0, 1.3, 1.2)]
+    assert [tables.rates(more, "drift", "work", row.hit) for row in (surely, needlessly)] == [(2, 3), (1, 3)]
 
 
 def test_after_the_manoeuvre_the_truth_must_be_named_or_in_the_set():
