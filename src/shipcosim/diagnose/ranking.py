@@ -173,7 +173,7 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     -------
     Fit
     """
-    values, about, motion, fit = _bounded(suspects, dict(values or {})), {}, case.motion, None
+    values, about, motion, fit = _bounded(suspects, values or {}), {}, case.motion, None
     columns = case.known(suspects) + _own(case, suspects)
     for _ in range(rounds):
         plant = case.plant.with_values(values | about)

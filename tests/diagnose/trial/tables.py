@@ -116,11 +116,8 @@ def _needlessly_worse(name):
     surely_worse = _surely_worse(name)
 
     def hit(result, judged):
-        worse = surely_worse(result, judged)
-        if not worse:
-            return worse
-        gain = result["diagnosis"][name]
-        return gain["twin_observer_m"] <= gain["bias_observer_m"]
+        worse, gain = surely_worse(result, judged), (result["diagnosis"] or UNJUDGED).get(name)
+        return worse and gain["twin_observer_m"] <= gain["bias_observer_m"]
 
     return hit
 
