@@ -24,7 +24,7 @@ test-all: .venv/installed-test
 
 benchmarks: .venv/installed-test
 	$(BIN)/shipcosim build
-	$(BIN)/pytest -m "" -s tests/benchmarks
+	$(BIN)/pytest -m "" -s tests/bench/speed tests/bench/rivals tests/bench/trial/test_diagnosis_trial.py
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cli.project import build_stale
-from shipcosim.diagnose.effects import read_catalogue, suspects
-from shipcosim.diagnose.manoeuvres import library
-from shipcosim.diagnose.plant import plant_of
-from shipcosim.diagnose.prescription import testability
-from shipcosim.diagnose.whitening import Noise
+from shipcosim.diagnose.experiment.design import testability
+from shipcosim.diagnose.experiment.manoeuvres import library
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
+from shipcosim.diagnose.inference.innovations import Noise
+from shipcosim.diagnose.ship.model import plant_of
 from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[1]

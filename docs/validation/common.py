@@ -9,10 +9,10 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 
-from shipcosim.models import vessel
-from shipcosim.models.hull import HullParameters
+from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
+from shipcosim.models.ship import vessel
+from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ships import parameters
-from shipcosim.models.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
 
 PICTURES = Path(__file__).resolve().parent / "pictures"
 KNOT = 1852.0 / 3600.0

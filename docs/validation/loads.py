@@ -6,10 +6,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from common import MODEL, REFERENCE, THIRD, hull_of, save, table
 
-from shipcosim.models.load_tables import DRIFT_33M9
+from shipcosim.models.environment.waves import OMEGA_DRIFT_MAX, components, drift, drift_table, jonswap, mean_drift
+from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
+from shipcosim.models.ship.load_tables import DRIFT_33M9
 from shipcosim.models.ships import parameters
-from shipcosim.models.waves import OMEGA_DRIFT_MAX, components, drift, drift_table, jonswap, mean_drift
-from shipcosim.models.wind import WindParameters, wind_loads
 
 FRONTAL, LATERAL, LENGTH, DENSITY = 85.0, 210.0, 36.25, 1.224  # m2, m2, m, kg/m3: the lengthened ship
 SHORT_FRONTAL, SHORT_LATERAL, SHORT_LENGTH, SHORT_DENSITY = 81.0, 172.0, 31.25, 1.23

@@ -7,9 +7,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from common import MODEL, REFERENCE, THIRD, hull_of, save, thrust_loads, units
 
-from shipcosim.models.hull import hull_loads
-from shipcosim.models.thruster import azimuth_loads, azimuth_replay
-from shipcosim.models.vessel import Vessel, step
+from shipcosim.models.propulsion.thruster import azimuth_loads, azimuth_replay
+from shipcosim.models.ship.hull import hull_loads
+from shipcosim.models.ship.vessel import Vessel, step
 
 SHIP = "gunnerus-28m9"
 RPM, AZIMUTH = 100.0, radians(20.0)  # of the record, both units

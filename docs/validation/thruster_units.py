@@ -7,9 +7,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from common import MODEL, REFERENCE, THIRD, save, table
 
-from shipcosim.models.propeller import PropellerParameters, propeller_loads, series
-from shipcosim.models.ships import parameters
-from shipcosim.models.thruster import (
+from shipcosim.models.propulsion.propeller import PropellerParameters, propeller_loads, series
+from shipcosim.models.propulsion.thruster import (
     AzimuthParameters,
     TunnelParameters,
     azimuth_loads,
@@ -17,6 +16,7 @@ from shipcosim.models.thruster import (
     tunnel_loads,
     tunnel_replay,
 )
+from shipcosim.models.ships import parameters
 
 UNIT = AzimuthParameters(x=0.0)
 PROPELLER = PropellerParameters()

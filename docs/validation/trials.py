@@ -10,8 +10,8 @@ from common import KNOT, MODEL, REFERENCE, hull_of, save, settle, speed_of, tabl
 from trial_log import STEP
 from turning import swings, turn_numbers
 
-from shipcosim.models.thruster import turned
-from shipcosim.models.vessel import Vessel, step
+from shipcosim.models.propulsion.thruster import turned
+from shipcosim.models.ship.vessel import Vessel, step
 
 SHIP = "gunnerus-33m9"
 PARTS = 5  # steps per row of the log

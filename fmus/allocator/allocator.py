@@ -1,7 +1,7 @@
 """FMU of the thrust allocator."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.allocation import AllocationParameters, at_rest, design, step
+from shipcosim.models.allocation.pseudo_inverse import AllocationParameters, at_rest, design, step
 
 
 class Allocator(Fmu):

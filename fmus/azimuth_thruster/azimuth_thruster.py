@@ -1,9 +1,9 @@
 """FMU of an azimuth thruster with its drive."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models.drive import at_rest
-from shipcosim.models.maths import pi, wrap
-from shipcosim.models.thruster import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
+from shipcosim.models.core.maths import pi, wrap
+from shipcosim.models.propulsion.drive import at_rest
+from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
 
 
 class AzimuthThruster(Fmu):

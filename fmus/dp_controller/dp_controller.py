@@ -1,11 +1,12 @@
 """FMU of the DP controller: observer and control law."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models import control, observer
-from shipcosim.models.clock import samples_due
-from shipcosim.models.kinematics import to_body
-from shipcosim.models.maths import wrap
-from shipcosim.models.wind import WindParameters, wind_loads
+from shipcosim.models.control import observer
+from shipcosim.models.control import pid as control
+from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.sampling import samples_due
+from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 
 
 class DpController(Fmu):

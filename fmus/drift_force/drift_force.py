@@ -1,7 +1,7 @@
 """FMU of the mean drift load of waves."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.earth import DriftForceParameters, OnsetParameters, drift_force, onset
+from shipcosim.models.environment.earth_fixed_loads import DriftForceParameters, OnsetParameters, drift_force, onset
 
 
 class DriftForce(Fmu):

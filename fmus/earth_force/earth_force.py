@@ -1,7 +1,7 @@
 """FMU of a force of constant direction over the earth."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.earth import EarthForceParameters, OnsetParameters, earth_force, onset
+from shipcosim.models.environment.earth_fixed_loads import EarthForceParameters, OnsetParameters, earth_force, onset
 
 
 class EarthForce(Fmu):

@@ -1,10 +1,16 @@
 """FMU of wind, current and waves."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models import waves
-from shipcosim.models.clock import tidy_time
-from shipcosim.models.environment import EnvironmentParameters, EnvironmentState, air_velocity, step, water_velocity
-from shipcosim.models.maths import wrap
+from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.sampling import tidy_time
+from shipcosim.models.environment import waves
+from shipcosim.models.environment.weather import (
+    EnvironmentParameters,
+    EnvironmentState,
+    air_velocity,
+    step,
+    water_velocity,
+)
 
 
 class Environment(Fmu):

@@ -1,7 +1,7 @@
 """FMU of what stands between a ship and her log."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.instruments import InstrumentParameters, recalled, remembered, shown
+from shipcosim.models.ship.instruments import InstrumentParameters, recalled, remembered, shown
 
 
 class Instruments(Fmu):

@@ -1,12 +1,12 @@
 """FMU that predicts the ship by dead reckoning."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models.clock import samples_due
-from shipcosim.models.hull import HullParameters
-from shipcosim.models.prediction import predict
-from shipcosim.models.vessel import DriftParameters, Vessel
-from shipcosim.models.waves import components, drift_table, mean_drift
-from shipcosim.models.wind import WindParameters
+from shipcosim.models.core.sampling import samples_due
+from shipcosim.models.environment.waves import components, drift_table, mean_drift
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction.dead_reckoning import predict
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import DriftParameters, Vessel
 
 HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
 

@@ -1,7 +1,7 @@
 """FMU of the ship's sensors."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.sensors import SensorParameters, Truth, start, step
+from shipcosim.models.ship.sensors import SensorParameters, Truth, start, step
 
 
 class Sensors(Fmu):

@@ -1,9 +1,9 @@
 """FMU of a tunnel thruster with its drive."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models.drive import at_rest
-from shipcosim.models.maths import pi
-from shipcosim.models.thruster import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
+from shipcosim.models.core.maths import pi
+from shipcosim.models.propulsion.drive import at_rest
+from shipcosim.models.propulsion.thruster import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
 
 
 class TunnelThruster(Fmu):

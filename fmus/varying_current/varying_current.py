@@ -1,7 +1,7 @@
 """FMU of a current that turns or grows."""
 
 from shipcosim.fmi import Fmu, Output, Parameters
-from shipcosim.models.current import VaryingCurrentParameters, varying_current
+from shipcosim.models.environment.current import VaryingCurrentParameters, varying_current
 
 
 class VaryingCurrent(Fmu):

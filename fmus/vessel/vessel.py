@@ -1,13 +1,13 @@
 """FMU of the ship: hull, wind and waves under the loads of whatever is connected."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models import waves
-from shipcosim.models.clock import tidy_time
-from shipcosim.models.hull import HullParameters
-from shipcosim.models.maths import wrap
-from shipcosim.models.vessel import DriftParameters, at_present, step
-from shipcosim.models.vessel import Vessel as State
-from shipcosim.models.wind import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.sampling import tidy_time
+from shipcosim.models.environment import waves
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import DriftParameters, at_present, step
+from shipcosim.models.ship.vessel import Vessel as State
 
 
 class Vessel(Fmu):

@@ -226,9 +226,9 @@ def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(lossy, like_the_r
         raise error
 
     monkeypatch.chdir(like_the_root)
-    monkeypatch.setattr("shipcosim.diagnose.run.diagnose", lambda *_: (lossy.story.diagnosis, lossy.story.details))
+    monkeypatch.setattr("shipcosim.diagnose.pipeline.diagnose", lambda *_: (lossy.story.diagnosis, lossy.story.details))
     monkeypatch.setattr(command, "_with_errors", lambda story: story)
-    monkeypatch.setattr("shipcosim.report.diagnosis.write_diagnosis", cut_off)
+    monkeypatch.setattr("shipcosim.report.diagnosis.page.write_diagnosis", cut_off)
     before = {path.name: path.read_bytes() for path in lossy.folder.iterdir()}
     done = call("diagnose", "lossy.csv")
     assert done.code == (130 if error is KeyboardInterrupt else 2) and "Traceback" not in done.err

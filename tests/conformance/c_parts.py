@@ -4,7 +4,7 @@
 """
 
 import c_fmus
-from cosim.test_fmi_versions import ECHO, MADE, _echo_description
+from cosim.slaves.test_fmi_versions import ECHO, MADE, _echo_description
 
 DECAY = """
 #define NX 1

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 from conformance.texts import document
 
-from shipcosim.fmi.builder import build_fmu
+from shipcosim.fmi.export.builder import build_fmu
 
 HERE = Path(__file__).resolve().parent
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from shipcosim.fmi.builder import build_fmu
+from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import read_fmu, read_system
 

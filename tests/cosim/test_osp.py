@@ -7,10 +7,10 @@ import pytest
 from osp_execution import assert_same, rows_of
 
 from shipcosim.cosim import simulate
-from shipcosim.cosim.osp_export import write_osp
-from shipcosim.fmi.builder import build_fmu
+from shipcosim.cosim.export.osp import write_osp
+from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.ssp import read_system
-from shipcosim.ssp.hosts import check_for
+from shipcosim.ssp.portability.check import check_for
 
 pytest.importorskip("libcosimpy.CosimExecution", reason="needs libcosim")
 

@@ -9,7 +9,7 @@ from diagnose import twin
 from scipy.ndimage import gaussian_filter1d
 
 import shipcosim as sc
-from shipcosim.models.wind import WindParameters
+from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.series import make_table
 
 UNITS = {

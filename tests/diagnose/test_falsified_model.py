@@ -6,7 +6,7 @@ import pytest
 from truth import draw
 
 import shipcosim as sc
-from shipcosim.diagnose.run import diagnose
+from shipcosim.diagnose.pipeline import diagnose
 from shipcosim.ssp import read_system
 
 SEED, MINUTES = 17, 20

@@ -8,19 +8,19 @@ from diagnose import ferry, twin, usv
 from scipy.integrate import solve_ivp
 
 import shipcosim as sc
-from shipcosim.diagnose.effects import read_catalogue, suspects
-from shipcosim.diagnose.examine import examine
-from shipcosim.diagnose.extension import extend
-from shipcosim.diagnose.finding import Estimate, Finding
-from shipcosim.diagnose.linear import advanced, linearise
-from shipcosim.diagnose.noise import first_noise
-from shipcosim.diagnose.null import healthy_records
-from shipcosim.diagnose.plant import Drivers, Motion, loads, motion_rates, plant_of
-from shipcosim.diagnose.ranking import Case
-from shipcosim.diagnose.record import first_motion, record_of
-from shipcosim.diagnose.run import diagnose
-from shipcosim.diagnose.thrusters import pusher_of
-from shipcosim.models.thruster import AzimuthParameters
+from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
+from shipcosim.diagnose.inference.fitting import Case
+from shipcosim.diagnose.inference.linearisation import advanced, linearise
+from shipcosim.diagnose.inference.noise import first_noise
+from shipcosim.diagnose.inference.null_distribution import healthy_records
+from shipcosim.diagnose.log.checks.examine import examine
+from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.ship.inputs import first_motion, record_of
+from shipcosim.diagnose.ship.model import Drivers, Motion, loads, motion_rates, plant_of
+from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.models.propulsion.thruster import AzimuthParameters
 from shipcosim.series import write_table
 
 LOSS = Estimate(0.3, 0.02, "1")

@@ -13,15 +13,15 @@ from scipy.ndimage import gaussian_filter1d
 from threadpoolctl import threadpool_limits
 
 from shipcosim.cli.project import build_stale
-from shipcosim.diagnose.effects import read_catalogue
-from shipcosim.diagnose.linear import STATES
-from shipcosim.diagnose.noise import waves_of
-from shipcosim.diagnose.plant import Drivers, Motion, motion_rates, plant_of, shown
-from shipcosim.diagnose.preparing import prepare
-from shipcosim.diagnose.search import explain
-from shipcosim.diagnose.whitening import _process, _uncertain
-from shipcosim.models import instruments
-from shipcosim.models.wind import apparent_wind
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.inference.innovations import _process, _uncertain
+from shipcosim.diagnose.inference.linearisation import STATES
+from shipcosim.diagnose.inference.noise import waves_of
+from shipcosim.diagnose.inference.problem import prepare
+from shipcosim.diagnose.inference.search import explain
+from shipcosim.diagnose.ship.model import Drivers, Motion, motion_rates, plant_of, shown
+from shipcosim.models.environment.wind_loads import apparent_wind
+from shipcosim.models.ship import instruments
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system
 

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.signal import lfilter
 
 import shipcosim as sc
-from shipcosim.models.wind import WindParameters
+from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.series import make_table
 
 TOE = np.radians(4.0)

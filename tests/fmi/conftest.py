@@ -15,7 +15,7 @@ from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.logging import addLoggerProxy
 
-from shipcosim.fmi import builder, bundle
+from shipcosim.fmi.export import builder, bundle
 
 LAG = '''
 import numpy as np

@@ -13,7 +13,7 @@ import pytest
 from fmpy import read_model_description, simulate_fmu
 
 from shipcosim.cli.project import build_stale
-from shipcosim.cosim import export_fmu
+from shipcosim.cosim.export import fmu as export_fmu
 from shipcosim.series import read_table
 from shipcosim.ssp import read_system
 

@@ -10,7 +10,7 @@ import pytest
 
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
-from shipcosim.cosim.osp_export import osp_files
+from shipcosim.cosim.export.osp import osp_files
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import pack, read_fmu, read_system
 

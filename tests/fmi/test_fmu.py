@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import pytest
 
 from shipcosim.fmi import Fmu, FmuError, Input, Output, Parameter, Parameters
-from shipcosim.models.quantity import quantity
+from shipcosim.models.core.parameters import quantity
 
 
 @dataclass(frozen=True)

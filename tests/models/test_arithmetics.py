@@ -14,27 +14,16 @@ import numpy as np
 import pytest
 
 import shipcosim.models
-from shipcosim.models import (
-    allocation,
-    control,
-    current,
-    drive,
-    earth,
-    gusts,
-    hull,
-    instruments,
-    kinematics,
-    maths,
-    observer,
-    prediction,
-    propeller,
-    reference,
-    slipstream,
-    thruster,
-    vessel,
-    waves,
-    wind,
-)
+from shipcosim.models.allocation import pseudo_inverse as allocation
+from shipcosim.models.control import observer, reference
+from shipcosim.models.control import pid as control
+from shipcosim.models.core import kinematics, maths
+from shipcosim.models.environment import current, gusts, waves
+from shipcosim.models.environment import earth_fixed_loads as earth
+from shipcosim.models.environment import wind_loads as wind
+from shipcosim.models.prediction import dead_reckoning as prediction
+from shipcosim.models.propulsion import drive, propeller, slipstream, thruster
+from shipcosim.models.ship import hull, instruments, vessel
 from shipcosim.models.ships import parameters
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, fsolve
 
-from shipcosim.models.load_tables import DRIFT_33M9, WIND_33M9
-from shipcosim.models.waves import jonswap
+from shipcosim.models.environment.waves import jonswap
+from shipcosim.models.ship.load_tables import DRIFT_33M9, WIND_33M9
 
 RHO, LENGTH, DRAUGHT = 1025.0, 33.9, 2.786
 WIND, WIND_FROM, CURRENT, HEIGHT, PERIOD, WAVES_FROM = 8.0, math.pi / 4, (-0.3, 0.0), 0.5, 6.0, math.pi / 4

@@ -1,7 +1,7 @@
 """FMU of a mooring line, the example of docs/systems.md."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter
-from shipcosim.models.maths import cos, sin
+from shipcosim.models.core.maths import cos, sin
 
 
 class Line(Fmu):

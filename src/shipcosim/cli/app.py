@@ -287,7 +287,7 @@ def check(
     """
     from shipcosim.cli.checks import check_any, variables_in
     from shipcosim.cli.console import print_report, print_variables
-    from shipcosim.ssp.hosts import check_host
+    from shipcosim.ssp.portability.check import check_host
 
     for host in hosts or ():
         check_host(host)

@@ -55,7 +55,7 @@ def check_any(file, channels=None, hosts=()):
 def _host_problems(file, path, hosts):
     """What tools would make of a system, or of a scenario's; None for other files."""
     from shipcosim.scenario import read_scenario
-    from shipcosim.ssp.hosts import check_for
+    from shipcosim.ssp.portability.check import check_for
 
     if path.suffix.lower() not in (".toml", *SYSTEMS) and not path.is_dir():
         return None
@@ -69,9 +69,9 @@ def _host_problems(file, path, hosts):
 
 def variables_in(file):
     """An FMU's variables as rows of text: name, causality, type, unit, start, description; none for other files."""
-    from shipcosim.ssp.fmu import describe_fmu
-    from shipcosim.ssp.values import text_of
-    from shipcosim.ssp.xml import Findings
+    from shipcosim.ssp.fmu.description import describe_fmu
+    from shipcosim.ssp.xml.document import Findings
+    from shipcosim.ssp.xml.values import text_of
 
     fmu = describe_fmu(Path(file), Findings()) if file.lower().endswith(".fmu") else None
     return [
@@ -98,8 +98,8 @@ def check_scenario_file(path):
 
 def check_osp_scenario(path):
     """Problems of a scenario of OSP, in itself and with the OspSystemStructure.xml beside it, where there is one."""
-    from shipcosim.cosim.osp_scenario import read_osp_scenario
     from shipcosim.scenario import Scenario, check_scenario
+    from shipcosim.scenario.osp import read_osp_scenario
     from shipcosim.ssp import osp_file, read_system
 
     structure = osp_file(path.parent)
@@ -116,7 +116,7 @@ def check_osp_scenario(path):
 
 def _is_log(path):
     """Whether a table has a column of the navigation, by its role, so that it reads as measured data."""
-    from shipcosim.diagnose.roles import NAVIGATION
+    from shipcosim.diagnose.log.roles import NAVIGATION
     from shipcosim.series import read_columns
 
     columns = read_columns(path)
@@ -125,9 +125,9 @@ def _is_log(path):
 
 def check_log(path, channels=None):
     """Faults of measured data as errors; what is ordinary in a log and handled, as remarks."""
-    from shipcosim.diagnose.examine import examine
-    from shipcosim.diagnose.log import read_log
-    from shipcosim.diagnose.remarks import remarks
+    from shipcosim.diagnose.log.checks.examine import examine
+    from shipcosim.diagnose.log.reader import read_log
+    from shipcosim.diagnose.log.remarks import remarks
 
     log = read_log(path, channels)
     problems = [Problem(str(path), said, severity="remark") for said in remarks(log)]

@@ -14,12 +14,12 @@ from rich.text import Text
 
 from shipcosim.cli.console import WIDTH
 from shipcosim.cli.project import build_stale, built_fmus, experiment_of, find_project, find_scenario, with_osp_events
-from shipcosim.cosim.as_read import readers
 from shipcosim.cosim.compare import OURS, Difference
+from shipcosim.cosim.engines.as_read import readers
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import check_times, read_scenario
 from shipcosim.ssp import osp_file, pack, read_system
-from shipcosim.ssp.hosts_taken import taken_by, told_set
+from shipcosim.ssp.portability.as_interpreted import taken_by, told_set
 
 
 def print_comparison(comparison, as_json):

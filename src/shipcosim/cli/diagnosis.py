@@ -70,7 +70,7 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
     system : str, optional
         As for `find_system`.
     channels, effects : path, optional
-        As for `shipcosim.diagnose.run.diagnose`.
+        As for `shipcosim.diagnose.pipeline.diagnose`.
 
     Returns
     -------
@@ -83,8 +83,8 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.results import staged
-    from shipcosim.diagnose.run import diagnose
-    from shipcosim.report.diagnosis import Story, write_diagnosis
+    from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.report.diagnosis.page import Story, write_diagnosis
     from shipcosim.ssp import read_system
 
     _check_inputs(data, channels, effects)
@@ -151,9 +151,9 @@ def _is_named(diagnosis):
 
 def _with_errors(story):
     """Errors of predictions, and the force that the model lacks."""
-    from shipcosim.diagnose.force import missing_force
-    from shipcosim.diagnose.gain import baseline, compare, gain
-    from shipcosim.diagnose.unseen import compare_unseen
+    from shipcosim.diagnose.validation.conditions import compare_unseen
+    from shipcosim.diagnose.validation.gain import baseline, compare, gain
+    from shipcosim.diagnose.validation.missing_force import missing_force
 
     details, named = story.details, _is_named(story.diagnosis)
     case, fit = details.case, details.fit
@@ -173,8 +173,8 @@ def _with_errors(story):
 
 def _extended(story, given, stage, about, effects, fmus):
     """The system with the named causes in it, where there are any."""
-    from shipcosim.diagnose.effects import read_catalogue
-    from shipcosim.diagnose.extension import extend
+    from shipcosim.diagnose.extension.extend import extend
+    from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
     from shipcosim.ssp import read_system
 
     findings = [finding for finding in story.diagnosis.findings if finding.kind == "physics"]
@@ -189,8 +189,8 @@ def _extended(story, given, stage, about, effects, fmus):
 
 def _simulated(story, given, effects, fmus, link):
     """The errors again as co-simulations, with what was fitted on the training rows."""
-    from shipcosim.diagnose.gain import baseline, gain
-    from shipcosim.diagnose.replays import MOST
+    from shipcosim.diagnose.validation.cosimulation import MOST
+    from shipcosim.diagnose.validation.gain import baseline, gain
 
     if story.comparison is None or (story.comparison.fit.suspects and story.extension is None):
         return story
@@ -207,9 +207,9 @@ def _simulated(story, given, effects, fmus, link):
 
 def _co_simulated(story, given, effects, fmus, progress, comparison, most):
     """Errors of one comparison, by the system and by the one extended by what it was fitted with."""
-    from shipcosim.diagnose.effects import read_catalogue
-    from shipcosim.diagnose.extension import extend
-    from shipcosim.diagnose.replays import Replayed, simulated
+    from shipcosim.diagnose.extension.extend import extend
+    from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+    from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
     from shipcosim.ssp import read_system
 
     extended = None
@@ -223,7 +223,7 @@ def _co_simulated(story, given, effects, fmus, progress, comparison, most):
 
 
 def _findings(fit):
-    from shipcosim.diagnose.finding import Estimate, Finding
+    from shipcosim.diagnose.result import Estimate, Finding
 
     return [
         Finding(
@@ -268,8 +268,8 @@ def print_diagnosis(story, folder, as_json):
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
-    from shipcosim.report.diagnosis import key_figures
-    from shipcosim.report.diagnosis_words import estimate_rows, next_steps, outcome, title, where
+    from shipcosim.report.diagnosis.page import key_figures
+    from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome, title, where
 
     diagnosis = story.diagnosis
     if as_json:

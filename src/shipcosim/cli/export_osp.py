@@ -26,7 +26,7 @@ def osp(
     """
     from shipcosim.cli.comparison import matter_of
     from shipcosim.cli.console import print_problems, shown_path
-    from shipcosim.cosim.osp_export import write_osp
+    from shipcosim.cosim.export.osp import write_osp
 
     system, happening = matter_of(what, parameters or (), stop_time, step_size, events)
     print_problems(write_osp(system, happening, out))

@@ -184,7 +184,7 @@ def with_osp_events(scenario, path, start_time=0.0):
     if path is None:
         return scenario
     from shipcosim.cli.console import print_problems
-    from shipcosim.cosim.osp_scenario import read_osp_scenario
+    from shipcosim.scenario.osp import read_osp_scenario
 
     read = read_osp_scenario(path, scenario.step_size, scenario.stop_time, start_time)
     print_problems(read.remarks)
@@ -233,7 +233,7 @@ def _systems(project):
 
 
 def _build(folder, out):
-    from shipcosim.fmi.builder import build_fmu
+    from shipcosim.fmi.export.builder import build_fmu
 
     return build_fmu(folder, out / "fmus")
 

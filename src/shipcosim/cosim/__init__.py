@@ -8,13 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cosim import ecos, libcosim
-from shipcosim.cosim.engine import Interrupted, RunError, run
-from shipcosim.cosim.export_fmu import export_fmu
-from shipcosim.cosim.feed import interpolated
+from shipcosim.cosim.engines import ecos, libcosim
+from shipcosim.cosim.export.fmu import export_fmu
+from shipcosim.cosim.master.inputs import interpolated
+from shipcosim.cosim.master.run import Interrupted, RunError, run
+from shipcosim.cosim.master.snapshot import Snapshot, read_snapshot, write_snapshot
 from shipcosim.cosim.repeat import repeat
 from shipcosim.cosim.replay import replay
-from shipcosim.cosim.snapshot import Snapshot, read_snapshot, write_snapshot
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import Scenario, check_scenario
 from shipcosim.ssp import System, read_system, with_values

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.engine import RunError
+from shipcosim.cosim.master.run import RunError
 from shipcosim.errors import ShipcosimError
 
 if TYPE_CHECKING:
@@ -128,9 +128,9 @@ def compare(
     progress : callable, optional
         Called with (parts done, parts in all) of all runs.
     readers : mapping of str to callable, optional
-        Tools that read the file themselves, in place of the engines; see `shipcosim.cosim.as_read.readers`.
+        Tools that read the file themselves, in place of the engines; see `shipcosim.cosim.engines.as_read.readers`.
     taken : callable, optional
-        Says in which respects a tool takes the system otherwise; see `shipcosim.ssp.hosts_taken.taken_by`.
+        Says in which respects a tool takes the system otherwise, as `ssp.portability.as_interpreted.taken_by` does.
 
     Raises
     ------

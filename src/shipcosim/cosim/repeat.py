@@ -7,9 +7,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cosim.engine import run
-from shipcosim.cosim.feed import digest
-from shipcosim.cosim.result import fingerprint, hashes
+from shipcosim.cosim.master.inputs import digest
+from shipcosim.cosim.master.result import fingerprint, hashes
+from shipcosim.cosim.master.run import run
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.series import read_table

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.engine import Journey, RunError
-from shipcosim.cosim.instances import Instances
-from shipcosim.cosim.interrupt import held_back
-from shipcosim.cosim.span import span_of
+from shipcosim.cosim.master.interrupt import held_back
+from shipcosim.cosim.master.run import Journey, RunError
+from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.series import conversion

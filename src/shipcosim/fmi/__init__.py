@@ -1,11 +1,11 @@
-"""Writing FMUs: declare variables on a class, write `step`, and `shipcosim.fmi.builder` packs it.
+"""Writing FMUs: declare variables on a class, write `step`, and `shipcosim.fmi.export.builder` packs it.
 
 What is named here travels inside every FMU, so it needs Python alone. `builder`, `bundle`, `description` and `units`
 stay behind.
 """
 
-from .fmu import Fmu
-from .slave import FmuError
-from .variables import Input, Output, Parameter, Parameters, Variable
+from shipcosim.fmi.fmu import Fmu
+from shipcosim.fmi.shell import FmuError
+from shipcosim.fmi.variables import Input, Output, Parameter, Parameters, Variable
 
 __all__ = ["Fmu", "FmuError", "Input", "Output", "Parameter", "Parameters", "Variable"]

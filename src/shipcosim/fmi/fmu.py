@@ -2,8 +2,8 @@
 
 import functools
 
-from .slave import Fmi2Slave
-from .variables import leave_start_values, variables_of
+from shipcosim.fmi.shell import Fmi2Slave
+from shipcosim.fmi.variables import leave_start_values, variables_of
 
 
 class Fmu(Fmi2Slave):

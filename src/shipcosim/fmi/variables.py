@@ -27,7 +27,7 @@ class Variable:
         A parameter that may change during the run.
     origin : str
     tolerance : float
-        Of a parameter, see `shipcosim.models.quantity`.
+        Of a parameter, see `shipcosim.models.core.parameters`.
     """
 
     causality = ""
@@ -98,7 +98,7 @@ class Parameters:
     Parameters
     ----------
     kind : type
-        Frozen dataclass with fields made by `shipcosim.models.quantity.quantity`.
+        Frozen dataclass with fields made by `shipcosim.models.core.parameters.quantity`.
     prefix : str
         Put before the fields' names, where two groups would clash.
     """

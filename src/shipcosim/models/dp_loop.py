@@ -9,18 +9,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import allocation, control, drive, environment, observer, reference, sensors, thruster, vessel, waves
-from .allocation import AllocationParameters
-from .clock import samples_due
-from .control import ControlParameters
-from .environment import EnvironmentParameters
-from .hull import HullParameters
-from .maths import wrap
-from .observer import DpShip, ObserverParameters
-from .reference import ReferenceParameters
-from .sensors import SensorParameters
-from .thruster import AzimuthParameters, TunnelParameters
-from .wind import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.allocation import pseudo_inverse as allocation
+from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.control import observer, reference
+from shipcosim.models.control import pid as control
+from shipcosim.models.control.observer import DpShip, ObserverParameters
+from shipcosim.models.control.pid import ControlParameters
+from shipcosim.models.control.reference import ReferenceParameters
+from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.sampling import samples_due
+from shipcosim.models.environment import waves
+from shipcosim.models.environment import weather as environment
+from shipcosim.models.environment.weather import EnvironmentParameters
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.propulsion import drive, thruster
+from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.ship import sensors, vessel
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.sensors import SensorParameters
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,15 @@ import math
 from dataclasses import fields
 from typing import Any, NamedTuple
 
-from .allocation import AllocationParameters
-from .control import ControlParameters
-from .hull import HullParameters
-from .load_tables import DRIFT_28M9, WIND_28M9
-from .observer import DpShip, ObserverParameters
-from .reference import ReferenceParameters
-from .thruster import AzimuthParameters, TunnelParameters
-from .vessel import DriftParameters
-from .wind import WindParameters
+from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.control.observer import DpShip, ObserverParameters
+from shipcosim.models.control.pid import ControlParameters
+from shipcosim.models.control.reference import ReferenceParameters
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.load_tables import DRIFT_28M9, WIND_28M9
+from shipcosim.models.ship.vessel import DriftParameters
 
 SHIPS = ("gunnerus-33m9", "gunnerus-28m9", "thesis")
 COMPONENTS = {

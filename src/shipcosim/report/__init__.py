@@ -1,5 +1,5 @@
 """The page of a run: one HTML file that opens anywhere."""
 
-from shipcosim.report.page import digest, write_report
+from shipcosim.report.run.page import digest, write_report
 
 __all__ = ["digest", "write_report"]

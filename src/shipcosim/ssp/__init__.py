@@ -1,15 +1,15 @@
 """System structures (SSP 1.0 and 2.0): read, check, change, write. The only door to lxml."""
 
-from shipcosim.ssp.archive import unpack
 from shipcosim.ssp.check import check_file, check_system
-from shipcosim.ssp.edit import SystemStructure, new, read
-from shipcosim.ssp.fmu import FmuDescription, Variable, read_fmu
-from shipcosim.ssp.osp import osp_file
-from shipcosim.ssp.osp_write import Simulator, seconds_text, structure_text
+from shipcosim.ssp.edit.system_structure import SystemStructure, new, read
+from shipcosim.ssp.edit.write import pack, parameter, write_ssv
+from shipcosim.ssp.flatten.system import Component, Signal, System, with_values
+from shipcosim.ssp.flatten.wiring import Connection
+from shipcosim.ssp.fmu.description import FmuDescription, Variable, read_fmu
+from shipcosim.ssp.osp.reader import osp_file
+from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
 from shipcosim.ssp.reading import read_system
-from shipcosim.ssp.system import Component, Signal, System, with_values
-from shipcosim.ssp.wiring import Connection
-from shipcosim.ssp.write import pack, parameter, write_ssv
+from shipcosim.ssp.xml.archive import unpack
 
 __all__ = [
     "Component",

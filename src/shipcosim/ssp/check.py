@@ -5,11 +5,11 @@ import sys
 from pathlib import Path
 
 from shipcosim.errors import Problem
-from shipcosim.ssp.fmu import describe_fmu
-from shipcosim.ssp.loops import loop_problems
-from shipcosim.ssp.parameters import read_dictionary, read_mapping, read_parameter_set
+from shipcosim.ssp.flatten.loops import loop_problems
+from shipcosim.ssp.fmu.description import describe_fmu
+from shipcosim.ssp.read.parameters import read_dictionary, read_mapping, read_parameter_set
 from shipcosim.ssp.reading import assemble
-from shipcosim.ssp.xml import Findings, read_document
+from shipcosim.ssp.xml.document import Findings, read_document
 
 READERS = {".ssv": read_parameter_set, ".ssm": read_mapping, ".ssb": read_dictionary}
 

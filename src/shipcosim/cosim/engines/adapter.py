@@ -1,0 +1,306 @@
+"""A run on somebody else's engine: what that is told, and how what it gives back becomes our table.
+
+The engine gets the components, their start values and the connections between them. What no component feeds is known
+before the run: inputs of the system, and inputs that hang on nothing but change in events. It is set from here.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS
+from shipcosim.cosim.master.events import bend, changes, settings_over_time
+from shipcosim.cosim.master.inputs import digest, feed
+from shipcosim.cosim.master.interrupt import held_back
+from shipcosim.cosim.master.plan import WIDE, label, make_plan
+from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
+from shipcosim.cosim.master.run import Interrupted, RunError
+from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES
+from shipcosim.cosim.slaves.form import form_of
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import make_table
+from shipcosim.ssp import Connection
+
+if TYPE_CHECKING:
+    import xarray
+
+STRETCH = 100
+"""Most steps that an engine makes before it is asked whether the user wants to stop."""
+
+
+class EngineError(Exception):
+    """An engine failed. The text is what it said."""
+
+
+@dataclass(frozen=True)
+class Driven:
+    """An input that no component feeds.
+
+    Parameters
+    ----------
+    start : value
+        During the initialisation.
+    values : (n + 1,) array
+        From each step on.
+    """
+
+    start: object
+    values: np.ndarray
+
+
+class Job:
+    """What an engine is to do.
+
+    Parameters
+    ----------
+    system, scenario, inputs, order
+        As for `shipcosim.cosim.simulate`.
+
+    Attributes
+    ----------
+    plan : Plan
+        Rows of the outputs that have to be recorded, steps of the components.
+    times : (n + 1,) array
+        Of the steps. [s]
+    driven : dict of End to Driven
+        Inputs to set from outside.
+    connections : list of Connection
+        To make between components.
+    changes : list of (step, override or bias or reset, End, value)
+        To make to what the engine passes on itself: outputs and connected inputs.
+    """
+
+    def __init__(self, system, scenario, inputs=None, order="jacobi"):
+        if order != "jacobi":
+            raise ShipcosimError(f"Only the engine fmpy knows the order '{order}'; the others have jacobi.")
+        self.system, self.scenario, self._span = system, scenario, span_of(scenario)
+        self.times = self._span.times
+        self._fed = feed(inputs, system, self.times) if inputs is not None else {}
+        self._known = {"inputs_sha256": digest(inputs)} if inputs is not None else {}
+        self.plan = make_plan(system, scenario, self._fed)
+        self.connections = [c for c in system.connections if c.source[0] is not None and c.target[0] is not None]
+        self._all_changes = list(changes(scenario, self.plan, self._span))
+        self._settings = {kind: self._settings_of(kind) for kind in self.plan.layouts}
+        self.driven = dict(self._driven())
+        last = {(k, end): (k, change, end, value) for k, change, end, value in changes(scenario, self.plan, self._span)}
+        self.changes = [c for (_, end), c in last.items() if end[0] is not None and end not in self.driven]
+
+    @property
+    def n_steps(self) -> int:
+        """Number of steps."""
+        return len(self.times) - 1
+
+    def starts(self, name: str) -> dict:
+        """Start values of a component, with what drives it."""
+        driven = {end[1]: driven.start for end, driven in self.driven.items() if end[0] == name}
+        return dict(self.system.components[name].start) | driven
+
+    def stretches(self):
+        """(first step, last, {End: value} that change before it), over the whole run."""
+        values = np.array([driven.values for driven in self.driven.values()], dtype=float)
+        values = values.reshape(len(self.driven), self.n_steps + 1)
+        moving = np.flatnonzero((np.diff(values[:, :-1], axis=1) != 0).any(axis=0)) + 1
+        starts = sorted({*range(0, self.n_steps, STRETCH), *moving.tolist()})
+        before = {end: driven.start for end, driven in self.driven.items()}
+        for first, last in zip(starts, [*starts[1:], self.n_steps], strict=True):
+            now = {end: driven.values[first].item() for end, driven in self.driven.items()}
+            yield first, last, {end: value for end, value in now.items() if value != before[end]}
+            before = now
+
+    def table(self, outputs, attributes):
+        """Table of a run.
+
+        Parameters
+        ----------
+        outputs : dict of str to list of (m,) array
+            By kind: the plan's outputs at the first m steps.
+        attributes : dict
+            What is known beyond the plan and the scenario.
+        """
+        rows = min((len(column) for columns in outputs.values() for column in columns), default=len(self.times))
+        every = slice(0, rows, self._span.every)
+        recorded = {kind: [c[every] for c in self._columns(kind, arrays)] for kind, arrays in outputs.items()}
+        times = self.times[every]
+        known = attributes_of(self.system, self.scenario) | self._known | {"start_time": 0.0} | attributes
+        return make_table(times, columns_of(self.plan, len(times), recorded), known)
+
+    def _settings_of(self, kind):
+        """(n + 1, settings) array."""
+        over_time = settings_over_time(self.scenario, self.plan, kind, self._span, self._fed, {})
+        if over_time is not None:
+            return over_time
+        start = np.array(list(self.plan.layouts[kind].settings.values()), dtype=BUFFER_TYPES[kind])
+        return np.tile(start, (self.n_steps + 1, 1))
+
+    def _driven(self):
+        for kind, layout in self.plan.layouts.items():
+            crossing = {setting for setting, _, _ in layout.crossings}
+            for end, wire in zip(layout.inputs, layout.wires, strict=True):
+                setting = wire.source - len(layout.outputs)
+                if setting >= 0 and setting not in crossing and not wire.added:
+                    plain = wire.passed_on(self._settings[kind][:, setting])
+                    yield end, Driven(plain[0].item(), self._changed(plain, end))
+
+    def _columns(self, kind, outputs):
+        """Outputs, settings and inputs that the table shows, in the order of the recorder."""
+        layout = self.plan.layouts[kind]
+        settings, inputs = recorded_rows(self.plan, kind)
+        yield from outputs
+        yield from (self._settings[kind][:, setting] for setting in settings)
+        for i in inputs:
+            end, wire = layout.inputs[i], layout.wires[i]
+            if end in self.driven:
+                yield self.driven[end].values
+            else:
+                yield self._changed(wire.arriving(outputs), end)
+
+    def _changed(self, plain, end):
+        """Values of an input with the events on it."""
+        values = plain.copy()
+        bend(values, None, [(k, change, value) for k, change, changed, value in self._all_changes if changed == end])
+        return values
+
+
+def run_on(
+    engine: str, open_session: Callable[[Job], AbstractContextManager], job: Job, about: dict, progress=None
+) -> xarray.Dataset:
+    """Run a job on an engine.
+
+    Parameters
+    ----------
+    engine : str
+        Its name.
+    open_session : callable
+        Opens a session: a context manager with ``drive(end, value)``, ``advance(last)`` to a step, ``n_done``, the
+        steps done, and ``outputs()``, by kind the plan's outputs at the start and after each step. Each may raise
+        EngineError.
+    job : Job
+        What it is to do.
+    about : dict
+        Attributes of the table: the engine's version, remarks on it.
+    progress : callable, optional
+        As for `shipcosim.cosim.simulate`.
+
+    Returns
+    -------
+    Dataset
+
+    Raises
+    ------
+    RunError, Interrupted
+        With the rows so far.
+    """
+
+    def table(complete):
+        known = {"engine": engine, "order": "jacobi", "complete": int(complete), "remarks": json.dumps([])}
+        return job.table(session.outputs(), known | about)
+
+    with held_back() as check_interrupt, _opened(engine, open_session, job) as session:
+        try:
+            _advance(session, job, check_interrupt, progress)
+        except EngineError as error:
+            found = f"failed in the step from t = {job.times[session.n_done]:.9g} s. {error}"
+            raise RunError(Problem(engine, found), table(complete=False)) from error
+        except KeyboardInterrupt:
+            raise Interrupted(table(complete=False)) from None
+        return table(complete=True)
+
+
+def _opened(engine, open_session, job):
+    try:
+        return open_session(job)
+    except EngineError as error:
+        raise ShipcosimError(Problem(engine, f"refuses the system. {error}")) from error
+
+
+def _advance(session, job, check_interrupt, progress):
+    report_at = perf_counter()
+    for first, last, driven in job.stretches():
+        check_interrupt()
+        for end, value in driven.items():
+            session.drive(end, value)
+        if progress is not None and perf_counter() >= report_at:
+            progress(first, job.n_steps)
+            report_at = perf_counter() + BETWEEN_REPORTS
+        session.advance(last)
+    if progress is not None:
+        progress(job.n_steps, job.n_steps)
+
+
+def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | None], others=()) -> list[Problem]:
+    """What an engine cannot do of a job, which it would otherwise ignore or die of.
+
+    Parameters
+    ----------
+    engine : str
+        Its name.
+    job : Job
+        What it would have to do.
+    may_connect : callable
+        What is wrong with a connection between variables of one type, for this engine.
+    others : iterable of Problem
+        What is wrong beside the connections.
+    """
+    problems = list(others)
+    for component in job.system.components.values():
+        if form_of(component) == "ModelExchange":
+            found = f"runs as model exchange, which {engine} does not do."
+            problems.append(Problem(component.name, found, "The engine fmpy does."))
+        if wide := [v.name for v in component.fmu.variables.values() if v.type in WIDE]:
+            found = f"has Integers of more than 32 bits, which {engine} has not: {', '.join(wide[:5])}."
+            problems.append(Problem(component.name, found))
+        if items := [v.name for v in component.fmu.variables.values() if v.kind == "Enumeration"]:
+            problems.append(
+                Problem(component.name, f"has enumerations, which {engine} has not: {', '.join(items[:5])}.")
+            )
+    for connection in job.connections:
+        if found := _connection_complaint(job, connection) or may_connect(connection):
+            place = f"{label(connection.source)} -> {label(connection.target)}"
+            problems.append(Problem(place, f"{engine} cannot make this connection: {found}.", "The engine fmpy can."))
+    return problems
+
+
+def _connection_complaint(job, connection):
+    kinds = [job.plan.variable(end).kind for end in (connection.source, connection.target)]
+    if connection.initial:
+        return "it sets a parameter"
+    if connection.mapping is not None:
+        return "it maps values"
+    if kinds[0] != kinds[1]:
+        return f"it goes from {kinds[0]} to {kinds[1]}"
+    if kinds[0] != "Real" and is_linear(connection):
+        return f"it transforms values of type {kinds[0]}"
+    return None
+
+
+def sums(connections: list[Connection]) -> list[Connection]:
+    """Those that are added to others on their way into an input."""
+    count = Counter(connection.target for connection in connections)
+    return [connection for connection in connections if count[connection.target] > 1]
+
+
+def is_linear(connection: Connection) -> bool:
+    """Whether a connection changes values by factor and offset."""
+    return (connection.factor, connection.offset) != (1.0, 0.0)
+
+
+def indices(job: Job, name: str, kind: str) -> tuple[list[int], list]:
+    """Rows among the outputs of a kind that a component has, and their variables."""
+    rows = [row for row, end in enumerate(job.plan.layouts[kind].outputs) if end[0] == name]
+    return rows, [job.plan.variable(job.plan.layouts[kind].outputs[row]) for row in rows]
+
+
+def held(values: np.ndarray, steps: np.ndarray, n_rows: int) -> np.ndarray:
+    """Values at each step, where some are only known at some steps and hold from there on."""
+    if len(values) == n_rows:
+        return values
+    return values[np.searchsorted(steps, np.arange(n_rows), side="right") - 1]

@@ -1,0 +1,133 @@
+"""Other tools as their users run them: libcosim and ecos read the file themselves, in a process that may die of it.
+
+As a script this is that process: it gets a job in JSON and leaves the values of all outputs.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.cosim.engines.adapter import EngineError
+from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import make_table
+
+LIMIT = 600.0  # s
+KINDS = ("Real", "Integer", "Boolean")
+
+
+def readers(path, scenario, *, set_name=None):
+    """Functions that run a file in the tools that are installed and take it, by tool.
+
+    Parameters
+    ----------
+    path : path
+        An .ssp with its FMUs in it, or an OspSystemStructure.xml.
+    scenario : Scenario
+        Its steps; a tool that reads a file knows no events of ours.
+    set_name : str, optional
+        Of the parameter set that ecos is told.
+
+    Returns
+    -------
+    dict of str to callable
+        Each takes the system as we read it and returns a table of the outputs of its components.
+
+    Raises
+    ------
+    ShipcosimError
+        If something happens in the scenario.
+    """
+    if scenario.events or scenario.set:
+        found = "A tool that reads the file itself knows no events or start values of ours."
+        raise ShipcosimError(Problem(scenario.name or "scenario", found, "Compare the system alone."))
+    hosts = ["libcosim"] if Path(path).suffix == ".xml" else ["libcosim", "ecos"]
+    return {host: partial(_run, host, str(path), scenario, set_name) for host in hosts}
+
+
+def _run(host, path, scenario, set_name, system):
+    span = span_of(scenario)
+    outputs = {
+        f"{name}.{v.name}": (name, v.name, v.value_reference, v.kind, v.unit or "")
+        for name, component in system.components.items()
+        for v in component.fmu.variables.values()
+        if v.causality == "output" and v.kind in KINDS
+    }
+    job = {"path": path, "step": scenario.step_size, "n": span.last, "set": set_name, "ends": list(outputs.values())}
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        values = _values(host, job, Path(folder))
+    columns = [(name, values[:, i], end[-1], "") for i, (name, end) in enumerate(outputs.items())]
+    return make_table(span.times[1:], columns, {"engine": host})
+
+
+def _values(host, job, folder):
+    """(n, outputs) array: values after each step; those at the start are not to be had."""
+    (folder / "job.json").write_text(json.dumps(job | {"host": host}))
+    command = [sys.executable, "-m", __name__, str(folder)]
+    try:
+        subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        raise ShipcosimError(Problem(host, f"does not end within {LIMIT:g} s.")) from None
+    if (folder / "refused.txt").exists():
+        raise ShipcosimError(Problem(host, f"refuses the file. {(folder / 'refused.txt').read_text()}"))
+    if not (folder / "values.npy").exists():
+        raise ShipcosimError(Problem(host, "crashes."))
+    return np.load(folder / "values.npy")
+
+
+# the process
+
+
+def main(folder):
+    """Run the job in a folder."""
+    folder = Path(folder)
+    job = json.loads((folder / "job.json").read_text())
+    try:
+        rows = list({"libcosim": _libcosim, "ecos": _ecos}[job["host"]](job))
+    except (Exception, AssertionError) as error:
+        (folder / "refused.txt").write_text(str(error).splitlines()[0][:300] if str(error) else type(error).__name__)
+        return
+    np.save(folder / "partial.npy", np.array(rows, dtype=float))
+    (folder / "partial.npy").rename(folder / "values.npy")
+
+
+def _libcosim(job):
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimObserver import CosimObserver
+
+    log_output_level(CosimLogLevel.FATAL)
+    if job["path"].endswith(".xml"):
+        execution = CosimExecution.from_osp_config_file(job["path"])
+    else:
+        execution = CosimExecution.from_ssp_file(job["path"], round(job["step"] * 1e9))
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    calls = {kind: getattr(observer, f"last_{kind.lower()}_values") for kind in KINDS}
+    ends = [(calls[kind], execution.slave_index_from_instance_name(n), r) for n, _, r, kind, _ in job["ends"]]
+    for _ in range(job["n"]):
+        if not execution.step():
+            raise EngineError("A step fails.")
+        yield [call(slave, [reference])[0] for call, slave, reference in ends]
+
+
+def _ecos(job):
+    from ecospy import EcosLib, EcosSimulation
+
+    EcosLib.set_log_level("off")
+    simulation = EcosSimulation(ssp_path=job["path"], step_size=job["step"])
+    if not simulation.init(parameter_set=job["set"]):
+        raise EngineError(EcosLib.get_last_error())
+    calls = {"Real": simulation.get_real, "Integer": simulation.get_integer, "Boolean": simulation.get_bool}
+    for _ in range(job["n"]):
+        simulation.step()
+        yield [calls[kind](f"{name}::{variable}") for name, variable, _, kind, _ in job["ends"]]
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

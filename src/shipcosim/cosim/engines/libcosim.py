@@ -1,0 +1,319 @@
+"""The engine libcosim, of the Open Simulation Platform, through libcosimpy. The only door to it.
+
+libcosim takes little of an SSP: parameters bound to components and plain connections. Therefore it gets the system as
+we read it, in the form of its own that has most: simulators with their steps, connections, and a function for each
+linear transformation, in an OspSystemStructure.xml; start values through its interface, where numbers stay exact and
+texts may be long. Events become a scenario of its own.
+"""
+
+import json
+import re
+import tempfile
+from contextlib import ExitStack
+from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32
+from importlib.metadata import version
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from shipcosim.cosim.engines import adapter as outside
+from shipcosim.cosim.engines.adapter import EngineError, Job, held, indices, is_linear, run_on, sums
+from shipcosim.cosim.engines.traces import no_traces
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import Simulator, System, seconds_text, structure_text
+
+SERIES = {"Real": ("REAL", "real", c_double, np.float64), "Integer": ("INTEGER", "integer", c_int, np.int32)}
+"""What its observer of time series can hold, in the names and types that it goes by there."""
+
+
+def run(system: System, scenario: Scenario, *, inputs=None, progress=None, order="jacobi"):
+    """Run a checked system on libcosim. See `shipcosim.cosim.simulate`."""
+    check_installed()
+    job = Job(system, scenario, inputs, order)
+    if problems := complaints(job):
+        raise ShipcosimError(problems)
+    return run_on("libcosim", Session, job, {"libcosimpy_version": version("libcosimpy")}, progress)
+
+
+def check_installed() -> None:
+    """Raise ShipcosimError with what to install."""
+    try:
+        from libcosimpy._internal import libcosimc
+
+        libcosimc()
+    except (ImportError, OSError) as error:
+        remedy = "Install it: pip install libcosimpy (Linux and Windows on x86-64)."
+        raise ShipcosimError(Problem("libcosim", f"is not installed: {error}.", remedy)) from error
+
+
+def complaints(job: Job) -> list[Problem]:
+    """What libcosim cannot do of a job."""
+    return outside.complaints("libcosim", job, _complaint_of(job), _problems(job))
+
+
+def _problems(job):
+    """What libcosim would ignore or die of, beside connections."""
+    if abs(job.scenario.step_size * 1e9 - _nanoseconds(job.scenario.step_size)) > 1e-6:
+        found = (
+            f"The step size {job.scenario.step_size!r} s is no whole number of nanoseconds, in which libcosim counts."
+        )
+        yield Problem("step_size", found)
+    for component in job.system.components.values():
+        if component.fmu.fmi_version != "2.0":
+            yield Problem(component.name, f"is an FMU of FMI {component.fmu.fmi_version}; libcosim runs FMI 2.0.")
+
+
+def _complaint_of(job):
+    def complaint(connection):
+        source, target = (job.plan.variable(end).causality for end in (connection.source, connection.target))
+        if (source, target) != ("output", "input"):
+            return f"it goes from {source} to {target}"
+        return "it is transformed and added to others" if connection in added and is_linear(connection) else None
+
+    added = sums(job.connections)
+    return complaint
+
+
+class Session:
+    """An execution of libcosim.
+
+    Parameters
+    ----------
+    job : Job
+        What it is to do.
+    """
+
+    def __init__(self, job: Job):
+        self._job, self._stack = job, ExitStack()
+        self._step = _nanoseconds(job.scenario.step_size)
+        self._stack.enter_context(no_traces())
+        self._folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-")))
+        try:
+            self._open()
+        except BaseException:
+            self.__exit__()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._execution = self._series = self._flags = self._override = self._events = None
+        self._stack.close()
+
+    def drive(self, end, value):
+        """Set an input that nothing feeds, from the next step on."""
+        name, variable = end[0], self._job.plan.variable(end)
+        set_values = getattr(self._override, f"slave_{variable.kind.lower()}_values")
+        self._check(set_values(self._indices[name], [variable.value_reference], [value]))
+
+    def advance(self, last):
+        """Go on to the step of this number."""
+        self._check(self._execution.step(last - self.n_done))
+
+    @property
+    def n_done(self):
+        """Steps done."""
+        return round(self._execution.status().current_time / self._step)
+
+    def outputs(self):
+        """Values of all outputs at the start and after each step, by kind. Ends the execution."""
+        n_rows, columns = self.n_done + 1, {}
+        for kind in SERIES:
+            columns[kind] = [None] * len(self._job.plan.layouts[kind].outputs)
+            for name, slave in self._indices.items():
+                for row, variable in zip(*indices(self._job, name, kind), strict=True):
+                    columns[kind][row] = held(*self._samples(kind, slave, variable, n_rows), n_rows)
+        columns["Boolean"] = self._flag_columns(n_rows)
+        return columns
+
+    def _open(self):
+        from libcosimpy.CosimExecution import CosimExecution
+        from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+        from libcosimpy.CosimManipulator import CosimManipulator
+
+        log_output_level(CosimLogLevel.FATAL)
+        structure = self._folder / "OspSystemStructure.xml"
+        structure.write_text(structure_of(self._job), encoding="utf-8")
+        try:
+            self._execution = CosimExecution.from_osp_config_file(str(structure))
+        except AssertionError as error:
+            raise EngineError(str(error)) from error
+        self._indices = {
+            name: self._execution.slave_index_from_instance_name(name) for name in self._job.system.components
+        }
+        for name in self._job.system.components:
+            self._start(name)
+        self._override = CosimManipulator.create_override()
+        self._check(self._execution.add_manipulator(self._override))
+        self._load_events()
+        self._observe()
+
+    def _start(self, name):
+        variables, slave = self._job.system.components[name].fmu.variables, self._indices[name]
+        for variable, value in self._job.starts(name).items():
+            kind, reference = variables[variable].kind, variables[variable].value_reference
+            self._check(getattr(self._execution, f"{kind.lower()}_initial_value")(slave, reference, value))
+
+    def _load_events(self):
+        from libcosimpy.CosimManipulator import CosimManipulator
+
+        self._events = CosimManipulator.create_scenario_manager()
+        self._check(self._execution.add_manipulator(self._events))
+        if self._job.changes:
+            file = self._folder / "events.json"
+            file.write_text(_events(self._job), encoding="utf-8")
+            self._check(self._execution.load_scenario(self._events, str(file)))
+
+    def _observe(self):
+        from libcosimpy.CosimEnums import CosimVariableType
+        from libcosimpy.CosimObserver import CosimObserver
+
+        self._series = CosimObserver.create_time_series(self._job.n_steps + 2)
+        self._check(self._execution.add_observer(self._series))
+        for kind, (type_name, *_) in SERIES.items():
+            for name, slave in self._indices.items():
+                for variable in indices(self._job, name, kind)[1]:
+                    start = self._series.start_time_series
+                    self._check(start(slave, variable.value_reference, CosimVariableType[type_name]))
+        self._flags = None
+        if self._job.plan.layouts["Boolean"].outputs:
+            self._flags = FlagObserver(self._folder, self._flag_names())
+            self._check(self._execution.add_observer(self._flags))
+
+    def _flag_names(self):
+        named = {name: [v.name for v in indices(self._job, name, "Boolean")[1]] for name in self._indices}
+        return {name: flags for name, flags in named.items() if flags}
+
+    def _samples(self, kind, slave, variable, n_rows):
+        """Values and numbers of the steps after which a variable was observed. libcosimpy's own call loses the last."""
+        _, name, c_type, dtype = SERIES[kind]
+        values, steps, times = np.zeros(n_rows, dtype), np.zeros(n_rows, np.int64), np.zeros(n_rows, np.int64)
+        buffers = [
+            array.ctypes.data_as(POINTER(kind))
+            for array, kind in ((values, c_type), (steps, c_int64), (times, c_int64))
+        ]
+        call = _function(
+            f"cosim_observer_slave_get_{name}_samples",
+            c_int64,
+            [type(self._series.ptr()), c_int, c_uint32, c_int64, c_size_t, *map(type, buffers)],
+        )
+        count = call(self._series.ptr(), slave, variable.value_reference, 0, n_rows, *buffers)
+        self._check(count > 0)
+        return values[:count], steps[:count]
+
+    def _flag_columns(self, n_rows):
+        ends, columns = self._job.plan.layouts["Boolean"].outputs, {}
+        if not ends:
+            return []
+        self._execution = self._flags = None  # what the observer has written is complete once both are gone
+        for name, flags in self._flag_names().items():
+            table = np.loadtxt(_flag_file(self._folder, name), delimiter=",", skiprows=1, ndmin=2)
+            for i, flag in enumerate(flags):
+                columns[name, flag] = held(table[:n_rows, 2 + i], table[:n_rows, 1], n_rows)
+        return [columns[end] for end in ends]
+
+    def _check(self, done):
+        if not done:
+            from libcosimpy._internal import get_last_error_message
+
+            raise EngineError(get_last_error_message())
+
+
+class FlagObserver:
+    """An observer that writes Boolean variables into a file for each component.
+
+    libcosim's observer of time series refuses them, that of last values reads every variable of an FMU in every step,
+    and libcosimpy does not offer this one with a choice of variables.
+
+    Parameters
+    ----------
+    folder : Path
+        Gets the files, NAME_DATE_TIME_MICROSECONDS.csv.
+    flags : dict of str to list of str
+        Names of variables by component.
+    """
+
+    def __init__(self, folder, flags):
+        lines = [
+            f'<simulator name={quoteattr(name)} decimationFactor="1">'
+            + "".join(f"<variable name={quoteattr(variable)}/>" for variable in variables)
+            + "</simulator>"
+            for name, variables in flags.items()
+        ]
+        file = folder / "LogConfig.xml"
+        file.write_text(f"<simulators>{''.join(lines)}</simulators>", encoding="utf-8")
+        create = _function("cosim_file_observer_create_from_cfg", _observer_pointer(), [c_char_p, c_char_p])
+        self._pointer = create(str(folder).encode(), str(file).encode())
+
+    def ptr(self):
+        """Pointer to it, as libcosimpy's observers have."""
+        return self._pointer
+
+    def __del__(self):
+        _function("cosim_observer_destroy", c_int, [_observer_pointer()])(self._pointer)
+
+
+def _flag_file(folder, name):
+    return next(f for f in folder.iterdir() if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name))
+
+
+def structure_of(job: Job, sources=None, values=None, end_time: float | None = None) -> str:
+    """OspSystemStructure.xml of a job, no events in it.
+
+    Parameters
+    ----------
+    job : Job
+        Without complaints.
+    sources : mapping of str to str, optional
+        Addresses of the FMUs by component; where they are if not given.
+    values : mapping of str to dict, optional
+        Initial values by component, as in Simulator; none if not given.
+    end_time : float, optional
+        [s]
+    """
+    step, sources, values = job.scenario.step_size, sources or {}, values or {}
+    simulators = [
+        Simulator(
+            name,
+            sources.get(name) or component.fmu.path.resolve().as_uri(),
+            step * job.plan.multiples[name],
+            values.get(name, {}),
+        )
+        for name, component in job.system.components.items()
+    ]
+    return structure_text(simulators, job.connections, step, end_time)
+
+
+def event_of(job: Job, k: int, change: str, end: tuple, value) -> dict:
+    """Event of OSP that makes a change of a job before its step of number k."""
+    time = float(seconds_text(job.scenario.step_size * k))
+    event = {"time": time, "model": end[0], "variable": end[1], "action": change}
+    if change != "reset":
+        event["value"] = {"Real": float, "Boolean": bool}.get(job.plan.variable(end).kind, int)(value)
+    return event
+
+
+def _events(job):
+    """Scenario of OSP, in JSON, with the changes that a job makes to what travels between components."""
+    events = [event_of(job, *change) for change in job.changes]
+    after = 2.0 * job.times[-1]  # all changes are taken back at this time
+    return json.dumps({"description": job.scenario.description, "events": events, "end": after})
+
+
+def _nanoseconds(seconds):
+    return round(seconds * 1e9)
+
+
+def _function(name, result, arguments):
+    from libcosimpy._internal import libcosimc, wrap_function
+
+    return wrap_function(libcosimc(), name, result, arguments)
+
+
+def _observer_pointer():
+    from libcosimpy.CosimObserver import CosimObserver
+
+    return POINTER(CosimObserver)

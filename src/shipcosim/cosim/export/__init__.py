@@ -1,0 +1,1 @@
+"""Systems exported: as one FMU, and as files for OSP."""

@@ -1,0 +1,236 @@
+"""A whole system as one FMU: FMPy's container FMU, a native library that steps FMUs which lie in its resources.
+
+What the library does (FMPy 0.3, ``native/container-fmu``): start values are set when it is instantiated; leaving the
+initialisation mode passes all connections on once, in the order of its configuration; a step steps all components from
+the same time and then passes all connections on once, in that order. Values are copied as they are. Nothing else is
+done to them, so that what a system needs beyond this is refused here.
+"""
+
+import hashlib
+import json
+import re
+import zipfile
+from pathlib import Path
+
+from shipcosim.cosim.export.container_description import BINARY, container_description
+from shipcosim.cosim.export.container_face import Face, face_of, library_type
+from shipcosim.cosim.master.order import feeders_first
+from shipcosim.cosim.master.plan import label
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp import System
+from shipcosim.ssp.xml.archive import write_archive
+from shipcosim.ssp.xml.values import text_of
+
+VERSION = "0.1.0"
+"""Of the library's configuration."""
+
+PLATFORMS = {
+    "linux64": "x86_64-linux/container_fmu.so",
+    "win64": "x86_64-windows/container_fmu.dll",
+    "darwin64": "x86_64-darwin/container_fmu.dylib",
+}
+"""Folder in an FMU of FMI 2.0, and the library in FMPy."""
+
+
+def write_container(
+    system: System, path: Path, step_size: float, *, connectors_only: bool = False, sweeps: int = 1
+) -> list[Problem]:
+    """Write a system as one FMU of FMI 2.0 co-simulation.
+
+    Parameters
+    ----------
+    system, path, step_size, connectors_only
+        As for `export_fmu`.
+    sweeps : int
+        How often the connections are passed on, at the start and after each step.
+
+    Returns
+    -------
+    list of Problem
+        Remarks on what the FMU does not show.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that the container cannot express.
+    """
+    problems = list(_problems(system, step_size))
+    face = face_of(system, connectors_only, problems)
+    if errors := [problem for problem in problems if problem.severity == "error"]:
+        raise ShipcosimError(errors)
+    paths = _paths(system)
+    files = {f"resources/{paths[fmu]}/{name}": data for fmu in paths for name, data in _files(fmu)}
+    files |= {f"binaries/{folder}/{Path(own).name}": _library(own) for folder, own in PLATFORMS.items()}
+    configuration = _configuration(system, face, paths, step_size, sweeps)
+    token = _token(configuration, files)
+    description = container_description(system, face, token, step_size)
+    files["modelDescription.xml"] = description
+    files["resources/container.json"] = json.dumps({"instantiationToken": token, **configuration}, indent=1).encode()
+    write_archive(path, files)
+    return problems
+
+
+def _problems(system, step_size):
+    """What the container cannot express."""
+    targets = set()
+    for component in system.components.values():
+        yield from _component_problems(component, step_size)
+    yield from _repeated(system)
+    for connection in system.connections:
+        name = f"{label(connection.source)} -> {label(connection.target)}"
+        known = f"{name}: " if name not in connection.place else ""
+        for found in _connection_faults(connection, system, targets):
+            yield Problem(connection.place, f"{known}{found}", "The container FMU copies values as they are.")
+        targets.add(connection.target)
+    for connection in system.given:
+        if (connection.factor, connection.offset, connection.mapping) != (1.0, 0.0, None):
+            name = f"{label(connection.source)} -> {label(connection.target)}"
+            found = f"{name}: the parameter's value changes on its way (unit conversion or transformation)."
+            yield Problem(connection.place or name, found, "Give the connector the unit of the FMU's parameter.")
+
+
+def _component_problems(component, step_size):
+    fmu = component.fmu
+    if fmu.fmi_version not in ("2.0", "3.0") or "CoSimulation" not in fmu.interfaces:
+        found = f"{fmu.path.name} is no co-simulation FMU of FMI 2.0 or 3.0."
+        yield Problem(component.name, found, "The container FMU steps no other ones.")
+    elif component.implementation == "ModelExchange":
+        yield Problem(component.name, "is asked for as model exchange.", "The container FMU does co-simulation alone.")
+    for name in component.start:
+        if library_type(fmu, name) is None:
+            what = "an element of an array" if fmu.variables[name].whole else f"of type {fmu.variables[name].type}"
+            found = f"{name} gets a start value and is {what}."
+            yield Problem(component.name, found, "The container FMU cannot set it.")
+    if component.step_size not in (None, step_size):
+        found = f"has a step of {component.step_size:g} s of its own; the exchange has {step_size:g} s."
+        yield Problem(component.name, found, "The container FMU steps all components alike.")
+
+
+def _repeated(system):
+    """Components whose FMU can be instantiated only once, but is used by others too."""
+    for component in system.components.values():
+        others = [c.name for c in system.components.values() if c.fmu.path == component.fmu.path]
+        if len(others) > 1 and component.fmu.capability("canBeInstantiatedOnlyOncePerProcess"):
+            found = f"{component.fmu.path.name} can be instantiated only once in a process, but makes up"
+            yield Problem(component.name, f"{found} {', '.join(others)}.", "Export it again without this limit.")
+
+
+def _connection_faults(connection, system, targets):
+    """Sentences on what the container would do differently."""
+    if (connection.factor, connection.offset) != (1.0, 0.0):
+        yield (
+            f"the value is multiplied by {connection.factor:g} and {connection.offset:g} added "
+            "(unit conversion or linear transformation)."
+        )
+    if connection.mapping is not None:
+        yield "values are replaced by others (mapping or enumerations with different numbers)."
+    if connection.initial:
+        yield "it goes into a parameter, once at the start."
+    if connection.target in targets:
+        yield "several connections are added up."
+    if connection.source[0] is None and connection.target[0] is None:
+        yield "an input of the system is its output, with no component between."
+    ends = [end for end in (connection.source, connection.target) if end[0] is not None]
+    types = list(dict.fromkeys(library_type(system.components[name].fmu, variable) for name, variable in ends))
+    if None in types:
+        yield "its type is an array, Binary or Clock."
+    elif len(types) > 1:
+        yield f"its ends are of different types, {' and '.join(types)}."
+
+
+def _paths(system):
+    """Folder in the resources for each FMU file, of plain letters: not every FMU can read others in an address."""
+    files = dict.fromkeys(component.fmu.path for component in system.components.values())
+    return {file: f"{number:02}_{re.sub('[^A-Za-z0-9_]', '', file.stem)}" for number, file in enumerate(files)}
+
+
+def _files(fmu):
+    with zipfile.ZipFile(fmu) as archive:
+        for entry in archive.infolist():
+            if not entry.is_dir():
+                yield entry.filename, archive.read(entry)
+
+
+def _library(own):
+    import fmpy.container_fmu
+
+    return (Path(fmpy.container_fmu.__file__).parent / "binaries" / own).read_bytes()
+
+
+def _configuration(system, face, paths, step_size, sweeps):
+    """What the library reads, but for the token."""
+    numbers = {name: number for number, name in enumerate(system.components)}
+    return {
+        "containerVersion": VERSION,
+        "fixedStepSize": step_size,
+        "parallelDoStep": False,
+        "components": [_component(component, paths) for component in system.components.values()],
+        "variables": [_variable(one, system, numbers) for one in [*face, *_hidden(system, face)]],
+        "connections": list(_connections(system, numbers)) * sweeps,
+    }
+
+
+def _component(component, paths):
+    fmu = component.fmu
+    return {
+        "fmiMajorVersion": fmu.fmi_version[0],
+        "name": component.name,
+        "instantiationToken": fmu.token,
+        "modelIdentifier": fmu.model_identifier,
+        "path": paths[fmu.path],
+    }
+
+
+def _hidden(system, face):
+    """Start values that the system sets on variables which the container does not show."""
+    shown = {end for one in face for end in one.ends}
+    for component in system.components.values():
+        for name, value in component.start.items():
+            if (component.name, name) not in shown:
+                variable = component.fmu.variables[name]
+                yield Face("", "local", variable, ((component.name, name),), start=value)
+
+
+def _variable(one, system, numbers):
+    name, variable = one.ends[0]
+    known = {
+        "variableType": library_type(system.components[name].fmu, variable),
+        "mappings": [
+            {"component": numbers[name], "valueReference": system.components[name].fmu.variables[own].value_reference}
+            for name, own in one.ends
+        ],
+    }
+    return known if one.start is None or one.causality == "output" else known | {"start": [text_of(one.start)]}
+
+
+def _connections(system, numbers):
+    """Connections between components, those of one type between two of them together, sources first."""
+    together = {}
+    for connection in system.connections:
+        (source, variable), (target, _) = connection.source, connection.target
+        if source is not None and target is not None:
+            kind = library_type(system.components[source].fmu, variable)
+            together.setdefault((source, target, kind), []).append(connection)
+    place = {name: position for position, name in enumerate(feeders_first(system))}
+    for source, target, kind in sorted(together, key=lambda key: (place[key[0]], place[key[1]], key[2])):
+        pairs = together[source, target, kind]
+        yield {
+            "variableType": kind,
+            "srcComponent": numbers[source],
+            "dstComponent": numbers[target],
+            "srcValueReferences": [_reference(system, pair.source) for pair in pairs],
+            "dstValueReferences": [_reference(system, pair.target) for pair in pairs],
+            "size": len(pairs),
+        }
+
+
+def _reference(system, end):
+    return system.components[end[0]].fmu.variables[end[1]].value_reference
+
+
+def _token(configuration, files):
+    """Token unique to the content."""
+    content = hashlib.sha256(json.dumps([BINARY, configuration], sort_keys=True).encode())
+    for name in sorted(files):
+        content.update(name.encode() + hashlib.sha256(files[name]).digest())
+    return f"{{{content.hexdigest()[:32]}}}"

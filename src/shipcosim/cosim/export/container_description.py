@@ -1,0 +1,148 @@
+"""modelDescription.xml of the container FMU of a system."""
+
+from xml.etree import ElementTree as xml
+
+from shipcosim import __version__
+from shipcosim.cosim.export.container_face import SHOWN, Face, is_structured, library_type
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp import System
+from shipcosim.ssp.xml.units import BASE
+from shipcosim.ssp.xml.values import text_of
+
+BINARY = "container_fmu"
+"""modelIdentifier, which is the name of the library."""
+
+
+def container_description(system: System, face: list[Face], token: str, step_size: float) -> bytes:
+    """The model description, the same bytes for the same system.
+
+    Parameters
+    ----------
+    system : System
+        As read.
+    face : list of Face
+        Its variables.
+    token : str
+        GUID.
+    step_size : float
+        Of the exchange inside. [s]
+    """
+    root = xml.Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=system.name,
+        guid=token,
+        description=f"{len(system.components)} components of the system {system.name}",
+        generationTool=f"shipcosim {__version__}",
+        variableNamingConvention="structured" if all(is_structured(one.name) for one in face) else "flat",
+        numberOfEventIndicators="0",
+    )
+    xml.SubElement(root, "CoSimulation", _abilities(system))
+    _add_units(root, system, face)
+    types = _add_types(root, face)
+    _add_experiment(root, system, step_size)
+    variables = xml.SubElement(root, "ModelVariables")
+    time = xml.SubElement(variables, "ScalarVariable", name=_time_name(face), valueReference="0")
+    time.attrib |= {"causality": "independent", "variability": "continuous", "description": "time"}
+    xml.SubElement(time, "Real")
+    for reference, one in enumerate(face, start=1):
+        variables.append(_scalar_variable(reference, one, system, types))
+    _add_structure(root, face)
+    xml.indent(root)
+    return xml.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def _abilities(system):
+    fmus = [component.fmu for component in system.components.values()]
+    return {
+        "modelIdentifier": BINARY,
+        "needsExecutionTool": str(any(fmu.capability("needsExecutionTool") for fmu in fmus)).lower(),
+        "canHandleVariableCommunicationStepSize": "false",
+        "canBeInstantiatedOnlyOncePerProcess": str(
+            any(fmu.capability("canBeInstantiatedOnlyOncePerProcess") for fmu in fmus)
+        ).lower(),
+    }
+
+
+def _add_units(root, system, face):
+    used = sorted({one.unit for one in face if one.unit and one.variable.kind == "Real"})
+    if not used:
+        return
+    definitions = xml.SubElement(root, "UnitDefinitions")
+    for name in used:
+        found = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
+        if len({(unit.exponents, unit.factor, unit.offset) for unit in found}) > 1:
+            text = f"The unit {name} is defined in two ways by its FMUs."
+            raise ShipcosimError(Problem(system.name, text, "An FMU can have one definition of a unit."))
+        element = xml.SubElement(definitions, "Unit", name=name)
+        for unit in found:
+            xml.SubElement(element, "BaseUnit", _base(unit))
+            break
+
+
+def _base(unit):
+    powers = {name: str(power) for name, power in zip(BASE, unit.exponents, strict=True) if power}
+    powers |= {"factor": repr(unit.factor)} if unit.factor != 1.0 else {}
+    return powers | ({"offset": repr(unit.offset)} if unit.offset else {})
+
+
+def _add_types(root, face):
+    """Enumerations, each with a name of its own; returns the names by items."""
+    kinds = dict.fromkeys(tuple(one.variable.items.items()) for one in face if one.variable.items)
+    names = {items: f"Enumeration{number}" for number, items in enumerate(kinds, start=1)}
+    if names:
+        definitions = xml.SubElement(root, "TypeDefinitions")
+    for items, name in names.items():
+        element = xml.SubElement(xml.SubElement(definitions, "SimpleType", name=name), "Enumeration")
+        for item, value in items:
+            xml.SubElement(element, "Item", name=item, value=str(value))
+    return names
+
+
+def _add_experiment(root, system, step_size):
+    times = {"startTime": system.experiment.start_time, "stopTime": system.experiment.stop_time, "stepSize": step_size}
+    given = {name: repr(float(time)) for name, time in times.items() if time is not None}
+    xml.SubElement(root, "DefaultExperiment", given)
+
+
+def _time_name(face):
+    names = {one.name for one in face}
+    return next(name for name in ("time", "simulation_time", "_time") if name not in names)
+
+
+def _scalar_variable(reference, one, system, types):
+    variable = one.variable
+    element = xml.Element("ScalarVariable", name=one.name, valueReference=str(reference), causality=one.causality)
+    if one.description:
+        element.set("description", one.description)
+    element.set("variability", _variability(one))
+    if one.causality != "input":
+        element.set("initial", "calculated" if one.causality == "output" else "exact")
+    values = {"start": text_of(one.start)} if one.start is not None and one.causality != "output" else {}
+    name, own = one.ends[0]
+    kind = "Enumeration" if variable.items else SHOWN[library_type(system.components[name].fmu, own)]
+    if kind == "Enumeration":
+        values["declaredType"] = types[tuple(variable.items.items())]
+    if kind == "Real" and one.unit:
+        values["unit"] = one.unit
+    if kind in ("Real", "Integer", "Enumeration"):
+        number = float if kind == "Real" else int
+        bounds = {"min": variable.minimum, "max": variable.maximum}
+        values |= {key: repr(number(bound)) for key, bound in bounds.items() if bound is not None}
+    xml.SubElement(element, kind, values)
+    return element
+
+
+def _variability(one):
+    if one.causality == "parameter":
+        return "tunable" if one.variable.variability == "tunable" else "fixed"
+    return "continuous" if one.variable.kind == "Real" and one.variable.variability == "continuous" else "discrete"
+
+
+def _add_structure(root, face):
+    structure = xml.SubElement(root, "ModelStructure")
+    indices = [str(index) for index, one in enumerate(face, start=2) if one.causality == "output"]
+    for kind in ("Outputs", "InitialUnknowns") if indices else ():
+        unknowns = xml.SubElement(structure, kind)
+        for index in indices:
+            xml.SubElement(unknowns, "Unknown", index=index)

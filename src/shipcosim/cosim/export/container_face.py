@@ -1,0 +1,152 @@
+"""What a system shows when it is one FMU: its connectors, and what of its components can be seen from outside."""
+
+import re
+from dataclasses import dataclass
+
+from shipcosim.cosim.master.plan import End, label
+from shipcosim.errors import Problem
+from shipcosim.ssp import FmuDescription, System, Variable
+
+TYPES = {"Real": "Float64", "Integer": "Int32"}
+"""What the container's library calls types of FMI 2.0."""
+
+SHOWN = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
+"""Types of FMI 2.0 for the library's."""
+
+
+@dataclass(frozen=True)
+class Face:
+    """A variable of the container.
+
+    Parameters
+    ----------
+    name, causality : str
+        Causality is ``"input"``, ``"output"`` or ``"parameter"``.
+    variable : Variable
+        Of a component, which type, variability and bounds are taken from.
+    ends : tuple of End
+        Variables that get its value, or the one that gives it.
+    start : value or None
+        Start value.
+    unit, description : str or None
+        As outside.
+    """
+
+    name: str
+    causality: str
+    variable: Variable
+    ends: tuple[End, ...]
+    start: object = None
+    unit: str | None = None
+    description: str = ""
+
+
+def library_type(fmu: FmuDescription, name: str) -> str | None:
+    """What the container's library calls the type of a variable; None where it has no name for it."""
+    variable = fmu.variables[name]
+    if variable.whole is not None or variable.dimensions or variable.kind in ("Binary", "Clock"):
+        return None
+    if variable.kind == "Enumeration":
+        return "Int64" if fmu.fmi_version.startswith("3") else "Int32"
+    return TYPES.get(variable.type, variable.type)
+
+
+def face_of(system: System, connectors_only: bool, problems: list[Problem]) -> list[Face]:
+    """Variables of the container, in the order of the system.
+
+    Parameters
+    ----------
+    system
+        As read.
+    connectors_only
+        Whether to leave out what is no connector of the system.
+    problems
+        Takes what a connector cannot be, and remarks on what is left out.
+    """
+    face = [one for one in _connectors(system, problems) if _is_shown(one, system, problems, "error")]
+    if connectors_only:
+        return face
+    names, inside = {one.name for one in face}, {end for one in face if one.causality != "output" for end in one.ends}
+    fed = {connection.target for connection in system.connections}
+    for one in _variables(system, fed | inside):
+        if one.name in names:
+            found = f"A connector of the system and a variable of a component are both called {one.name}."
+            problems.append(Problem(system.name, found, "Rename the connector."))
+        elif _is_shown(one, system, problems, "remark"):
+            face.append(one)
+    return face
+
+
+def _connectors(system, problems):
+    """Connectors of the outermost system."""
+    for signal, causality, ends in _signals(system):
+        if not ends:
+            found = f"The {causality} {signal.name} is connected to nothing and is left out."
+            problems.append(Problem(system.name, found, severity="remark"))
+            continue
+        variable, start = _variable(system, ends[0]), signal.start
+        if start is None and causality != "output":
+            start = _common_start(system, signal, ends, problems)
+        shown = start if causality != "output" else None
+        description = signal.description or (variable.description if len(ends) == 1 else "")
+        yield Face(signal.name, causality, variable, ends, shown, signal.unit, description)
+
+
+def _signals(system):
+    for signal in system.inputs.values():
+        yield signal, "input", _ends(system.connections, signal, "source")
+    for signal in system.parameters.values():
+        yield signal, "parameter", _ends(system.given, signal, "source")
+    for signal in system.outputs.values():
+        yield signal, "output", _ends(system.connections, signal, "target")
+
+
+def _ends(connections, signal, near):
+    far = {"source": "target", "target": "source"}[near]
+    found = (getattr(c, far) for c in connections if getattr(c, near) == (None, signal.name))
+    return tuple(end for end in found if end[0] is not None)
+
+
+def _common_start(system, signal, ends, problems):
+    starts = {system.components[name].start_value(variable) for name, variable in ends}
+    if len(starts) > 1:
+        found = f"{signal.name} has no start value, and {', '.join(map(label, ends))} start with different ones."
+        problems.append(Problem(system.name, found, "Set a start value for it: an FMU has to state one."))
+    return starts.pop()
+
+
+def _variables(system, fed):
+    """Outputs and parameters of the components, and inputs that nothing feeds."""
+    for component in system.components.values():
+        for variable in component.fmu.variables.values():
+            end = component.name, variable.name
+            if variable.causality in ("input", "parameter") and end not in fed:
+                start = component.start_value(variable.name)
+            elif variable.causality == "output":
+                start = None
+            else:
+                continue
+            yield Face(label(end), variable.causality, variable, (end,), start, variable.unit, variable.description)
+
+
+def _is_shown(one, system, problems, severity):
+    """Whether FMI 2.0 has a type for a variable; says so where it has not."""
+    name, variable = one.ends[0]
+    kind = library_type(system.components[name].fmu, variable)
+    if kind in SHOWN:
+        return True
+    what = "an element of an array" if one.variable.whole is not None else f"of type {one.variable.type}"
+    found = f"{one.name} is {what}, which FMI 2.0 has not"
+    found += "; it is left out." if severity == "remark" else "."
+    problems.append(Problem(system.name, found, severity=severity))
+    return False
+
+
+def _variable(system, end):
+    return system.components[end[0]].fmu.variables[end[1]]
+
+
+def is_structured(name: str) -> bool:
+    """Whether a name keeps FMI's structured naming convention."""
+    part = r"(?:[A-Za-z_][A-Za-z0-9_]*|'[^']+')(?:\[[0-9]+(?:,[0-9]+)*\])?"
+    return re.fullmatch(rf"{part}(?:\.{part})*", name) is not None

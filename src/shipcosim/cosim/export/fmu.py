@@ -1,0 +1,98 @@
+"""A system exported as one FMU, after it has been run beside the system itself.
+
+The container passes connections on once at the start, where our master repeats it until nothing changes any more; and
+an FMU may put out something else as soon as it gets an input. Neither can be seen in files. So both are run for some
+steps, with more passes in the container where it needs them, and an FMU that computes something else is not written.
+"""
+
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.cosim.export.container import write_container
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import Component, System, read_fmu
+
+SWEEPS = (1, 2, 4, 8)
+STEPS = 100
+LIMIT = 60.0
+"""How long the container, in a process of its own, may take for an answer: its library ends the process where an FMU in
+it cannot be instantiated. [s]"""
+TOLERANCE = 1e-9
+"""Of the largest value of a signal. Times are rounded differently in the last digit inside the container."""
+
+
+def export_fmu(
+    system: System, path: str | os.PathLike, step_size: float, *, connectors_only: bool = False, check: bool = True
+) -> list[Problem]:
+    """Write a system as one FMU of FMI 2.0 co-simulation.
+
+    Parameters
+    ----------
+    system : System
+        As read.
+    path : path
+        Of the FMU.
+    step_size : float
+        Of the exchange inside. [s]
+    connectors_only : bool
+        Whether the FMU shows the system's own connectors alone. Otherwise it also shows, named as in the table of a
+        run, the outputs and parameters of all components and the inputs that nothing feeds.
+    check : bool
+        Whether to run FMU and system side by side first, which runs the code of all FMUs.
+
+    Returns
+    -------
+    list of Problem
+        Remarks on what the FMU does not show.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that the FMU could not express, or with the signals in which it differs.
+    """
+    if not check:
+        return write_container(system, path, step_size, connectors_only=connectors_only)
+    ours, differing = None, []
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        for sweeps in SWEEPS:
+            tried = Path(folder) / f"{sweeps}.fmu"
+            remarks = write_container(system, tried, step_size, connectors_only=connectors_only, sweeps=sweeps)
+            ours = _run(system, step_size) if ours is None else ours
+            differing = _differences(ours, _run(block_of(tried), step_size, isolate=LIMIT))
+            if not differing:
+                write_container(system, path, step_size, connectors_only=connectors_only, sweeps=sweeps)
+                return remarks
+    remedy = "Components whose outputs follow their inputs at once are passed on in another order there."
+    raise ShipcosimError([Problem(system.name, found, remedy) for found in differing[:5]])
+
+
+def block_of(fmu: Path) -> System:
+    """System with an FMU as its only component, called ``block``."""
+    return System("block", str(fmu), {"block": Component("block", read_fmu(fmu))})
+
+
+def _run(system, step_size, isolate=None):
+    from shipcosim.cosim.master.run import run
+
+    scenario = Scenario(description="side by side", step_size=step_size, stop_time=STEPS * step_size)
+    return run(system, scenario, isolate=isolate)
+
+
+def _differences(ours, theirs):
+    """Sentences on the outputs of the container that differ from the system's, the worst first."""
+    found = []
+    for name in theirs.data_vars:
+        shown = name.removeprefix("block.")
+        if shown not in ours or theirs[name].dtype.kind not in "fbi":
+            continue
+        a, b = ours[shown].values.astype(float), theirs[name].values.astype(float)
+        error, scale = np.abs(a - b), max(np.abs(a).max(), np.abs(b).max(), 1e-9)
+        if error.max() > TOLERANCE * scale:
+            row = int(error.argmax())
+            time = float(ours["time"][row])
+            found.append((error.max() / scale, f"{shown} is {a[row]:.9g} at t = {time:g} s, in the FMU {b[row]:.9g}."))
+    return [text for _, text in sorted(found, reverse=True)]

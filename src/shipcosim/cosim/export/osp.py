@@ -1,0 +1,152 @@
+"""A system and what happens in it as files that libcosim runs by itself: OspSystemStructure.xml, FMUs, a scenario."""
+
+import os
+from pathlib import Path
+from urllib.parse import quote
+
+import numpy as np
+
+from shipcosim.cosim.engines.adapter import Job
+from shipcosim.cosim.engines.libcosim import complaints, event_of, structure_of
+from shipcosim.cosim.master.plan import KINDS
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario, check_scenario
+from shipcosim.scenario.osp import scenario_text
+from shipcosim.ssp import System, with_values
+from shipcosim.ssp.read.declarations import unused
+
+STRUCTURE, SCENARIO = "OspSystemStructure.xml", "scenario.json"
+TYPES = ("Real", "Integer", "Boolean", "String")
+"""Types of initial values that OSP has."""
+
+
+def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], list[Problem]]:
+    """Files of a system as libcosim takes it, and what they do not say.
+
+    Nested systems are flat in them, unit conversions and linear transformations are functions, start values initial
+    values, and events on inputs of the system events on what these feed.
+
+    Parameters
+    ----------
+    system : System
+        As read.
+    scenario : Scenario
+        Its steps, start values and events.
+
+    Returns
+    -------
+    files : dict of str to bytes
+        By name; all belong into one folder. There is a scenario only where something happens.
+    remarks : list of Problem
+        What gets lost.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that OSP cannot express.
+    """
+    system = with_values(system, scenario.set, str(scenario.path or "scenario"))
+    wrong = [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]
+    if wrong:
+        raise ShipcosimError(wrong)
+    job = Job(system, scenario)
+    problems = [*complaints(job), *_values_problems(job)]
+    if problems:
+        raise ShipcosimError(problems)
+    names = _file_names(system)
+    sources = {name: quote(names[component.fmu.path]) for name, component in system.components.items()}
+    values = {name: _initial_values(job, name) for name in system.components}
+    structure = structure_of(job, sources, values, end_time=scenario.stop_time)
+    files = {STRUCTURE: structure.encode()}
+    if events := happenings(job):
+        end = 2.0 * job.times[-1]  # all changes would be taken back at this time
+        files[SCENARIO] = scenario_text(scenario.description, events, float(end)).encode()
+    files |= {name: path.read_bytes() for path, name in names.items()}
+    return files, list(_remarks(system, scenario))
+
+
+def happenings(job: Job) -> list[dict]:
+    """Events of OSP that do what a job's events do, by their times.
+
+    What nothing feeds is set to the value that it has from then on: libcosim knows no inputs of the system.
+    """
+    events = [(change[0], event_of(job, *change)) for change in job.changes]
+    for end, driven in job.driven.items():
+        before = np.concatenate([[driven.start], driven.values[:-2]])
+        for k in np.flatnonzero(driven.values[:-1] != before).tolist():
+            events.append((k, event_of(job, k, "override", end, driven.values[k].item())))
+    return [event for _, event in sorted(events, key=lambda item: item[0])]
+
+
+def _as_typed(value, kind):
+    return {"Real": float, "Boolean": bool}.get(kind, int)(value)
+
+
+def _initial_values(job, name):
+    variables = job.system.components[name].fmu.variables
+    starts = {variable: (variables[variable].kind, value) for variable, value in job.starts(name).items()}
+    return {v: (kind, _as_typed(value, kind) if kind in KINDS else value) for v, (kind, value) in starts.items()}
+
+
+def _values_problems(job):
+    for name, component in job.system.components.items():
+        for variable in component.start:
+            kind = component.fmu.variables[variable].kind
+            if kind not in TYPES:
+                yield Problem(f"{name}.{variable}", f"is set and is {kind}; OSP has no initial value of this type.")
+
+
+def _file_names(system):
+    """Names of the FMUs in the folder by their paths, each another one."""
+    names = {}
+    for component in system.components.values():
+        path = component.fmu.path
+        if path not in names:
+            names[path] = unused(path.stem, {name.removesuffix(".fmu") for name in names.values()}) + ".fmu"
+    return names
+
+
+def _remarks(system, scenario):
+    """What the files do not say."""
+    lost = {
+        "inputs of the system": (system.inputs, "What they feed is set instead."),
+        "outputs of the system": (system.outputs, "Look at the variables that they show."),
+    }
+    for what, (signals, remedy) in lost.items():
+        if signals:
+            found = f"OSP has no {what}: {', '.join(signals)} have no name there."
+            yield Problem(system.name, found, remedy, "remark")
+    for name, component in system.components.items():
+        for variable, value in component.start.items():
+            if isinstance(value, str) and not value.isascii():
+                found = "is a text beyond ASCII, which libcosim reads in the encoding of the machine that it runs on."
+                yield Problem(f"{name}.{variable}", found, "Run it where that is UTF-8.", "remark")
+    if scenario.expect:
+        found = f"OSP has no expectations: {len(scenario.expect)} stay behind."
+        yield Problem(scenario.name or "scenario", found, severity="remark")
+
+
+def write_osp(system: System, scenario: Scenario, folder: str | os.PathLike) -> list[Problem]:
+    """Write what `osp_files` makes into a folder; complete or not at all.
+
+    Returns
+    -------
+    list of Problem
+        What gets lost.
+    """
+    files, remarks = osp_files(system, scenario)
+    folder = Path(folder)
+    partial = {name: folder / f".{name}.{os.getpid()}.part" for name in files}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, data in files.items():
+            partial[name].write_bytes(data)
+        for name, path in partial.items():
+            os.replace(path, folder / name)
+        if SCENARIO not in files:
+            (folder / SCENARIO).unlink(missing_ok=True)  # of an export before
+    except OSError as error:
+        for path in partial.values():
+            path.unlink(missing_ok=True)
+        raise ShipcosimError(Problem(str(folder), f"Cannot be written: {error.strerror}.")) from None
+    return remarks

@@ -1,0 +1,1 @@
+"""Our master: plan, signals, events, time grid, recorder, snapshots."""

@@ -1,0 +1,128 @@
+"""A component in a run: its slave and the calls that exchange its values, prepared once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from shipcosim.cosim.master.signals import Exchange
+from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES, FAILED, Slave, SlaveError
+
+
+@dataclass
+class Discrete:
+    """Prepared call that sets inputs of a type other than Real, which is made only when a value has changed."""
+
+    function: str
+    exchange: Exchange
+    call: Callable[[], int]
+    version: int = -1
+
+
+@dataclass
+class Part:
+    """A component in a run.
+
+    Parameters
+    ----------
+    name : str
+        Of the component.
+    slave : Slave
+        Its FMU.
+    multiple : int
+        Its step, in base steps.
+    fixed_step : float, optional
+        What it is told as its step, for an FMU that can take no other: the difference of two times is not always the
+        same number. [s]
+    """
+
+    name: str
+    slave: Slave
+    multiple: int
+    fixed_step: float | None = None
+    _set_reals: Callable[[], int] | None = None
+    _discrete: list[Discrete] = field(default_factory=list)
+    _gets: list[tuple[str, Callable[[], int]]] = field(default_factory=list)
+
+    def __post_init__(self):
+        self._do_step = do_step = self.slave.stepper()
+        if (step := self.fixed_step) is not None:
+            self._do_step = lambda time, _: do_step(time, step)
+
+    def bind(self, kind: str, exchange: Exchange, outputs: tuple, inputs: tuple) -> None:
+        """Prepare the calls for the variables of one kind.
+
+        Parameters
+        ----------
+        kind : str
+            A key of BUFFER_TYPES.
+        exchange : Exchange
+            Holds their values.
+        outputs, inputs : (first row, variables)
+            Rows and variables of this component.
+        """
+        (first, variables), (first_input, driven) = outputs, inputs
+        if variables:
+            buffer = exchange.raw[first : first + len(variables)]
+            self._gets.append((f"Get{kind}", self.slave.getter(kind, variables, buffer)))
+        if driven:
+            call = self.slave.setter(kind, driven, exchange.inputs[first_input : first_input + len(driven)])
+            if kind == "Real":
+                self._set_reals = call
+            else:
+                self._discrete.append(Discrete(f"Set{kind}", exchange, call))
+
+    def write(self) -> None:
+        """Hand the inputs over to the FMU."""
+        if self._set_reals is not None and (status := self._set_reals()) >= FAILED:
+            self.slave.check("SetReal", status)
+        for discrete in self._discrete:
+            if discrete.version != discrete.exchange.version:
+                if (status := discrete.call()) >= FAILED:
+                    self.slave.check(discrete.function, status)
+                discrete.version = discrete.exchange.version
+
+    def restore(self, state: bytes) -> None:
+        """Bring the FMU into a state; the inputs that it had then are not taken for those that it has to get."""
+        self.slave.restore(state)
+        for discrete in self._discrete:
+            discrete.version = -1
+
+    def step(self, time: float, step_size: float) -> None:
+        """Advance the FMU from a time."""
+        if (status := self._do_step(time, step_size)) >= FAILED:
+            self.slave.check("DoStep", status)
+
+    def read(self) -> None:
+        """Take the outputs over from the FMU."""
+        for function, call in self._gets:
+            if (status := call()) >= FAILED:
+                self.slave.check(function, status)
+
+
+def set_start_values(slave: Slave, values: list[tuple]) -> None:
+    """Set (variable, value) pairs on an FMU that is not initialised yet, structural parameters first."""
+    structural = [pair for pair in values if pair[0].causality == "structuralParameter"]
+    if structural:
+        slave.call("EnterConfigurationMode")
+        _set(slave, structural)
+        slave.call("ExitConfigurationMode")
+    _set(slave, [pair for pair in values if pair[0].causality != "structuralParameter"])
+
+
+def _set(slave, values):
+    by_kind = {}
+    for variable, value in values:
+        kind = "Integer" if variable.kind == "Enumeration" else variable.kind
+        kind = "Long" if kind == "Integer" and not -(2**31) <= value < 2**31 else kind
+        by_kind.setdefault(kind, []).append((variable, value))
+    for kind, pairs in by_kind.items():
+        variables, numbers = zip(*pairs, strict=True)
+        if kind in ("String", "Binary"):
+            slave.set_strings(variables, numbers)
+            continue
+        try:
+            buffer = np.array(numbers, dtype=BUFFER_TYPES[kind])
+        except OverflowError:
+            raise SlaveError(f"{variables[0].name} cannot be {numbers[0]}: it has more than 63 bits.") from None
+        slave.check(f"Set{kind}", slave.setter(kind, variables, buffer)())

@@ -1,0 +1,31 @@
+"""In which order components step."""
+
+from shipcosim.cosim.master.plan import Plan
+from shipcosim.ssp import System
+
+ORDERS = ("jacobi", "gauss-seidel")
+
+
+def stepping_order(plan: Plan, order: str) -> list[str]:
+    """Names of the components in the order in which they step.
+
+    Jacobi has no order: the system's. Gauss-Seidel puts every component behind those that feed it; where these form a
+    loop, the first of it in the system goes first.
+    """
+    return list(plan.system.components) if order == "jacobi" else feeders_first(plan.system)
+
+
+def feeders_first(system: System) -> list[str]:
+    """Names of the components, each behind those that feed it as far as these form no loop."""
+    names = list(system.components)
+    feeds = {name: set() for name in names}
+    for connection in system.connections:
+        source, target = connection.source[0], connection.target[0]
+        if source and target and source != target:
+            feeds[target].add(source)
+    ordered = []
+    while names:
+        ready = (name for name in names if feeds[name].issubset(ordered))
+        ordered.append(next(ready, names[0]))
+        names.remove(ordered[-1])
+    return ordered

@@ -1,0 +1,141 @@
+"""The table of a run, and what has to be known to repeat it."""
+
+import hashlib
+import json
+import platform
+from importlib.metadata import version
+
+import numpy as np
+
+from shipcosim import __version__
+from shipcosim.cosim.master.plan import Plan, label
+from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import System
+
+
+def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
+    """Settings and inputs of a kind that the table shows: those of the system, and inputs that no output determines."""
+    layout = plan.layouts[kind]
+    settings = [i for i, end in enumerate(layout.settings) if end[0] is None]
+    inputs = [i for i, end in enumerate(layout.inputs) if end not in plan.fed or end in plan.touched]
+    return settings, inputs
+
+
+def columns_of(plan: Plan, n_rows: int, recorded: dict) -> list[tuple]:
+    """Columns of the table of a run.
+
+    Parameters
+    ----------
+    plan
+        Of the run.
+    n_rows : int
+        Rows of the table.
+    recorded : dict of str to list of (n_rows,) array
+        By kind: outputs, settings and inputs as the recorder has them.
+
+    Returns
+    -------
+    list of (name, (n_rows,) array, unit, long name)
+    """
+    values = {}
+    for kind, arrays in recorded.items():
+        layout = plan.layouts[kind]
+        settings, inputs = recorded_rows(plan, kind)
+        names = list(layout.settings)
+        ends = [*layout.outputs, *(names[i] for i in settings), *(layout.inputs[i] for i in inputs)]
+        values |= zip(ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True)
+    return [*_connectors(plan, values), *_variables(plan, values, n_rows)]
+
+
+def _connectors(plan, values):
+    """Columns of the outermost system's inputs and outputs."""
+    for name, signal in plan.system.inputs.items():
+        if (None, name) in values:
+            yield name, values[None, name], signal.unit or "", signal.description
+    for connection in plan.system.connections:
+        if connection.target[0] is None and (source := values.get(connection.source)) is not None:
+            signal = plan.system.outputs.get(connection.target[1])
+            if signal is not None:
+                yield signal.name, _passed_on(source, connection), signal.unit or "", signal.description
+
+
+def _passed_on(values, connection):
+    if connection.mapping is not None:
+        values = np.array([connection.mapping.get(v, v) for v in values.tolist()], dtype=values.dtype)
+    if (connection.factor, connection.offset) != (1.0, 0.0):
+        values = connection.factor * values + connection.offset
+    return values
+
+
+def _variables(plan, values, n):
+    """Columns of the components' outputs and settings, in the order of the system and of the FMUs."""
+    for component in plan.system.components.values():
+        for variable in component.fmu.variables.values():
+            end, kind = (component.name, variable.name), plan.kind(variable)
+            column = values.get(end)
+            if column is None and kind and variable.causality == "input" and end not in plan.fed:
+                start = component.start_value(variable.name) or 0
+                column = np.full(n, start, dtype=bool if kind == "Boolean" else BUFFER_TYPES[kind])
+            if column is not None and variable.causality in ("input", "output", "parameter"):
+                yield label(end), column, variable.unit or "", variable.description
+
+
+def start_values(system: System) -> dict:
+    """Start values of all parameters and of what else the system sets, by signal."""
+    return {
+        label((component.name, variable.name)): component.start_value(variable.name)
+        for component in system.components.values()
+        for variable in component.fmu.variables.values()
+        if variable.causality == "parameter" or variable.name in component.start
+    }
+
+
+def hashes(system: System) -> dict[str, str]:
+    """SHA-256 of each component's FMU."""
+    paths = {component.fmu.path for component in system.components.values()}
+    digests = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}
+    return {component.name: digests[component.fmu.path] for component in system.components.values()}
+
+
+def attributes_of(system: System, scenario: Scenario) -> dict:
+    """What has to be known to repeat a run, as texts and numbers."""
+    starts = start_values(system)
+    starts |= {name: signal.start for name, signal in system.inputs.items() if signal.start is not None}
+    digests = hashes(system)
+    fmus = {c.name: {"file": c.fmu.path.name, "sha256": digests[c.name]} for c in system.components.values()}
+    return {
+        "scenario": scenario.name,
+        "description": scenario.description,
+        "system": system.name,
+        "system_sha256": fingerprint(system),
+        "step_size": scenario.step_size,
+        "stop_time": scenario.stop_time,
+        "output_interval": scenario.output_interval or scenario.step_size,
+        "shipcosim_version": __version__,
+        "fmpy_version": version("fmpy"),
+        "numpy_version": version("numpy"),
+        "python_version": platform.python_version(),
+        "start_values": json.dumps(starts, default=str),
+        "seeds": json.dumps({name: value for name, value in starts.items() if name.endswith("seed")}),
+        "events": json.dumps([event.model_dump() for event in scenario.events]),
+        "fmus": json.dumps(fmus),
+    }
+
+
+def fingerprint(system: System) -> str:
+    """SHA-256 of how a system is wired: components, connections, connectors; start values are not part of it."""
+    wiring = {
+        "components": [(c.name, c.step_size, *_asked(c)) for c in system.components.values()],
+        "connections": [
+            (c.source, c.target, c.factor, c.offset, list((c.mapping or {}).items()), c.initial)
+            for c in system.connections
+        ],
+        "inputs": [(s.name, s.type, s.unit) for s in system.inputs.values()],
+        "outputs": [(s.name, s.type, s.unit) for s in system.outputs.values()],
+    }
+    return hashlib.sha256(json.dumps(wiring, default=str).encode()).hexdigest()
+
+
+def _asked(component):
+    return () if component.implementation == "any" else (component.implementation,)

@@ -1,0 +1,87 @@
+"""The stretch of time that a run covers, in steps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.cosim.master.algorithm import step_times
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario, whole_steps
+
+
+@dataclass(frozen=True)
+class Span:
+    """Steps `first` to `last` of a run whose step 0 begins at `start_time`.
+
+    Parameters
+    ----------
+    start_time : float
+        Of the scenario. [s]
+    stop_time : float
+        Of the scenario; FMUs are told it, whether the run goes so far or not. [s]
+    first, last : int
+        Step that is done first, step before which the run ends.
+    times : (n + 1,) array
+        Times of the steps from number 0 on, up to the stop time. [s]
+    every : int
+        Steps from one row of the table to the next; the rows are at multiples of it.
+    """
+
+    start_time: float
+    stop_time: float
+    first: int
+    last: int
+    times: np.ndarray
+    every: int
+
+    @property
+    def run_times(self):
+        """Times of the steps that are done, and of the end. [s]"""
+        return self.times[self.first : self.last + 1]
+
+    @property
+    def row_times(self):
+        """Times of the rows of the table. [s]"""
+        return self.times[-(-self.first // self.every) * self.every : self.last + 1 : self.every]
+
+
+def span_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: float | None = None) -> Span:
+    """Span of a run.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its times are on the same clock as `start_time`.
+    start_time : float
+        Time of step 0. [s]
+    first : int
+        Step that is done first.
+    until : float, optional
+        Where the run ends before the scenario does. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If a time does not fall on a step, or nothing is left to do.
+    """
+    step, end = scenario.step_size, scenario.stop_time if until is None else until
+    n, last = (whole_steps(time - start_time, step) for time in (scenario.stop_time, end))
+    ends = {"stop time": (scenario.stop_time, n)} | ({} if until is None else {"until": (until, last)})
+    problems = [Problem(name, *_off_step(t, start_time, step)) for name, (t, k) in ends.items() if k is None]
+    if not problems and not first < last <= n:
+        begin = start_time + first * step
+        found = f"the run would go from {begin:g} s to {end:g} s."
+        remedy = f"Its end must lie after {begin:g} s and not after the stop time, {scenario.stop_time:g} s."
+        problems.append(Problem(list(ends)[-1], found, remedy))
+    for event in scenario.events:
+        if whole_steps(event.time - start_time, step) is None:
+            problems.append(Problem("event", *_off_step(event.time, start_time, step)))
+    if problems:
+        raise ShipcosimError(problems)
+    every = whole_steps(scenario.output_interval or step, step)
+    return Span(start_time, scenario.stop_time, first, last, step_times(step, 0, n, start_time), every)
+
+
+def _off_step(time, start_time, step):
+    nearest = start_time + max(1, round((time - start_time) / step)) * step
+    return f"{time:g} s is no whole number of steps of {step:g} s after {start_time:g} s.", f"{nearest:.9g} s would be."

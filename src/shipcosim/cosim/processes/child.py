@@ -1,0 +1,132 @@
+"""The process of one component: `serve` makes its slave and does what comes through a pipe until the pipe is closed.
+
+What the FMU prints must not get into the pipes, and comes out at once, so that it is not lost where the FMU crashes.
+"""
+
+import ctypes
+import os
+import pickle
+import signal
+import sys
+
+import numpy as np
+
+from shipcosim.cosim.slaves.fmi2 import SlaveError
+from shipcosim.cosim.slaves.instances import Instances
+
+DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does not outlive the run
+
+
+def send(pipe, message):
+    """Write a message into a pipe."""
+    data = pickle.dumps(message, protocol=5)
+    pipe.write(len(data).to_bytes(8, "little") + data)
+    pipe.flush()
+
+
+def receive(pipe):
+    """Read a message from a pipe. Raises EOFError where the other end is closed."""
+    head = pipe.read(8)
+    data = pipe.read(int.from_bytes(head, "little"))
+    if len(head) < 8 or len(data) < int.from_bytes(head, "little"):
+        raise EOFError
+    return pickle.loads(data)
+
+
+def serve():
+    """Do what comes through stdin, answer through stdout: (whether it went well, what came of it, new log messages).
+
+    The first answer, to no question, says that the process is there. What wants no answer and fails is the answer to
+    the next question.
+    """
+    source, target, flush = _own_pipes()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
+    with Instances() as instances:
+        desk, failure = Desk(instances), None
+        send(target, (True, None, []))
+        while True:
+            try:
+                is_question, function, *arguments = receive(source)
+            except EOFError:
+                return
+            if failure is None:
+                result, failure = _done(getattr(desk, function), arguments)
+            if is_question:
+                flush()
+                send(target, (failure is None, result if failure is None else failure, desk.news()))
+                failure = None
+
+
+def _done(method, arguments):
+    """Result of a call, and why there is none."""
+    try:
+        return method(*arguments), None
+    except SlaveError as error:
+        return None, str(error)
+    except Exception as error:
+        return None, f"{type(error).__name__}: {error}"
+
+
+class Desk:
+    """What can be asked of the process; its methods answer the questions of `isolate.Remote`."""
+
+    def __init__(self, instances):
+        self._instances, self._slave, self._prepared, self._told = instances, None, [], 0
+
+    def make(self, component):
+        """Instantiate the FMU."""
+        self._slave = self._instances.of(component)
+
+    def call(self, method, *arguments):
+        """Call a method of the slave."""
+        return getattr(self._slave, method)(*arguments)
+
+    def prepare(self, method, kind, variables, buffer):
+        """Prepare a call that is made often, without a buffer a step; its number."""
+        arguments = () if buffer is None else (kind, variables, buffer)
+        self._prepared.append((getattr(self._slave, method)(*arguments), buffer))
+        return len(self._prepared) - 1
+
+    def set(self, what, number, data):
+        """Make a prepared call that sets values."""
+        call, buffer = self._prepared[number]
+        buffer[:] = np.frombuffer(data, buffer.dtype)
+        self._slave.check(what, call())
+
+    def get(self, number):
+        """Make a prepared call that gets values; its status and the values."""
+        call, buffer = self._prepared[number]
+        return call(), buffer.tobytes()
+
+    def step(self, number, time, step_size, getters):
+        """Make a prepared step, then get what will be asked for next: what `get` gives for each."""
+        self._slave.check("DoStep", self._prepared[number][0](time, step_size))
+        return [self.get(getter) for getter in getters]
+
+    def news(self):
+        """Messages logged since the last time."""
+        messages = self._slave.messages if self._slave else []
+        first, self._told = self._told, len(messages)
+        return messages[first:]
+
+
+def _own_pipes():
+    """The pipes to the run, which nobody else here gets hold of, and a function that brings out what was printed."""
+    source, target = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.dup2(2, 1)
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(line_buffering=True, errors="replace")
+    if os.name != "posix":
+        return source, target, sys.stdout.flush
+    library = ctypes.CDLL(None)
+    stdout = ctypes.c_void_p.in_dll(library, "stdout" if sys.platform == "linux" else "__stdoutp")
+
+    def flush():
+        sys.stdout.flush()
+        library.fflush(stdout)
+
+    return source, target, flush

@@ -1,0 +1,157 @@
+"""One running instance of an FMU of FMI 1.0, for co-simulation or for model exchange.
+
+FMI 1.0 has no initialisation mode: an FMU is initialised with its start values, and inputs that are connected get what
+feeds them right after that.
+
+Reference: FMI 1.0.1 for co-simulation, section 3; FMI 1.0.1 for model exchange, section 2.
+"""
+
+from collections.abc import Callable, Sequence
+from ctypes import byref, c_char, c_double, c_int, c_size_t
+from functools import partial
+from math import inf
+
+import numpy as np
+
+from shipcosim.cosim.slaves.fmi2 import FAILED, FATAL, OK, Slave, SlaveError, references
+from shipcosim.cosim.slaves.model_exchange import CONTINUOUS, EVENT, ModelExchange, Update
+
+TRUE, FALSE = b"\x01", b"\x00"
+
+
+class Slave1(Slave):
+    """An instance of an FMU of FMI 1.0 for co-simulation."""
+
+    _prefix = "fmi1"
+    _terminate = "TerminateSlave"
+
+    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        if kind == "Long":
+            return self._long_setter(variables, buffer)
+        own, signs, call = self._prepared("Set", kind, variables)
+
+        def set_all():
+            own[:] = buffer * signs
+            return call()
+
+        return set_all
+
+    def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        if kind == "Long":
+            return self._long_getter(variables, buffer)
+        own, signs, call = self._prepared("Get", kind, variables)
+
+        def get_all():
+            if (status := call()) >= FAILED:
+                return status
+            np.multiply(own, signs, out=buffer)
+            return OK
+
+        return get_all
+
+    def stepper(self) -> Callable[[float, float], int]:
+        """Prepared call that advances from a time by a step size and returns the status."""
+        do_step, component = self._function("DoStep"), self.component
+        return lambda time, step_size: do_step(component, time, step_size, TRUE)
+
+    def enter_initialisation(self, start_time: float, stop_time: float) -> None:
+        """Initialise the FMU for a run between two times."""
+        self.call("InitializeSlave", start_time, TRUE, stop_time)
+
+    def exit_initialisation(self) -> None:
+        """Nothing: the FMU is initialised already."""
+
+    def reset(self) -> None:
+        """Bring the instance back to where it was when it was made."""
+        self.call("ResetSlave")
+        self.messages.clear()
+
+    def terminate(self) -> None:
+        """End the simulation."""
+        self._is_lost = self._function(self._terminate)(self.component) == FATAL
+
+    def _prepared(self, verb, kind, variables):
+        """Buffer of the FMU's own type, sign of each variable, and the call."""
+        own = np.zeros(len(variables), dtype={"Real": np.float64, "Integer": np.int32, "Boolean": np.int8}[kind])
+        signs = np.array([-1 if variable.negated and kind != "Boolean" else 1 for variable in variables])
+        pointer = {"Real": c_double, "Integer": c_int, "Boolean": c_char}[kind] * len(variables)
+        arguments = references(variables), c_size_t(len(variables)), pointer.from_buffer(own)
+        return own, signs, partial(self._function(verb + kind), self.component, *arguments)
+
+    @staticmethod
+    def _load(**arguments):
+        from fmpy.fmi1 import FMU1Slave
+
+        slave = FMU1Slave(**arguments)
+        for name in ("fmi1InitializeSlave", "fmi1DoStep"):
+            slave._functions[name].restype = c_int  # FMPy takes their status for a text
+        return slave
+
+    def _instantiate(self):
+        from fmpy import calloc, fmi1, free
+        from fmpy.logging import addLoggerProxy
+
+        callbacks = fmi1.fmi1CallbackFunctions()
+        callbacks.logger = fmi1.fmi1CallbackLoggerTYPE(lambda env, name, status, kind, text: self._log(status, text))
+        callbacks.allocateMemory = fmi1.fmi1CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi1.fmi1CallbackFreeMemoryTYPE(free)
+        addLoggerProxy(byref(callbacks))
+        self._fmu.instantiate(functions=callbacks, loggingOn=True)
+        if not self._fmu.component:
+            raise SlaveError("It cannot be instantiated.")
+
+
+class Model1(ModelExchange, Slave1):
+    """An instance of an FMU of FMI 1.0 for model exchange: it has no modes, an event is a call."""
+
+    NOMINALS = "GetNominalContinuousStates"
+    _terminate = "Terminate"
+
+    def enter_initialisation(self, start_time: float, stop_time: float) -> None:
+        """Initialise the FMU."""
+        self.call("SetTime", start_time)
+        info = self._event_info()
+        self.call("Initialize", FALSE, 0.0, byref(info))
+        if info.terminateSimulation != FALSE:
+            raise SlaveError("It asks to end the simulation.")
+
+    def reset(self) -> None:
+        """Raise SlaveError: models of FMI 1.0 cannot be reset."""
+        raise SlaveError("A model of FMI 1.0 cannot be reset.")
+
+    def _sizes(self):
+        return self._description.n_states, self._description.n_event_indicators
+
+    def _leave_initialisation(self):
+        self._mode = EVENT
+
+    def _enter_event_mode(self):
+        self._mode = EVENT
+
+    def _leave_event_mode(self):
+        self._mode = CONTINUOUS
+
+    def _completed_step(self):
+        event = c_char()
+        self.call("CompletedIntegratorStep", byref(event))
+        return event.value != FALSE
+
+    def _update_discrete_states(self):
+        info = self._event_info()
+        self.call("EventUpdate", FALSE, byref(info))
+        next_event = info.nextEventTime if info.upcomingTimeEvent != FALSE else inf
+        return Update(info.iterationConverged == FALSE, info.terminateSimulation != FALSE, next_event)
+
+    @staticmethod
+    def _event_info():
+        from fmpy.fmi1 import fmi1EventInfo
+
+        return fmi1EventInfo()
+
+    @staticmethod
+    def _load(**arguments):
+        from fmpy.fmi1 import FMU1Model
+
+        return FMU1Model(**arguments)

@@ -1,0 +1,134 @@
+"""FMUs of our own shell, stepped without their C interface.
+
+Such an FMU is an object in this very process: its binary turns C arrays into lists, calls a method of the object and
+turns lists back into C arrays. Here the same methods are called with the same values in the same order. All else, from
+the start to storing a state, goes through the binary.
+"""
+
+import struct
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+OK, FATAL = 0, 4
+
+
+def object_of(folder: Path, name: str):
+    """The object behind the instance made last of an unpacked FMU, or None where it has none of our shell's.
+
+    The module that an FMU of ours enters by has a name unique to its content, so it does not matter from which folder
+    the process has loaded it first.
+    """
+    entry = (Path(folder) / "resources" / "slavemodule.txt").read_text(encoding="utf-8").strip()
+    shell = sys.modules.get(f"{entry}_code.shipcosim.fmi.shell")
+    reference = getattr(getattr(shell, "Fmi2Slave", None), "newest", None)
+    made = reference() if reference is not None else None
+    ours = made is not None and made.instance_name == name and hasattr(made, "real_setter")
+    return made if ours else None
+
+
+class Direct:
+    """Prepared calls to the object behind an instance, in the form of those to a binary.
+
+    Parameters
+    ----------
+    target : Fmi2Slave of an FMU's own copy of the shell
+        The object.
+    tell : callable
+        Takes (status, text) of what it logs.
+    """
+
+    def __init__(self, target, tell: Callable[[int, str], None]):
+        self._target, self._tell = target, tell
+
+    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """See `Slave2.setter`."""
+        if kind == "Real":
+            return self._reals_setter(_references(variables), buffer)
+        method, references = getattr(self._target, f"set_{kind.lower()}"), _references(variables)
+
+        def set_all():
+            values = buffer.tolist()
+            try:
+                method(references, [value != 0 for value in values] if kind == "Boolean" else values)
+            except Exception as error:
+                return self._failed(error)
+            return OK
+
+        return set_all
+
+    def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+        """See `Slave2.getter`."""
+        if kind == "Real":
+            return self._reals_getter(_references(variables), buffer)
+        method, references = getattr(self._target, f"get_{kind.lower()}"), _references(variables)
+        pack = _packer(buffer, "i")
+
+        def get_all():
+            try:
+                pack(*method(references))
+            except Exception as error:
+                return self._failed(error)
+            return OK
+
+        return get_all
+
+    def _reals_setter(self, references, buffer):
+        set_values, values_of = self._target.real_setter(references), buffer.tolist
+
+        def set_all():
+            try:
+                set_values(values_of())
+            except Exception as error:
+                return self._failed(self._target.failure(error))
+            return OK
+
+        return set_all
+
+    def _reals_getter(self, references, buffer):
+        get_values, pack = self._target.real_getter(references), _packer(buffer, "d")
+
+        def get_all():
+            try:
+                pack(*get_values())
+            except Exception as error:
+                return self._failed(self._target.failure(error))
+            return OK
+
+        return get_all
+
+    def stepper(self) -> Callable[[float, float], int]:
+        """See `Slave2.stepper`."""
+        target, do_step = self._target, self._target.do_step
+
+        def step(time, step_size):
+            try:
+                do_step(time, step_size)
+            except Exception as error:
+                return self._failed(error)
+            if target.messages:
+                self._hand_over()
+            return OK
+
+        return step
+
+    def _hand_over(self):
+        for message in self._target.messages:
+            self._tell(message.status, message.msg.replace("%%", "%"))
+        self._target.messages.clear()
+
+    def _failed(self, error):
+        self._tell(FATAL, str(error))
+        return FATAL
+
+
+def _packer(buffer, code):
+    """Function that writes its arguments into a buffer, quicker than ``buffer[:] = arguments``."""
+    return partial(struct.Struct(f"{len(buffer)}{code}").pack_into, buffer, 0)
+
+
+def _references(variables):
+    return tuple(variable.value_reference for variable in variables)

@@ -1,0 +1,45 @@
+"""The FMUs of a system, loaded once and used for any number of runs."""
+
+from contextlib import ExitStack
+
+from shipcosim.cosim.slaves.create import slave_of
+from shipcosim.cosim.slaves.fmi2 import Slave, SlaveError
+from shipcosim.cosim.slaves.unpacked import Unpacked
+from shipcosim.ssp import Component
+
+
+class Instances:
+    """Instances of FMUs by component; a ``with`` statement frees them and removes what was unpacked."""
+
+    def __enter__(self):
+        self._slaves, self._stack = {}, ExitStack()
+        self._unpacked = self._stack.enter_context(Unpacked())
+        return self
+
+    def __exit__(self, *_):
+        for name in list(self._slaves):
+            self._free(name)
+        self._stack.close()
+
+    def of(self, component: Component) -> Slave:
+        """Instance of a component's FMU in which nothing has been set yet.
+
+        From the second time on it is the same one, reset; an FMU that cannot be reset is instantiated anew.
+
+        Raises
+        ------
+        SlaveError
+            If it cannot be instantiated.
+        """
+        name, fmu = component.name, component.fmu
+        if name in self._slaves:
+            try:
+                self._slaves[name].reset()
+                return self._slaves[name]
+            except SlaveError:
+                self._free(name)
+        self._slaves[name] = slave_of(component, self._unpacked.folder(fmu.path))
+        return self._slaves[name]
+
+    def _free(self, name):
+        self._slaves.pop(name).free()

@@ -1,0 +1,1 @@
+"""Manoeuvres, and the design of the one that tells causes apart."""

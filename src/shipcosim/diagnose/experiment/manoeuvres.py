@@ -1,0 +1,321 @@
+"""A small library of manoeuvres that tell causes apart, as tracks and thruster settings for any ship.
+
+Lengths are proportional to the ship's, times to the root of her length: every ship meets the same accelerations.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import Drivers, Motion, motion_rates
+from shipcosim.diagnose.ship.thrusters import pusher_of
+
+LONGEST = 15.0
+"""No manoeuvre takes longer. [min]"""
+_LENGTH = 33.9  # m, of the ship that the figures of the library are for
+_PUSH = 0.012  # m/s2, of the ship by one thruster's push
+_APART = 0.004  # m/s2: azimuths push against each other that much, so that they point somewhere
+_STRAIGHT = 0.01  # rad
+_STEP = 2.0  # s
+_STEADY = 2.0  # steps: thrusters follow the plan that smoothly
+
+
+@dataclass(frozen=True)
+class Push:
+    """One thruster does as planned, whatever the DP wants.
+
+    Attributes
+    ----------
+    thruster : str
+    start, end : float
+        [s]
+    force : float
+        Along its axis, astern where negative. [N]
+    azimuth : tuple of two floats
+        Direction at start and end; turned through evenly. [rad]
+    """
+
+    thruster: str
+    start: float
+    end: float
+    force: float
+    azimuth: tuple = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """What the ship is to do.
+
+    Attributes
+    ----------
+    name : str
+    legs : tuple of (float, float, float, float)
+        Duration, and where the ship is then: ahead and to starboard of where she started, and turned.
+        [s, m, m, rad]
+    pushes : tuple of Push
+    free : tuple of (float, float)
+        From when to when the DP is off and thrusters stand still. [s]
+    """
+
+    name: str
+    legs: tuple
+    pushes: tuple = ()
+    free: tuple = ()
+
+    @property
+    def minutes(self):
+        """Duration. [min]"""
+        return sum(leg[0] for leg in self.legs) / 60.0
+
+
+def library(plant, fixed=()):
+    """All manoeuvres for a ship, none longer than `LONGEST`.
+
+    Parameters
+    ----------
+    plant : Plant
+    fixed : collection of str
+        Azimuth thrusters that cannot turn.
+
+    Returns
+    -------
+    list of Manoeuvre
+    """
+    share = plant.parts["hull"].length / _LENGTH
+    T, side, mass = 60.0 * np.sqrt(share), 30.0 * share, plant.parts["hull"].mass
+    turn = 0.5 * np.pi
+    corners = [(1.5, side, 0.0), (1.5, side, side), (1.5, 0.0, side), (1.5, 0.0, 0.0)]
+    found = [
+        Manoeuvre("turn by 90 deg and hold", _legs(T, (0.5, 0, 0, 0), (1.5, 0, 0, turn), (2, 0, 0, turn))),
+        Manoeuvre(
+            "full circle of headings on the spot", _legs(T, (0.5, 0, 0, 0), (6, 0, 0, 4 * turn), (0.5, 0, 0, 4 * turn))
+        ),
+        Manoeuvre(
+            f"box of {side:.0f} m at one heading",
+            _legs(T, *(leg for t, x, y in corners for leg in ((t, x, y, 0.0), (0.25, x, y, 0.0)))),
+        ),
+        _steps("surge", T, (side, 2.5 * side), 0),
+        _steps("sway", T, (0.3 * side, 0.75 * side), 1),
+        Manoeuvre("free drift with idle thrusters", _legs(T, (0.5, 0, 0, 0), (3, 0, 0, 0)), free=((0.5 * T, 4.0 * T),)),
+        _pulses("pulses of one thruster after the other", T, {name: mass * _PUSH for name in plant.thrusters}),
+    ]
+    if plant.azimuths:
+        found.append(_pulses("reversal of each azimuth thruster", T, {name: -mass * _PUSH for name in plant.azimuths}))
+    sweeps = _sweeps(plant, T, [name for name in plant.azimuths if name not in fixed], mass * _PUSH)
+    return [one for one in (*found, *sweeps) if one.minutes <= LONGEST]
+
+
+def _legs(T, *legs):
+    return tuple((T * duration, *(float(value) for value in where)) for duration, *where in legs)
+
+
+def _steps(axis, T, lengths, along):
+    """Out and back twice, the second time faster."""
+    legs = []
+    for length in lengths:
+        there = (length, 0.0) if along == 0 else (0.0, length)
+        legs += [(1.25, *there, 0.0), (0.25, *there, 0.0), (1.25, 0.0, 0.0, 0.0), (0.25, 0.0, 0.0, 0.0)]
+    return Manoeuvre(f"steps in {axis} at two speeds", _legs(T, *legs))
+
+
+def _pulses(name, T, forces):
+    """Each thruster alone does something for a minute; the others hold the ship against it."""
+    starts = [T * (0.5 + 1.5 * i) for i in range(len(forces))]
+    pushes = tuple(Push(unit, a, a + T, force) for a, (unit, force) in zip(starts, forces.items(), strict=True))
+    return Manoeuvre(name, _legs(T, (0.5 + 1.5 * len(forces), 0, 0, 0)), pushes)
+
+
+def _sweeps(plant, T, azimuths, force):
+    """Each azimuth thruster turns its slipstream across its nearest neighbour, which pushes ahead or astern.
+
+    A neighbour that held the ship against it would have its own slipstream in the first: equal losses, no net load.
+    """
+    pushes, start = [], 0.5 * T
+    for name in azimuths:
+        here = plant.parts[name]
+        near = next((o for o in azimuths if _is_at(plant.parts[o], here.neighbour_x, here.neighbour_y)), None)
+        if near not in (None, name):
+            at = np.arctan2(here.y - here.neighbour_y, here.x - here.neighbour_x)  # away from the neighbour
+            ahead = 0.0 if len(pushes) % 4 == 0 else np.pi  # and astern the next time: the ship comes to rest
+            span = np.pi / 3.0 if ahead == 0.0 else -np.pi / 3.0
+            pushes.append(Push(name, start, start + 0.8 * T, force, (at - span, at + span)))
+            pushes.append(Push(near, start, start + 0.8 * T, force, (ahead, ahead)))
+            start += T
+    legs = _legs(T, (start / T + 0.75, 0, 0, 0))
+    return [Manoeuvre("sweep of each azimuth thruster's slipstream across its neighbour", legs, tuple(pushes))][
+        : len(pushes)
+    ]
+
+
+def _is_at(unit, x, y):
+    return np.hypot(unit.x - x, unit.y - y) < 1e-6
+
+
+def step_for(plant):
+    """From row to row of a manoeuvre. [s]"""
+    return _STEP * float(np.sqrt(plant.parts["hull"].length / _LENGTH))
+
+
+def planned(manoeuvres, dp, start, wind):
+    """Tracks, thruster settings and where the DP has no say over them, of several manoeuvres side by side.
+
+    Parameters
+    ----------
+    manoeuvres : sequence of Manoeuvre
+    dp : Dp
+        What the track needs by its ship is told to the thrusters beforehand.
+    start : tuple of four floats
+        Time, position and heading at the start. [s, m, m, rad]
+    wind : tuple of two floats, or None
+        Speed, and direction over ground that it comes from. [m/s, rad]
+
+    Returns
+    -------
+    tuple of Motion, Record, dict of str to (c, n) bool array
+        (c, n) arrays; by thruster, where it does as planned. The shorter end with keeping the place.
+    """
+    rows = max(rows_of(one, dp.h) for one in manoeuvres)
+    time = dp.h * np.arange(rows)
+    track = Motion(*(np.stack(s) for s in zip(*(_track(one, time, start) for one in manoeuvres), strict=True)))
+    series = None if wind is None else tuple(np.full((len(manoeuvres), rows), value) for value in wind)
+    plans = [
+        _thrusters(one, time, Motion(*(value[i] for value in track)), start, wind, dp)
+        for i, one in enumerate(manoeuvres)
+    ]
+    units = {name: tuple(np.stack(s) for s in zip(*(plan[name] for plan in plans), strict=True)) for name in plans[0]}
+    blank = np.full((len(manoeuvres), rows, 6), np.nan)
+    record = Record(start[0] + time, blank, units, series, np.ones(rows, bool))
+    held = {name: np.stack([_held(one, name, time) for one in manoeuvres]) for name in units}
+    return track, record, held
+
+
+def _held(manoeuvre, name, time):
+    return _inside((*manoeuvre.free, *((p.start, p.end) for p in manoeuvre.pushes if p.thruster == name)), time)
+
+
+def rows_of(manoeuvre, step):
+    """Number of rows of a manoeuvre."""
+    return 1 + int(round(60.0 * manoeuvre.minutes / step))
+
+
+def _track(manoeuvre, time, start):
+    """The track by smooth legs: at rest at both ends, without a step in acceleration."""
+    at, place, found = 0.0, np.zeros(3), np.zeros((3, time.size))
+    for duration, *where in manoeuvre.legs:
+        share = np.clip((time - at) / duration, 0.0, 1.0)
+        found += (np.array(where) - place)[:, None] * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+        at, place = at + duration, np.array(where)
+    _, north, east, heading = start
+    c, s = np.cos(heading), np.sin(heading)
+    x, y, psi = north + c * found[0] - s * found[1], east + s * found[0] + c * found[1], heading + found[2]
+    x_dot, y_dot, r = (np.gradient(value, time) for value in (x, y, psi))
+    return Motion(x, y, psi, np.cos(psi) * x_dot + np.sin(psi) * y_dot, np.cos(psi) * y_dot - np.sin(psi) * x_dot, r)
+
+
+def _inside(spans, time):
+    return np.any([np.zeros(time.size, bool), *((time >= a) & (time < b) for a, b in spans)], axis=0)
+
+
+def _thrusters(manoeuvre, time, track, start, wind, dp):
+    """Speed and direction of each thruster by the plan. [rev/s, rad]"""
+    plant, free, alone = dp.plant, _inside(manoeuvre.free, time), {}
+    for push in manoeuvre.pushes:
+        inside = _inside(((push.start, push.end),), time)
+        share = np.clip((time - push.start) / (push.end - push.start), 0.0, 1.0)
+        azimuth = push.azimuth[0] + share * (push.azimuth[1] - push.azimuth[0])
+        alone.setdefault(push.thruster, []).append((inside, push.force, azimuth))
+    load = _needed(track, time, start, wind, dp)
+    apart = _pushing_apart(dp)
+    wishes = {name: np.zeros((2, time.size)) for name in plant.thrusters}
+    for rows, left in _stretches(alone, time.size):
+        rest = load[:, rows]
+        for name in left:
+            inside, force, azimuth = next(push for push in alone[name] if push[0][rows].all())
+            rest = rest - _load_of(name, force, azimuth[rows], plant)
+        axes_here = {name: np.zeros(rows.size) for name in plant.thrusters}
+        for name, forces in dp.shared(rest, axes_here, dict.fromkeys(left, True)).items():
+            wishes[name][:, rows] = np.where(free[rows], 0.0, forces + (0.0 if left else apart[name][:, None]))
+    return {name: _setting(name, wishes[name], alone.get(name, ()), time, dp) for name in plant.thrusters}
+
+
+def _stretches(alone, rows):
+    """Consecutive rows in which the same thrusters are pushed, and which these are."""
+    pushed = [tuple(n for n, pushes in alone.items() if any(p[0][k] for p in pushes)) for k in range(rows)]
+    edges = [0, *(k for k in range(1, rows) if pushed[k] != pushed[k - 1]), rows]
+    return [(np.arange(a, b), pushed[a]) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+
+
+def _needed(track, time, start, wind, dp):
+    """Load of the thrusters by which the ship would follow the track. (3, n)"""
+    still = {name: (np.zeros(time.size), np.zeros(time.size)) for name in dp.plant.thrusters}
+    air = (None, None) if wind is None else tuple(np.full(time.size, value) for value in wind)
+    drift = motion_rates(track, Drivers(start[0] + time, still, *air), dp.plant)
+    wanted = [np.gradient(value, time) for value in (track.u, track.v, track.r)]
+    return dp.mass[:, None] * (np.stack(wanted) - np.stack([drift.u, drift.v, drift.r]))
+
+
+def _load_of(name, force, azimuth, plant):
+    unit = plant.parts[name]
+    if name not in plant.azimuths:
+        azimuth = np.full_like(azimuth, pusher_of(plant, name).axis)
+    X, Y = force * np.cos(azimuth), force * np.sin(azimuth)
+    return np.stack([X, Y, unit.x * Y - getattr(unit, "y", 0.0) * X])
+
+
+def _pushing_apart(dp):
+    """Forces of the azimuth thrusters against each other, slipstreams outwards, that leave no load on the ship."""
+    plant, found = dp.plant, {name: np.zeros(2) for name in dp.plant.thrusters}
+    able = [name for name in plant.azimuths if name not in dp.fixed]
+    if len(able) < 2:
+        return found
+    places = np.array([[plant.parts[name].x, plant.parts[name].y] for name in able])
+    inwards = places.mean(0) - places
+    inwards /= np.maximum(np.linalg.norm(inwards, axis=1), 1e-9)[:, None]
+    B = np.hstack([[[1.0, 0.0], [0.0, 1.0], [-y, x]] for x, y in places])
+    wish = inwards.ravel() - np.linalg.pinv(B) @ (B @ inwards.ravel())
+    size = _APART * plant.parts["hull"].mass
+    return found | {name: size * force for name, force in zip(able, wish.reshape(-1, 2), strict=True)}
+
+
+def _setting(name, wish, pushes, time, dp):
+    """Speed and direction for forces along x and y of the ship, and for pushes; as smooth as thrusters are."""
+    turns = name in dp.plant.azimuths and name not in dp.fixed
+    force, azimuth = wish[0], np.full(time.size, dp.plant.fixed.get(name, 0.0))
+    if turns:
+        force, azimuth = np.hypot(*wish), np.arctan2(wish[1], wish[0])
+    for inside, push, direction in pushes:
+        force = np.where(inside, push, force)
+        azimuth = np.where(inside, direction, azimuth) if turns else azimuth
+    azimuth = np.interp(time, time[force != 0.0], np.unwrap(azimuth[force != 0.0])) if np.any(force) else azimuth
+    most = 0.8 * dp.plant.parts[name].rpm_max / 60.0
+    speed = np.clip(dp.speed(name, force), -most, most)
+    return tuple(gaussian_filter1d(series, _STEADY, mode="nearest") for series in (speed, azimuth))
+
+
+def cannot_turn(record, plant):
+    """Azimuth thrusters without a rate of turning, or that point straight ahead or astern throughout a log."""
+    across = {name: np.abs(np.sin(record.units[name][1])).max() for name in plant.azimuths}
+    return tuple(n for n in plant.azimuths if plant.parts[n].azimuth_rate == 0.0 or across[n] < _STRAIGHT)
+
+
+def true_wind(record, motion, plant):
+    """Mean wind over ground of a log: speed, and where it comes from. [m/s, rad]; None where it has no wind."""
+    if record.wind is None:
+        return None
+    speed, direction = record.wind
+    if plant.wind_is_true:
+        north, east = -speed * np.cos(direction), -speed * np.sin(direction)
+    else:
+        u, v = motion.u - speed * np.cos(direction), motion.v - speed * np.sin(direction)
+        c, s = np.cos(motion.psi), np.sin(motion.psi)
+        north, east = c * u - s * v, s * u + c * v
+    north, east = float(np.mean(north)), float(np.mean(east))
+    return float(np.hypot(north, east)), float(np.arctan2(-east, -north))
+
+
+def sized(noise, factor):
+    """The noise of rows that are that many times as far apart, averages of as many."""
+    less = np.sqrt(factor)
+    return replace(noise, white=np.asarray(noise.white) / less, wave=np.asarray(noise.wave) / less)

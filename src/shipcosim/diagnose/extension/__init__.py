@@ -1,0 +1,1 @@
+"""Named causes put into the system: parameter values and structure edits."""

@@ -1,0 +1,1 @@
+"""The catalogue of causes: one .toml file each, and what reads them."""

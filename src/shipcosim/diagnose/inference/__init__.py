@@ -1,0 +1,1 @@
+"""Linearisation, Kalman filter, noise, evidence, fitting, search and verdict."""

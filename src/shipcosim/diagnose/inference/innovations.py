@@ -1,0 +1,195 @@
+"""Whitened innovations of the linear problem: the noise of a log, and the filter that is built of it."""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from shipcosim.diagnose.inference import kalman
+from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
+from shipcosim.diagnose.ship.model import Motion
+from shipcosim.models.control.observer import wave_transition
+
+__all__ = ["WAVE_DAMPING", "Innovations", "Noise", "innovations", "log_likelihoods", "oscillation"]
+
+WAVE_DAMPING = 0.1
+"""Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Noise of a log; every entry an array whose leading axes are those of the logs.
+
+    Attributes
+    ----------
+    white : (..., 6) array
+        Standard deviation of the channels. [m, m, rad, m/s, m/s, rad/s]
+    jolt : (..., 3) array
+        White acceleration: what gusts and thrusters do that the model does not follow. [m/s^1.5, m/s^1.5, rad/s^1.5]
+    walk : (..., 3) array
+        Random walk of the unexplained acceleration. [m/s^2.5, m/s^2.5, rad/s^2.5]
+    wave : (..., 3) array
+        Standard deviation of the velocity of first-order wave motion. [m/s, m/s, rad/s]
+    wave_frequency : (...) array
+        Where that motion is largest. [rad/s]
+    """
+
+    white: Any
+    jolt: Any
+    walk: Any
+    wave: Any = (0.0, 0.0, 0.0)
+    wave_frequency: Any = 1.0
+
+
+class Innovations(NamedTuple):
+    """Result of the filter.
+
+    Attributes
+    ----------
+    white : (n, ..., 6, 1 + p) array
+        Whitened innovations: of the log in the first column, of each θ in the others.
+    log_determinant : (n, ...) array
+        Of their covariance, per row.
+    filtered : (n, ..., 18) array or None
+        Deviations of the first column at each row by what was known until then.
+    motion : Motion or None
+        The smoothed motion, (..., n) arrays.
+    slow : (..., n, 12) array or None
+        Smoothed unexplained acceleration, slow errors and waves.
+    """
+
+    white: np.ndarray
+    log_determinant: np.ndarray
+    filtered: Any = None
+    motion: Any = None
+    slow: Any = None
+
+
+def innovations(linear, noise, record, motion=None):
+    """Filter every column, and smooth the first if `motion` is given.
+
+    Parameters
+    ----------
+    linear : Linear
+    noise : Noise
+    record : Record
+    motion : Motion, optional
+        That the problem was linearised about.
+
+    Returns
+    -------
+    Innovations
+    """
+    lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
+    A, B, H, Z = (_by_log(values, lead, 2) for values in linear[:4])
+    of_noise = _waves_ahead(noise, record.step), _process(noise, record.step), _uncertain(noise)
+    W, Q, P = (_of_logs(values, lead) for values in of_noise)
+    white = np.asarray(noise.white).reshape(1, -1, 6)
+    R = np.where(_by_log(linear.whole, lead, 1), white**2, np.inf)
+    R = np.require(np.broadcast_to(R, (len(R), len(W), 6)), requirements=["C", "W"])
+    known, wanted = np.asarray(record.known), motion is not None
+    *weights, log_determinant, covariances = kalman.weights(A, W, H, R, Q, P, known, _lost(), wanted)
+    white, states = kalman.whitened(A, W, B, H, Z, *weights)
+    of_logs = [values.reshape(-1, *lead, *values.shape[2:]) for values in (white, log_determinant, states)]
+    if motion is None:
+        return Innovations(*of_logs)
+    found = kalman.smoothed(A, W, H, white[..., 0].copy(), *weights, states, covariances)
+    found = np.moveaxis(found.reshape(-1, *lead, STATES), 0, -2)
+    smooth = Motion(*(value + found[..., i] for i, value in enumerate(motion)))
+    return Innovations(*of_logs, smooth, found[..., 6:])
+
+
+def log_likelihoods(linear, noises, record):
+    """Log-likelihood of the first column of a problem of one log under several noises, up to a constant.
+
+    Parameters
+    ----------
+    linear : Linear
+    noises : Noise
+        Of (m, ...) arrays.
+    record : Record
+
+    Returns
+    -------
+    (m,) array
+    """
+    of_noise = _waves_ahead(noises, record.step), _process(noises, record.step), _uncertain(noises)
+    W, Q, P = (np.ascontiguousarray(np.moveaxis(values, 0, -1)) for values in of_noise)
+    R = np.ascontiguousarray(noises.white.T) ** 2
+    b, z = (np.ascontiguousarray(values[..., 0]) for values in (linear.driven, linear.seen))
+    known = np.asarray(record.known)
+    return kalman.log_likelihoods(linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, known, _lost())
+
+
+def _by_log(values, lead, tail):
+    """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (n, m or 1, *tail) array."""
+    shape = values.shape[values.ndim - tail :]
+    own = values.shape[1 : values.ndim - tail]
+    if own != lead and np.prod(own) > 1:
+        values = values.reshape(len(values), *(1,) * (len(lead) - len(own)), *own, *shape)
+        values = np.broadcast_to(values, (len(values), *lead, *shape))
+    # one kind of array only: for each other kind the filter would be compiled anew
+    return np.require(values, requirements=["C", "W"]).reshape(len(values), -1, *shape)
+
+
+def _of_logs(values, lead):
+    """(..., 18, 18) array that broadcasts to the logs, as (m, 18, 18) array."""
+    values = np.broadcast_to(values, (*lead, STATES, STATES))
+    return np.require(values, requirements=["C", "W"]).reshape(-1, STATES, STATES)
+
+
+def oscillation(noise, h):
+    """First-order waves over a step.
+
+    Returns
+    -------
+    tuple of four (..., 1) arrays, tuple of three (..., 3) arrays
+        Transition from place and velocity to place, then to velocity; what a step adds to the variance of the place, to
+        the covariance of both, to the variance of the velocity.
+    """
+    a, b, c, d = wave_transition(h, np.asarray(noise.wave_frequency)[..., None], WAVE_DAMPING)
+    place, speed = _waves(noise)
+    added = place - a * a * place - b * b * speed, -a * c * place - b * d * speed, speed - c * c * place - d * d * speed
+    return (a, b, c, d), added
+
+
+def _waves_ahead(noise, h):
+    """What the waves have of a transition, (..., 18, 18)."""
+    a, b, c, d = oscillation(noise, h)[0]
+    W = np.zeros((*a.shape[:-1], STATES, STATES))
+    W[..., range(12, 15), range(12, 15)], W[..., range(12, 15), range(15, 18)] = a, b
+    W[..., range(15, 18), range(12, 15)], W[..., range(15, 18), range(15, 18)] = c, d
+    return W
+
+
+def _process(noise, h):
+    """Covariance of what happens over a step."""
+    jolt, walk = np.asarray(noise.jolt) ** 2 * h, np.asarray(noise.walk) ** 2 * h
+    place = jolt * h * h / 3.0 + 1e-10
+    slow = np.broadcast_to(SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / SLOW_TIME)), jolt.shape)
+    still = np.zeros(jolt.shape)
+    Q = np.concatenate([place, jolt, walk, slow, still, still], axis=-1)[..., None] * np.eye(STATES)
+    _, (Q[..., range(12, 15), range(12, 15)], both, Q[..., range(15, 18), range(15, 18)]) = oscillation(noise, h)
+    Q[..., range(12, 15), range(15, 18)] = Q[..., range(15, 18), range(12, 15)] = both
+    Q[..., 2, 5] = Q[..., 5, 2] = 0.5 * h * jolt[..., 2]  # along surge and sway it would turn with the ship
+    return Q
+
+
+def _waves(noise):
+    """Variance of the place and of the velocity of wave motion."""
+    speed = np.asarray(noise.wave) ** 2
+    return speed / np.asarray(noise.wave_frequency)[..., None] ** 2, speed
+
+
+def _uncertain(noise):
+    """Covariance at the first row."""
+    walk = np.asarray(noise.walk) ** 2 * 600.0
+    white = np.broadcast_to(np.asarray(noise.white) ** 2, (*walk.shape[:-1], 6))
+    waves = (np.broadcast_to(values, walk.shape) for values in _waves(noise))
+    first = np.concatenate([100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape), *waves], axis=-1)
+    return first[..., None] * np.eye(STATES)
+
+
+def _lost():
+    """What is added where nobody knows what drove the ship over a step."""
+    return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, *[0.0] * 12])

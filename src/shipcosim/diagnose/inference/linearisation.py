@@ -1,0 +1,242 @@
+"""A log as a linear problem: what each number, a little changed, would have done to the whitened innovations.
+
+About a motion near the measured one the ship is a linear system that varies in time. Everything vectorises over the
+rows of a log and over several logs; only the filter goes from row to row.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.diagnose.ship.model import Motion, loads, motion_rates, rates_apart, shown
+
+__all__ = [
+    "SLOW_STD",
+    "SLOW_TIME",
+    "STATES",
+    "Linear",
+    "advanced",
+    "beside",
+    "linearise",
+    "rows_first",
+    "runge_kutta",
+    "with_columns",
+]
+
+STATES = 18
+"""x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3), what waves add
+to position and heading (3) and to velocity (3), in the ship's axes."""
+_SHARE = 0.2  # of a column's size, for differences
+SLOW_STD = np.array([0.1, 0.1, np.radians(0.1)])
+SLOW_TIME = np.array([240.0, 240.0, 60.0])
+"""Slow errors of position and heading, stationary standard deviation [m, m, rad] and correlation time [s]."""
+
+
+class Linear(NamedTuple):
+    """Deviations from a motion, by row: δ' = A δ + b - B θ, z = H δ + C θ; columns: b and z, then B and C of each θ.
+
+    Attributes
+    ----------
+    transition : (n-1, ..., 18, 18) array
+        All but that of the waves, which is a matter of the noise.
+    driven : (n-1, ..., 6, 1 + p) array
+        Of the motion alone. First column: by how much the model misses the next row of the motion.
+    output : (n, ..., 6, 18) array
+    seen : (n, ..., 6, 1 + p) array
+        First column: measured minus shown, 0 where nothing was measured.
+    whole : (n, ..., 6) bool array
+        Whether the channel was measured.
+    """
+
+    transition: np.ndarray
+    driven: np.ndarray
+    output: np.ndarray
+    seen: np.ndarray
+    whole: np.ndarray
+
+
+def with_columns(linear, driven, seen):
+    """The problem with further columns behind its own, (n-1, ..., 6, p) and (n, ..., 6, p) arrays."""
+    return linear._replace(
+        driven=np.concatenate([linear.driven, driven], axis=-1), seen=np.concatenate([linear.seen, seen], axis=-1)
+    )
+
+
+def beside(linear, extra):
+    """A problem with the columns of another behind its own."""
+    return with_columns(linear, extra.driven[..., 1:], extra.seen[..., 1:])
+
+
+_FASTEST = {"u": 100.0, "v": 100.0, "r": 10.0}  # m/s, rad/s: what runs away under a wrong label stays a number
+
+
+def advanced(motion, record, plant):
+    """The motion one row later, from each row but the last, by a Runge-Kutta step or, for a small ship, several.
+
+    Parameters
+    ----------
+    motion : Motion
+        (..., n-1) arrays.
+    record : Record
+    plant : Plant
+
+    Returns
+    -------
+    Motion
+    """
+    parts = record.substeps(plant)
+    for i in range(parts):
+        drivers = [record.drivers(plant, (i + share) / parts) for share in (0.0, 0.5, 1.0)]
+        motion = runge_kutta(motion, record.step / parts, drivers, plant)
+        fast = {name: np.clip(getattr(motion, name), -most, most) for name, most in _FASTEST.items()}
+        motion = motion._replace(**fast)
+    return motion
+
+
+def runge_kutta(motion, h, drivers, plant, load=lambda psi: (0.0, 0.0, 0.0)):
+    """The motion a step of h later.
+
+    Parameters
+    ----------
+    motion : Motion
+    h : float
+        [s]
+    drivers : sequence of three Drivers
+        At the beginning, the middle and the end.
+    plant : Plant
+    load : callable or sequence of three callables, optional
+        Further load by the heading. [N, N, N.m]
+
+    Returns
+    -------
+    Motion
+    """
+    loads_at = load if isinstance(load, (list, tuple)) else (load, load, load)
+
+    def moved(rates, by):
+        return Motion(*(value + by * rate for value, rate in zip(motion, rates, strict=True)))
+
+    def rates(where, i):
+        return motion_rates(where, drivers[i], plant, loads_at[i](where.psi))
+
+    k1 = rates(motion, 0)
+    k2 = rates(moved(k1, 0.5 * h), 1)
+    k3 = rates(moved(k2, 0.5 * h), 1)
+    k4 = rates(moved(k3, h), 2)
+    slopes = zip(motion, k1, k2, k3, k4, strict=True)
+    return Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
+
+
+def linearise(motion, record, plant, columns):
+    """The linear problem about a motion.
+
+    Parameters
+    ----------
+    motion : Motion
+        (..., n) arrays near what was measured.
+    record : Record
+    plant : Plant
+    columns : sequence of dict of str to float
+        What each θ turns: by how much each number is changed at θ = 1.
+
+    Returns
+    -------
+    Linear
+    """
+    lead = record.measured.shape[:-2]
+    n, p = record.time.size, len(columns)
+    start = Motion(*(value[..., :-1] for value in motion))
+    base, seen = advanced(start, record, plant), shown(motion, plant)
+    driven, out = np.empty((n - 1, *lead, 6, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
+    driven[..., 0] = rows_first(base) - rows_first(Motion(*(value[..., 1:] for value in motion)))
+    missed = np.moveaxis(record.measured, -2, 0) - rows_first(seen)
+    whole = np.isfinite(missed)
+    out[..., 0] = np.where(whole, missed, 0.0)
+    middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
+    drivers = record.drivers(plant, 0.5)
+    like = plant, loads(middle, drivers, plant)
+    transition = _transition(middle, drivers, like, record)
+    slopes = np.zeros((p, 3, *lead, n - 1))
+    shares = np.array([_small(turns, plant) for turns in columns]).reshape(p)
+    for j, turns in enumerate(columns):
+        up, down = (
+            plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
+            for share in (shares[j], -shares[j])
+        )
+        if any(path.endswith("_lag") for path in turns):
+            late = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
+            slopes[j] = _apart(*late)[3:]
+        elif any(not path.startswith("instruments.") for path in turns):
+            for slope, apart in zip(slopes[j], rates_apart(down, up, middle, drivers, like), strict=True):
+                slope[...] = apart
+        else:
+            out[..., 1 + j] = rows_first(_apart(shown(motion, up), shown(motion, down))) / (2.0 * shares[j])
+    driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
+    driven[~record.known[:-1]] = 0.0
+    out *= whole[..., None]
+    return Linear(transition, driven, _output(motion, seen, plant), out, whole)
+
+
+def _small(turns, plant):
+    """Share of a column's size for differences; a slow end of a varying current must not be turned round by it."""
+    found = _SHARE
+    for path, size in turns.items():
+        _, _, end = path.rpartition("_")
+        if path in (f"water.north_{end}", f"water.east_{end}"):
+            speed = np.hypot(plant.get(f"water.north_{end}"), plant.get(f"water.east_{end}"))
+            found = min(found, max(_SHARE * speed / abs(size), 1e-4)) if speed else found
+    return found
+
+
+def _apart(one, other):
+    """One motion minus another."""
+    return Motion(*(a - b for a, b in zip(one, other, strict=True)))
+
+
+def rows_first(motion):
+    """(..., n) arrays of a motion as (n, ..., 6)."""
+    shape = np.broadcast_shapes(*(np.shape(value) for value in motion))
+    stacked = np.stack([np.broadcast_to(value, shape) for value in motion], axis=-1)
+    return np.moveaxis(stacked, -2, 0)
+
+
+_SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
+
+
+def _transition(middle, drivers, like, record):
+    """Transition over a step, of second order about its middle, where `like` has the ship and her loads.
+
+    For a small ship that of a part of the step, doubled until it is whole.
+    """
+    plant, _ = like
+    here = rows_first(motion_rates(middle, drivers, plant, like=like))
+    J = np.zeros((*here.shape[:-1], 6, 6))
+    for name, small in _SMALL.items():
+        moved = middle._replace(**{name: getattr(middle, name) + small})
+        J[..., Motion._fields.index(name)] = (rows_first(motion_rates(moved, drivers, plant)) - here) / small
+    parts = record.substeps(plant)
+    h = record.step / parts
+    moves = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
+    pushed = 0.5 * h * (moves + np.eye(6))
+    for _ in range(round(np.log2(parts))):
+        moves, pushed = moves @ moves, pushed + moves @ pushed
+    A = np.zeros((*here.shape[:-1], STATES, STATES))
+    A[..., :6, :6], A[..., :6, 6:9] = moves, pushed[..., 3:]
+    A[..., range(6, 9), range(6, 9)] = 1.0
+    A[..., range(9, 12), range(9, 12)] = np.exp(-record.step / SLOW_TIME)
+    return A
+
+
+def _output(motion, seen, plant):
+    rows = rows_first(seen)
+    H = np.zeros((*rows.shape, STATES))
+    H[..., 0, 0] = H[..., 1, 1] = 1.0
+    for name, small in _SMALL.items():
+        i = Motion._fields.index(name)
+        other = shown(motion._replace(**{name: getattr(motion, name) + small}), plant)
+        H[..., i] = (rows_first(other) - rows) / small
+    H[..., range(3), range(9, 12)] = 1.0
+    c, s = np.cos(rows[..., 2]), np.sin(rows[..., 2])
+    H[..., 0, 12], H[..., 0, 13], H[..., 1, 12], H[..., 1, 13] = c, -s, s, c
+    H[..., 2, 14] = H[..., 3, 15] = H[..., 4, 16] = H[..., 5, 17] = 1.0
+    return H

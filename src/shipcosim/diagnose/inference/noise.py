@@ -1,0 +1,160 @@
+"""How noisy a log is: levels of its channels and of what jolts the ship, by maximum likelihood."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+
+from shipcosim.diagnose.inference.innovations import Noise, log_likelihoods, oscillation
+from shipcosim.diagnose.inference.linearisation import Linear
+
+__all__ = ["explained", "first_noise", "tuned", "waves_of"]
+
+_GROUPS = (
+    ("white", (0, 1)),
+    ("white", (2,)),
+    ("white", (3, 4)),
+    ("white", (5,)),
+    ("jolt", (0, 1)),
+    ("jolt", (2,)),
+    ("walk", (0, 1)),
+    ("walk", (2,)),
+    ("wave", (0,)),
+    ("wave", (1,)),
+    ("wave", (2,)),
+    ("wave_frequency", ()),
+)
+_FREQUENCIES = np.geomspace(0.4, 2.5, 8)  # rad/s, of waves
+_LEVELS = ((1.0, 1.0), (0.5, 1.0), (0.5, 0.5))  # of white noise in velocities and of waves, to begin with
+_STRIDE = 0.2  # of the natural logarithm
+_LONGEST = 0.8
+_SHARES = np.array([1.0, 0.5, 0.2, 0.0])  # of a move, that are tried
+
+
+def first_noise(record, length):
+    """Noise to start from: channels by their differences from row to row, the rest by the size of the ship.
+
+    Parameters
+    ----------
+    record : Record
+    length : float
+        Of the ship. [m]
+
+    Returns
+    -------
+    Noise
+    """
+    third = np.diff(record.measured, 3, axis=-2)
+    silent = ~np.isfinite(third).any(axis=-2, keepdims=True)
+    white = np.sqrt(np.nanmedian(np.where(silent, 0.0, third**2), axis=-2) / 0.455 / 20.0)
+    least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])
+    white = np.where(silent[..., 0, :], 1.0, np.maximum(white, least))
+    turning = 4.0 / length  # 1/m, from accelerations to those in yaw
+    jolt, walk = np.array([1e-3, 1e-3, 1e-3 * turning]), np.array([1e-5, 1e-5, 1e-5 * turning])
+    return Noise(white, jolt, walk, 0.7 * white[..., 3:], np.ones(white.shape[:-1]))
+
+
+def tuned(noise, linear, record, theta, *, most_walk, rounds=4):
+    """The noise under which what is left of a log is likeliest.
+
+    Parameters
+    ----------
+    noise : Noise
+        To start from.
+    linear : Linear
+    record : Record
+    theta : (p,) array
+        What explains the log, in units of its columns; taken out first.
+    most_walk : (3,) array
+        No unexplained force may walk faster, or it would swallow every cause.
+    rounds : int
+
+    Returns
+    -------
+    Noise
+    """
+    left = explained(linear, theta)
+    noise = _begun(noise, left, record)
+    for _ in range(rounds):
+        steps = np.zeros((2 * len(_GROUPS) + 1, len(_GROUPS)))
+        for i in range(len(_GROUPS)):
+            steps[1 + 2 * i, i], steps[2 + 2 * i, i] = _STRIDE, -_STRIDE
+        score = log_likelihoods(left, _scaled(noise, steps), record)
+        up, down = score[1::2], score[2::2]
+        slope, bend = (up - down) / (2 * _STRIDE), (up + down - 2 * score[0]) / _STRIDE**2
+        move = np.where(bend < -1e-3, -slope / np.minimum(bend, -1e-3), np.sign(slope) * _LONGEST)
+        move = np.clip(move, -_LONGEST, _LONGEST)
+        tries = _scaled(noise, _SHARES[:, None] * move)
+        frequency = np.clip(tries.wave_frequency, *_FREQUENCIES[[0, -1]])
+        tries = replace(tries, walk=np.minimum(tries.walk, most_walk), wave_frequency=frequency)
+        scores = log_likelihoods(left, tries, record)
+        move = _SHARES[scores.argmax()] * move
+        noise = _of(tries, scores.argmax())
+        if np.abs(move).max() < 0.05:
+            break
+    return noise
+
+
+def _begun(noise, left, record):
+    """The noise with the frequency of waves, and their share in the noise of the velocities, that suit a log best."""
+    rows = [(frequency, *levels) for frequency in _FREQUENCIES for levels in _LEVELS]
+    frequency, white, wave = np.array(rows).T
+    many = _scaled(noise, np.zeros((len(rows), len(_GROUPS))))
+    many.white[:, 3:] *= white[:, None]
+    tries = replace(many, wave=many.wave * wave[:, None], wave_frequency=frequency)
+    return _of(tries, log_likelihoods(left, tries, record).argmax())
+
+
+def _of(noise, which):
+    """One of several."""
+    return Noise(*(getattr(noise, part.name)[which] for part in fields(Noise)))
+
+
+def waves_of(noise, h, shape, rng):
+    """First-order wave motion, drawn: place and velocity in the ship's axes.
+
+    Parameters
+    ----------
+    noise : Noise
+        Of one log.
+    h : float
+        Step. [s]
+    shape : tuple of int
+        Number of rows n and of logs m.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    (n, m, 6) array
+        [m, m, rad, m/s, m/s, rad/s]
+    """
+    n, m = shape
+    (a, b, c, d), (place, both, speed) = oscillation(noise, h)
+    along = np.divide(both, place, out=np.zeros(3), where=place > 0.0)
+    kicks = rng.standard_normal((2, n, m, 3)) * np.sqrt(np.stack([place, speed - along * both]))[:, None, None]
+    velocity = rng.standard_normal((m, 3)) * noise.wave
+    where, found = rng.standard_normal((m, 3)) * noise.wave / noise.wave_frequency, np.empty((n, m, 6))
+    for k in range(n):
+        found[k] = np.concatenate([where, velocity], axis=-1)
+        first, second = kicks[:, k]
+        where, velocity = a * where + b * velocity + first, c * where + d * velocity + along * first + second
+    return found
+
+
+def explained(linear, theta):
+    """The problem with only its first column, from which the effect of θ is taken out."""
+    weights = np.concatenate([[1.0], -np.asarray(theta)])
+    return Linear(
+        linear.transition, linear.driven @ weights[:, None], linear.output, linear.seen @ weights[:, None], linear.whole
+    )
+
+
+def _scaled(noise, steps):
+    """Noise for each row of steps, which are in natural logarithms of the groups."""
+    names = [part.name for part in fields(Noise)]
+    parts = {name: np.repeat(np.asarray(getattr(noise, name))[None], len(steps), axis=0) for name in names}
+    for i, (name, entries) in enumerate(_GROUPS):
+        if entries:
+            parts[name][:, list(entries)] *= np.exp(steps[:, i])[:, None]
+        else:
+            parts[name] = parts[name] * np.exp(steps[:, i])
+    return Noise(**parts)

@@ -1,0 +1,1 @@
+"""Measured logs: read, labelled, repaired."""

@@ -1,0 +1,1 @@
+"""Faults of a log that show in the log itself."""

@@ -1,0 +1,229 @@
+"""Segments in which the clock runs wrong: positions and headings both go at another rate than speeds and yaw rates say.
+
+With true seconds per logged second ρ, the way seen in a segment is ρ times the integral of the velocity over logged
+time, in all channels. What holds for the whole log alike, such as a scale of the velocity, is fitted beside it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.diagnose.log.checks.kinematics import (
+    Filter,
+    Motion,
+    filter_for,
+    heading_motion,
+    is_clear,
+    position_motion,
+    whiteness,
+)
+from shipcosim.diagnose.result import Estimate, Finding
+
+__all__ = ["wrong_clock"]
+
+SLAB = 0.25  # typical size of ρ - 1
+SCALE_SLAB = {1: 0.03, 2: 0.1}  # of a scale of the whole log, by number of axes: of the yaw rate, of the velocity
+LEAST_GAIN = 8.0  # nats, after the cost of choosing the segment
+TOLERANCE = 0.05  # of ρ, below which it is no fault
+PLAUSIBLE = 0.65, 1.5  # ρ; noise alone, where a ship hardly moves, looks like a clock of a half
+BLOCKS, SHORTEST_BLOCK, FEWEST_BLOCKS = 160, 12.0, 3  # [1, s, 1]
+LARGEST_SHARE = 0.5  # of the log: longer is a scale, not a segment
+REACH = 30  # rows about an end, in which it is sought
+MOST = 4  # segments
+CLIP = 25.0  # standard deviations beyond which an innovation counts no more
+UNSURE = 0.03  # of ρ - 1, for what the ends of segments and the scale of the whole log leave open
+ROUGHEST = 3.5  # innovations that hang together more, after all that was found, say nothing about a clock
+
+
+@dataclass(frozen=True)
+class _Side:
+    """One comparison, of positions or of headings: its motion, filter and whitened rest (n, a)."""
+
+    motion: Motion
+    whitener: Filter
+    rest: np.ndarray
+    scale: np.ndarray
+    steps: np.ndarray
+    rough: float
+
+    def column(self, first, last):
+        """Whitened change (n * a, k) of the level by a clock that is wrong by 1 in each of k segments."""
+        time = self.motion.time
+        inner = (time[:, None] > np.asarray(first)) & (time[:, None] <= np.asarray(last))
+        ways = np.cumsum(self.steps[:, :, None] * inner[:, None, :], axis=0)
+        return self.whitener(ways).reshape(self.rest.size, -1)
+
+    def match(self, columns):
+        """Match of columns with the rest, beside the scale of the whole log, (k,)."""
+        scale = self.scale.ravel()
+        shared = (scale @ columns) / self._scale_energy()
+        return (columns.T @ self.rest.ravel() - shared * (scale @ self.rest.ravel())) / self.rough
+
+    def gram(self, columns):
+        """Gram matrix of columns, beside the scale of the whole log, (k, k)."""
+        shared = self.scale.ravel() @ columns
+        return (columns.T @ columns - np.outer(shared, shared) / self._scale_energy()) / self.rough
+
+    def energy(self, columns):
+        """Diagonal of the Gram matrix, (k,)."""
+        shared = self.scale.ravel() @ columns
+        return (np.sum(columns**2, axis=0) - shared**2 / self._scale_energy()) / self.rough
+
+    def _scale_energy(self):
+        return float(np.sum(self.scale**2)) + 1.0 / SCALE_SLAB[self.rest.shape[1]] ** 2
+
+
+@dataclass(frozen=True)
+class _Segment:
+    """A segment of wrong clock: evidence, ρ - 1 with standard deviation, and both for each side alone."""
+
+    first: float
+    last: float
+    gain: float
+    value: float
+    std: float
+    apart: tuple[tuple[float, float], ...]
+
+
+def wrong_clock(log: dict) -> list[Finding]:
+    """Segments of wrong clock, those of one rate as one finding.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
+    """
+    sides = [_side(motion) for motion in (position_motion(log), heading_motion(log)) if motion is not None]
+    sides = [side for side in sides if is_clear(side.motion, side.whitener)]
+    if not sides:
+        return []
+    edges = _block_edges(sides)
+    blocks = [side.column(edges[:-1], edges[1:]) for side in sides]
+    gram = sum(side.gram(columns) for side, columns in zip(sides, blocks, strict=True))
+    segments = []
+    for _ in range(MOST):
+        segment = _best(sides, blocks, gram, edges)
+        if segment is None:
+            break
+        segments.append(segment)
+        sides = [_explained(side, segment) for side in sides]
+    if max(whiteness(side.rest) for side in sides) > ROUGHEST:
+        return []
+    sure = [s for s in segments if _is_said_by_both(s)]
+    alike = [s for s in segments if s not in sure and _is_like(s, sure)]
+    return _findings([*sure, *alike])
+
+
+def _block_edges(sides):
+    start, end = min(s.motion.time[0] for s in sides), max(s.motion.time[-1] for s in sides)
+    count = int(np.clip((end - start) / SHORTEST_BLOCK, 2 * FEWEST_BLOCKS, BLOCKS))
+    return np.linspace(start, end, count + 1)
+
+
+def _side(motion):
+    whitener = filter_for(motion)[0]
+    rest = np.clip(whitener(motion.level), -CLIP, CLIP)
+    way = motion.way(motion.slow(motion.velocity))
+    return _Side(motion, whitener, rest, whitener(way), np.diff(way, axis=0, prepend=way[:1]), whiteness(rest))
+
+
+def _explained(side, segment):
+    """The side without what the segment explains."""
+    column = side.column([segment.first], [segment.last])
+    value = side.match(column)[0] / max(side.energy(column)[0], 1e-9)
+    return replace(side, rest=side.rest - value * column.reshape(side.rest.shape))
+
+
+def _best(sides, blocks, gram, edges):
+    """The segment with most evidence, None where there is too little."""
+    count = len(edges) - 1
+    match = sum(side.match(columns) for side, columns in zip(sides, blocks, strict=True))
+    matches = np.r_[0.0, np.cumsum(match)]
+    grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
+    own = np.diag(grams)
+    span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
+    nats, value, _ = _evidence(matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T)
+    nats[(span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < TOLERANCE)] = -np.inf
+    first, last = np.unravel_index(np.argmax(nats), nats.shape)
+    cost = 2.0 * np.log(count)
+    if not nats[first, last] - cost > LEAST_GAIN:
+        return None
+    return _refined(sides, edges[first], edges[last], cost)
+
+
+def _evidence(match, energy):
+    """Nats, estimate and standard deviation of ρ - 1 from the match of a column with the data and its energy."""
+    precision = np.maximum(energy, 0.0) + 1.0 / SLAB**2
+    return 0.5 * match**2 / precision - 0.5 * np.log(precision * SLAB**2), match / precision, precision**-0.5
+
+
+def _refined(sides, first, last, cost):
+    """The segment with its ends where the evidence puts them."""
+    time = sides[0].motion.time
+    for reach, stride in ((3 * REACH, 6), (REACH // 2, 1)):
+        for end in (0, 1):
+            near = np.abs(np.searchsorted(time, (first, last)[end]) - np.arange(len(time))) <= reach
+            places = time[near][::stride]
+            firsts, lasts = (places, np.full_like(places, last)) if end == 0 else (np.full_like(places, first), places)
+            nats = _evidence(*_joint(sides, firsts, lasts))[0]
+            place = float(places[np.argmax(nats)]) if stride > 1 else _middle(places, nats)
+            first, last = (place, last) if end == 0 else (first, place)
+    nats, value, std = (float(x[0]) for x in _evidence(*_joint(sides, [first], [last])))
+    apart = tuple(_alone(side, first, last) for side in sides)
+    return _Segment(first, last, nats - cost, value, std, apart)
+
+
+def _middle(places, nats):
+    """Median place by the evidence of each: where a ship hardly moves, an end can be anywhere."""
+    weights = np.cumsum(np.exp(nats - nats.max()))
+    return float(places[np.searchsorted(weights, 0.5 * weights[-1])])
+
+
+def _joint(sides, firsts, lasts):
+    columns = [side.column(firsts, lasts) for side in sides]
+    energy = sum(side.energy(c) for side, c in zip(sides, columns, strict=True))
+    return sum(side.match(c) for side, c in zip(sides, columns, strict=True)), energy
+
+
+def _alone(side, first, last):
+    column = side.column([first], [last])
+    energy = max(float(side.energy(column)[0]), 1e-9)
+    return float(side.match(column)[0]) / energy, energy**-0.5
+
+
+def _is_said_by_both(segment):
+    """Whether positions and headings both say so, by about the same rate: a single side can have a fault of its own."""
+    telling = [value / segment.value > 0.4 and abs(value) > 2.5 * std for value, std in segment.apart]
+    plausible = PLAUSIBLE[0] < 1.0 + segment.value < PLAUSIBLE[1]
+    return plausible and len(telling) == 2 and all(telling) and _agree(segment.apart, segment.value)
+
+
+def _is_like(segment, sure):
+    """Whether a segment that one side cannot tell of has the rate of another that both tell of."""
+    return any(
+        abs(segment.value - other.value) < 3.0 * np.hypot(segment.std, other.std) and _agree(segment.apart, other.value)
+        for other in sure
+    )
+
+
+def _agree(apart, rate):
+    return all(abs(value - rate) < 3.0 * std + 0.3 * abs(rate) for value, std in apart)
+
+
+def _findings(segments):
+    found = []
+    while segments:
+        lead = max(segments, key=lambda s: s.gain)
+        same = [s for s in segments if abs(s.value - lead.value) < 3.0 * np.hypot(s.std, lead.std) + 0.02]
+        segments = [s for s in segments if s not in same]
+        weight = np.array([s.std**-2 for s in same])
+        rate = 1.0 + float(weight @ [s.value for s in same] / weight.sum())
+        spans = tuple(sorted((s.first, s.last) for s in same))
+        probability = float(0.98 / (1.0 + np.exp(-lead.gain)))
+        std = float(np.hypot(weight.sum() ** -0.5, UNSURE * abs(rate - 1.0)))
+        rates = {"rate": Estimate(rate, std, "1")}
+        note = "positions and headings go at another rate than speeds and yaw rates say"
+        found.append(Finding("clock", None, "data", probability, rates, spans, ("time",), note=note))
+    return found

@@ -1,0 +1,196 @@
+"""Navigation channels that are not what they are labelled: other sign, swapped, in another frame or unit.
+
+Each suspect is a change of channels that would undo it. The innovations of position against velocity, or of heading
+against rate, say for every row how much likelier the changed log is. A suspect is accepted only if it explains the
+data: where it is said to be, the way seen must be about the way told under it, and clearly not as labelled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.diagnose.log.checks.kinematics import (
+    Filter,
+    Motion,
+    filter_for,
+    heading_motion,
+    is_clear,
+    position_motion,
+    whiteness,
+)
+from shipcosim.diagnose.log.mislabels import (
+    HEADING_LABELS,
+    POSITION_LABELS,
+    Mislabel,
+    finding_of,
+    mislabel_of,
+    possible,
+    undone,
+)
+from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.result import Finding
+
+__all__ = ["best_segment", "in_segment", "mislabelled"]
+
+LEAST_GAIN = 14.0  # nats, of the whole log
+CLEAR_GAIN = 100.0  # nats, from which on a frame may differ from another by less than its slopes
+SEGMENT_COST = 16.0  # nats, for the choice of both ends
+CLIP = 5.0  # standard deviations beyond which an innovation counts no more
+NEAR, FAR, SURE = 0.3, 0.35, 0.2  # slopes nearer to 1 than this agree, farther off they do not; largest deviation
+SHORTEST = 60.0  # [s] of a segment
+REACH = 25  # rows on both sides in which an end of a segment is sought; and where the log leaps
+
+
+@dataclass(frozen=True)
+class _Suspect:
+    """A mislabel, the evidence for it, where it is, and by how much its innovations hang together."""
+
+    mislabel: Mislabel
+    gain: float
+    segment: tuple[float, float] | None
+    rough: float
+
+
+def mislabelled(log: dict) -> tuple[list[Finding], dict]:
+    """Mislabelled navigation channels, and the log with them put right.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
+    """
+    found = []
+    for motion_of, labels in ((heading_motion, HEADING_LABELS), (position_motion, POSITION_LABELS)):
+        for _ in range(2):
+            finding = _best(log, motion_of, labels)
+            if finding is None:
+                break
+            log = undone(log, mislabel_of(finding), finding.segments)
+            found.append(finding)
+    return found, log
+
+
+def _best(log, motion_of, labels):
+    """The mislabel that explains most and explains it well, with its finding; None where there is none."""
+    plain = motion_of(log)
+    if plain is None:
+        return None
+    labels = possible(labels, log)
+    others = [motion_of(log | label.undo(log)) for label in labels]
+    levels = np.stack([plain.level, *(other.level for other in others)], axis=2)
+    filters = filter_for(plain, levels)
+    likely = np.stack([_log_likelihood(f, levels[:, :, k]) for k, f in enumerate(filters)], axis=1)
+    suspects = []
+    for number, label in enumerate(labels, start=1):
+        gain, segment = best_segment(plain.time, likely[:, number] - likely[:, 0])
+        rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, segment))
+        suspect = _Suspect(label, gain, segment, rough)
+        if gain / rough > LEAST_GAIN and _explains(plain, others[number - 1], filters[number], suspect):
+            suspects.append(suspect)
+    if not suspects:
+        return None
+    best = max(suspects, key=lambda suspect: suspect.gain)
+    whitener = filters[1 + labels.index(best.mislabel)]
+    if best.mislabel.scale is not None and _is_alike(log, best):
+        best = replace(best, segment=None)
+    return _finding(_refined(log, motion_of, whitener, best), best, suspects)
+
+
+def _is_alike(log, suspect):
+    """Whether the channels are as noisy outside a segment as inside, so that their unit is the same there."""
+    if suspect.segment is None:
+        return False
+    here = inside(log["time"][2:], [suspect.segment])
+    bends = np.mean([np.abs(np.diff(log[role], n=2)) for role in suspect.mislabel.channels], axis=0)
+    if (~here).sum() < 10:
+        return True
+    return bool(0.7 < np.nanmean(bends[~here]) / (np.nanmean(bends[here]) + 1e-12) < 1.4)
+
+
+def _log_likelihood(whitener: Filter, level):
+    """Of each row, with single rows counting only so much."""
+    white = np.clip(whitener(level), -CLIP, CLIP)
+    return -np.sum(0.5 * white**2 + np.log(whitener.std * whitener.scale)[:, None], axis=1)
+
+
+def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, tuple[float, float] | None]:
+    """Where gains of rows add up to most: in all (None), or in a segment, less the cost of choosing it.
+
+    Parameters
+    ----------
+    time, gains : (n,) arrays
+        Of each row. [s, nats]
+    """
+    total = np.r_[0.0, np.cumsum(gains)]
+    lowest = np.minimum.accumulate(total)
+    last = int(np.argmax(total - lowest))
+    first = int(np.argmin(total[: last + 1]))
+    part = total[last] - total[first] - SEGMENT_COST
+    if total[-1] >= part or last <= first or time[last - 1] - time[first] < SHORTEST:
+        return float(total[-1]), None
+    return float(part), (float(time[first]), float(time[last - 1]))
+
+
+def in_segment(values: np.ndarray, time: np.ndarray, segment: tuple[float, float] | None) -> np.ndarray:
+    """The rows within a segment; all if there is none."""
+    return values if segment is None else values[(time >= segment[0]) & (time <= segment[1])]
+
+
+def _explains(plain: Motion, other: Motion, whitener: Filter, suspect) -> bool:
+    """Whether the way seen is the way told under the suspect, and is not as labelled.
+
+    Noise in the velocity makes slopes too small, for a ship that hardly moves by half. That leaves signs and swapped
+    channels clear, but not units.
+    """
+    channels, is_unit = suspect.mislabel.channels, suspect.mislabel.scale is not None
+    under = _slopes(other, channels, whitener, suspect.segment)
+    given = _slopes(plain, channels, whitener, suspect.segment)
+    lowest, highest = (1.0 - NEAR, 1.0 + NEAR) if is_unit else (0.3, 1.7)
+    if is_unit and not is_clear(other, whitener, suspect.segment):
+        return False
+    near = [lowest < slope < highest or abs(slope - 1.0) < 2.0 * std for slope, std in under]
+    sure = [std < SURE for _, std in under]
+    apart = [
+        abs(was - now) > max(FAR, 4.0 * std) and abs(was - 1.0) > abs(now - 1.0)
+        for (was, std), (now, _) in zip(given, under, strict=True)
+    ]
+    clear = suspect.gain > CLEAR_GAIN and suspect.rough < 1.5 and all(sure)
+    return all(near) and (clear or any(a and s for a, s in zip(apart, sure, strict=True)))
+
+
+def _slopes(motion: Motion, channels, whitener: Filter, segment):
+    """Slope of the way seen on the slow way told by each channel, with standard deviation."""
+    ways = [motion.way(motion.slow(motion.parts[role])) for role in channels]
+    white = whitener(np.stack([motion.seen, *ways], axis=2))
+    white = in_segment(white, motion.time, segment).reshape(-1, 1 + len(ways))
+    y, x = white[:, 0], white[:, 1:]
+    spread = np.linalg.pinv(x.T @ x + 1e-9 * np.eye(len(ways)))
+    slopes = spread @ (x.T @ y)
+    rest = np.clip(y - x @ slopes, -CLIP, CLIP)
+    return list(zip(slopes.tolist(), np.sqrt(np.mean(rest**2) * np.diag(spread)).tolist(), strict=True))
+
+
+def _refined(log, motion_of, whitener, best):
+    """The segment with each end where the log with it undone is likeliest and leaps least; None for the whole log."""
+    if best.segment is None:
+        return None
+    motion, ends = motion_of(log), [int(i) for i in np.searchsorted(log["time"], best.segment)]
+    leaps = np.searchsorted(log["time"], motion.time[motion.starts])
+    for end in (0, 1):
+        places = sorted({*range(ends[end] - REACH, ends[end] + REACH + 1), *(leaps - end)})
+        places = [k for k in places if 0 <= k < len(log["time"]) and (k < ends[1] if end == 0 else k > ends[0])]
+        segments = [log["time"][[k, ends[1]] if end == 0 else [ends[0], k]] for k in places]
+        tried = [motion_of(undone(log, best.mislabel, [one])) for one in segments]
+        white = np.clip(whitener(np.stack([one.level for one in tried], axis=2)), -CLIP, CLIP)
+        left = CLIP**2 * np.array([one.starts.sum() for one in tried])
+        ends[end] = places[int(np.argmin(np.sum(white**2, axis=(0, 1)) + left))]
+    return tuple(float(t) for t in log["time"][ends])
+
+
+def _finding(segment, best, suspects):
+    rough = max(s.rough for s in suspects)
+    others = [(s.gain - best.gain) / rough for s in suspects if s is not best]
+    probability = float(1.0 / (1.0 + np.exp(LEAST_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others))))
+    return finding_of(best.mislabel, probability, segment)

@@ -1,0 +1,284 @@
+"""Samples that are no measurement: rows that are missing, held or filled in, headings interpolated across north."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.diagnose.log.roles import NAVIGATION
+from shipcosim.diagnose.result import Finding
+
+__all__ = ["gaps", "outliers", "runs", "wraps"]
+
+SHORTEST_GAP = 10.0  # [s] below it is an ordinary dropout
+FEWEST_ROWS = 5
+CHANCE = 1e-7  # of a run that long anywhere in the log
+LONGEST_WRAP = 6  # samples
+NEAR_NORTH, SPINNING = 45.0, 15.0  # deg off north; deg/s, faster than a ship turns
+LEAP, FEWEST_LEAPS = 5.0, 3  # times the way told, rows: a single leap can be another reference
+LEAPING = "the ship leaps many times faster than she goes"
+NO_ROWS, NO_VALUES, HELD, STRAIGHT = (
+    "there are no rows",
+    "there are no values",
+    "values are held",
+    "values are interpolated",
+)
+GROUPS = (("north", "east"), ("heading",), ("surge", "sway"), ("yaw_rate",), ("wind_speed", "wind_from"))
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Rows in which a group of channels has nothing to say, and why."""
+
+    first: int
+    last: int
+    channels: tuple[str, ...]
+    kind: str
+
+
+def gaps(log: dict) -> list[Finding]:
+    """Where data was lost: rows missing or empty, values held, or drawn as a straight line between two others.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time` [s], increasing, and roles in their units, as logged.
+    """
+    time = log["time"]
+    found = [_finding(time, run) for run in _missing(log)]
+    everywhere = list(_flat_runs(log, tuple(role for role in NAVIGATION if role in log)))
+    found += [_finding(time, _with_followers(log, run)) for run in everywhere]
+    for group in GROUPS:
+        for run in _flat_runs(log, tuple(role for role in group if role in log)):
+            if not any(_overlap(run, known) for known in everywhere):
+                found.append(_finding(time, run))
+    found += [_finding(time, run) for run in _leaps(log)]
+    return _joined(found)
+
+
+def _leaps(log):
+    """Rows between which the ship would go many times faster than she does: lost rows, drawn together or over."""
+    roles = ("north", "east", "surge", "sway")
+    if not all(role in log for role in roles):
+        return
+    north, east, surge, sway = (log[role] for role in roles)
+    steps, speed = np.diff(log["time"]), np.hypot(surge, sway)
+    went = np.hypot(np.diff(north), np.diff(east))
+    told = np.maximum(speed[1:], speed[:-1]) * steps
+    usual = np.nanquantile(np.abs(went - told), 0.9) if np.isfinite(went - told).any() else np.inf
+    with np.errstate(invalid="ignore"):
+        leaping = went > LEAP * (told + usual)
+    for first, last in runs(leaping):
+        if last - first >= FEWEST_LEAPS:
+            yield _Run(int(first), int(last), roles[:2] + ("heading",), LEAPING)
+
+
+def _missing(log):
+    time = log["time"]
+    steps = np.diff(time)
+    lost = (steps > SHORTEST_GAP) & (steps > (FEWEST_ROWS + 0.5) * np.median(steps))
+    every = tuple(role for role in log if role != "time")
+    return [_Run(int(row), int(row) + 1, every, NO_ROWS) for row in np.flatnonzero(lost)]
+
+
+def _finding(time, run):
+    step = np.median(np.diff(time)) if run.kind == NO_ROWS else 0.0
+    segment = (float(time[run.first] + step), float(time[run.last] - step))
+    return Finding("gap", None, "data", 1.0, {}, (segment,), run.channels, note=run.kind)
+
+
+def _joined(found):
+    """Gaps of the same channels and kind as one finding."""
+    groups = {}
+    for finding in found:
+        groups.setdefault((finding.channels, finding.note), []).append(finding)
+    joined = []
+    for (channels, note), group in groups.items():
+        segments = tuple(sorted(finding.segments[0] for finding in group))
+        joined.append(Finding("gap", None, "data", 1.0, {}, segments, channels, note=note))
+    return joined
+
+
+def _overlap(one, other):
+    shared = min(one.last, other.last) - max(one.first, other.first)
+    return shared > 0.5 * min(one.last - one.first, other.last - other.first)
+
+
+def _flat_runs(log, roles):
+    """Runs in which all channels of a group are empty, held or straight for longer than chance makes them."""
+    if not roles:
+        return
+    time, values = log["time"], np.column_stack([log[role] for role in roles])
+    for first, last in runs(np.isnan(values).all(axis=1)):
+        if time[last - 1] - time[first] >= SHORTEST_GAP:
+            yield _Run(first, last - 1, roles, NO_VALUES)
+    bends = np.column_stack([_bend(log[role], role) for role in roles])
+    limits = [_straight(log[role], role) for role in roles]
+    straight = ((bends <= limits) | np.isinf(bends)).all(axis=1) & np.isfinite(bends).any(axis=1)
+    least = max(FEWEST_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))) - 2)
+    for first, last in _long_runs(straight | _same(values), least):
+        kind = _kind(values[first:last])
+        last = min(last + (kind == STRAIGHT), len(time) - 1)  # rows of the line, both ends included
+        if time[last] - time[first] >= SHORTEST_GAP and (len(roles) > 2 or _is_line(log, roles, first, last)):
+            yield _Run(first + 1, last - (kind == STRAIGHT), roles, kind)
+
+
+def _kind(values):
+    change = np.diff(values, axis=0)
+    return HELD if np.mean(np.nanmax(np.abs(change), axis=1, initial=0.0) > 0.0) < 0.2 else STRAIGHT
+
+
+def _is_line(log, roles, first, last):
+    """Whether each channel of the group is one straight line throughout, and not just at rest at zero."""
+    share = np.linspace(0.0, 1.0, last - first + 1)[1:-1]
+    for role in roles:
+        values = log[role][first : last + 1]
+        line = values[1] + share * (values[-2] - values[1])
+        off = np.nanmax(np.abs(values[1:-1] - line), initial=0.0)
+        if off > 0.5 * _straight(log[role], role) or np.mean(values[1:-1] != 0.0) < 0.5:
+            return False
+    return True
+
+
+def _same(values):
+    """Rows after which nothing changes."""
+    return np.r_[(values[1:] == values[:-1]).all(axis=1), False]
+
+
+def _bend(values, role):
+    """Size of the second difference from each row on; angles the short way round."""
+    bend = np.diff(values, n=2)
+    if role == "heading" or role.endswith("_from"):
+        bend = np.mod(bend + 180.0, 360.0) - 180.0
+    return np.r_[np.where(np.isnan(bend), np.inf, np.abs(bend)), np.inf, np.inf]
+
+
+def _straight(values, role):
+    """Largest bend of a straight line after rounding: two of the channel's smallest steps."""
+    bends = _bend(values, role)
+    usual = np.median(bends[np.isfinite(bends)]) if np.isfinite(bends).any() else 0.0
+    return 2.02 * quantum(values) + 1e-3 * usual
+
+
+def quantum(values: np.ndarray) -> float:
+    """Resolution of a channel: the smallest step between its values that is no rounding error; 0 if it is fine."""
+    levels = np.unique(values[np.isfinite(values)])
+    steps = np.diff(levels)
+    steps = steps[steps > 1e-9 * (np.abs(levels).max(initial=0.0) + 1e-300)]
+    return float(np.quantile(steps, 0.01)) if len(steps) and len(steps) < 0.8 * len(values) else 0.0
+
+
+def runs(flags: np.ndarray) -> np.ndarray:
+    """First and one past the last index of each run of true values: (k, 2)."""
+    edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, np.int8), 0]))
+    return edges.reshape(-1, 2)
+
+
+def _long_runs(flags, least):
+    """Runs of at least some rows, and longer than chance makes them, by how often flags follow flags in other runs."""
+    spans = runs(flags)
+    lengths = np.diff(spans, axis=1)[:, 0]
+    ordinary = lengths[lengths < least]
+    chance = ((ordinary - 1).sum() + 0.2) / (ordinary.sum() + 2.0)
+    for (first, last), length in zip(spans, lengths, strict=True):
+        if length >= least and len(flags) * chance ** (length - 1) < CHANCE:
+            yield int(first), int(last)
+
+
+def _with_followers(log, run):
+    """The run, with the other channels too where these are empty, held or straight for the whole time."""
+    others = [role for role in log if role not in (*run.channels, "time")]
+    inner = slice(run.first, run.last + 1)
+    flat = [role for role in others if _follows(log[role][inner], role, run.kind, _straight(log[role], role))]
+    moving = [role for role in flat if _range(log[role]) > 0.0]
+    return _Run(run.first, run.last, (*run.channels, *(moving if len(flat) == len(others) else ())), run.kind)
+
+
+def _range(values):
+    values = values[np.isfinite(values)]
+    return np.ptp(values) if len(values) else 0.0
+
+
+def _follows(inner, role, kind, limit):
+    if kind == NO_VALUES:
+        return bool(np.isnan(inner).all())
+    if kind == HELD:
+        return not np.nanmax(np.abs(np.diff(inner)), initial=0.0) > 0.0
+    bends = _bend(inner, role)
+    return bool((bends[np.isfinite(bends)] <= 1.5 * limit).all())
+
+
+def wraps(log: dict) -> list[Finding]:
+    """Samples of the heading that were interpolated the long way round between both sides of north."""
+    if "heading" not in log:
+        return []
+    time, heading = log["time"], log["heading"]
+    bad, fine = np.zeros(len(heading), bool), quantum(heading)
+    full = np.where(np.abs(heading) <= fine, heading + 360.0, heading)  # 359.98 rounded is written as 0.0
+    for between in range(1, min(LONGEST_WRAP, len(heading) - 2) + 1):
+        crossing = np.zeros(len(heading) - between - 1, bool)
+        for a, b in ((heading, heading), (full, heading), (heading, full)):
+            crossing |= _long_way(time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine)
+        for row in np.flatnonzero(crossing):
+            bad[row + 1 : row + 1 + between] = True
+    bad |= _round_south(log)
+    segments = tuple((float(time[first]), float(time[last - 1])) for first, last in runs(bad))
+    note = "samples lie on the long way round between both sides of north"
+    return [Finding("heading_wrap", None, "data", 1.0, {}, segments, ("heading",), note=note)] if segments else []
+
+
+def _long_way(time, heading, a, b, tolerance):
+    """Where the samples between a and b, both near north and on its two sides, lie on the line through south.
+
+    Some of them may be missing.
+    """
+    n, between = len(a), len(heading) - len(a) - 1
+    crossing = (np.abs(b - a) > 180.0) & (np.abs(np.mod(b - a + 180.0, 360.0) - 180.0) < 45.0)
+    some = np.zeros(n, bool)
+    for k in range(1, between + 1):
+        share = (time[k : n + k] - time[:n]) / (time[between + 1 :] - time[:n])
+        here = heading[k : n + k]
+        some |= np.isfinite(here)
+        crossing &= ~(np.abs(here - (a + (b - a) * share)) >= tolerance)
+    return crossing & some
+
+
+def _round_south(log):
+    """Samples of the same kind where those at the ends are missing: far from north between some that are near it.
+
+    They come and go within a few rows, much faster than the ship turns.
+    """
+    bad, known = np.zeros(len(log["heading"]), bool), np.flatnonzero(np.isfinite(log["heading"]))
+    time, heading = log["time"][known], np.mod(log["heading"][known] + 180.0, 360.0) - 180.0
+    change = np.abs(np.mod(np.diff(heading) + 180.0, 360.0) - 180.0) / np.diff(time)
+    turning = np.nan_to_num(np.abs(log["yaw_rate"][known])) if "yaw_rate" in log else np.zeros(len(known))
+    longest = (2 * LONGEST_WRAP + 1.5) * np.median(np.diff(log["time"]))
+    for first, last in runs(np.abs(heading) > NEAR_NORTH):
+        if first == 0 or last == len(known) or time[last] - time[first - 1] > longest:
+            continue
+        limit = max(SPINNING, 3.0 * turning[first - 1 : last + 1].max())
+        if max(change[first - 1], change[last - 1]) > limit:
+            first -= first > 1 and change[first - 2] > limit  # samples near north may lie on the line too
+            last += last < len(change) and change[last] > limit
+            bad[known[first:last]] = True
+    return bad
+
+
+def outliers(log: dict) -> dict[str, np.ndarray]:
+    """Single samples far off their neighbours, by role of the navigation: (n,) arrays of bool."""
+    return {role: _far_off(log[role], role == "heading") for role in NAVIGATION if role in log}
+
+
+def _far_off(values, is_angle):
+    """Samples that are far from both neighbours on the same side, while those agree."""
+    if not np.isfinite(values).any():
+        return np.zeros(len(values), bool)
+    change = np.diff(values)
+    if is_angle:
+        change = np.mod(change + 180.0, 360.0) - 180.0
+    usual = 1.4826 * np.nanmedian(np.abs(change - np.nanmedian(change))) + quantum(values) + 1e-12
+    before, after = change[:-1], change[1:]
+    with np.errstate(invalid="ignore"):
+        spike = (np.minimum(np.abs(before), np.abs(after)) > 12.0 * usual) & (np.abs(before + after) < 6.0 * usual)
+    return np.r_[False, spike & (before * after < 0.0), False]

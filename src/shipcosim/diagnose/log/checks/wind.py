@@ -1,0 +1,179 @@
+"""Wind channels that are not what they are labelled: the wind over ground must neither turn nor move with the ship."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from shipcosim.diagnose.log.checks.kinematics import Filter, Motion, filter_for, whiteness
+from shipcosim.diagnose.log.checks.labels import CLIP, LEAST_GAIN, best_segment, in_segment
+from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
+from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.result import Finding
+
+__all__ = ["leaps", "mislabelled_wind"]
+
+ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
+LEAST_GAIN_WHOLE = 5.0  # nats, of a unit of the whole log, among three
+AVERAGING = 8.0  # [s] of a bell over the ship's velocity; wind sensors average, and waves shake the mast
+NEAR, SURE = 0.3, 0.18  # of the slope of the wind on the ship's velocity: agreement, largest deviation
+BESIDE, JUMP = 240.0, 0.35  # [s] beside an end of a segment; of the logarithm of the wind speed, against another unit
+ON = 0.6  # of the change of the wind over ground at the ends of a segment as labelled, that may be left put right
+STEADIER = 0.08  # by which the steadiness of the wind must grow; so the ship must have turned
+BOW, MIRRORED, NORTH = "from the bow", "mirrored", "from north"
+SLOPES = {BOW: {"apparent": 1.0, "kn": 1852.0 / 3600.0, "m/s": 3600.0 / 1852.0, "over ground": 0.0}}
+SLOPES |= {MIRRORED: {"apparent": 1.0}, NORTH: {"apparent": 1.0, "over ground": 0.0}}
+LABEL = {
+    (MIRRORED, "apparent"): WIND_LABELS[0],
+    (NORTH, "apparent"): WIND_LABELS[1],
+    (BOW, "over ground"): WIND_LABELS[2],
+    (NORTH, "over ground"): WIND_LABELS[3],
+    (BOW, "m/s"): WIND_LABELS[4],
+    (BOW, "kn"): WIND_LABELS[5],
+}
+
+
+def mislabelled_wind(log: dict) -> list[Finding]:
+    """Mislabelled wind channels, at most one.
+
+    The apparent wind as a vector over north and east is the wind over ground less the ship's velocity. First the
+    direction: read as labelled, mirrored, or from north, it turns with the ship under the wrong ones. Then how the
+    vector follows the ship's velocity: one to one if it is what it should be, not at all if it is the wind over
+    ground, by another factor if its unit is another.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
+    """
+    rows = np.flatnonzero(np.all([np.isfinite(log[role]) for role in ROLES if role in log], axis=0))
+    if not set(ROLES) <= set(log) or len(rows) < 100:
+        return []
+    time, speed, wind_from, heading, surge, sway = (log[role][rows] for role in ("time", *ROLES))
+    velocity = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
+    angles = {BOW: wind_from + heading, MIRRORED: heading - wind_from, NORTH: wind_from}
+    winds = {name: _axes(speed * np.exp(1j * np.radians(angle))) for name, angle in angles.items()}
+    motion = _still(time, _axes(velocity))
+    slow = motion.slow(motion.velocity)
+    levels = np.stack([wind - slow for wind in winds.values()], axis=2)
+    filters = dict(zip(winds, filter_for(motion, levels), strict=True))
+    frame, segment, gain = _frame(time, winds, slow, filters)
+    return _finding(time, winds[frame], motion.slow(winds[frame]), slow, filters[frame], frame, segment, gain)
+
+
+def _axes(vector):
+    return np.column_stack([vector.real, vector.imag])
+
+
+def _still(time, velocity):
+    steps = np.diff(time, prepend=-np.inf)
+    return _Wind(time, velocity, velocity, {}, steps > 4.5 * np.median(steps[1:]))
+
+
+class _Wind(Motion):
+    def slow(self, velocity):
+        from scipy.ndimage import gaussian_filter1d
+
+        return gaussian_filter1d(velocity, AVERAGING / np.median(np.diff(self.time)), axis=0)
+
+
+def _frame(time, winds, slow, filters):
+    """How the direction is counted, where, and the evidence for it; as labelled where nothing says otherwise."""
+    likely = {}
+    for name, whitener in filters.items():
+        white = [whitener(wind_less) for wind_less in (winds[name] - slow, winds[name])]
+        rows = [-0.5 * np.sum(np.clip(w, -CLIP, CLIP) ** 2, axis=1) for w in white]
+        likely[name] = rows[int(rows[1].sum() > rows[0].sum())] - 2.0 * np.log(whitener.std * whitener.scale)
+    best = (BOW, None, 0.0)
+    for name in (MIRRORED, NORTH):
+        gain, segment = best_segment(time, likely[name] - likely[BOW])
+        rough = whiteness(in_segment(filters[name](winds[name] - slow), time, segment))
+        steadier = _steadiness(winds[name], time, segment) - _steadiness(winds[BOW], time, segment)
+        if gain / rough > max(LEAST_GAIN, best[2]) and steadier > STEADIER:
+            best = (name, segment, gain / rough)
+    return best
+
+
+def _steadiness(wind, time, segment):
+    """Length of the mean vector over the mean length: 1 for a steady wind, less if it turns with the ship."""
+    wind = in_segment(wind, time, segment)
+    return float(np.hypot(*wind.mean(axis=0)) / max(np.hypot(*wind.T).mean(), 1e-9))
+
+
+def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
+    """The mislabel that the slope on the ship's velocity leaves over."""
+    y, x = whitener(wind), whitener(slow)
+    if frame == BOW:
+        return _unit(time, y, x, whitener(smooth), wind, slow)
+    slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
+    kinds = SLOPES[frame]
+    weights = {kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12 for kind, b in kinds.items()}
+    kind = max(weights, key=weights.get)
+    return [_named(LABEL[frame, kind], segment, gain, weights[kind] / sum(weights.values()))]
+
+
+def _unit(time, y, x, smooth, wind, slow):
+    """Another unit, or the wind over ground with its direction from the bow, if the slope clearly says so."""
+    found = []
+    for kind, b in SLOPES[BOW].items():
+        gains = 0.5 * np.sum(np.clip(y - x, -CLIP, CLIP) ** 2 - np.clip(y - b * x, -CLIP, CLIP) ** 2, axis=1)
+        gain, segment = best_segment(time, gains)
+        rough = whiteness(in_segment(y - b * x, time, segment))
+        if kind == "apparent" or gain / rough < (LEAST_GAIN if segment else LEAST_GAIN_WHOLE):
+            continue
+        slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
+        also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
+        near = all(abs(one - b) < max(NEAR * b, 0.2) for one in (slope, also))
+        near &= b == 0.0 or leaps(time, np.hypot(*wind.T), segment, b)
+        near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
+        if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
+            found.append(_named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0))
+    return sorted(found, key=lambda finding: -finding.probability)[:1]
+
+
+def leaps(time, speed, segment, factor):
+    """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log.
+
+    Parameters
+    ----------
+    time, speed : (n,) arrays
+        [s, m/s]
+    segment : (float, float) or None
+        [s]
+    factor : float
+        Logged wind speed inside over that outside.
+    """
+    here, beside = _about(time, segment)
+    if not here.any() or not beside.any():
+        return True
+    return bool(abs(np.log(np.median(speed[here]) / np.median(speed[beside]) / factor)) < JUMP)
+
+
+def _goes_on(time, labelled, right, segment):
+    """Whether the wind over ground beside a segment goes on in it if put right, rather than as labelled.
+
+    The ship's own way makes the wind that she meets stronger and weaker too, most of all that of a fast small craft.
+    """
+    here, beside = _about(time, segment)
+    if not here.any() or not beside.any():
+        return True
+    usual = labelled[beside].mean(axis=0)
+    off, off_labelled = (np.hypot(*(wind[here].mean(axis=0) - usual)) for wind in (right, labelled))
+    return bool(off < ON * off_labelled)
+
+
+def _about(time, segment):
+    """Rows of a segment that are near one of its ends, and those outside of it; none of the whole log."""
+    if segment is None:
+        return np.zeros((2, len(time)), bool)
+    here, near = inside(time, [segment]), inside(time, [(end - BESIDE, end + BESIDE) for end in segment])
+    return near & here, near & ~here
+
+
+def _slope(y, x):
+    energy = max(float(np.sum(x * x)), 1e-9)
+    return float(np.sum(x * y)) / energy, energy**-0.5
+
+
+def _named(label, segment, gain, share):
+    probability = float(share / (1.0 + np.exp(LEAST_GAIN - 6.0 - gain)))
+    return finding_of(label, probability, segment)

@@ -1,0 +1,74 @@
+"""A yaw rate in rad/s where deg/s is stated: so small that its own rounding swallows it, in all of a log or in a part.
+
+Where the ship turns, heading against rate tells it; where she does not, the channel's noise does, which falls by the
+same factor of 57 as the rate.
+"""
+
+import numpy as np
+
+from shipcosim.diagnose.log.checks.kinematics import heading_motion
+from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
+from shipcosim.diagnose.log.checks.samples import quantum
+from shipcosim.diagnose.log.mislabels import HEADING_LABELS, finding_of
+from shipcosim.diagnose.result import Finding
+
+__all__ = ["silent_rate"]
+
+RADIAN = HEADING_LABELS[1]
+LEAST_GAIN = 60.0  # nats, of a stretch with so little noise
+QUIETER = 0.2  # noise within such a stretch over the noise elsewhere, at most
+CLIP = 4.0  # nats of a row
+LIKELY_SIGNS = 0.3  # correlation of the rate's signs with the heading's own rate; noise alone stays below 0.2
+
+
+def silent_rate(log: dict) -> list[Finding]:
+    """A stretch, or a whole log, in which the yaw rate is too quiet to be in deg/s; at most one finding.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
+    """
+    motion = heading_motion(log)
+    if motion is None:
+        return []
+    rate = motion.velocity[:, 0]
+    fine = quantum(rate)
+    bends = np.abs(np.diff(rate, n=2, prepend=rate[:2]))
+    if _is_below_its_resolution(rate, fine) and _turns(motion, None) > 3.0 * np.std(motion.slow(rate)):
+        return [finding_of(RADIAN, 0.98)] if _signs_turn(motion) else []
+    windows = np.array_split(bends, max(4, len(bends) // 60))
+    usual = float(np.quantile([window.mean() for window in windows], 0.8))
+    if usual <= 3.0 * fine:
+        return []
+    quiet = max(usual / RADIAN.scale, 0.25 * fine)
+    gains = np.clip(np.log(usual / quiet) - bends / quiet + bends / usual, -CLIP, CLIP)
+    gain, segment = best_segment(motion.time, gains)
+    if segment is None or gain < LEAST_GAIN:
+        return []
+    inner, outer = in_segment(bends, motion.time, segment).mean(), usual
+    told = np.std(in_segment(motion.slow(rate), motion.time, segment))
+    if inner > QUIETER * outer or not _turns(motion, segment) > 3.0 * told:
+        return []
+    return [finding_of(RADIAN, 0.9, segment)]
+
+
+def _is_below_its_resolution(rate, fine):
+    """Whether little is left but zeros of both signs and single smallest steps."""
+    few = np.mean(np.abs(rate) > 1.5 * fine) < 0.1 if fine else not np.any(rate)
+    return bool(few and len(np.unique(np.signbit(rate))) == 2)
+
+
+def _signs_turn(motion):
+    """Whether the signs of the rate, those of its zeros too, go as the heading turns."""
+    sign = 1.0 - 2.0 * np.signbit(motion.velocity)
+    turning = np.gradient(motion.seen, motion.time, axis=0)
+    told, seen = (motion.slow(series)[:, 0] for series in (sign, turning))
+    return bool(np.corrcoef(told, seen)[0, 1] > LIKELY_SIGNS)
+
+
+def _turns(motion, segment):
+    """Rate of the heading itself, without its noise, as standard deviation. [deg/s]"""
+    rate = motion.slow(np.gradient(motion.seen[:, 0], motion.time))
+    smooth = in_segment(motion.slow(rate), motion.time, segment)
+    return float(1.4826 * np.median(np.abs(smooth - np.median(smooth))))

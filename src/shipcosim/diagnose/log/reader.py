@@ -1,0 +1,129 @@
+"""Measured logs: any table, by the roles of its columns, as one table in the units of the roles."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.log.channels import Channel, read_channels
+from shipcosim.diagnose.log.roles import role_of
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.series import conversion, make_table, read_columns
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["read_log"]
+
+LATEST = 1e12  # s
+EQUATORIAL_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 6.69437999014e-3  # [m, 1] WGS 84
+
+
+def read_log(path: str | os.PathLike, channels: str | os.PathLike | None = None) -> xarray.Dataset:
+    """Read a measured log: every row of the file, in its order, in the units of the roles.
+
+    Parameters
+    ----------
+    path : path
+        .csv, .csv.gz, .parquet or .nc.
+    channels : path, optional
+        Channel file (see `read_channels`); without one the columns are named by roles.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `time` as it stands in the file. Latitude and longitude become `north` and `east` about the first fix,
+        which is in the attributes `latitude_origin` and `longitude_origin` [deg]. Connectors keep the unit that is
+        stated. The attribute `unused_columns` lists the columns that have no role.
+
+    Raises
+    ------
+    ShipcosimError
+        With all that is wrong: a column that is missing, not numeric or in a unit of something else, no time.
+    """
+    columns = read_columns(path)
+    mapping = read_channels(channels) if channels is not None else _by_header(path, columns)
+    problems, signals = [], {}
+    for name, channel in mapping.items():
+        try:
+            signals[name] = _signal(channel, name, columns)
+        except ShipcosimError as error:
+            problems += [Problem(f"{path}, {name}", p.found, p.remedy) for p in error.problems]
+    if not problems and len(mapping) < 2:
+        remedy = "Name them by roles, or say in a channel file which is what: --channels channels.toml."
+        problems = [Problem(str(path), f"no column but time has a role: {_shown(columns)}.", remedy)]
+    if problems:
+        raise ShipcosimError(problems)
+    used = {channel.column for channel in mapping.values()}
+    attributes = {"unused_columns": [name for name in columns if name and name not in used]}
+    if "latitude" in signals:
+        attributes |= _local_position(signals)
+    time, _ = signals.pop("time")
+    if (beyond := np.abs(time) > LATEST).any() and np.isfinite(time[beyond]).any():
+        row = int(np.flatnonzero(beyond)[0])
+        found, remedy = f"is {time[row]:g} s in row {row + 2}.", f"Times are at most {LATEST:g} s, say since 1970."
+        raise ShipcosimError(Problem(f"{path}, time", found, remedy))
+    if len(np.unique(time[np.isfinite(time)])) < 2:
+        raise ShipcosimError(Problem(f"{path}, time", "has fewer than two different times.", "A log has many rows."))
+    return make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
+
+
+def _by_header(path, columns):
+    """Channels of a file whose columns are named by roles. North and east go before latitude and longitude."""
+    if "time" not in columns:
+        remedy = "Say in a channel file which column is what: --channels channels.toml."
+        raise ShipcosimError(Problem(str(path), f"has no column 'time', only {_shown(columns)}.", remedy))
+    pairs = [("north", "east"), ("latitude", "longitude")]
+    whole = [pair for pair in pairs if set(pair) <= set(columns)][:1]
+    left_out = {name for pair in pairs if pair not in whole for name in pair}
+    return {name: Channel(column=name) for name in columns if role_of(name) and name not in left_out}
+
+
+def _shown(columns):
+    return ", ".join(repr(name) for name in list(columns)[:8])
+
+
+def _meaning(name):
+    role = role_of(name)
+    return role.meaning if role else f"connector {name}"
+
+
+def _signal(channel, name, columns):
+    """Values of a channel, and their unit."""
+    if channel.column not in columns:
+        found = f"there is no column '{channel.column}'."
+        raise ShipcosimError(Problem("", found, suggestion(channel.column, columns)))
+    values, stated = columns[channel.column]
+    if values.dtype.kind != "f":
+        row = next((i for i, value in enumerate(values) if value is not None and not _is_number(value)), 0)
+        found = f"column '{channel.column}' holds '{values[row]}' in row {row + 2}, not only numbers."
+        raise ShipcosimError(Problem("", found, "A missing value is an empty field or nan."))
+    role = role_of(name)
+    unit = channel.unit or stated or (role.unit if role else "")
+    target = role.unit if role else unit
+    factor, zero = conversion(unit, target)
+    # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
+    return factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0), target
+
+
+def _is_number(text):
+    try:
+        return float(text) is not None
+    except (TypeError, ValueError):
+        return False
+
+
+def _local_position(signals):
+    """Turn latitude and longitude into north and east in a plane about the first fix; say where that is."""
+    latitude, longitude = (np.radians(signals.pop(name)[0]) for name in ("latitude", "longitude"))
+    fixed = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude))
+    first = fixed[0] if len(fixed) else 0
+    curvature = 1.0 - ECCENTRICITY_SQUARED * np.sin(latitude[first]) ** 2
+    meridian = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / curvature**1.5
+    parallel = EQUATORIAL_RADIUS / np.sqrt(curvature) * np.cos(latitude[first])
+    signals["north"] = meridian * (latitude - latitude[first]), "m"
+    signals["east"] = parallel * (np.mod(longitude - longitude[first] + np.pi, 2 * np.pi) - np.pi), "m"
+    origin = np.degrees([latitude[first], longitude[first]])
+    return {"latitude_origin": float(origin[0]), "longitude_origin": float(origin[1])}

@@ -1,0 +1,65 @@
+"""What is ordinary in a log and handled without naming a fault: unordered rows, dropouts, outliers, uneven times."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.log.checks.samples import outliers
+from shipcosim.diagnose.log.rows import usable_rows
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["remarks"]
+
+UNEVEN = 0.02  # share of the usual step
+HOLE = 1.5  # usual steps
+
+
+def remarks(log: xarray.Dataset) -> list[str]:
+    """One sentence for everything that a repair changes or leaves out, faults of the data apart.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        As from `read_log`.
+    """
+    time = log["time"].values
+    known = time[np.isfinite(time)]
+    said = []
+    if len(known) < len(time):
+        said.append(f"{_rows(len(time) - len(known))} without a time: left out.")
+    if (back := known[1:][np.diff(known) < 0.0]).size:
+        said.append(f"{_rows(back.size)} earlier than the one before, the first at {back[0]:g} s: sorted by time.")
+    ordered = np.sort(known)
+    if (again := ordered[1:][np.diff(ordered) == 0.0]).size:
+        said.append(f"{_rows(again.size)} with a time that was there, the first at {again[0]:g} s: the first is kept.")
+    rows = usable_rows(time)
+    said += _steps(time[rows])
+    for name, variable in log.data_vars.items():
+        if empty := int(np.sum(~np.isfinite(variable.values[rows]))):
+            said.append(f"{name}: {_rows(empty)} without a number.")
+    far = outliers({str(name): np.asarray(v.values[rows], float) for name, v in log.data_vars.items()})
+    return said + [
+        f"{role}: {_rows(int(bad.sum()))} far off both neighbours: left out." for role, bad in far.items() if bad.any()
+    ]
+
+
+def _rows(count):
+    return f"{count} row{'s' * (count > 1)}"
+
+
+def _steps(time):
+    """Holes between rows, and rows that are unevenly spaced."""
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    holes = steps > HOLE * usual
+    if holes.any():
+        lost = int(np.sum(np.round(steps[holes] / usual) - 1))
+        first = time[:-1][holes][0]
+        yield f"{_rows(lost)} of the usual step {usual:g} s not there, the first after {first:g} s: left empty."
+    spread = float(np.median(np.abs(steps - usual)))
+    if spread > UNEVEN * usual:
+        yield f"rows are {usual:g} s apart, give or take {spread:.2g} s: interpolated to even steps."

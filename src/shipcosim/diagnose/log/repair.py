@@ -1,0 +1,132 @@
+"""A log as the simulation can use it: faults that were found undone or cut out, rows evenly spaced."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.log.checks.samples import outliers
+from shipcosim.diagnose.log.mislabels import mislabel_of, undone
+from shipcosim.diagnose.log.roles import role_of
+from shipcosim.diagnose.log.rows import inside, usable_rows, usual_step
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import make_table
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.result import Finding
+
+__all__ = ["repaired"]
+
+HOLE = 1.5  # over the usual spacing: rows are missing between
+LONGEST = 50.0  # times as long as its rows: some of its stamps are wrong
+CUT_OUT = ("gap", "heading_wrap")
+
+
+def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Dataset:
+    """The log on an even grid, with the faults that were found put right or cut out.
+
+    Rows are sorted; of rows with the same time the first is kept; rows without a time are left out. Time runs as the
+    findings on the clock say, mislabelled channels are put right, and what was interpolated over, held or turned
+    through south is cut out.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        As from `read_log`.
+    findings : list of Finding
+        As from `examine`.
+
+    Returns
+    -------
+    xarray.Dataset
+        At the median step of the log, from its first time on. NaN where there is no data; headings in [0, 360).
+        The coordinate `logged_time` says where in the log a row stands. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If the times span fifty times what the rows can fill.
+    """
+    log = log.isel(time=usable_rows(log["time"].values))
+    logged = log["time"].values
+    step = usual_step(logged)
+    time = _true_time(logged, findings, step)
+    channels = {str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()}
+    channels = _put_right(logged, channels, findings)
+    _check_span(time, step)
+    grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
+    place = _Place(time, grid, np.diff(logged) > HOLE * step)
+    columns = [
+        (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"]) for n, v in channels.items()
+    ]
+    columns = [(n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning) for n, v, unit, meaning in columns]
+    table = make_table(grid, columns, log.attrs)
+    origin = {"units": "s", "long_name": "time as logged"}
+    return table.assign_coords(logged_time=("time", np.interp(grid, time, logged), origin))
+
+
+def _check_span(time, step):
+    """A stamp far off all others would make a log of years."""
+    if time[-1] - time[0] > LONGEST * step * len(time):
+        row = int(np.argmax(np.diff(time)))
+        found = f"{time[row]:g} s is followed by {time[row + 1]:g} s, with a usual step of {step:g} s."
+        raise ShipcosimError(Problem("time", found, "Leave out the rows whose times are wrong, or cut the log there."))
+
+
+def _true_time(logged, findings, step):
+    """Times of the rows by a clock that runs right, from the same start.
+
+    A segment of wrong clock lasts a whole number of steps, less than its rate is sure to; so the rows after it need no
+    interpolation, which would smooth their noise.
+    """
+    rates = np.ones(len(logged) - 1)
+    for finding in findings:
+        for segment in finding.segments or [(-np.inf, np.inf)] if finding.cause == "clock" else ():
+            here = inside(logged[1:], [segment]) & inside(logged[:-1], [segment])
+            lasts = finding.parameters["rate"].estimate * np.diff(logged)[here].sum()
+            rates[here] *= finding.parameters["rate"].estimate * max(round(lasts / step), 1) * step / max(lasts, step)
+    return logged[0] + np.r_[0.0, np.cumsum(rates * np.diff(logged))]
+
+
+def _put_right(time, channels, findings):
+    """Channels with labels put right, then with outliers and all that is no measurement cut out."""
+    channels = dict(channels)
+    for finding in findings:
+        mislabel = mislabel_of(finding)
+        if mislabel is not None:
+            channels = undone({"time": time, **channels}, mislabel, finding.segments)
+            channels.pop("time")
+    for role, bad in outliers(channels).items():
+        channels[role] = np.where(bad, np.nan, channels[role])
+    for finding in findings:
+        if finding.cause in CUT_OUT:
+            bad = inside(time, finding.segments)
+            channels |= {role: np.where(bad, np.nan, channels[role]) for role in finding.channels if role in channels}
+    return channels
+
+
+def _is_angle(name):
+    role = role_of(name)
+    return role is not None and role.is_angle
+
+
+class _Place:
+    """Values at the times of a grid: those of the row there, else between the rows on both sides."""
+
+    def __init__(self, time, grid, is_hole):
+        self.before = np.clip(np.searchsorted(time, grid, side="right") - 1, 0, len(time) - 2)
+        span = np.diff(time)[self.before]
+        share = (grid - time[self.before]) / span
+        near = 1e-6 * np.median(span) / span
+        self.share = np.where(np.abs(share) < near, 0.0, np.where(np.abs(share - 1.0) < near, 1.0, share))
+        self.empty = is_hole[self.before] & (self.share > 0.0) & (self.share < 1.0)
+
+    def __call__(self, values, is_angle):
+        first, second = values[self.before], values[self.before + 1]
+        change = np.mod(second - first + 180.0, 360.0) - 180.0 if is_angle else second - first
+        between = first + self.share * change
+        exact = np.where(self.share == 0.0, first, np.where(self.share == 1.0, second, between))
+        return np.where(self.empty, np.nan, exact)

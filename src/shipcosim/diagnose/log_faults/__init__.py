@@ -1,0 +1,1 @@
+"""Faults of a log that only the ship's answer tells."""

@@ -1,0 +1,197 @@
+"""Segments in which the clock runs wrong, told by how the ship answers thrusters and wind.
+
+With ρ true seconds per logged second, a step moves the ship ρ times as far, and changes her velocity ρ times as much.
+Each block of a log has a column for its own ρ; where a run of blocks agrees on one, the clock was wrong.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import chi2
+
+from shipcosim.diagnose.inference.evidence import gram
+from shipcosim.diagnose.inference.fitting import Column, fitted, prepared, weighed
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.linearisation import rows_first, with_columns
+from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.ship.model import Motion, motion_rates
+
+__all__ = ["clock_by_answer", "is_testable", "with_rate"]
+
+SLAB = 0.25  # typical size of ρ - 1
+BLOCK = 12.0  # [s]
+SHORTEST, LARGEST_SHARE = 60.0, 0.5  # [s]; of the log: longer is a scale, not a segment
+LEAST_GAIN = 8.0  # nats, after the cost of choosing the segment
+RIVAL = 5.0  # nats more than the likeliest cause
+PLAUSIBLE = 0.65, 1.5  # ρ
+SMALLEST = 0.08  # of ρ - 1, below which it is no fault
+TYPICAL, LASTS = 0.2, 240.0  # of ρ - 1, [s]; a wrong clock that a log should be able to show
+UNSURE = 0.03  # of ρ - 1, for what the ends of segments leave open
+ASPECTS = [0, 1], [3, 4], [2], [5]  # states of the motion: way and speed, heading and rate of turn
+APART = 0.15  # of ρ - 1, by which what an aspect tells may be off beyond chance
+CHANCE = 0.01  # that aspects of a wrong clock differ more
+
+
+@dataclass(frozen=True)
+class _Blocks:
+    """Match of each block's column with the log, and the columns' Gram matrix, known numbers integrated out."""
+
+    edges: np.ndarray
+    match: np.ndarray
+    gram: np.ndarray
+
+    def of_runs(self):
+        """Match and energy of every run of blocks, from its first block to before its last: (k + 1, k + 1) arrays."""
+        matches = np.r_[0.0, np.cumsum(self.match)]
+        grams = np.pad(np.cumsum(np.cumsum(self.gram, axis=0), axis=1), ((1, 0), (1, 0)))
+        own = np.diag(grams)
+        return matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T
+
+    def with_run(self, first, last):
+        """Inner products of a run with every other: (k + 1, k + 1) array."""
+        sums = np.r_[0.0, np.cumsum(self.gram[:, first:last].sum(axis=1))]
+        return sums[None, :] - sums[:, None]
+
+
+def clock_by_answer(case):
+    """A clock that runs wrong at one rate in a segment or two, if nothing else explains as much.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    Finding or None
+    """
+    known, edges = case.known(()), _edges(case)
+    gain, finding = _most_likely(_blocks(case, edges, known))
+    if finding is None:
+        return None
+    rival, suspect, values = weighed(case, fitted(case))[0]
+    if gain < rival + RIVAL or not _is_said_by_all(case, finding, known):
+        return None
+    if rival > 0.0:
+        fit = fitted(case, (suspect,), values)
+        beside = prepared(replace(case, plant=fit.plant, motion=fit.motion))
+        if _most_likely(_blocks(beside, edges, known))[1] is None:
+            return None
+    return finding
+
+
+def _is_said_by_all(case, finding, known):
+    """Whether way, speed, heading and turning tell of one rate.
+
+    A compass can be wrong alone, and so can a force: it changes the speed, but how far the ship comes at her speed
+    tells of the clock.
+    """
+    here = inside(0.5 * (case.record.time[:-1] + case.record.time[1:]), finding.segments)
+    moved, driven = _moved(case), np.zeros((len(here), 6, len(ASPECTS)))
+    for aspect, states in enumerate(ASPECTS):
+        driven[:, states, aspect] = -moved[:, states] * here[:, None]
+    match, inner = _left(case, known, driven)
+    covariance = np.linalg.pinv(inner)
+    told, apart = covariance @ match, APART * (finding.parameters["rate"].estimate - 1.0)
+    weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
+    rest = told - weight.sum(axis=0) @ told / weight.sum()
+    return bool(rest @ weight @ rest < chi2.isf(CHANCE, len(ASPECTS) - 1))
+
+
+def with_rate(case, finding, logged):
+    """A finding on the clock with its rate settled: the first is about a motion that the wrong clock has bent.
+
+    Parameters
+    ----------
+    case : Case
+        Of the log with the finding repaired.
+    finding : Finding
+    logged : (n,) array
+        Time as logged of each row. [s]
+    """
+    time = case.record.time
+    inner = np.interp(np.ravel(finding.segments), logged, np.linspace(time[0], time[-1], len(logged)))
+    blocks = _blocks(case, np.r_[time[0], inner, time[-1]], case.known(()))
+    own = np.arange(1, len(inner), 2)
+    more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + SLAB**-2)
+    rate = finding.parameters["rate"]
+    return replace(finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))})
+
+
+def is_testable(case):
+    """Whether a typical wrong clock, at any time of the log with even odds, would have gained enough to be seen."""
+    blocks = _blocks(case, _edges(case), case.known(()))
+    count = len(blocks.edges) - 1
+    span = max(int(LASTS / (blocks.edges[1] - blocks.edges[0])), 1)
+    energy = np.median(np.diagonal(blocks.of_runs()[1], offset=span))
+    return bool(_nats(TYPICAL * energy, energy) - 2.0 * np.log(count) > LEAST_GAIN)
+
+
+def _edges(case):
+    """Even edges of blocks."""
+    time = case.record.time
+    return np.linspace(time[0], time[-1], max(int(np.ptp(time) / BLOCK), 4) + 1)
+
+
+def _most_likely(blocks):
+    """Gain of the likeliest runs of blocks, less the cost of choosing them, and the finding; 0 and None without."""
+    match, energy = blocks.of_runs()
+    count = len(blocks.edges) - 1
+    span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
+    block = blocks.edges[1] - blocks.edges[0]
+    allowed = (span * block >= SHORTEST) & (span <= LARGEST_SHARE * count)
+    cost = 2.0 * np.log(count)
+    gain, runs = 0.0, []
+    for _ in range(2):
+        at = _best(match, energy, allowed)
+        nats = _nats(match[at], energy[at]) - cost * (1 + len(runs))
+        if nats < gain + LEAST_GAIN * (not runs) or np.isneginf(nats):
+            break
+        gain, runs, value = nats, [*runs, at], match[at] / (energy[at] + SLAB**-2)
+        std = (energy[at] + SLAB**-2) ** -0.5
+        match, energy = match[at] + match, energy[at] + energy + 2.0 * blocks.with_run(*at)
+        first, last = at
+        allowed = allowed & ((np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last))
+    if not runs or not PLAUSIBLE[0] < 1.0 + value < PLAUSIBLE[1] or abs(value) < SMALLEST:
+        return 0.0, None
+    segments = tuple(sorted((float(blocks.edges[a]), float(blocks.edges[b])) for a, b in runs))
+    rate = {"rate": Estimate(1.0 + float(value), float(np.hypot(std, UNSURE * value)), "1")}
+    note = "the ship answers thrusters and wind at another rate than logged"
+    return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
+
+
+def _nats(match, energy):
+    precision = np.maximum(energy, 0.0) + SLAB**-2
+    return 0.5 * match**2 / precision - 0.5 * np.log(precision * SLAB**2)
+
+
+def _best(match, energy, allowed):
+    nats = np.where(allowed, _nats(match, energy), -np.inf)
+    return np.unravel_index(np.argmax(nats), nats.shape)
+
+
+def _blocks(case, edges, columns: list[Column]):
+    """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
+    count, moved = len(edges) - 1, _moved(case)
+    place = np.clip(np.searchsorted(edges, case.record.time[:-1], side="right") - 1, 0, count - 1)
+    driven = np.zeros((len(moved), 6, count))
+    driven[np.arange(len(moved)), :, place] = -moved
+    return _Blocks(edges, *_left(case, columns, driven))
+
+
+def _moved(case):
+    """What each step moves the ship, (n-1, 6) array."""
+    record, middle = case.record, Motion(*(0.5 * (value[:-1] + value[1:]) for value in case.motion))
+    moved = record.step * rows_first(motion_rates(middle, record.drivers(case.plant, 0.5), case.plant))
+    return np.where(record.known[:-1, None], moved, 0.0)
+
+
+def _left(case, columns, driven):
+    """Match with the log of further columns, (n-1, 6, k), and their Gram matrix, less what other columns explain."""
+    base, others = case.base_of(columns), len(columns)
+    linear = with_columns(base, driven, np.zeros((*base.seen.shape[:2], driven.shape[-1])))
+    products = gram(innovations(linear, case.noise, case.record)).products
+    theirs, own = slice(1, 1 + others), slice(1 + others, None)
+    inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
+    left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])
+    return left[own, 0], left[own, own]

@@ -1,0 +1,1 @@
+"""The ship model in array form, her inputs, tolerances and third-party FMUs."""

@@ -1,0 +1,237 @@
+"""A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.ship.model import Drivers, Motion
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["CHANNELS", "Record", "first_motion", "record_of"]
+
+_SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s on Gunnerus
+_ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
+CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
+_TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
+
+
+@dataclass(frozen=True)
+class Record:
+    """Measurements and drivers of one log, or of several of the same length with them on the first axis.
+
+    Attributes
+    ----------
+    time : (n,) array
+        Even. [s]
+    measured : (..., n, 6) array
+        `CHANNELS` in SI, heading unwrapped, NaN where there is none.
+    units : dict of str to tuple of two (..., n) arrays
+        Speed of each thruster, or thrust where that drives it, and direction, unwrapped. [rev/s or N, rad]
+    wind : tuple of two (..., n) arrays, or None
+        Speed, and direction unwrapped. [m/s, rad]
+    known : (n,) bool array
+        Whether everything that drives the ship is known over the step that follows.
+    """
+
+    time: np.ndarray
+    measured: np.ndarray
+    units: dict
+    wind: Any
+    known: np.ndarray
+    remarks: tuple = field(default=())
+
+    @property
+    def step(self):
+        """Time from row to row. [s]"""
+        return float(self.time[1] - self.time[0])
+
+    def substeps(self, plant):
+        """Into how many equal steps a row is parted to move a ship, so that one small or stiff does not run away."""
+        rows = self.step / (_ONE_STEP * np.sqrt(plant.parts["hull"].length))
+        return 2 ** int(np.ceil(np.log2(max(rows, 1.0)) - 1e-9))
+
+    def drivers(self, plant, share=0.0):
+        """What drives the ship at each row but the last, or a share of a step after it.
+
+        Late channels are taken that much later; where the navigation is late, all others are taken earlier.
+        """
+        lags = plant.parts["instruments"]
+        late = share * self.step - lags.navigation_lag
+        units = {
+            name: tuple(self._shifted(series, late + lags.thruster_lag) for series in pair)
+            for name, pair in self.units.items()
+        }
+        wind = (None, None) if self.wind is None else (self._shifted(s, late + lags.wind_lag) for s in self.wind)
+        return Drivers(self.time[:-1] + share * self.step, units, *wind)
+
+    def _shifted(self, series, seconds):
+        """A series that much later, linear between rows."""
+        rows = self.time.size
+        at = np.clip(np.arange(rows - 1) + seconds / self.step, 0.0, rows - 1.0)
+        low = np.minimum(at.astype(int), rows - 2)
+        share = at - low
+        return series[..., low] * (1.0 - share) + series[..., low + 1] * share
+
+
+def record_of(log, plant):
+    """Arrays of a repaired log.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+        Evenly spaced, roles in the contract's units, NaN where there is no data.
+    plant : Plant
+
+    Returns
+    -------
+    Record
+        Its `remarks` say what is missing.
+
+    Raises
+    ------
+    ShipcosimError
+        Too little to diagnose.
+    """
+    rows = log.sizes["time"]
+    missing = [role for role in ("north", "east", "heading") if role not in log]
+    if missing or rows < 120:
+        found = f"no channel {', '.join(missing)}." if missing else f"{rows} rows."
+        right = "A diagnosis needs north, east and heading over at least two minutes, better forty."
+        raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
+    measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
+    measured[:, 2] = _unwrapped(measured[:, 2])
+    remarks, known, units = [], np.ones(rows, bool), {}
+    _check_strangers(log, plant)
+    for name in plant.thrusters:
+        units[name], whole = _unit(log, name, plant, rows, remarks)
+        known &= whole
+    wind, whole = _wind(log, rows, remarks)
+    known &= whole
+    remarks += [_about_stranger(name, one) for name, one in plant.strangers.items()]
+    known[:-1] &= known[1:]
+    record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
+    slow = _SLOW_ENOUGH * np.sqrt(plant.parts["hull"].length)
+    return _thinned(record, max(int(slow / record.step + 1e-6), 1))
+
+
+def _thinned(record, rows):
+    """The record with every so many rows averaged into one."""
+    if rows == 1:
+        return record
+
+    def mean(series):
+        whole = series[: len(series) // rows * rows].reshape(-1, rows, *series.shape[1:])
+        count = np.isfinite(whole).sum(1)
+        return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
+
+    units = {name: tuple(mean(series) for series in pair) for name, pair in record.units.items()}
+    wind = record.wind and tuple(mean(series) for series in record.wind)
+    known = mean(record.known.astype(float)) == 1.0
+    return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
+
+
+def _column(log, role, rows):
+    return log[role].values.astype(float) if role in log else np.full(rows, np.nan)
+
+
+def _unit(log, name, plant, rows, remarks):
+    """Speed or thrust of a thruster and its direction, and where they are known."""
+    speed, direction = _column(log, f"{name}_rpm", rows) / 60.0, _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
+    if "thrust" in plant.drives(name):
+        speed = _column(log, f"{name}_thrust", rows)
+    elif f"{name}_rpm" not in log:
+        if "rpm" in plant.drives(name):
+            remarks.append(
+                f"No speed of '{name}' in the log: taken to stand still; nothing about it can be identified."
+            )
+        speed = np.zeros(rows)
+    if name in plant.azimuths and f"{name}_azimuth" not in log:
+        remarks.append(f"No direction of '{name}' in the log: taken to point ahead.")
+    if name not in plant.azimuths or f"{name}_azimuth" not in log:
+        direction = np.full(rows, plant.fixed.get(name, 0.0))
+    whole = np.isfinite(speed) & np.isfinite(direction)
+    return (_calmed(speed), _calmed(_unwrapped(direction))), whole
+
+
+def _check_strangers(log, plant):
+    """Raise ShipcosimError where the log lacks what drives an FMU of somebody else: nobody knows its load then."""
+    drives = [(name, f"{name}_{kind}") for name, one in plant.strangers.items() for kind in one.drives]
+    where, remedy = str(log.attrs.get("source", "log")), "Log it under this name, or name its column in a channel file."
+    lacking = [
+        Problem(where, f"no channel {role}, which drives '{name}'.", remedy) for name, role in drives if role not in log
+    ]
+    if lacking:
+        raise ShipcosimError(lacking)
+
+
+def _about_stranger(name, one):
+    """What to know of a part that somebody else's FMU moves."""
+    idle = f" What the log does not tell keeps its start value: {', '.join(one.idle)}." if one.idle else ""
+    law = f"'{name}' is somebody else's FMU ({one.component.fmu.model_name}), known by its co-simulation along the log."
+    return f"{law}{idle} No manoeuvre can be prescribed with it."
+
+
+def _wind(log, rows, remarks):
+    for speed, direction in (("wind_speed", "wind_from"), ("true_wind_speed", "true_wind_from")):
+        if speed in log and direction in log:
+            pair = _column(log, speed, rows), _unwrapped(_column(log, direction, rows) * np.pi / 180.0)
+            whole = np.isfinite(pair[0]) & np.isfinite(pair[1])
+            if whole.any():
+                return tuple(_calmed(series) for series in pair), whole
+    remarks.append("No wind in the log: forces of the wind, of waves, of a current and of a line cannot be told apart.")
+    return None, np.ones(rows, bool)
+
+
+def _calmed(series):
+    """The series without gaps, averaged over neighbouring rows.
+
+    So the noise of a channel does not get less, and the log likelier, when the channel is taken half a row later.
+    """
+    filled = _filled(series)
+    ends = np.concatenate([filled[:1], filled, filled[-1:]])
+    return 0.25 * ends[:-2] + 0.5 * ends[1:-1] + 0.25 * ends[2:]
+
+
+def _filled(series):
+    """The series with linear interpolation where it has no value."""
+    whole = np.isfinite(series)
+    if not whole.any():
+        return np.zeros_like(series)
+    return np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
+
+
+def _unwrapped(angle):
+    """An angle without jumps of a turn, across rows without a value too."""
+    whole = np.isfinite(angle)
+    found = angle.copy()
+    found[whole] = np.unwrap(angle[whole])
+    return found
+
+
+def first_motion(record, plant, smooth=4.0):
+    """A motion near the measured one, to start from: smoothed measurements, rates from positions where not measured.
+
+    Returns
+    -------
+    Motion
+        Of (..., n) arrays.
+    """
+    from scipy.ndimage import gaussian_filter1d
+
+    rows = np.arange(record.time.size)
+    width = max(smooth / record.step, 1.0)
+    flat = record.measured.reshape(-1, rows.size, 6)
+    out = np.empty_like(flat)
+    for one, into in zip(flat, out, strict=True):
+        for channel in range(6):
+            whole = np.isfinite(one[:, channel])
+            series = np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else None
+            into[:, channel] = np.nan if series is None else gaussian_filter1d(series, width, mode="nearest")
+    x, y, psi, u, v, r = np.moveaxis(out.reshape(record.measured.shape), -1, 0)
+    if np.isnan(r).any():
+        r = np.gradient(psi, record.step, axis=-1)
+    if np.isnan(u).any() or np.isnan(v).any():
+        north, east = np.gradient(x, record.step, axis=-1), np.gradient(y, record.step, axis=-1)
+        u, v = np.cos(psi) * north + np.sin(psi) * east, np.cos(psi) * east - np.sin(psi) * north
+    return Motion(x, y, psi, u, v, r)

@@ -1,0 +1,205 @@
+"""A part of the ship that somebody else's FMU moves: what it is fed with, what of it reaches her, its numbers."""
+
+import keyword
+import re
+from dataclasses import dataclass, field, make_dataclass
+from typing import Any, NamedTuple
+
+from shipcosim.errors import Problem
+from shipcosim.models.core.parameters import quantity
+from shipcosim.series import conversion
+
+__all__ = ["DRIVES", "BlackBox", "Link", "Stranger", "drives_of", "part_of", "problem_of", "stranger_of"]
+
+DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
+"""What a log says of a thruster, and in which unit it is handed on."""
+MOTION = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r")
+"""Outputs of the ship that a log tells."""
+_UNITS = {"rpm": ("rpm", "rad/s", "rev/s", "rev/min"), "thrust": ("N", "kN"), "azimuth": ("rad", "deg")}
+_KNOWN = 0.02  # of the thrust, where nobody says more (assumed)
+
+
+@dataclass(frozen=True)
+class BlackBox:
+    """Numbers of a part that the FMU of somebody else moves; `part_of` gives it its fields."""
+
+
+class Link(NamedTuple):
+    """What an input gets: ``factor * quantity + offset``, the quantity in rpm, N, rad, m, m/s or rad/s."""
+
+    quantity: str
+    variable: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Stranger:
+    """An FMU of somebody else that puts a load on the ship.
+
+    Attributes
+    ----------
+    component : Component
+    links : tuple of Link
+        Inputs that a log feeds.
+    loads : tuple of (str, str, float, float)
+        Axis of the ship, output, and factor and offset on the way.
+    parameters : dict of str to str
+        By the number's name: variable of each parameter that is known within a tolerance.
+    idle : tuple of str
+        Inputs that the system feeds and no log: they keep their start value.
+    unclear : tuple of str
+        Inputs of which more than one could be its speed, or its direction.
+    step : float or None
+        Of the system. [s]
+    law : Law or None
+        Its loads over a log.
+    """
+
+    component: Any
+    links: tuple
+    loads: tuple
+    parameters: dict = field(default_factory=dict)
+    idle: tuple = ()
+    unclear: tuple = ()
+    step: float | None = None
+    law: Any = None
+
+    @property
+    def drives(self):
+        """What a log has to say of it: ``"rpm"`` or ``"thrust"``, ``"azimuth"``."""
+        return tuple(kind for kind in DRIVES if any(link.quantity == kind for link in self.links))
+
+
+def drives_of(first, azimuth):
+    """What drives a stranger, by quantity: of a record's pair the first is its speed [rev/s], or its thrust [N]."""
+    return {"rpm": 60.0 * first, "thrust": first, "azimuth": azimuth}
+
+
+def stranger_of(system, name, ship):
+    """A component as a black box.
+
+    Parameters
+    ----------
+    system : System
+    name, ship : str
+        Of the component, and of the ship that it loads.
+
+    Returns
+    -------
+    Stranger
+        Without links where nothing that a log has feeds it; `problem_of` says so.
+    """
+    component, into = system.components[name], {}
+    for connection in system.connections:
+        if connection.target[0] == name:
+            into.setdefault(connection.target[1], []).append(connection)
+    links, idle, unclear, drives = [], [], [], {kind: [] for kind in DRIVES}
+    for variable, feeding in into.items():
+        if all(c.source[0] == ship and c.source[1] in MOTION and c.mapping is None for c in feeding):
+            links += [Link(c.source[1], variable, c.factor, c.offset) for c in feeding]
+        elif kind := _kind(system, feeding[0]):
+            drives[kind].append(feeding[0])
+        else:
+            idle.append(variable)
+    if drives["rpm"]:
+        idle += [c.target[1] for c in drives.pop("thrust")]
+    for kind, candidates in drives.items():
+        named = [c for c in candidates if c.source[1] == f"{name}_{kind}"] or candidates
+        one_source = len({c.source for c in named}) == 1
+        links += [_drive(system, kind, c) for c in named if one_source]
+        unclear += [c.target[1] for c in named if not one_source]
+        idle += [c.target[1] for c in candidates if c not in named]
+    loads = tuple(
+        (c.target[1][4], c.source[1], c.factor, c.offset)
+        for c in system.connections
+        if c.source[0] == name and c.target[0] == ship and c.target[1].startswith("tau_")
+    )
+    step = max(filter(None, (system.experiment.step_size, component.step_size)), default=None)
+    return Stranger(component, tuple(links), loads, _parameters(component), tuple(idle), tuple(unclear), step)
+
+
+def _kind(system, connection):
+    """Which drive an input would be, by the unit of what feeds it, or by its name where there is none."""
+    source, given = connection.source
+    label = given if source is None else connection.target[1]
+    unit = _unit(system, connection)
+    named = next((kind for kind in DRIVES if label.endswith(kind)), None)
+    if unit in (None, "", "1"):
+        return "rpm" if named == "rpm" else None
+    kind = next((kind for kind, units in _UNITS.items() if unit in units), None)
+    return kind if named == kind or (source is None and kind != "thrust") else None
+
+
+def _unit(system, connection):
+    """Unit in which a log would feed it: that of the system's input, else of the variable."""
+    (source, given), (name, variable) = connection.source, connection.target
+    own = system.components[name].fmu.variables[variable].unit
+    return (system.inputs[given].unit or own) if source is None else own
+
+
+def _drive(system, kind, connection):
+    """The link from a log to an input, through the system where one of its inputs feeds it."""
+    unit = _unit(system, connection)
+    per, offset = (1.0, 0.0) if unit in (None, "", "1") else conversion(DRIVES[kind], unit)
+    if connection.source[0] is not None:
+        return Link(kind, connection.target[1], per, offset)
+    return Link(kind, connection.target[1], connection.factor * per, connection.factor * offset + connection.offset)
+
+
+def _parameters(component):
+    """Variables of real parameters with a tolerance, by the names of their numbers."""
+    found = {}
+    for variable in component.tolerances:
+        known = component.fmu.variables.get(variable)
+        scalar = known is not None and isinstance(component.start_value(variable), float) and not known.dimensions
+        if scalar and variable not in _numbers(DRIVES):
+            name = re.sub(r"\W", "_", variable)
+            found[name if name.isidentifier() and not keyword.iskeyword(name) else f"_{name}"] = variable
+    return found
+
+
+def _numbers(drives):
+    """What may be wrong with any thruster, whoever made it."""
+    loss = quantity(0.0, "1", "share of its load that is missing", "neutral", tolerance=_KNOWN, maximum=1.0)
+    offset = quantity(0.0, "rpm", "given speed minus the real one", "neutral")
+    most = quantity(1.0, "rpm", "largest speed", "the FMU's, else the log's", minimum=1e-6)
+    turned = quantity(0.0, "rad", "real direction minus the given one", "neutral", tolerance=0.0035)
+    found = {"thrust_loss": loss} if drives else {}
+    found |= {"rpm_offset": offset, "rpm_max": most} if "rpm" in drives else {}
+    return found | ({"azimuth_offset": turned} if "azimuth" in drives else {})
+
+
+def part_of(stranger):
+    """Numbers of a stranger: neutral ones, and its parameters that are known within a tolerance.
+
+    Parameters
+    ----------
+    stranger : Stranger
+
+    Returns
+    -------
+    BlackBox
+    """
+    component, numbers = stranger.component, _numbers(stranger.drives)
+    for name, variable in stranger.parameters.items():
+        about, tolerance = component.fmu.variables[variable], component.tolerances[variable]
+        text = about.description or variable
+        value = component.start_value(variable)
+        numbers[name] = quantity(value, about.unit or "1", text, "the system's", tolerance=tolerance)
+    listed = [(name, float, one) for name, one in numbers.items()]
+    return make_dataclass("BlackBoxOf", listed, bases=(BlackBox,), frozen=True)()
+
+
+def problem_of(system, name, ship, one):
+    """What to say of a stranger whose load no log tells; None where it does."""
+    if one.links and not one.unclear:
+        return None
+    why = f"any of {', '.join(one.unclear)} could be what drives it" if one.unclear else "nothing of a log feeds it"
+    found = f"'{name}' ({one.component.fmu.model_name}) puts a load on '{ship}', and {why}."
+    remedy = (
+        f"Feed its speed by an input of the system named '{name}_rpm', its direction by '{name}_azimuth' (in rpm or "
+        f"rad/s, deg or rad), or what it is to push by '{name}_thrust', or other inputs from the ship's "
+        f"{', '.join(MOTION)}."
+    )
+    return Problem(system.file, found, remedy)

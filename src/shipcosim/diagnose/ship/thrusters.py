@@ -1,0 +1,155 @@
+"""Thrusters: loads of our own on the ship by the log's speeds and directions, and how a DP knows any of them."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.models.propulsion import thruster
+from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+
+__all__ = ["Pusher", "fixed_of", "neighbours_of", "neighbours_placed", "pusher_of", "thruster_loads"]
+
+
+class Pusher(NamedTuple):
+    """A thruster as a DP knows it.
+
+    Attributes
+    ----------
+    x, y : float
+        [m]
+    axis : float
+        Direction of its thrust from the bow, added to its own where it has one. [rad]
+    pointed, turns : bool
+        Whether it has a direction, and whether the DP may change that.
+    ahead, astern : float
+        Bollard thrust over squared speed; 0 where the DP has to leave it alone. [N.s2]
+    most : float
+        Largest speed. [rev/s]
+    """
+
+    x: float
+    y: float
+    axis: float
+    pointed: bool
+    turns: bool
+    ahead: float
+    astern: float
+    most: float
+
+
+def pusher_of(plant, name):
+    """A thruster of a ship as her DP knows it.
+
+    Parameters
+    ----------
+    plant : Plant
+    name : str
+
+    Returns
+    -------
+    Pusher
+    """
+    unit = plant.parts[name]
+    if name in plant.strangers:
+        law, pointed = plant.strangers[name].law, "azimuth" in plant.drives(name)
+        b = law.bollard
+        return Pusher(b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, law.rpm_max / 60.0)
+    if isinstance(unit, AzimuthParameters):
+        turns = name not in plant.fixed
+        axis, rates = plant.fixed.get(name, 0.0), (*unit.bollard[:2], unit.rpm_max / 60.0)
+        return Pusher(unit.x, unit.y, axis, turns, turns, *rates)
+    thrust = 3600.0 * unit.thrust_coefficient
+    return Pusher(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
+
+
+def thruster_loads(name, drivers, u_r, v_r, r, plant):
+    """Load of a thruster, as the system wires it.
+
+    Parameters
+    ----------
+    name : str
+    drivers : Drivers
+    u_r, v_r, r : array
+        Velocity of the ship through the water. [m/s, m/s, rad/s]
+    plant : Plant
+
+    Returns
+    -------
+    tuple of three arrays
+        X, Y, N. [N, N, N.m]
+    """
+    if plant.wiring is None:
+        return _loads_of(name, drivers.units, u_r, v_r, r, plant)
+    units = drivers.units | {other: plant.wiring.driven(other, drivers.units) for other in plant.wiring.drives}
+    return plant.wiring.loaded(name, _loads_of(name, units, u_r, v_r, r, plant))
+
+
+def _loads_of(name, units, u_r, v_r, r, plant):
+    unit, (n, azimuth) = plant.parts[name], units[name]
+    if isinstance(unit, TunnelParameters):
+        return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
+    state = thruster.azimuth_given(n, azimuth, unit=unit)
+    neighbour = plant.neighbours.get(name)
+    extra = {}
+    if neighbour:
+        n_other, azimuth_other = units[neighbour]
+        extra = {"neighbour_azimuth": azimuth_other, "neighbour_rpm": 60.0 * n_other}
+    return thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)[-3:]
+
+
+def neighbours_of(system, parts):
+    """By azimuth thruster of ours, the one whose slipstream can hit it: as the system wires it, else the nearest.
+
+    Parameters
+    ----------
+    system : System
+    parts : dict of str to dataclass
+
+    Returns
+    -------
+    dict of str to str
+    """
+    units = [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]
+    wired = {(c.target[0], c.source[0]) for c in system.connections if c.target[1].startswith("neighbour_")}
+    found = {}
+    for name in units:
+        here, others = parts[name], [other for other in units if other != name]
+        near = sorted(
+            others, key=lambda o: ((name, o) not in wired, abs(parts[o].x - here.x) + abs(parts[o].y - here.y))
+        )
+        found |= {name: near[0]} if near else {}
+    return found
+
+
+def neighbours_placed(parts, neighbours):
+    """The parts, in which each azimuth thruster knows where its neighbour is."""
+    placed = dict(parts)
+    for name, other in neighbours.items():
+        if parts[name].neighbour_x == parts[name].neighbour_y == 0.0:
+            placed[name] = replace(parts[name], neighbour_x=parts[other].x, neighbour_y=parts[other].y)
+    return placed
+
+
+def fixed_of(system, parts):
+    """Azimuth thrusters of ours that a system drives and never turns, as fixed propellers, and where they point.
+
+    Parameters
+    ----------
+    system : System
+    parts : dict of str to dataclass
+
+    Returns
+    -------
+    dict of str to float
+        [rad]
+    """
+    fed, found = {connection.target for connection in system.connections}, {}
+    for name in [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]:
+        replays = bool(system.components[name].start_value("replay"))
+        kinds = ("rpm_in", "azimuth_in", "azimuth_in") if replays else ("thrust_cmd", "azimuth_cmd", "azimuth_start")
+        speed, direction, start = kinds
+        turned = (name, direction) in fed or (name, speed) not in fed
+        if not turned or parts[name].azimuth_rate == 0.0:
+            found[name] = float(system.components[name].start_value(start))
+    return found

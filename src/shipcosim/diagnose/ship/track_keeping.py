@@ -1,0 +1,213 @@
+"""Ships that keep to a track under a DP, many at once, in array form.
+
+Feedback is what a bridge would add to thrusters that are already told something: the logged speeds and directions, or
+those of a planned manoeuvre.
+"""
+
+import numpy as np
+
+from shipcosim.diagnose.ship.model import Drivers, Motion, motion_rates
+from shipcosim.diagnose.ship.thrusters import pusher_of
+
+_FREQUENCY = 0.5  # rad/s times the square root of the length in m over gravity, of the DP: 0.09 rad/s on Gunnerus
+_DAMPING = 0.8
+_INTEGRAL = 0.1  # of the frequency
+_ACROSS = 0.2  # how readily a unit turns, against how readily it changes its speed
+_ANSWER = 4.0  # s, until the thrusters of a ship of 33.9 m do as told; others by the root of their length
+
+
+def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
+    """Motion and thrusters of ships that a DP brings along a track.
+
+    Parameters
+    ----------
+    ships : Plant
+        The real ships; its numbers may be (m,) arrays.
+    count : int
+        Number of ships m.
+    track : Motion
+        (n,) or (m, n) arrays.
+    record : Record
+        What the thrusters are told anyway, (n,) or (m, n) arrays, and the wind.
+    dp : Dp
+    jolts : (n, 3, m) array, optional
+        Changes of velocity at each row. [m/s, m/s, rad/s]
+    held : dict of str to (n,) or (m, n) bool array, optional
+        Where the DP has no say over a thruster.
+
+    Returns
+    -------
+    tuple of Motion, dict of str to tuple of two arrays
+        Motion, and speed and direction by thruster; (m, n) arrays.
+    """
+    h, n = record.step, record.time.size
+    parts = record.substeps(ships)
+    drivers = [record.drivers(ships, (i + 0.5) / parts) for i in range(parts)]
+    ship = Motion(*(np.zeros(count) + value[..., 0] for value in track))
+    shares = dp.shares({name: azimuth for name, (_, azimuth) in record.units.items()}, held or {})
+    shares = np.moveaxis(shares, -3, 0)
+    told, integral, rates = np.zeros((shares.shape[-2], count)), np.zeros((3, count)), Motion(*np.zeros((6, count)))
+    rows, units = [], {name: [] for name in ships.thrusters}
+    for k in range(n):
+        rows.append(ship)
+        load, integral = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
+        told = dp.answer(told, load, shares[k])
+        speeds = dp.speeds(told, record, k)
+        for name, pair in speeds.items():
+            units[name].append(pair)
+        if k < n - 1:
+            for i, part in enumerate(drivers):
+                # a small ship answers within a row, through which a log's thrusters go on evenly
+                now = dp.speeds(told, record, k + (i + 0.5) / parts) if parts > 1 else speeds
+                ship, rates = _moved(ship, rates, _at(part, k, now), ships, h / parts, dp)
+            if jolts is not None:
+                ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
+            ship = dp.bounded(ship)
+    motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
+    series = {name: tuple(np.stack(s, axis=-1) for s in zip(*pairs, strict=True)) for name, pairs in units.items()}
+    return motion, series
+
+
+def _between(series, row):
+    """A series at a row, or linearly between two."""
+    low = min(int(row), series.shape[-1] - 2)
+    return (
+        series[..., int(row)]
+        if row == int(row)
+        else (low + 1 - row) * series[..., low] + (row - low) * series[..., low + 1]
+    )
+
+
+def _at(drivers, k, units):
+    """What drives the ships over a step: the wind of the record, and thrusters as they are told."""
+    wind = (None, None) if drivers.wind_speed is None else (drivers.wind_speed[..., k], drivers.wind_from[..., k])
+    return Drivers(drivers.time[k], units, *wind)
+
+
+def _moved(ship, last, drivers, plant, h, dp):
+    """The ships a step later by the rates in its middle, where those of the last step lead; and the rates."""
+    middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(ship, last, strict=True)))
+    rates = motion_rates(dp.bounded(middle), drivers, plant)
+    return Motion(*(value + h * rate for value, rate in zip(ship, rates, strict=True))), rates
+
+
+class Dp:
+    """Proportional, derivative and slow integral action, shared out to the thrusters that the ship has.
+
+    Parameters
+    ----------
+    plant : Plant
+        The ship as the DP knows her.
+    h : float
+        Step. [s]
+    fixed : collection of str
+        Azimuth thrusters that cannot turn.
+    """
+
+    def __init__(self, plant, h, fixed=()):
+        hull = plant.parts["hull"]
+        self.pushers = {name: pusher_of(plant, name) for name in plant.thrusters}
+        self.h, self.plant, self.fixed = h, plant, fixed
+        self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
+        self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
+        self.mass = np.array([hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66])
+        self.most = 0.05 * self.mass * np.array([1.0, 1.0, 4.0 / hull.length])
+
+    def bounded(self, ship):
+        """The ships no faster than any ship is: one that a DP of this kind cannot steer gets lost, not infinite."""
+        most = np.sqrt(9.81 * self.plant.parts["hull"].length)
+        u, v, r = (np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.plant.parts["hull"].length))
+        return ship._replace(u=u, v=v, r=r / self.plant.parts["hull"].length)
+
+    def load(self, ship, want, integral):
+        """Load that brings the ships back to the track, in their body frames; and the integral action."""
+        c, s = np.cos(ship.psi), np.sin(ship.psi)
+        dx, dy = want.x - ship.x, want.y - ship.y
+        error = np.stack([c * dx + s * dy, c * dy - s * dx, want.psi - ship.psi])
+        rate = np.stack([want.u - ship.u, want.v - ship.v, want.r - ship.r])
+        w = self.frequency
+        integral = integral + self.h * _INTEGRAL * w * w * w * error
+        wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
+        return np.clip(wanted, -self.most[:, None], self.most[:, None]), integral
+
+    def answer(self, told, load, shares):
+        """Change of the thrusters' forces after a step, (k, m) array. [N]"""
+        return told + min(self.h / self.delay, 1.0) * (_times(shares, load) - told)
+
+    def shares(self, azimuths, held):
+        """What each thruster takes of a load on the ship, along and, where it turns, across its axis.
+
+        Parameters
+        ----------
+        azimuths : dict of str to (...) array
+            Where each thruster points.
+        held : dict of str to (...) bool array
+            Thrusters that take no part.
+
+        Returns
+        -------
+        (..., k, 3) array
+            For k forces, in the order of the thrusters.
+        """
+        columns, eases = [], []
+        for name, unit in self.pushers.items():
+            angle = unit.axis + (azimuths[name] if unit.pointed else 0.0 * azimuths[name])
+            alone = held.get(name, False) if unit.ahead else True
+            for i in range(self._forces(name)):
+                c, s = np.cos(angle + 0.5 * np.pi * i), np.sin(angle + 0.5 * np.pi * i)
+                columns.append(np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
+                eases.append(np.where(alone, 0.0, _ACROSS if i else 1.0)[..., None] + np.zeros(3))
+        scale = np.array([1.0, 1.0, 4.0 / self.plant.parts["hull"].length])
+        ease = np.stack(np.broadcast_arrays(*eases), axis=-2)
+        Bt = ease * scale * np.stack(np.broadcast_arrays(*columns), axis=-2)
+        return ease * scale * (Bt @ np.linalg.inv(np.swapaxes(Bt, -1, -2) @ Bt + 1e-2 * np.eye(3)))
+
+    def shared(self, load, azimuths, held):
+        """A load on the ship, (3, m) array, as forces along and across the axes of her thrusters, (2, m) arrays. [N]"""
+        return self._by_thruster(_times(self.shares(azimuths, held), load))
+
+    def _forces(self, name):
+        """In how many directions a thruster pushes as the DP wants."""
+        return 2 if self.pushers[name].turns and name not in self.fixed else 1
+
+    def _by_thruster(self, forces):
+        """Forces along and across the axis of each thruster."""
+        found, place = {}, 0
+        for name in self.pushers:
+            own = forces[place : place + self._forces(name)]
+            found[name] = own if len(own) > 1 else np.concatenate([own, np.zeros_like(own)])
+            place += len(own)
+        return found
+
+    def speeds(self, told, record, k):
+        """Speed and direction of each thruster: those that it is told anyway, changed by what the DP adds.
+
+        The row may be a broken number, for a time between two.
+        """
+        found = {}
+        for name, (along, across) in self._by_thruster(told).items():
+            unit, (n, azimuth) = self.pushers[name], (_between(series, k) for series in record.units[name])
+            if not unit.ahead:
+                found[name] = n + 0.0 * along, azimuth + 0.0 * along
+                continue
+            size, turn = self.force(name, n) + along, 0.0
+            if unit.turns:
+                # a unit that hardly pushes cannot be told by its direction: it keeps it
+                turn = np.clip(across / np.maximum(np.abs(size), 0.02 * self.force(name, unit.most)), -0.5, 0.5)
+            found[name] = np.clip(self.speed(name, size), -unit.most, unit.most), azimuth + turn * np.sign(size)
+        return found
+
+    def force(self, name, n):
+        """Bollard thrust of a thruster at a speed in rev/s. [N]"""
+        unit = self.pushers[name]
+        return np.where(n >= 0, unit.ahead, unit.astern) * n * np.abs(n)
+
+    def speed(self, name, force):
+        """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
+        unit = self.pushers[name]
+        return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern))
+
+
+def _times(shares, load):
+    """Forces (k, m) of a load (3, m) by shares (1 or m, k, 3) or (k, 3)."""
+    return (shares @ load.T[..., None])[..., 0].T

@@ -1,0 +1,66 @@
+"""Gains on conditions that are kept from the fit, wherever in the log they are: other headings, free drift."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from shipcosim.diagnose.validation.gain import compare
+from shipcosim.diagnose.validation.split import is_idle, sorted_by, starts, without_headings
+
+_LEAVES = 0.5  # of the rows, to fit on
+_FEWEST = 12  # predictions
+
+
+def unseen(record):
+    """Training rows for gains on conditions that are kept from the fit, wherever in the log they are.
+
+    Parameters
+    ----------
+    record : Record
+
+    Returns
+    -------
+    dict of str to (n,) bool array
+        ``"other headings"``: all but the quarter circle with the most predictions in it of those that leave half of
+        the rows. ``"free drift"``: all but the rows without thrust. What the log has none of is left out.
+    """
+    rows, found = starts(record), {}
+    sectors = [without_headings(record, middle) for middle in np.radians(np.arange(0.0, 360.0, 30.0))]
+    tries = [(sorted_by(train, rows, record)[1].size, train) for train in sectors if train.mean() >= _LEAVES]
+    most = max(tries, key=lambda one: one[0], default=(0, None))
+    if most[0]:
+        found["other headings"] = most[1]
+    powered = ~is_idle(record)
+    if sorted_by(powered, rows, record)[1].size and powered.mean() >= _LEAVES:
+        found["free drift"] = powered
+    return found
+
+
+def compare_unseen(case, fit):
+    """Comparisons on conditions that nothing was fitted on, wherever in the log they are.
+
+    Parameters
+    ----------
+    case, fit : Case and Fit
+        As for `compare`.
+
+    Returns
+    -------
+    dict of str to Comparison
+        ``"other headings"``: predictions that start 15 deg or more from any heading fitted on; ``"free drift"``. Those
+        that the log has enough of.
+    """
+    found = {}
+    for name, train in unseen(case.record).items():
+        comparison = compare(case, fit, train=train)
+        if comparison is not None and name == "other headings":
+            comparison = _only(comparison, ~comparison.errors["heading_known"].values)
+        if comparison is not None and comparison.rows.size >= _FEWEST:
+            found[name] = comparison
+    return found
+
+
+def _only(comparison, which):
+    """The comparison on some of its segments."""
+    some = np.flatnonzero(which)
+    return replace(comparison, errors=comparison.errors.isel(segment=some), rows=comparison.rows[some])

@@ -1,0 +1,239 @@
+"""The predictions of a gain as co-simulations: the system itself, from what was known at the start of each segment."""
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+from shipcosim.cosim import replay
+from shipcosim.diagnose.ship.model import Motion, shown
+from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
+from shipcosim.diagnose.validation.predictions import missing, predicted
+from shipcosim.diagnose.validation.split import HORIZONS, in_rows
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import make_table
+
+STEP = 0.1
+"""Step of the co-simulations. [s]"""
+MOST = 24
+"""Segments that are simulated."""
+_LATE = 1.5  # steps, from a row of the table until what it drives has moved the ship
+_FAST = 1e3  # so that the weather follows a log at once
+_CALM = {"gust_scale": 0.0, "significant_wave_height": 0.0, "wind_speed_rate": _FAST, "wind_turn_rate": _FAST}
+_SHOWN = ("north", "east", "heading", "surge", "sway", "yaw_rate")
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """A system that replays logs.
+
+    Attributes
+    ----------
+    system : System
+    signals : dict of str to str, optional
+        By role, what it shows as the log does, as `Extension.signals`; without them its ship is looked at through the
+        instruments of the plant.
+    """
+
+    system: object
+    signals: object = None
+
+
+def simulated(comparison, plain, extended, *, most=MOST, progress=None):
+    """Errors of a comparison, those of the plain and the extended model by co-simulation, on some of its segments.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    plain, extended : Replayed
+        The system, and the one extended by the causes of ``comparison.fit``. The second is not run where no cause was
+        fitted.
+    most : int
+        Segments, evenly spread.
+    progress : callable, optional
+        Called with (segments done, segments in all).
+
+    Returns
+    -------
+    xarray.Dataset
+        As ``comparison.errors``; besides ``difference`` [m] by model ``plain`` and ``extended``, horizon and segment:
+        how far the co-simulation is from the same prediction in array form.
+    """
+    count = min(most, comparison.rows.size)
+    some = np.linspace(0, comparison.rows.size - 1, count).round().astype(int)
+    rows, errors = comparison.rows[some], comparison.errors.isel(segment=some).copy(deep=True)
+    replays, done, apart = {"plain": plain}, 0, np.zeros((2, len(HORIZONS), count))
+    if comparison.fit.suspects:
+        replays["extended"] = extended
+    for number, (model, one) in enumerate(replays.items()):
+        predictor = comparison.predictors[model]
+        each = None if progress is None else lambda n, _, done=done: progress(done + n, count * len(replays))
+        found = replayed(one, predictor, rows, progress=each)
+        done += count
+        horizons = in_rows(predictor.record)
+        ends = rows + np.array(horizons)[:, None]
+        for channel, values in missing(found, comparison.seen, ends).items():
+            errors[channel].loc[{"model": model}] = values
+            if "extended" not in replays:
+                errors[channel].loc[{"model": "extended"}] = values
+        array = in_array_form(predictor, rows)
+        apart[number:] = np.hypot(found.x - array.x, found.y - array.y)
+    errors["difference"] = (("replayed", "horizon", "segment"), apart, {"units": "m"})
+    return errors.assign_coords(replayed=["plain", "extended"])
+
+
+def in_array_form(predictor, rows):
+    """What a model predicts the log to show after the horizons, (horizons, s) arrays."""
+    motion = Motion(*(value[rows] for value in predictor.motion))
+    found = predicted(motion, rows, predictor.record, predictor.plant, in_rows(predictor.record))
+    return shown(found, predictor.plant)
+
+
+def replayed(one, predictor, rows, *, step_size=STEP, progress=None):
+    """What a system, run from some rows of a log, says that the log will show after the horizons.
+
+    Parameters
+    ----------
+    one : Replayed
+    predictor : Predictor
+        The same model in array form: gives start values and the table.
+    rows : (s,) array of int
+        Where the runs start.
+    step_size : float
+        [s]
+    progress : callable, optional
+        Called with (segments done, segments in all).
+
+    Returns
+    -------
+    Motion
+        (horizons, s) arrays.
+
+    Raises
+    ------
+    ShipcosimError
+        If the system has no inputs for what the log says of its thrusters.
+    """
+    ship, record = predictor.plant.vessel, predictor.record
+    lag = predictor.original.parts["instruments"].navigation_lag
+    table, states = driving_table(one.system, predictor, step_size, lag)
+    states |= {f"{ship}.{name}_start": value[rows] for name, value in zip(_STATE, predictor.motion, strict=True)}
+    signals = [one.signals[role] for role in _SHOWN] if one.signals else [f"{ship}.{name}" for name in _STATE]
+    late = lag if one.signals else 0.0
+    found = replay(
+        one.system,
+        table,
+        record.time[rows] - lag,
+        step_size * ceil((HORIZONS[-1] + late) / step_size - 1e-6),
+        states=states,
+        step_size=step_size,
+        signals=signals,
+        progress=progress,
+    )
+    ends = late + record.step * np.array(in_rows(record))
+    time, channels = found["time"].values, [found[name].values for name in signals]
+    channels[2] = np.unwrap(channels[2], axis=1)
+    motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
+    return motion if one.signals else shown(motion, predictor.plant)
+
+
+_STATE = ("x", "y", "psi", "u", "v", "r")
+
+
+def _at(series, time, end):
+    """Rows of (segments, times) at one time, linear between."""
+    after = min(max(int(np.searchsorted(time, end)), 1), time.size - 1)
+    share = (end - time[after - 1]) / (time[after] - time[after - 1])
+    return (1.0 - share) * series[:, after - 1] + share * series[:, after]
+
+
+def driving_table(system, predictor, step_size, lag=0.0):
+    """What drives a ship in a log as a table for the inputs of a system, and what must hold besides for a replay.
+
+    An input acts on the ship a step and a half after its row, so the table is that much early.
+
+    Parameters
+    ----------
+    system : System
+    predictor : Predictor
+    step_size : float
+        [s]
+    lag : float
+        By how much the log's times are late. [s]
+
+    Returns
+    -------
+    tuple of xarray.Dataset and dict of str to value
+
+    Raises
+    ------
+    ShipcosimError
+        With every variable of a thruster that no input feeds, although the log changes it.
+    """
+    record, plant = predictor.record, predictor.plant
+    columns, states, problems = [], {}, []
+    for name, (speed, direction) in record.units.items():
+        states |= {} if name in plant.strangers else {f"{name}.replay": True}
+        series = {kind: (values, DRIVES[kind]) for kind, values in drives_of(speed, direction).items()}
+        for variable, kind in _driven(plant, name):
+            values, unit = series[kind]
+            fed = _input(system, name, variable)
+            if fed:
+                columns.append((fed, values, unit, ""))
+            elif np.ptp(values) == 0.0 and not _connected(system, name, variable):
+                states[f"{name}.{variable}"] = values[0]
+            else:
+                found = f"no input of the system feeds '{name}.{variable}', which the log has."
+                problems.append(Problem(system.file, found, "Connect an input of the system to it."))
+    if problems:
+        raise ShipcosimError(problems)
+    weather, calm = _weather(system, plant.vessel, record)
+    columns, last = columns + weather, record.time[-1] + record.step
+    time = np.append(record.time, last) - lag - _LATE * step_size
+    table = make_table(time, [(name, np.append(values, values[-1]), *more) for name, values, *more in columns])
+    for column in table.data_vars.values():
+        column.attrs["interpolation"] = "linear"
+    return table, states | calm
+
+
+def _driven(plant, name):
+    """Variables of a thruster that the log drives, and by what."""
+    if name not in plant.strangers:
+        return [(f"{kind}_in", kind) for kind in plant.drives(name)]
+    return [
+        (link.variable, link.quantity) for link in plant.strangers[name].links if link.quantity in plant.drives(name)
+    ]
+
+
+def _input(system, component, variable):
+    """Input of the system that feeds a variable; None where there is none."""
+    feeding = (c.source for c in system.connections if c.target == (component, variable))
+    return next((name for owner, name in feeding if owner is None), None)
+
+
+def _connected(system, component, variable):
+    return any(c.target == (component, variable) for c in system.connections)
+
+
+def _weather(system, ship, record):
+    """Columns of the wind, and values that leave it as logged."""
+    sources = [c.source for c in system.connections if c.target == (ship, "wind_north")]
+    if not sources or sources[0][0] is None:
+        return _straight(system, ship, record), {}
+    air = sources[0][0]
+    known = system.components[air].fmu.variables
+    values = {f"{air}.{name}": value for name, value in _CALM.items() if name in known}
+    names = [_input(system, air, name) for name in ("wind_speed", "wind_from")]
+    if record.wind is None or None in names:
+        return [], values | ({names[0]: 0.0} if names[0] else {f"{air}.wind_speed": 0.0})
+    return [(names[0], record.wind[0], "m/s", ""), (names[1], record.wind[1], "rad", "")], values
+
+
+def _straight(system, ship, record):
+    """Columns of the wind for inputs of the system that feed it to the ship."""
+    names = [_input(system, ship, f"wind_{axis}") for axis in ("north", "east")]
+    if record.wind is None or None in names:
+        return []
+    speed, direction = record.wind
+    values = -speed * np.cos(direction), -speed * np.sin(direction)
+    return [(name, value, "m/s", "") for name, value in zip(names, values, strict=True)]

@@ -1,0 +1,347 @@
+"""What naming the cause is worth: how far predictions with each model are off, on rows that nothing was fitted on."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray
+
+from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.inference.linearisation import linearise
+from shipcosim.diagnose.ship.model import Motion, shown
+from shipcosim.diagnose.validation.predictions import (
+    earth_fixed,
+    missing,
+    observed,
+    predicted,
+    reference,
+    replayable,
+    restarted,
+)
+from shipcosim.diagnose.validation.split import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
+
+MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
+_HELD = {"plain": "bias_observer", "extended": "extended_observer", "calibrated": None, "floor": None}
+CHANNELS = {"position": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
+_EARTH = tuple(("earth", time) for time in (10.0, 40.0, 160.0))  # s, within which an observer learns a force
+_BOTH = _EARTH + tuple(("body", time) for _, time in _EARTH)
+_FADES = (0.0, 1.0 / 40.0)  # 1/s, rates at which the force of a bias observer fades in a prediction
+_BLOCK = 120.0  # s, two of the longest horizon, for the bootstrap
+_DRAWS = 1000
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """A model with what it knows at each row.
+
+    Attributes
+    ----------
+    record, plant : Record and Plant
+        As from `replayable`.
+    original : Plant
+        As it was before.
+    motion : Motion
+        By the rows until each row, (n,) arrays.
+    """
+
+    record: Any
+    plant: Any
+    original: Any
+    motion: Any
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Errors of predictions with each model.
+
+    Attributes
+    ----------
+    errors : xarray.Dataset
+        `CHANNELS` by ``model`` (`MODELS`), ``horizon`` [s] and ``segment``; coordinates of the segments as from
+        `conditions`.
+    fit : Fit
+        The causes, fitted on the training rows.
+    train : (n,) bool array
+        Rows that were fitted on.
+    rows : (s,) array of int
+        Where the segments start.
+    seen : Motion
+        What the predictions are measured against.
+    observers : dict of str to tuple of str, float and float or None
+        By model, what did best on the training rows: frame of the force, within what time it is learnt [s], at what
+        rate it fades in the prediction [1/s], None where only its start is used.
+    predictors : dict of str to Predictor
+        Of the models ``plain`` and ``extended``.
+    """
+
+    errors: Any
+    fit: Any
+    train: Any
+    rows: Any
+    seen: Any
+    observers: dict
+    predictors: dict
+
+
+def compare(case, fit, *, train=None):
+    """Predict with the plain model, a bias observer, the causes of a fit, and see how far each is off.
+
+    Parameters
+    ----------
+    case : Case
+        Prepared, of one log.
+    fit : Fit
+        To the whole log. Its causes are fitted again on the training rows; near its motion is the reference.
+    train : (n,) bool array, optional
+        Rows to fit on; the first 65 %.
+
+    Returns
+    -------
+    Comparison or None
+        None where the other rows are too few or have too many gaps.
+    """
+    record = case.record
+    train = first_rows(record) if train is None else train
+    inside, rows = sorted_by(train, starts(record), record)
+    if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < _BLOCK:
+        return None
+    part = fitted(trained(case, train), fit.suspects, fit.values, rounds=3 if fit.suspects else 1)
+    linear = linearise(fit.motion, record, fit.plant, [])
+    seen = reference(linear, fit.motion, case.noise, record, fit.plant)
+    extended = case.plant.with_values(part.values)
+    plants = {"plain": case.plant, "extended": extended, "calibrated": calibrated(part), "floor": calibrated(fit)}
+    models = _observed(case, linear, fit.motion, seen, plants)
+    if not fit.suspects:
+        models["extended"] = models["plain"]
+    found, observers, predictors = {}, {}, {}
+    for name, held in _HELD.items():
+        judged = _judged(models[name], inside[::2], rows, seen, held is not None)
+        for label, (errors, observer, _) in zip((name, held), judged, strict=False):
+            found[label], observers[label] = errors, observer
+        predictors[name] = models[name].predictor(judged[0][-1], plants[name])
+    variables = {
+        channel: (("model", "horizon", "segment"), np.stack([found[one][channel] for one in MODELS]), {"units": unit})
+        for channel, unit in CHANNELS.items()
+    }
+    coordinates = {"model": list(MODELS), "horizon": list(HORIZONS)}
+    coordinates |= conditions(record, seen, rows, train, case.plant)
+    return Comparison(xarray.Dataset(variables, coordinates), part, train, rows, seen, observers, predictors)
+
+
+def _judged(model, inside, rows, seen, holds):
+    """Errors on the held-out rows with the observer that is best on the training rows: without a force, and with it.
+
+    Returns
+    -------
+    list of tuple of dict, tuple and int
+        Errors by channel, the observer as in `Comparison`, its number.
+    """
+    missed, found = model.missed(np.concatenate([inside, rows]), seen, holds), []
+    tuning = (missed["position"][-1, ..., : len(inside)] ** 2).mean(-1)
+    for some in (slice(0, 1), slice(1, None)) if holds else (slice(0, 1),):
+        fade, number = np.unravel_index(tuning[some].argmin(), tuning[some].shape)
+        errors = {channel: values[:, some][:, fade, number, len(inside) :] for channel, values in missed.items()}
+        found.append((errors, (*model.choices[number], _FADES[fade] if some.start else None), number))
+    return found
+
+
+def calibrated(fit):
+    """The plant of a fit with every known number where the log would have it, within its tolerance."""
+    changes = zip(fit.columns, fit.left, strict=True)
+    moved = [(path, size * share) for column, share in changes for path, size in column.turns.items()]
+    return fit.plant.with_values({path: fit.plant.get(path) + by for path, by in moved})
+
+
+@dataclass(frozen=True)
+class _Model:
+    """A model, ready to predict, with what several observers knew about it."""
+
+    record: Any
+    plant: Any
+    choices: tuple
+    known: Any
+
+    def predictor(self, number, original):
+        """The model with what one of its observers knew."""
+        return Predictor(self.record, self.plant, original, Motion(*(value[number] for value in self.known.motion)))
+
+    def missed(self, rows, seen, holds):
+        """Errors of predictions from some rows, without a force and where it `holds` one by each of `_FADES`.
+
+        By channel, (horizons, 1 or 1 + fades, observers, s) arrays.
+        """
+        shares = np.array([0.0] + [1.0] * len(_FADES) if holds else [0.0])[:, None, None]
+        fades = np.array([0.0, *_FADES])[: len(shares), None, None]
+        motion = Motion(*(value[:, rows] + 0.0 * shares for value in self.known.motion))
+        force = shares[..., None] * self.known.force[:, rows] if holds else None
+        earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
+        horizons = in_rows(self.record)
+        found = predicted(motion, rows, self.record, self.plant, horizons, force, earth=earth, fades=fades)
+        return missing(shown(found, self.plant), seen, (rows + np.array(horizons)[:, None])[:, None, None])
+
+
+def _observed(case, about_fit, motion, seen, plants):
+    """Each plant with its observers, all run over the log at once."""
+    record = case.record
+    about = {name: case.motion if name == "plain" else motion for name in plants}
+    linear = {name: restarted(about_fit, motion, record, plant) for name, plant in plants.items()}
+    linear["plain"] = case.base_of([])
+    choices = {"plain": _BOTH, "extended": _BOTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
+    each = [(name, frame, time) for name in plants for frame, time in choices[name]]
+    problems = [
+        earth_fixed(linear[name], about[name], plants[name]) if frame == "earth" else linear[name]
+        for name, frame, _ in each
+    ]
+    walks = np.stack([case.noise.jolt / time for _, _, time in each])
+    noise = replace(case.noise, jolt=np.broadcast_to(case.noise.jolt, walks.shape), walk=walks)
+    known = observed(problems, noise, record, [about[n] for n, _, _ in each], [plants[n] for n, _, _ in each])
+    found = {}
+    for name, plant in plants.items():
+        mine = [i for i, (owner, _, _) in enumerate(each) if owner == name]
+        found[name] = _Model(*replayable(record, plant, seen), choices[name], known.of(mine))
+    return found
+
+
+def rms(errors, channel, model, horizon=HORIZONS[-1]):
+    """Root mean square over the segments of one error of one model."""
+    return float(np.sqrt((errors[channel].sel(model=model, horizon=horizon) ** 2).mean()))
+
+
+def baseline(errors):
+    """The entry ``baseline`` of diagnosis.json: root mean square over the segments, of the plain model.
+
+    Parameters
+    ----------
+    errors : xarray.Dataset
+        Of a `Comparison`, or from `simulated`.
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        "horizon_s": [int(time) for time in HORIZONS],
+        "position_error_m": [rms(errors, "position", "plain", time) for time in HORIZONS],
+        "heading_error_deg": [rms(errors, "heading", "plain", time) for time in HORIZONS],
+    }
+
+
+def gain(errors, seed=1, fewest=1):
+    """The entry ``gain`` of diagnosis.json: root mean square position errors after 60 s.
+
+    Parameters
+    ----------
+    errors : xarray.Dataset
+        Of a `Comparison`, or from `simulated`.
+    seed : int
+        Of the bootstrap.
+    fewest : int
+        Blocks that it needs.
+
+    Returns
+    -------
+    dict
+        ``share_of_explainable`` and ``ci95`` are None where nothing was to explain, the second with too few blocks.
+    """
+    squares, times = _squares(errors), errors["start_time"].values
+    before, rival, after, floor = _roots(squares.mean(1))
+    share = _share(before, after, floor)
+    drawn = _roots(_resampled(squares, times, seed))
+    some = np.isfinite(share)
+    sure = some and _blocks(times).max() + 1 >= fewest
+    return {
+        "horizon_s": int(HORIZONS[-1]),
+        "before_m": float(before),
+        "bias_observer_m": float(rival),
+        "after_m": float(after),
+        "noise_floor_m": float(floor),
+        "share_of_explainable": float(share) if some else None,
+        "ci95": [float(q) for q in np.nanquantile(_share(*drawn[[0, 2, 3]]), (0.025, 0.975))] if sure else None,
+    }
+
+
+def beyond_observer(errors):
+    """Share of what the bias observer leaves of the explainable error that the cause takes away beside one; or NaN."""
+    rival, after = (rms(errors, "position", model) for model in ("bias_observer", "extended_observer"))
+    return float(_share(rival, after, min(rms(errors, "position", "floor"), after)))
+
+
+def chance_of_more(errors, model, rival, seed=1):
+    """How sure it is that one model misses more than another after the longest horizon: share of bootstrap draws."""
+    squares = errors["position"].isel(horizon=-1).sel(model=[model, rival]).values ** 2
+    one, other = _resampled(squares, errors["start_time"].values, seed)
+    return float((one > other).mean())
+
+
+def by_condition(errors, names, channel="position", horizon=HORIZONS[-1]):
+    """Root mean square errors of all models by conditions of the segments.
+
+    Parameters
+    ----------
+    errors : xarray.Dataset
+        Of a `Comparison`.
+    names : str
+        Coordinate of the segments, as ``"regime"`` or ``"heading_known"``.
+    channel : str
+    horizon : float
+        [s]
+
+    Returns
+    -------
+    dict of value to dict of str to float
+        By value and model; and ``"segments"``, how many there are.
+    """
+    return {
+        value: {model: rms(part, channel, model, horizon) for model in MODELS} | {"segments": part.sizes["segment"]}
+        for value, part in parts(errors, names).items()
+    }
+
+
+def parts(errors, names="regime"):
+    """The errors of a comparison by conditions of the segments.
+
+    Parameters
+    ----------
+    errors : xarray.Dataset
+    names : str
+        Coordinate of the segments.
+
+    Returns
+    -------
+    dict of value to xarray.Dataset
+    """
+    values = errors[names].values
+    return {value.item(): errors.isel(segment=np.flatnonzero(values == value)) for value in np.unique(values)}
+
+
+def _squares(errors):
+    """Squares of position errors after the longest horizon: plain, bias observer, extended, floor; (4, s) array."""
+    return errors["position"].isel(horizon=-1).sel(model=["plain", "bias_observer", "extended", "floor"]).values ** 2
+
+
+def _roots(means):
+    """Roots of mean squares; no perfect model misses more than a model that there is."""
+    before, rival, after, floor = np.sqrt(means)
+    return np.stack([before, rival, after, np.minimum(floor, after)])
+
+
+def _share(before, after, floor):
+    """(before - after) / (before - floor), NaN where that is next to nothing."""
+    worth = before - floor
+    some = worth > 0.05 * before
+    return np.where(some, (before - after) / np.where(some, worth, 1.0), np.nan)
+
+
+def _blocks(times):
+    """Number of the block that each segment is in."""
+    return np.unique((times - times[0]) // _BLOCK, return_inverse=True)[1]
+
+
+def _resampled(squares, times, seed):
+    """Mean squares of draws of blocks, (models, draws) array."""
+    block = _blocks(times)
+    blocks = block.max() + 1
+    sums = np.stack([np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))])
+    draws = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=_DRAWS)
+    drawn = sums @ draws.T
+    return drawn[:-1] / drawn[-1]

@@ -1,0 +1,68 @@
+"""The force that a model lacks over a log: what else must have acted on the ship for her to move as she did."""
+
+from dataclasses import replace
+
+import numpy as np
+import xarray
+
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.linearisation import linearise
+from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.diagnose.validation.predictions import mass_matrix
+from shipcosim.models.core.kinematics import to_body, to_ned
+
+_LEARNING = 10.0  # s, how fast the force may change; faster, noise is taken for force
+
+
+def missing_force(case, plant, motion, *, learning=_LEARNING):
+    """Reconstruct what a plant lacks: the smoothed acceleration that nothing explains, times mass and added mass.
+
+    Parameters
+    ----------
+    case : Case
+        Of one log.
+    plant : Plant
+        ``case.plant`` for all that the plain model lacks, ``fit.plant`` for what a fit leaves.
+    motion : Motion
+        Near the measured one; ``case.motion``, ``fit.motion``.
+    learning : float
+        Time within which the force may change. [s]
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time``, NaN where what drove the ship is not known: ``surge``, ``sway`` [N], ``yaw`` [N.m]; ``north``,
+        ``east`` [N]; by thruster ``NAME_along``, the part in the direction of its positive thrust, and ``NAME_across``,
+        clockwise of it [N]. For plots against them: ``heading``, ``wind_from`` relative to the bow [deg],
+        ``speed`` over ground [m/s].
+    """
+    record = case.record
+    noise = replace(case.noise, walk=case.noise.jolt / learning)
+    found = innovations(linearise(motion, record, plant, []), noise, record, motion)
+    force = np.where(record.known[:, None], found.slow[:, :3] @ mass_matrix(plant).T, np.nan)
+    return _in_frames(*force.T, found.motion, record, plant)
+
+
+def _in_frames(surge, sway, yaw, motion, record, plant):
+    north, east = to_ned(motion.psi, surge, sway)
+    columns = {
+        "surge": (surge, "N", "missing force forward"),
+        "sway": (sway, "N", "missing force to starboard"),
+        "yaw": (yaw, "N.m", "missing yaw moment"),
+        "north": (north, "N", "missing force towards north"),
+        "east": (east, "N", "missing force towards east"),
+    }
+    for name in plant.thrusters:
+        unit = pusher_of(plant, name)
+        direction = unit.axis + (record.units[name][1] if unit.pointed else np.zeros(surge.size))
+        along, across = to_body(direction, surge, sway)
+        columns[f"{name}_along"] = along, "N", f"missing force in the direction of positive thrust of {name}"
+        columns[f"{name}_across"] = across, "N", f"missing force clockwise of positive thrust of {name}"
+    columns["heading"] = np.degrees(motion.psi) % 360.0, "deg", "heading"
+    columns["speed"] = np.hypot(motion.u, motion.v), "m/s", "speed over ground"
+    if record.wind is not None:
+        bow = motion.psi if plant.wind_is_true else 0.0
+        columns["wind_from"] = np.degrees(record.wind[1] - bow) % 360.0, "deg", "direction of the wind from the bow"
+    about = {"units": "s", "long_name": "time"}
+    variables = {n: ("time", v, {"units": u, "long_name": text}) for n, (v, u, text) in columns.items()}
+    return xarray.Dataset(variables, {"time": ("time", record.time, about)})

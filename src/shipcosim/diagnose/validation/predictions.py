@@ -1,0 +1,269 @@
+"""Open-loop predictions of a ship from many rows of a log at once, and what an observer knew when they began."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
+from shipcosim.diagnose.ship.model import Motion, shown
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.ship.instruments import motion_of
+
+_LAGS = ("instruments.navigation_lag", "instruments.thruster_lag", "instruments.wind_lag")
+_FASTEST, _FASTEST_TURN = 20.0, 0.5  # m/s, rad/s
+_FORCE = slice(6, 9)
+_FREE = 3.0  # times the jolts, and seconds in which the force changes: the model moves the reference by some 2 cm then
+
+
+@dataclass(frozen=True)
+class Known:
+    """What an observer knew at each row of a log from the rows until then.
+
+    Attributes
+    ----------
+    motion : Motion
+        (..., n) arrays.
+    force : (..., n, 3) array
+        Load that nobody explains, in body axes. [N, N, N.m]
+    """
+
+    motion: Any
+    force: Any
+
+    def of(self, which):
+        """What some of the observers knew, those on the first axis."""
+        return Known(Motion(*(value[which] for value in self.motion)), self.force[which])
+
+
+def mass_matrix(plant):
+    """Mass and added mass of the ship, (3, 3) array in surge, sway and yaw."""
+    i11, i22, i26, i62, i66 = plant.parts["hull"].inverse_mass
+    return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
+
+
+def replayable(record, plant, seen):
+    """A log as replays need it: no channel late, and the wind over ground, as one plant understands the log.
+
+    Parameters
+    ----------
+    record : Record
+    plant : Plant
+    seen : Motion
+        What the instruments show, without their noise, (n,) arrays.
+
+    Returns
+    -------
+    tuple of Record and Plant
+        Times are those of the navigation's channels.
+    """
+    drivers = record.drivers(plant)
+    units = {name: tuple(map(_one_more, pair)) for name, pair in drivers.units.items()}
+    wind = None
+    if record.wind is not None:
+        wind = _one_more(drivers.wind_speed), _one_more(drivers.wind_from)
+        wind = wind if plant.wind_is_true else _true_wind(*wind, true_motion(seen, plant))
+    plant = replace(plant.with_values(dict.fromkeys(_LAGS, 0.0)), wind_is_true=wind is not None)
+    return replace(record, units=units, wind=wind), plant
+
+
+def true_motion(seen, plant):
+    """The motion of which a plant's instruments show this; headings unwrapped as they were."""
+    i = plant.parts["instruments"]
+    errors = {name: getattr(i, name) for name in ("heading_bias", "lever_x", "lever_y", "velocity_scale")}
+    return Motion(*motion_of(*seen, **errors))._replace(psi=seen.psi - i.heading_bias)
+
+
+def _one_more(series):
+    return np.concatenate([series, series[-1:]])
+
+
+def _true_wind(speed, direction, motion):
+    """Speed and direction over ground of the wind that meets the moving ship so."""
+    along, across = motion.u - speed * np.cos(direction), motion.v - speed * np.sin(direction)
+    north, east = to_ned(motion.psi, along, across)
+    return np.hypot(north, east), np.unwrap(np.arctan2(-east, -north))
+
+
+def earth_fixed(linear, motion, plant):
+    """The problem with an unexplained load that walks in the earth's frame, as the bias of a DP observer does.
+
+    Parameters
+    ----------
+    linear : Linear
+        Of one log.
+    motion : Motion
+        That it was linearised about.
+    plant : Plant
+
+    Returns
+    -------
+    Linear
+    """
+    turn = np.diff(motion.psi)
+    back = np.zeros((turn.size, 3, 3))
+    back[:, 0, 0] = back[:, 1, 1] = np.cos(turn)
+    back[:, 0, 1], back[:, 1, 0], back[:, 2, 2] = np.sin(turn), -np.sin(turn), 1.0
+    mass = mass_matrix(plant)
+    transition = linear.transition.copy()
+    transition[:, _FORCE, _FORCE] = np.linalg.inv(mass) @ back @ mass
+    return linear._replace(transition=transition)
+
+
+def restarted(linear, motion, record, plant):
+    """The problem of a plant that differs little from the one that was linearised, about the same motion."""
+    ahead = advanced(Motion(*(value[:-1] for value in motion)), record, plant)
+    driven = np.zeros((*linear.driven.shape[:-1], 1))
+    driven[:, :6, 0] = rows_first(ahead) - rows_first(Motion(*(value[1:] for value in motion)))
+    driven *= record.known[:-1, None, None]
+    seen = np.where(linear.whole, record.measured - rows_first(shown(motion, plant)), 0.0)
+    return linear._replace(driven=driven, seen=seen[..., None])
+
+
+def reference(linear, motion, noise, record, plant):
+    """What the instruments show without their noise, whatever the model: smoothed with a force that is free to change.
+
+    Parameters
+    ----------
+    linear : Linear
+        Of one log.
+    motion : Motion
+        That it was linearised about.
+    noise : Noise
+    record : Record
+    plant : Plant
+
+    Returns
+    -------
+    Motion
+        (n,) arrays.
+    """
+    jolt = _FREE * noise.jolt
+    return shown(innovations(linear, replace(noise, jolt=jolt, walk=jolt / _FREE), record, motion).motion, plant)
+
+
+def stacked(problems):
+    """Problems of one log, each with its first column alone, side by side on a new axis after the rows."""
+    return Linear(
+        np.stack([p.transition for p in problems], axis=1),
+        np.stack([p.driven[..., :1] for p in problems], axis=1),
+        np.stack([p.output for p in problems], axis=1),
+        np.stack([p.seen[..., :1] for p in problems], axis=1),
+        np.stack([p.whole for p in problems], axis=1),
+    )
+
+
+def observed(problems, noise, record, motions, plants):
+    """What observers knew, one for each problem.
+
+    Parameters
+    ----------
+    problems : list of k Linear
+    noise : Noise
+        Of (k, ...) arrays.
+    record : Record
+    motions : list of k Motion
+        That the problems were linearised about.
+    plants : list of k Plant
+
+    Returns
+    -------
+    Known
+        Of (k, n, ...) arrays.
+    """
+    found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
+    about = np.stack([np.stack(motion, axis=-1) for motion in motions])
+    force = np.stack([one[:, _FORCE] @ mass_matrix(plant).T for one, plant in zip(found, plants, strict=True)])
+    return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
+
+
+def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True, fades=0.0):
+    """Where the ship is taken to be, from some rows on, by what drove her.
+
+    Parameters
+    ----------
+    motion : Motion
+        At the start, (..., s) arrays.
+    rows : (s,) array of int
+        Where the predictions start.
+    record : Record
+        As from `replayable`.
+    plant : Plant
+    horizons : sequence of int
+        After how many rows, increasing.
+    force : (..., s, 3) array, optional
+        A load besides, in body axes at the start, that is held. [N, N, N.m]
+    earth : bool or array that can be broadcast
+        Whether it is held in the earth's frame, else in the ship's.
+    fades : float or array that can be broadcast
+        Rate at which it fades, 0 where it lasts. [1/s]
+
+    Returns
+    -------
+    Motion
+        Of (len(horizons), ..., s) arrays.
+    """
+    parts = record.substeps(plant)
+    drivers = [record.drivers(plant, 0.5 * i / parts) for i in range(2 * parts + 1)]
+    load, h, kept = _held(motion, force, earth, fades), record.step / parts, []
+    for k in range(horizons[-1]):
+        for i in range(parts):
+            during = [_at(one, rows + k) for one in drivers[2 * i : 2 * i + 3]]
+            loads = [load(k * record.step + (i + share) * h) for share in (0.0, 0.5, 1.0)]
+            motion = _bounded(runge_kutta(motion, h, during, plant, loads))
+        if k + 1 in horizons:
+            kept.append(motion)
+    return Motion(*(np.stack(channel) for channel in zip(*kept, strict=True)))
+
+
+def _held(motion, force, earth, fades):
+    """Function from a time to the function from a heading to the load that is held."""
+    if force is None:
+        return lambda time: lambda psi: (0.0, 0.0, 0.0)
+    axes, start = np.moveaxis(force, -1, 0), motion.psi
+
+    def load(time):
+        X, Y, N = np.exp(-fades * time) * axes
+        return lambda psi: (*to_body(np.where(earth, psi - start, 0.0), X, Y), N)
+
+    return load
+
+
+def _bounded(motion):
+    """A motion no faster than any ship, so that a prediction that runs away stays a number."""
+    u, v = np.clip(motion.u, -_FASTEST, _FASTEST), np.clip(motion.v, -_FASTEST, _FASTEST)
+    return motion._replace(u=u, v=v, r=np.clip(motion.r, -_FASTEST_TURN, _FASTEST_TURN))
+
+
+def _at(drivers, rows):
+    """Drivers at some rows."""
+    units = {name: tuple(series[rows] for series in pair) for name, pair in drivers.units.items()}
+    wind = (None if series is None else series[rows] for series in (drivers.wind_speed, drivers.wind_from))
+    return type(drivers)(drivers.time[rows], units, *wind)
+
+
+def missing(found, seen, rows):
+    """By how much predictions are off.
+
+    Parameters
+    ----------
+    found : Motion
+        Predicted, as instruments show it; arrays to which the shape of rows can be broadcast.
+    seen : Motion
+        What they showed, (n,) arrays.
+    rows : array of int
+
+    Returns
+    -------
+    dict of str to array
+        ``position`` [m], ``heading`` [deg], ``surge``, ``sway`` [m/s], ``yaw_rate`` [deg/s].
+    """
+    off = Motion(*(value - series[rows] for value, series in zip(found, seen, strict=True)))
+    return {
+        "position": np.hypot(off.x, off.y),
+        "heading": np.degrees(np.angle(np.exp(1j * off.psi))),
+        "surge": off.u,
+        "sway": off.v,
+        "yaw_rate": np.degrees(off.r),
+    }

@@ -1,0 +1,171 @@
+"""Which rows of a log parameters are fitted on, and where on the others predictions can start and be checked."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from shipcosim.diagnose.inference.linearisation import Linear
+from shipcosim.diagnose.ship.model import Motion
+
+HORIZONS = (10.0, 30.0, 60.0)
+"""Of the predictions. [s]"""
+TRAINED = 0.65
+"""Share of the log, from its start, that is fitted on if nobody says otherwise."""
+_EVERY = 5.0  # s, from one prediction's start to the next
+_SETTLED = 120.0  # s, after which observers have learnt
+_NEAR = 2.0  # s, within which a measurement has to be where a prediction ends
+_TURNING = np.radians(15.0)  # within a prediction
+_MOVING = 0.25  # m/s on the average
+_IDLE = 0.05  # of the largest speed of a thruster in the log
+
+
+def first_rows(record, share=TRAINED):
+    """The first rows of a log, (n,) bool array."""
+    return np.arange(record.time.size) < share * record.time.size
+
+
+def without_headings(record, middle, width=np.pi / 2.0):
+    """Rows whose heading is measured and not in a sector: training rows for a gain on headings not fitted on.
+
+    Parameters
+    ----------
+    record : Record
+    middle, width : float
+        Of the sector. [rad]
+
+    Returns
+    -------
+    (n,) bool array
+    """
+    return np.abs(np.angle(np.exp(1j * (record.measured[:, 2] - middle)))) > 0.5 * width
+
+
+def is_idle(record):
+    """Rows on which no thruster turns, (n,) bool array."""
+    speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
+    return np.all([n < _IDLE * n.max() for n in speeds], axis=0) if speeds else np.ones(record.time.size, bool)
+
+
+def in_rows(record):
+    """The horizons in rows."""
+    return [max(1, round(time / record.step)) for time in HORIZONS]
+
+
+def starts(record):
+    """Rows from which a prediction can be made and checked.
+
+    Parameters
+    ----------
+    record : Record
+
+    Returns
+    -------
+    (s,) array of int
+        After observers have settled, where all that drives the ship is known and position and heading are measured.
+    """
+    horizons, h = in_rows(record), record.step
+    rows = np.arange(round(_SETTLED / h), record.time.size - horizons[-1], max(1, round(_EVERY / h)))
+    lost = np.concatenate([[0], np.cumsum(~record.known)])
+    measured = np.isfinite(record.measured[:, :3]).all(-1)
+    near = np.convolve(measured, np.ones(2 * round(_NEAR / h) + 1), "same") > 0.0
+    sound = (lost[rows + horizons[-1]] == lost[rows]) & near[rows]
+    for k in horizons:
+        sound &= near[rows + k]
+    return rows[sound]
+
+
+def sorted_by(train, rows, record):
+    """Starts of predictions that are wholly on training rows, and of those that touch none.
+
+    Parameters
+    ----------
+    train : (n,) bool array
+    rows : (s,) array of int
+    record : Record
+
+    Returns
+    -------
+    tuple of two arrays of int
+    """
+    last = in_rows(record)[-1]
+    used = np.concatenate([[0], np.cumsum(train)])
+    used = used[rows + last + 1] - used[rows]
+    return rows[used == last + 1], rows[used == 0]
+
+
+def trained(case, train):
+    """The case without the rows that are not to be trained on, up to the last one that is.
+
+    Parameters
+    ----------
+    case : Case
+        Prepared, of one log.
+    train : (n,) bool array
+
+    Returns
+    -------
+    Case
+    """
+    n = np.flatnonzero(train)[-1] + 1
+    train, record, base = train[:n], case.record, case.base
+    steps = train[:-1] & train[1:]
+    cut = replace(
+        record,
+        time=record.time[:n],
+        measured=np.where(train[:, None], record.measured[:n], np.nan),
+        units={name: tuple(series[:n] for series in pair) for name, pair in record.units.items()},
+        wind=None if record.wind is None else tuple(series[:n] for series in record.wind),
+        known=record.known[:n] & np.append(steps, True),
+    )
+    whole = base.whole[:n] & train[:, None]
+    linear = Linear(
+        base.transition[: n - 1],
+        base.driven[: n - 1] * steps[:, None, None],
+        base.output[:n],
+        base.seen[:n] * whole[..., None],
+        whole,
+    )
+    return replace(case, record=cut, motion=Motion(*(value[:n] for value in case.motion)), base=linear)
+
+
+def conditions(record, seen, rows, train, plant):
+    """What the ship did in each prediction, as coordinates of its segment.
+
+    Parameters
+    ----------
+    record : Record
+    seen : Motion
+        As the instruments show it, (n,) arrays.
+    rows : (s,) array of int
+        Starts.
+    train : (n,) bool array
+    plant : Plant
+        Says which wind the log has.
+
+    Returns
+    -------
+    dict
+        ``start_time``, ``regime`` (drifting without thrust, turning, moving, holding), ``start_heading``,
+        ``heading_known``: whether training rows have a heading within 15 deg; ``wind_from``, of the logged wind from
+        the bow.
+    """
+    spans = rows[:, None] + np.arange(in_rows(record)[-1] + 1)
+    way = np.hypot(np.diff(seen.x[spans], axis=1), np.diff(seen.y[spans], axis=1)).sum(1)
+    turn = np.ptp(seen.psi[spans], axis=1)
+    idle = is_idle(record)[spans].all(1)
+    regime = np.select(
+        [idle, turn > _TURNING, way > _MOVING * HORIZONS[-1]], ["drifting", "turning", "moving"], "holding"
+    )
+    heading = np.degrees(seen.psi[rows]) % 360.0
+    used = np.bincount(np.degrees(seen.psi[train]).astype(int) % 360, minlength=360) > 0
+    near = np.convolve(np.concatenate([used[-15:], used, used[:15]]), np.ones(31), "valid") > 0.0
+    found = {
+        "start_time": ("segment", record.time[rows], {"units": "s", "long_name": "where the prediction starts"}),
+        "regime": ("segment", regime),
+        "start_heading": ("segment", heading, {"units": "deg"}),
+        "heading_known": ("segment", near[heading.astype(int) % 360]),
+    }
+    if record.wind is not None:
+        bow = seen.psi[rows] if plant.wind_is_true else 0.0
+        found["wind_from"] = ("segment", np.degrees(record.wind[1][rows] - bow) % 360.0, {"units": "deg"})
+    return found

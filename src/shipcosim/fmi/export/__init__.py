@@ -1,0 +1,1 @@
+"""Building FMUs: model description, bundled code, archive. The only door to pythonfmu."""

@@ -1,0 +1,260 @@
+"""Packs FMUs: `build_fmu` one, `build_all` those of a folder. The only door to pythonfmu, whose binaries are used."""
+
+import ast
+import contextlib
+import hashlib
+import html
+import importlib
+import importlib.metadata
+import importlib.util
+import io
+import os
+import sys
+import tempfile
+import traceback
+import zipfile
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.fmi.export.bundle import bundle, entry_module
+from shipcosim.fmi.export.description import model_description
+from shipcosim.fmi.export.loader import SUFFIXES, loader_for
+
+EPOCH = (1980, 1, 1, 0, 0, 0)
+PAGE = """<!DOCTYPE html>
+<html><head><meta charset="utf-8"><title>{title}</title></head>
+<body><pre>{text}</pre></body></html>
+"""
+
+
+def build_fmu(source, out):
+    """Build one FMU; the same source gives the same bytes.
+
+    Parameters
+    ----------
+    source : Path or str
+        Folder ``<name>`` that holds ``<name>.py``, or the script itself. README.md and reference.csv come along.
+    out : Path or str
+        Folder for ``<name>.fmu``, made if needed.
+
+    Returns
+    -------
+    Path
+        The FMU.
+
+    Raises
+    ------
+    ShipcosimError
+        The script is missing, not Python, does not hold exactly one FMU, or the FMU cannot be written.
+    """
+    script = _script(Path(source))
+    bundled = bundle(script)
+    with _imported(bundled) as module:
+        cls = _fmu_class(module, script)
+        files = {f"resources/{path}": data for path, data in bundled.files.items()}
+        files[f"resources/{bundled.entry}.py"] = entry_module(bundled, cls.__name__)
+        files["resources/slavemodule.txt"] = bundled.entry.encode()
+        files |= _binaries(script.stem) | _documentation(script)
+        files["modelDescription.xml"] = _description(cls, script, files)
+    return _write(Path(out) / f"{script.stem}.fmu", files)
+
+
+def build_all(root, names=(), out="build/fmus"):
+    """Build the FMUs of a folder that has one folder per FMU.
+
+    Parameters
+    ----------
+    root : Path or str
+        Folder with ``<name>/<name>.py``.
+    names : iterable of str
+        Which; all where empty.
+    out : Path or str
+        Folder for the FMUs.
+
+    Returns
+    -------
+    list of Path
+        The FMUs in the order of their names.
+
+    Raises
+    ------
+    ShipcosimError
+        With the problems of all of them; those without problems are built nevertheless.
+    """
+    root = Path(root)
+    known = sorted(folder.name for folder in root.glob("*") if (folder / f"{folder.name}.py").is_file())
+    problems = [
+        Problem(str(root), f"has no FMU '{name}'.", suggestion(name, known)) for name in names if name not in known
+    ]
+    built, stems = [], {}
+    for name in sorted(set(names or known) & set(known)):
+        other = stems.setdefault(name.lower(), name)
+        if other != name:
+            problems.append(
+                Problem(str(root / name), f"has the file name of {other} where case does not count.", "Rename one.")
+            )
+            continue
+        try:
+            built.append(build_fmu(root / name, out))
+        except ShipcosimError as error:
+            problems += error.problems
+    if problems:
+        raise ShipcosimError(problems)
+    return built
+
+
+def _script(source):
+    script = source / f"{source.resolve().name}.py" if source.is_dir() else source
+    if not script.is_file():
+        raise ShipcosimError(
+            Problem(str(source), f"there is no {script.name}.", "An FMU is a folder NAME with NAME.py in it.")
+        )
+    if not (script.stem.isidentifier() and script.stem.isascii()):
+        raise ShipcosimError(
+            Problem(str(script), "cannot name an FMU.", "Use letters, digits and '_'; no digit at the start.")
+        )
+    return script
+
+
+@contextlib.contextmanager
+def _imported(bundled):
+    """The script's module as the FMU will have it, forgotten afterwards."""
+    before = set(sys.modules)
+    with tempfile.TemporaryDirectory() as folder:
+        for path, data in bundled.files.items():
+            file = Path(folder, path)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(data)
+        sys.path.insert(0, folder)
+        importlib.invalidate_caches()
+        try:
+            yield _import(bundled, folder)
+        finally:
+            sys.path.remove(folder)
+            for name in set(sys.modules) - before:
+                if name.partition(".")[0] == bundled.package:
+                    del sys.modules[name]
+
+
+def _import(bundled, folder):
+    code = Path(folder, bundled.package)
+    try:
+        return importlib.import_module(f"{bundled.package}.{bundled.script}")
+    except Exception as error:
+        frames = [
+            frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).is_relative_to(code)
+        ]
+        frames = [frame for frame in frames if not Path(frame.filename).is_relative_to(code / "shipcosim" / "fmi")]
+        where = f"{Path(frames[-1].filename).relative_to(code)}, line {frames[-1].lineno}" if frames else bundled.script
+        raise ShipcosimError(
+            Problem(where, f"{type(error).__name__}: {error}".replace(f"{bundled.package}.", ""))
+        ) from error
+
+
+def _fmu_class(module, script):
+    """The one class of the script that is an FMU and no base of another."""
+    own = [item for item in vars(module).values() if isinstance(item, type) and item.__module__ == module.__name__]
+    own = [cls for cls in own if any(base.__name__ == "Fmi2Slave" for base in cls.__mro__)]
+    leaves = [cls for cls in own if not any(cls is not other and issubclass(other, cls) for other in own)]
+    if len(leaves) != 1:
+        found = (
+            f"has {len(leaves)} FMUs ({', '.join(cls.__name__ for cls in leaves)})."
+            if leaves
+            else "has no class that is an Fmu."
+        )
+        raise ShipcosimError(Problem(str(script), found, "One file holds one FMU: class Name(Fmu)."))
+    _check_class(leaves[0], script)
+    return leaves[0]
+
+
+def _check_class(cls, script):
+    problems = []
+    if not any(variable.causality == "output" for variable in cls.variables):
+        problems.append("has no output: name = Output(unit, description).")
+    if not any("step" in vars(base) for base in cls.__mro__ if base.__name__ not in ("Fmu", "Fmi2Slave")):
+        problems.append("has no step(self, t, h).")
+    problems += _never_read(cls, script)
+    if problems:
+        raise ShipcosimError([Problem(f"{script}, class {cls.__name__}", problem) for problem in problems])
+    try:
+        instance = cls()
+        for group in cls.groups:
+            getattr(instance, group.name)
+    except Exception as error:
+        found = f"its start values are refused: {type(error).__name__}: {error}"
+        raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", found)) from error
+
+
+def _never_read(cls, script):
+    """Attributes that the script sets but neither declares nor reads: outputs that were forgotten or misspelt."""
+    nodes = [node for node in ast.walk(ast.parse(script.read_bytes())) if isinstance(node, ast.Attribute)]
+    nodes = [node for node in nodes if isinstance(node.value, ast.Name) and node.value.id == "self"]
+    read = {node.attr for node in nodes if isinstance(node.ctx, ast.Load)} | set(dir(cls))
+    read |= {variable.name for variable in cls.variables}
+    outputs = [variable.name for variable in cls.variables if variable.causality == "output"]
+    lines = {node.attr: node.lineno for node in reversed(nodes)}
+    return [
+        f"line {lines[name]} sets self.{name}, which is no output and read nowhere. {suggestion(name, outputs)}"
+        for name in sorted(lines)
+        if name not in read and not name.startswith("_")
+    ]
+
+
+def _description(cls, script, files):
+    """The model description, with a GUID that follows from it and all other files."""
+    try:
+        blank = model_description(cls, script.stem, "")
+        digest = hashlib.sha256(blank)
+        for path, data in sorted(files.items()):
+            digest.update(f"{path} {len(data)}\n".encode() + data)
+        return model_description(cls, script.stem, f"{{{digest.hexdigest()[:32]}}}")
+    except ValueError as error:
+        raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
+
+
+def _binaries(identifier):
+    """Our loader under the name that FMI asks for, beside it pythonfmu's binary, which it loads, and its licence."""
+    folder = Path(importlib.util.find_spec("pythonfmu").origin).parent / "resources" / "binaries"
+    files = {}
+    for platform, suffix in SUFFIXES.items():
+        files[f"binaries/{platform}/{identifier}{suffix}"] = loader_for(platform).read_bytes()
+        for path in (folder / platform).glob(f"*{suffix}"):
+            files[f"binaries/{platform}/{path.name}"] = path.read_bytes()
+    licence = importlib.metadata.distribution("pythonfmu").read_text("licenses/LICENSE")
+    return files | {"documentation/licenses/pythonfmu.txt": (licence or "MIT, NTNU-IHB/PythonFMU").encode()}
+
+
+def _documentation(script):
+    files = {}
+    for name in ("README.md", "reference.csv"):
+        path = script.parent / name
+        if path.is_file():
+            files[f"documentation/{name}"] = path.read_bytes().replace(b"\r\n", b"\n")
+    text = files.get("documentation/README.md", b"").decode(errors="replace")
+    files["documentation/index.html"] = PAGE.format(title=script.stem, text=html.escape(text)).encode()
+    return files
+
+
+def _write(path, files):
+    """Write an archive whose bytes depend on the files alone: sorted, not compressed, one date, one mode."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as archive:
+        for name, data in sorted(files.items()):
+            info = zipfile.ZipInfo(name, EPOCH)
+            info.create_system, info.external_attr = 3, 0o644 << 16
+            archive.writestr(info, data)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-")
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content.getvalue())
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+    return path

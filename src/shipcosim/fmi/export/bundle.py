@@ -1,0 +1,240 @@
+"""The Python code that an FMU carries: what its script needs, under names that no other FMU and no package has."""
+
+import ast
+import hashlib
+import re
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+
+SHIPCOSIM = Path(__file__).resolve().parents[2]
+ROOT = b'"""What this FMU needs of shipcosim."""\n'
+CARRIED_BY_HOST = {"numpy"} | set(sys.stdlib_module_names)
+
+
+@dataclass
+class Module:
+    """One module that goes into the FMU."""
+
+    name: str
+    path: Path
+    source: bytes
+    tree: ast.Module
+    imports: list = field(default_factory=list)
+
+    @property
+    def is_package(self):
+        return self.path.name == "__init__.py"
+
+    @property
+    def archive_path(self):
+        """Path below the private package."""
+        path = self.name.replace(".", "/")
+        return f"{path}/__init__.py" if self.is_package else f"{path}.py"
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Files for `resources`, and how to get at the FMU's script in them."""
+
+    entry: str
+    package: str
+    script: str
+    files: dict[str, bytes]
+
+
+def bundle(script):
+    """Collect and rename what a script needs.
+
+    Parameters
+    ----------
+    script : Path
+        The FMU's Python file. Modules beside it and modules of shipcosim that it imports, directly or not, come along.
+
+    Returns
+    -------
+    Bundle
+        Without the entry module, which needs the name of the class, see `entry_module`.
+
+    Raises
+    ------
+    ShipcosimError
+        A file cannot be read or parsed, or imports what neither Python, NumPy nor the FMU has.
+    """
+    modules = _collect(script)
+    digest = hashlib.sha256()
+    for module in modules.values():
+        digest.update(f"{module.archive_path} {len(module.source)}\n".encode() + module.source)
+    entry = f"{script.stem}_{digest.hexdigest()[:16]}"
+    package = f"{entry}_code"
+    files = {f"{package}/__init__.py": PACKAGE.format(script=script.name).encode()}
+    for module in modules.values():
+        files[f"{package}/{module.archive_path}"] = _renamed(module, package, modules)
+    return Bundle(entry, package, script.stem, files)
+
+
+PACKAGE = '''"""{script} and what it needs, under a name that changes with the content."""
+
+import linecache
+from pathlib import Path
+
+# tracebacks show their source lines even after the host has deleted the unpacked archive
+for path in map(str, Path(__file__).parent.rglob("*.py")):
+    text = Path(path).read_text("utf-8")
+    linecache.cache[path] = len(text), None, text.splitlines(True), path
+'''
+
+ENTRY = '''"""Where the binary enters: it runs this file for every instance, and once more when it is imported."""
+
+import sys
+from contextlib import suppress
+from os.path import isfile, join
+
+try:
+    import {modules}
+    from {package}.shipcosim.fmi.pythonfmu_memory import keep
+    from {package}.{script} import {cls}
+
+    keep(globals())
+finally:
+    # the binary has put this folder on the host's path, and does so in other threads meanwhile
+    for path in list(sys.path):
+        if path and isinstance(path, str) and isfile(join(path, "{entry}.py")):
+            with suppress(ValueError):
+                sys.path.remove(path)
+'''
+
+
+def entry_module(bundled, cls):
+    """Source of the module that the binary imports, which holds nothing but the class."""
+    paths = (path.removesuffix(".py").removesuffix("/__init__") for path in sorted(bundled.files))
+    modules = ", ".join(path.replace("/", ".") for path in paths)
+    text = ENTRY.format(package=bundled.package, script=bundled.script, entry=bundled.entry, modules=modules, cls=cls)
+    return text.encode()
+
+
+def _collect(script):
+    """All modules that the script reaches by imports, sorted by name."""
+    found, waiting, problems = {}, [(script.stem, script)], []
+    while waiting:
+        name, path = waiting.pop()
+        if name in found:
+            continue
+        try:
+            found[name] = module = _read(name, path)
+        except ShipcosimError as error:
+            problems += error.problems
+            continue
+        for statement, needed, always in _imports(module):
+            located = _locate(needed, script.parent)
+            if located:
+                module.imports.append(statement)
+                waiting += located
+            elif always and needed.partition(".")[0] not in CARRIED_BY_HOST:
+                where = f"{path}, line {statement.lineno}"
+                problems.append(
+                    Problem(
+                        where, f"imports {needed}.", "An FMU has Python, NumPy, shipcosim.models and files beside it."
+                    )
+                )
+    if problems:
+        raise ShipcosimError(problems)
+    return dict(sorted(found.items()))
+
+
+def _read(name, path):
+    if name == "shipcosim":  # its own `__init__` would lead to the whole package
+        return Module(name, path, ROOT, ast.parse(ROOT))
+    try:
+        source = path.read_bytes().removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
+        return Module(name, path, source, ast.parse(source, str(path)))
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror}.")) from None
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None)
+        raise ShipcosimError(
+            Problem(f"{path}, line {line}" if line else str(path), f"is not Python: {error}.")
+        ) from None
+
+
+def _locate(name, folder):
+    """Modules to read for a dotted name, its packages included; empty if it is not ours.
+
+    For "shipcosim.models.core.maths" that is three; what is a name inside a module rather than a module is left out.
+    """
+    parts, found = name.split("."), []
+    base = SHIPCOSIM.parent if parts[0] == "shipcosim" else folder
+    for length in range(1, len(parts) + 1):
+        stem = base.joinpath(*parts[:length])
+        path = next((p for p in (stem / "__init__.py", stem.with_name(f"{stem.name}.py")) if p.is_file()), None)
+        if path is None:
+            break
+        found.append((".".join(parts[:length]), path))
+    return found
+
+
+def _imports(module):
+    """(statement, dotted name, whether it runs when the module is imported) for each import in a module."""
+    for node, always in _running(module.tree, True):
+        if isinstance(node, ast.Import):
+            yield from ((node, alias.name, always) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = _absolute(node, module)
+            yield from ((node, f"{base}.{alias.name}", always) for alias in node.names)
+
+
+def _absolute(node, module):
+    """Full name of what "from ... import" names."""
+    if not node.level:
+        return node.module
+    package = module.name.split(".")
+    package = package[: len(package) - node.level + module.is_package]
+    return ".".join([*package, node.module] if node.module else package)
+
+
+def _running(node, always):
+    """All nodes below one, and whether they run on import; what never runs in an FMU is left out."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and ast.unparse(child.test).startswith(
+            ("__name__ ==", "TYPE_CHECKING", "typing.TYPE_")
+        ):
+            continue
+        yield child, always
+        optional = isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.Try))
+        yield from _running(child, always and not optional)
+
+
+def _renamed(module, package, modules):
+    """Source with its absolute imports of bundled modules leading into the package, line for line as it was."""
+    lines = module.source.splitlines(keepends=True)
+    statements = {(node.lineno, node.col_offset): node for node in module.imports}
+    for _, node in sorted(statements.items(), reverse=True):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            continue
+        first, last = node.lineno - 1, node.end_lineno - 1
+        before, after = lines[first][: node.col_offset], lines[last][node.end_col_offset :]
+        old = b"".join([*lines[first:last], lines[last][: node.end_col_offset]])[node.col_offset :].decode()
+        new = (
+            _renamed_from(old, package) if isinstance(node, ast.ImportFrom) else _renamed_import(node, package, modules)
+        )
+        lines[first : last + 1] = [before + new.encode() + after]
+    return b"".join(lines)
+
+
+def _renamed_from(old, package):
+    return re.sub(r"^(from[\s\\]+)", rf"\g<1>{package}.", old)
+
+
+def _renamed_import(node, package, modules):
+    names = []
+    for alias in node.names:
+        root = alias.name.partition(".")[0]
+        if root not in modules:
+            names.append(ast.unparse(alias))
+        elif alias.asname:
+            names.append(f"{package}.{alias.name} as {alias.asname}")
+        else:
+            names += [f"{package}.{alias.name}"] * (root != alias.name) + [f"{package}.{root} as {root}"]
+    return f"import {', '.join(names)}" + " \\\n" * (node.end_lineno - node.lineno)

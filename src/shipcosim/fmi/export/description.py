@@ -1,0 +1,215 @@
+"""modelDescription.xml of an FMU class, and the table of its variables for a README."""
+
+import math
+from xml.etree import ElementTree as xml
+
+import shipcosim
+from shipcosim.fmi.units import base_unit
+
+QUANTITIES = {
+    "m": "Length",
+    "m/s": "Velocity",
+    "m/s2": "Acceleration",
+    "rad": "Angle",
+    "rad/s": "AngularVelocity",
+    "rad/s2": "AngularAcceleration",
+    "rpm": "RotationalSpeed",
+    "kg": "Mass",
+    "kg.m2": "MomentOfInertia",
+    "N": "Force",
+    "N.m": "Torque",
+    "W": "Power",
+    "s": "Time",
+}
+DISPLAYED = {"rad": "deg", "rad/s": "deg/s"}
+LOG_CATEGORIES = {
+    "logStatusOk": "what the component tells",
+    "logStatusWarning": "what may be wrong",
+    "logStatusError": "what is wrong",
+    "logStatusFatal": "why the component stopped, with its traceback",
+}
+
+
+LONGEST_SHOWN = 24  # characters of a start value in a table for readers
+
+
+def model_description(cls, identifier, guid):
+    """The model description as bytes, the same for the same class.
+
+    Parameters
+    ----------
+    cls : type
+        Subclass of `Fmu`, of this package or of the copy that an FMU carries.
+    identifier : str
+        Name of the FMU and of its binary.
+    guid : str
+        Links the description to its binary.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    ValueError
+        A unit cannot be read; the text names the variable.
+    """
+    attributes = dict(
+        fmiVersion="2.0",
+        modelName=identifier,
+        guid=guid,
+        description=summary(cls),
+        author=cls.author,
+        version=cls.version or shipcosim.__version__,
+        license=cls.licence,
+        generationTool=f"shipcosim {shipcosim.__version__}",
+        variableNamingConvention="flat",
+        numberOfEventIndicators="0",
+    )
+    root = xml.Element("fmiModelDescription", attributes)
+    _co_simulation(root, identifier)
+    units = sorted({variable.unit for variable in cls.variables if variable.type == "Real"})
+    if units:
+        _unit_definitions(root, cls.variables, units)
+        _type_definitions(root, units)
+    categories = xml.SubElement(root, "LogCategories")
+    for name, text in LOG_CATEGORIES.items():
+        xml.SubElement(categories, "Category", name=name, description=text)
+    xml.SubElement(root, "DefaultExperiment", startTime="0.0", stepSize=repr(float(cls.default_step_size)))
+    listed = xml.SubElement(root, "ModelVariables")
+    for reference, variable in enumerate(cls.variables):
+        listed.append(_scalar_variable(reference, variable))
+    _structure(root, cls.variables)
+    xml.indent(root)
+    return xml.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def summary(cls):
+    """First paragraph of the class's docstring in one line."""
+    return " ".join((cls.__doc__ or "").strip().split("\n\n")[0].split())
+
+
+def table_of_variables(cls):
+    """The variables of an FMU class as a Markdown table.
+
+    Parameters
+    ----------
+    cls : type
+        Subclass of `Fmu`.
+
+    Returns
+    -------
+    str
+        Table with a head, one row a variable, ending in a line break.
+    """
+    rows = ["| variable | kind | type | unit | start | meaning |", "|---|---|---|---|---|---|"]
+    for v in cls.variables:
+        kind = f"tunable {v.causality}" if v.tunable else v.causality
+        start = "" if v.causality == "output" or v.start == "" else _shown(v.start)
+        rows.append(f"| `{v.name}` | {kind} | {v.type} | {v.unit} | {start} | {_full_text(v).replace('|', '&#124;')} |")
+    return "\n".join(rows) + "\n"
+
+
+def _shown(start):
+    text = _text(start)
+    return f"`{text}`" if len(text) <= LONGEST_SHOWN else f"`{text[:LONGEST_SHOWN]}` ..."
+
+
+def _co_simulation(root, identifier):
+    xml.SubElement(
+        root,
+        "CoSimulation",
+        modelIdentifier=identifier,
+        needsExecutionTool="true",
+        canHandleVariableCommunicationStepSize="true",
+        canBeInstantiatedOnlyOncePerProcess="false",
+        canNotUseMemoryManagementFunctions="true",
+        canGetAndSetFMUstate="true",
+        canSerializeFMUstate="true",
+    )
+
+
+def _unit_definitions(root, variables, units):
+    definitions = xml.SubElement(root, "UnitDefinitions")
+    for unit in units:
+        try:
+            exponents, factor, offset = base_unit(unit)
+        except ValueError as error:
+            users = ", ".join(variable.name for variable in variables if variable.unit == unit)
+            raise ValueError(f"{users}: {error}") from None
+        element = xml.SubElement(definitions, "Unit", name=unit)
+        base = {name: str(power) for name, power in exponents.items()}
+        base |= {"factor": repr(factor)} if factor != 1.0 else {}
+        base |= {"offset": repr(offset)} if offset else {}
+        xml.SubElement(element, "BaseUnit", base)
+        if unit in DISPLAYED:
+            xml.SubElement(element, "DisplayUnit", name=DISPLAYED[unit], factor=repr(180 / math.pi))
+
+
+def _type_definitions(root, units):
+    named = [unit for unit in units if unit in QUANTITIES]
+    if named:
+        definitions = xml.SubElement(root, "TypeDefinitions")
+        for unit in named:
+            simple = xml.SubElement(definitions, "SimpleType", name=QUANTITIES[unit])
+            xml.SubElement(simple, "Real", dict(quantity=QUANTITIES[unit], unit=unit) | _displayed(unit))
+
+
+def _displayed(unit):
+    return {"displayUnit": DISPLAYED[unit]} if unit in DISPLAYED else {}
+
+
+def _scalar_variable(reference, variable):
+    element = xml.Element(
+        "ScalarVariable",
+        name=variable.name,
+        valueReference=str(reference),
+        description=_full_text(variable),
+        causality=variable.causality,
+        variability=_variability(variable),
+    )
+    value = {}
+    if variable.type == "Real":
+        if variable.unit in QUANTITIES:
+            value["declaredType"] = QUANTITIES[variable.unit]
+        value |= {"unit": variable.unit} | _displayed(variable.unit)
+    if variable.type in ("Real", "Integer"):
+        bounds = {"min": variable.minimum, "max": variable.maximum}
+        number = float if variable.type == "Real" else int
+        value |= {key: _text(number(bound)) for key, bound in bounds.items() if bound is not None}
+    if variable.causality == "output":
+        element.set("initial", "calculated")
+    else:
+        value["start"] = _text(variable.start)
+    if variable.causality == "parameter":
+        element.set("initial", "exact")
+    xml.SubElement(element, variable.type, value)
+    if variable.tolerance:
+        tool = xml.SubElement(xml.SubElement(element, "Annotations"), "Tool", name="shipcosim")
+        xml.SubElement(tool, "Quantity", tolerance=repr(float(variable.tolerance)))
+    return element
+
+
+def _full_text(variable):
+    return f"{variable.description} ({variable.origin})" if variable.origin else variable.description
+
+
+def _variability(variable):
+    if variable.causality == "parameter":
+        return "tunable" if variable.tunable else "fixed"
+    return "continuous" if variable.type == "Real" else "discrete"
+
+
+def _text(value):
+    return str(value).lower() if isinstance(value, bool) else value if isinstance(value, str) else repr(value)
+
+
+def _structure(root, variables):
+    structure = xml.SubElement(root, "ModelStructure")
+    indices = [str(index) for index, variable in enumerate(variables, 1) if variable.causality == "output"]
+    for kind in ("Outputs", "InitialUnknowns") if indices else ():
+        unknowns = xml.SubElement(structure, kind)
+        for index in indices:
+            # a step computes the outputs: an input that is set shows after it, so no algebraic loop goes through an FMU
+            known = {"dependencies": ""} if kind == "Outputs" else {}
+            xml.SubElement(unknowns, "Unknown", index=index, **known)

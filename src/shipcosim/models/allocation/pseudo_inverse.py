@@ -1,0 +1,241 @@
+"""Thrust allocation: which thruster gives how much of the load that is asked for.
+
+An allocator is two functions: one computes once what it needs of its parameters, `step` turns a requested load into
+commands. The generalised inverse at fixed angles is the first of them; others keep the form of `step`.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.models.core.maths import clip, cos, sin, where
+from shipcosim.models.core.parameters import quantity
+
+
+@dataclass(frozen=True)
+class AllocationParameters:
+    """Two azimuth thrusters at fixed angles and a tunnel thruster."""
+
+    port_x: float = quantity(
+        -14.02, "m", "port azimuth forward of the origin", "Skulstad 2021, ControlAllocatorDAE.fmu, A"
+    )
+    port_y: float = quantity(-2.0, "m", "port azimuth to starboard of the origin", "Skulstad 2021, A")
+    starboard_x: float = quantity(-14.02, "m", "starboard azimuth forward of the origin", "Skulstad 2021, A")
+    starboard_y: float = quantity(2.0, "m", "starboard azimuth to starboard of the origin", "Skulstad 2021, A")
+    tunnel_x: float = quantity(14.48, "m", "tunnel thruster forward of the origin", "Skulstad 2021, A")
+    port_azimuth: float = quantity(-math.pi / 4.0, "rad", "fixed angle of the port azimuth", "Skulstad 2021, paper V")
+    starboard_azimuth: float = quantity(
+        math.pi / 4.0, "rad", "fixed angle of the starboard azimuth", "Skulstad 2021, paper V"
+    )
+    azimuth_thrust_min: float = quantity(
+        -30e3, "N", "most thrust astern of an azimuth", "Skulstad 2021, paper V", maximum=0.0
+    )
+    azimuth_thrust_max: float = quantity(
+        60e3, "N", "most thrust ahead of an azimuth", "Skulstad 2021, paper V", minimum=0.0
+    )
+    tunnel_thrust_max: float = quantity(
+        21.6e3, "N", "most thrust of the tunnel thruster to either side", "1780 rpm of its motor", minimum=0.0
+    )
+    thrust_rate_max: float = quantity(
+        1000.0, "N/s", "quickest change of a command", "Skulstad 2021, paper V", minimum=0.0
+    )
+    azimuth_weight: float = quantity(1.0, "1", "price of an azimuth's thrust", "choice", minimum=1e-6)
+    tunnel_weight: float = quantity(1.0, "1", "price of the tunnel's thrust", "choice", minimum=1e-6)
+    yaw_lever: float = quantity(
+        14.0,
+        "m",
+        "a missed yaw moment weighs as a missed force at this distance",
+        "distance of the thrusters; tried: longer ones lose the heading in 12 m/s",
+        minimum=0.1,
+    )
+    yaw_lever_degraded: float = quantity(
+        300.0,
+        "m",
+        "the same where a unit is missing: position before heading",
+        "tried: two azimuths keep the ship in place, and she turns her stern to the weather",
+        minimum=0.1,
+    )
+
+
+class AllocationState(NamedTuple):
+    """Commanded thrusts, and the load they give. [N, N, N.m]"""
+
+    port: float
+    starboard: float
+    tunnel: float
+    tau_X: float
+    tau_Y: float
+    tau_N: float
+    saturated: bool
+
+
+class Design(NamedTuple):
+    """Effect of the three units on X, Y, N, and the nine elements of the inverse for each set of free units.
+
+    Set k holds unit i where bit i of k is set; bit 3 is set where a unit is missing.
+    """
+
+    effect: tuple
+    inverses: tuple
+
+
+def effect(parameters):
+    """Load of one newton of each unit, B(α).
+
+    Returns
+    -------
+    tuple of three tuples
+        (1 or m) for port, starboard and tunnel: X, Y and N = x sin α - y cos α.
+    """
+    p = parameters
+    units = []
+    for x, y, angle in (
+        (p.port_x, p.port_y, p.port_azimuth),
+        (p.starboard_x, p.starboard_y, p.starboard_azimuth),
+    ):
+        c, s = cos(angle), sin(angle)
+        units.append((c, s, x * s - y * c))
+    return (*units, (0.0, 1.0, p.tunnel_x))
+
+
+def design(parameters):
+    """Weighted generalised inverses for all sets of free units.
+
+    Parameters
+    ----------
+    parameters : AllocationParameters
+        Fields may be arrays of one shape.
+
+    Returns
+    -------
+    Design
+
+    Notes
+    -----
+    f = W^-1/2 (S B W^-1/2)⁺ S τ: the thrusts that miss least of τ in the norm of S, and of those the cheapest in
+    the norm of W. S counts a moment as a force at the yaw lever.
+    """
+    p = parameters
+    b = effect(p)
+    matrix = np.stack(np.broadcast_arrays(*(_vector(*unit) for unit in b)), -1)
+    price = _vector(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight) ** -0.5
+    inverses = [
+        _inverse(matrix, price, lever, [(k >> unit) & 1 for unit in range(3)])
+        for lever in (p.yaw_lever, p.yaw_lever_degraded)
+        for k in range(8)
+    ]
+    return Design(b, tuple(inverses))
+
+
+def at_rest(tau):
+    """State at the start: no thrust. `tau` only tells the arithmetic."""
+    zero = 0.0 * tau[0]
+    return AllocationState(zero, zero, zero, zero, zero, zero, zero > 0.0)
+
+
+def step(state, tau, available, h, *, parameters, design):
+    """Commands for a requested load, `h` after the last ones.
+
+    Parameters
+    ----------
+    state : AllocationState
+    tau : tuple of three
+        Requested load, body frame. [N, N, N.m]
+    available : tuple of three bools
+        Whether port, starboard and tunnel can be used. The others take over what they can.
+    h : float
+        Step, for the limit of the commands' rate. [s]
+    parameters : AllocationParameters
+    design : Design
+        Made of the same parameters by `design`.
+
+    Returns
+    -------
+    AllocationState
+        Commands, the load they give, and whether limits of thrust or missing units keep them from giving what was asked
+        for (the limit of the rate passes, so it does not count).
+    """
+    wanted = _within_limits(tau, available, parameters=parameters, design=design)
+    X, Y, N = _missing(tau, wanted, design.effect)
+    missed = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    reach = parameters.thrust_rate_max * h
+    thrusts = tuple(
+        where(usable, old + clip(new - old, -reach, reach), 0.0)
+        for usable, old, new in zip(available, state[:3], wanted, strict=True)
+    )
+    return AllocationState(*thrusts, *load(thrusts, design.effect), missed > 1.0)
+
+
+def load(thrusts, effect):
+    """Load of three thrusts, B f. [N, N, N.m]"""
+    a, b, c = thrusts
+    (aX, aY, aN), (bX, bY, bN), (cX, cY, cN) = effect
+    return aX * a + bX * b + cX * c, aY * a + bY * b + cY * c, aN * a + bN * b + cN * c
+
+
+def _missing(tau, thrusts, effect):
+    """What thrusts fall short of a load."""
+    X, Y, N = load(thrusts, effect)
+    return tau[0] - X, tau[1] - Y, tau[2] - N
+
+
+def _within_limits(tau, available, *, parameters, design):
+    """Steady thrusts for a load. What one unit cannot give is asked of those that are not yet at a limit."""
+    azimuth = (parameters.azimuth_thrust_min, parameters.azimuth_thrust_max)
+    limits = (azimuth, azimuth, (-parameters.tunnel_thrust_max, parameters.tunnel_thrust_max))
+    free = [where(usable, 1.0, 0.0) for usable in available]
+    missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
+    held = [0.0, 0.0, 0.0]
+    for _ in range(3):
+        wanted = _solve(_missing(tau, held, design.effect), free, missing, design.inverses)
+        given = [clip(f, low, high) for f, (low, high) in zip(wanted, limits, strict=True)]
+        thrusts = [f + g for f, g in zip(held, given, strict=True)]
+        over = [f != g for f, g in zip(wanted, given, strict=True)]
+        if not any(map(_anywhere, over)):
+            break
+        held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
+        free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
+    return thrusts
+
+
+def _solve(tau, free, missing, inverses):
+    """Thrusts of the free units for a load, 0 for the others."""
+    chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
+    a, b, c, d, e, f, g, h, i = _choose(chosen, inverses)
+    X, Y, N = tau
+    return a * X + b * Y + c * N, d * X + e * Y + f * N, g * X + h * Y + i * N
+
+
+def _inverse(matrix, price, lever, free):
+    """Nine elements of the generalised inverse of the free units' effect, row by row."""
+    scale = _vector(1.0, 1.0, 1.0 / lever)
+    weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]
+    inverse = price[..., :, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale[..., None, :]
+    return tuple(_float(inverse[..., unit, axis]) for unit in range(3) for axis in range(3))
+
+
+def _vector(*values):
+    """(..., n) array of scalars or arrays of one shape."""
+    return np.stack(np.broadcast_arrays(*values), -1)
+
+
+def _choose(index, rows):
+    """Row of an index that may differ from element to element."""
+    if isinstance(index, float):
+        return rows[int(index)]
+    chosen = rows[0]
+    for number, row in enumerate(rows[1:], 1):
+        chosen = [where(index == number, new, old) for new, old in zip(row, chosen, strict=True)]
+    return chosen
+
+
+def _anywhere(condition):
+    """Whether a condition holds for any element."""
+    return condition if isinstance(condition, bool) else bool(condition.any())
+
+
+def _float(value):
+    """A Python float where the value is a scalar."""
+    return float(value) if np.ndim(value) == 0 else value

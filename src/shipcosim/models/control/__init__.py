@@ -1,0 +1,1 @@
+"""Dynamic positioning: reference model, observer, control law."""

@@ -1,0 +1,135 @@
+"""Reference model: setpoints become positions, velocities and accelerations that a ship can follow.
+
+Each axis is a critically damped filter of third order, integrated exactly, behind a limit of the setpoint's speed.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.models.core.maths import exp, hypot, maximum, minimum, where, wrap
+from shipcosim.models.core.parameters import quantity
+
+
+@dataclass(frozen=True)
+class ReferenceParameters:
+    """How quickly the reference follows its setpoint."""
+
+    position_frequency: float = quantity(
+        2.0 * math.pi / 120.0,
+        "rad/s",
+        "natural frequency of the position reference",
+        "2 pi / 120 s; at the 2 pi / 200 s of Skulstad 2021 a leg of 200 s ends 1.0 m short of 20 m",
+        minimum=1e-4,
+    )
+    heading_frequency: float = quantity(
+        2.0 * math.pi / 120.0,
+        "rad/s",
+        "natural frequency of the heading reference",
+        "as position_frequency",
+        minimum=1e-4,
+    )
+    speed_max: float = quantity(
+        0.0, "m/s", "largest speed of the reference over ground; 0: not limited", "choice", minimum=0.0
+    )
+    yaw_rate_max: float = quantity(
+        0.0, "rad/s", "largest yaw rate of the reference; 0: not limited", "choice", minimum=0.0
+    )
+
+
+class ReferenceState(NamedTuple):
+    """Desired position and heading (north, east, clockwise; heading not wrapped) with rates, and the filter's input."""
+
+    x: float
+    y: float
+    psi: float
+    x_dot: float = 0.0
+    y_dot: float = 0.0
+    r: float = 0.0
+    x_ddot: float = 0.0
+    y_ddot: float = 0.0
+    r_dot: float = 0.0
+    x_in: float = 0.0
+    y_in: float = 0.0
+    psi_in: float = 0.0
+
+
+def at_rest(x, y, psi):
+    """Reference that stands at a position and heading. [m, m, rad]"""
+    zero = 0.0 * x
+    return ReferenceState(x, y, psi, zero, zero, zero, zero, zero, zero, x, y, psi)
+
+
+def step(state, setpoint, h, *, parameters):
+    """Advance the reference by `h`.
+
+    Parameters
+    ----------
+    state : ReferenceState
+        Reference at the start of the step.
+    setpoint : tuple of three, floats or (...) arrays or tensors
+        Position and heading to go to, held over the step; headings go the shortest way round. [m, m, rad]
+    h : float
+        Step. [s]
+    parameters : ReferenceParameters
+
+    Returns
+    -------
+    ReferenceState
+
+    Notes
+    -----
+    The limited setpoint moves at no more than `speed_max`. The filter's impulse response is positive with area one, so
+    its output is no faster than its input and never overshoots.
+
+    References
+    ----------
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 12.1.
+    """
+    x_set, y_set, psi_set = setpoint
+    dx, dy, dpsi = x_set - state.x_in, y_set - state.y_in, wrap(psi_set - state.psi_in)
+    part = _share(hypot(dx, dy), h * parameters.speed_max)
+    x_in, y_in = state.x_in + part * dx, state.y_in + part * dy
+    psi_in = state.psi_in + _share(maximum(dpsi, -dpsi), h * parameters.yaw_rate_max) * dpsi
+    w = parameters.position_frequency
+    x, x_dot, x_ddot = critically_damped(h, state.x - x_in, state.x_dot, state.x_ddot, frequency=w)
+    y, y_dot, y_ddot = critically_damped(h, state.y - y_in, state.y_dot, state.y_ddot, frequency=w)
+    w = parameters.heading_frequency
+    psi, r, r_dot = critically_damped(h, state.psi - psi_in, state.r, state.r_dot, frequency=w)
+    return ReferenceState(x + x_in, y + y_in, psi + psi_in, x_dot, y_dot, r, x_ddot, y_ddot, r_dot, x_in, y_in, psi_in)
+
+
+def critically_damped(h, e, v, a, *, frequency):
+    """Exact solution of (d/dt + w)³ e = 0 after time `h`.
+
+    Parameters
+    ----------
+    h : float
+        Time. [s]
+    e, v, a : floats or (...) arrays or tensors
+        Deviation, its rate and its second derivative at the start.
+    frequency : float or like e
+        w, all three poles are at -w. [rad/s]
+
+    Returns
+    -------
+    tuple of three, like e
+        Deviation, rate and second derivative at the end.
+
+    Notes
+    -----
+    With the system matrix A, N = A + w I is nilpotent, so exp(A h) = exp(-w h) (I + h N + h²/2 N²).
+    """
+    w = frequency
+    decay = exp(-w * h)
+    q = 0.5 * h * h * (w * w * e + 2.0 * w * v + a)
+    return (
+        decay * (e + h * (w * e + v) + q),
+        decay * (v + h * (w * v + a) - w * q),
+        decay * (a - h * w * (w * w * e + 3.0 * w * v + 2.0 * a) + w * w * q),
+    )
+
+
+def _share(distance, reach):
+    """Part of a distance that is covered where no more than `reach` is; all of it where reach is 0."""
+    return where(reach > 0.0, minimum(1.0, reach / maximum(distance, 1e-12)), 1.0)

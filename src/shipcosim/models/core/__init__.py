@@ -1,0 +1,1 @@
+"""What all models are written in: arithmetic for floats, arrays and tensors, frames, parameters, tables, sampling."""

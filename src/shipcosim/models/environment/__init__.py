@@ -1,0 +1,1 @@
+"""Wind, gusts, waves and current, and their loads on a ship."""

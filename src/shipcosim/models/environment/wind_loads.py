@@ -1,0 +1,98 @@
+"""Wind on a ship: the apparent wind, and its loads by a table of measured coefficients."""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.maths import atan2, hypot, interp_columns, pi, where, wrap
+from shipcosim.models.core.parameters import acts, quantity
+from shipcosim.models.core.tables import columns
+from shipcosim.models.ship.load_tables import WIND_33M9
+
+
+@dataclass(frozen=True)
+class WindParameters:
+    """What the wind finds to act on."""
+
+    wind_table: str = quantity(
+        WIND_33M9,
+        "1",
+        "rows 'angle X Y N': loads per squared apparent wind speed, N/(m/s)2, N.m/(m/s)2, by the angle it comes from "
+        "relative to the bow, 0 to 180 deg, starboard",
+        "Blendermann research vessel, NTNU TMR4240 wind table of the lengthened ship, grade B",
+    )
+    wind_load_scale: float = quantity(
+        1.0, "1", "factor on the wind loads; 1 as in the table", "neutral", tolerance=0.03, minimum=0.0
+    )
+    apparent_wind_offset: float = quantity(
+        0.0, "rad", "direction of the apparent wind as it is given minus the real one, which loads the ship", "neutral"
+    )
+
+    @cached_property
+    def turned(self):
+        """Whether the wind comes from elsewhere than given."""
+        return acts(self.apparent_wind_offset)
+
+
+def apparent_wind(psi, u, v, wind_north, wind_east):
+    """The wind as the ship meets it.
+
+    Parameters
+    ----------
+    psi : float or (...) array or tensor
+        Heading. [rad]
+    u, v : like psi
+        Velocity of the ship over ground. [m/s]
+    wind_north, wind_east : like psi
+        Velocity of the air over ground. [m/s]
+
+    Returns
+    -------
+    tuple of two, like psi
+        Speed, and direction the wind comes from, clockwise from the bow. [m/s, rad in (-π, π]]
+
+    Examples
+    --------
+    In calm air a ship that goes ahead has the wind from right ahead:
+
+    >>> apparent_wind(0.0, 5.0, 0.0, 0.0, 0.0)
+    (5.0, 0.0)
+    """
+    wind_u, wind_v = to_body(psi, wind_north, wind_east)
+    u_r, v_r = u - wind_u, v - wind_v
+    return hypot(u_r, v_r), atan2(v_r, u_r)
+
+
+def wind_loads(speed, wind_from, *, wind):
+    """Loads of the apparent wind, by linear interpolation in the angle; wind from port mirrors wind from starboard.
+
+    Parameters
+    ----------
+    speed : float or (...) array or tensor
+        Apparent wind speed. [m/s]
+    wind_from : like speed
+        Direction it comes from as given, clockwise from the bow, in [-π, π]. [rad]
+    wind : WindParameters
+        Table, scale and offset.
+
+    Returns
+    -------
+    tuple of three, like speed
+        X, Y, N. [N, N, N.m]
+    """
+    if wind.turned:
+        wind_from = wrap(wind_from - wind.apparent_wind_offset)
+    angles, *loads = _table(wind.wind_table)
+    X, Y, N = interp_columns(abs(wind_from), angles, *loads)
+    square = wind.wind_load_scale * speed * speed
+    side = where(wind_from < 0.0, -square, square)
+    return square * X, side * Y, side * N
+
+
+@lru_cache(maxsize=16)
+def _table(text):
+    """Columns of the table, the angle in rad."""
+    angles, *loads = columns(text, 4)
+    if angles[0] != 0.0 or angles[-1] != 180.0:
+        raise ValueError(f"wind table: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to 180 deg.")
+    return tuple(angle * pi / 180.0 for angle in angles), *loads

@@ -1,0 +1,77 @@
+"""Dead reckoning: where the ship will be if thrust, wind, current and waves stay as they are."""
+
+from math import ceil
+
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.maths import wrap
+from shipcosim.models.environment.wind_loads import apparent_wind, wind_loads
+from shipcosim.models.ship.vessel import Vessel, accelerations, through_water
+
+
+def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, hull, wind):
+    """Positions and headings of the ship ahead in time.
+
+    Parameters
+    ----------
+    vessel : Vessel
+        State now.
+    thrusters : tuple of three
+        Load of the thrusters, held in body axes. [N, N, N.m]
+    drift : tuple of three
+        Mean wave drift load, held in body axes. [N, N, N.m]
+    air, current : tuple of two
+        Velocity of air and water, north and east, held; the wind's load follows the ship's heading. [m/s]
+    horizons : tuple of float, increasing
+        How far ahead. [s]
+    longest_step : float
+        Longest step of the integration; each stretch up to a horizon is divided into equal steps. [s]
+    hull : HullParameters
+    wind : WindParameters
+
+    Returns
+    -------
+    tuple of Vessel
+        One per horizon.
+
+    Notes
+    -----
+    Midpoint rule, with the wind's load at the middle heading of each step.
+    """
+    held = [thrust + wave for thrust, wave in zip(thrusters, drift, strict=True)]
+    motion = *vessel, *through_water(vessel.psi, vessel.u, vessel.v, *current)
+    predictions, before = [], 0.0
+    for horizon in horizons:
+        steps = ceil((horizon - before) / longest_step)
+        for _ in range(steps):
+            motion = _advance(motion, held, air, current, (horizon - before) / steps, hull=hull, wind=wind)
+        predictions.append(Vessel(*motion[:6]))
+        before = horizon
+    return tuple(predictions)
+
+
+def _advance(motion, held, air, current, h, *, hull, wind):
+    """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`.
+
+    `motion` is x, y, psi, u, v, r and the velocity through the water, u_r and v_r.
+    """
+    x, y, psi, u, v, r, u_r, v_r = motion
+    psi_mid = psi + 0.5 * h * r
+    wind_X, wind_Y, wind_N = wind_loads(*apparent_wind(psi_mid, u, v, *air), wind=wind)
+    X, Y, N = held[0] + wind_X, held[1] + wind_Y, held[2] + wind_N
+    u_dot, v_dot, r_dot = accelerations(u_r, v_r, r, X, Y, N, hull=hull)
+    u_mid, v_mid, r_mid = u_r + 0.5 * h * u_dot, v_r + 0.5 * h * v_dot, r + 0.5 * h * r_dot
+    u_dot, v_dot, r_dot = accelerations(u_mid, v_mid, r_mid, X, Y, N, hull=hull)
+    north, east = to_ned(psi_mid, u_mid, v_mid)
+    psi = wrap(psi + h * r_mid)
+    u_c, v_c = to_body(psi, *current)
+    u_r, v_r = u_r + h * u_dot, v_r + h * v_dot
+    return (
+        x + h * (north + current[0]),
+        y + h * (east + current[1]),
+        psi,
+        u_r + u_c,
+        v_r + v_c,
+        r + h * r_dot,
+        u_r,
+        v_r,
+    )

@@ -1,0 +1,1 @@
+"""Thrusters: drive, propeller, slipstream, thrust."""

@@ -1,0 +1,132 @@
+"""Drive, motor and shaft of a thruster: from a thrust command to shaft speed.
+
+The drive limits the command and its rate, and turns it into motor torque by a PI law on shaft speeds. With g(T) the
+shaft speed that gives T at bollard and Q_b(n) the torque there,
+
+    Q_cmd = Q_b(n_d) + k_p 2π (n_d - n) + z,  n_d = g(T_cmd),  ż = k_i 2π (n_d - g(T)),
+
+T the delivered thrust: its estimate is assumed to be exact. At bollard g(T) = n, an ordinary PI speed loop, as linear
+through zero thrust as elsewhere; with inflow the integral brings the thrust, not the speed, to what was asked. Where
+the motor's limits cut the torque, z follows back at k_i/k_p. The speed limit lets the shaft near n_max at rate k_p/I.
+"""
+
+from typing import Any, NamedTuple
+
+from shipcosim.models.core.maths import clip, maximum, minimum, pi, rk4_pair, substeps, where
+
+_LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
+_TURN = 2.0 * pi
+_SLOW = 0.1 / _TURN  # rev/s, slower the motor's power does not limit it
+_THRUST_TOLERANCE = 1.0  # N, nearer than this the command counts as reached
+
+
+class Thruster(NamedTuple):
+    """State of a thruster.
+
+    Parameters
+    ----------
+    n : float or (...) array or tensor
+        Shaft speed, of a tunnel thruster its motor's. [rev/s]
+    integral : like n
+        Integral part z of the drive. [N.m]
+    thrust_cmd : like n
+        Command within its limits and rate. [N]
+    azimuth : like n
+        Direction of positive thrust, clockwise from the bow; π/2 for a tunnel. [rad]
+    torque : like n
+        Torque of the motor. [N.m]
+    saturated : bool or array
+        Running at a limit of force, of its rate, or of the motor.
+    """
+
+    n: Any
+    integral: Any
+    thrust_cmd: Any
+    azimuth: Any
+    torque: Any
+    saturated: Any
+
+
+def at_rest(azimuth):
+    """A thruster that stands still.
+
+    Parameters
+    ----------
+    azimuth : float or (...) array or tensor
+        Direction of positive thrust. [rad]
+
+    Returns
+    -------
+    Thruster
+    """
+    zero = 0.0 * azimuth
+    return Thruster(zero, zero, zero, azimuth, zero, False)
+
+
+def drive_step(thruster, thrust_cmd, failed, h, drive, loads, speed, torque):
+    """Drive, motor and shaft a step later.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State at the start, its direction already that of the end.
+    thrust_cmd : like the state
+        Commanded thrust. [N]
+    failed : bool or array
+        Without power: no motor torque, the shaft runs free, command and integral are forgotten.
+    h : float
+        Step, divided into equal parts of at most 0.05 s. [s]
+    drive : AzimuthParameters or TunnelParameters
+        Limits, motor and gains.
+    loads : callable
+        ``loads(n)`` gives the propeller's thrust and torque. [N, N.m]
+    speed, torque : callable
+        The bollard curves ``speed(thrust)`` and ``torque(n)``. [rev/s, N.m]
+
+    Returns
+    -------
+    Thruster
+        State at the end.
+    """
+    running = where(failed, 0.0, 1.0)
+    start = running * thruster.thrust_cmd
+    wanted = running * clip(thrust_cmd, drive.thrust_min, drive.thrust_max)
+    change = clip(wanted - start, -drive.thrust_rate * h, drive.thrust_rate * h)
+    gain, ratio = drive.proportional_gain * _TURN, drive.integral_gain / drive.proportional_gain
+    integral_gain, friction, inertia = drive.integral_gain * _TURN, drive.friction * _TURN, drive.inertia * _TURN
+    limited = _limits(drive, gain)
+
+    def demand(share):
+        n_d = speed(start + share * change)
+        return n_d, torque(n_d) + gain * n_d
+
+    def motor(n, integral, forward, load):
+        asked = forward - gain * n + integral
+        return asked, running * limited(asked, n, load)
+
+    def rates(n, integral, n_d, forward):
+        thrust, load = loads(n)
+        asked, given = motor(n, integral, forward, load)
+        n_dot = (given - load - friction * n) / inertia
+        return n_dot, integral_gain * (n_d - speed(thrust)) + ratio * (given - asked)
+
+    n, integral, now = thruster.n, running * thruster.integral, demand(0.0)
+    parts = substeps(h, _LONGEST_SUBSTEP)
+    for part in range(parts):
+        before, middle, now = now, demand((part + 0.5) / parts), demand((part + 1.0) / parts)
+        n, integral = rk4_pair(rates, n, integral, h / parts, before, middle, now)
+    reached = start + change
+    asked, given = motor(n, integral, now[1], loads(n)[1])
+    at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (running > 0.0)
+    return Thruster(n, running * integral, reached, thruster.azimuth, given, at_limit)
+
+
+def _limits(drive, gain):
+    """Function that keeps a torque within the motor's limits of torque, power and speed."""
+    n_max, torque_max, power = drive.rpm_max / 60.0, drive.torque_max, drive.power_max / _TURN
+
+    def limited(torque, n, load):
+        most = minimum(torque_max, power / maximum(abs(n), _SLOW))
+        return clip(torque, maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n)))
+
+    return limited

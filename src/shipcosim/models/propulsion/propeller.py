@@ -1,0 +1,213 @@
+"""Thrust and torque of the azimuths' ducted propeller in all four quadrants.
+
+With the hydrodynamic pitch angle β = atan2(u_a, 0.7 π n D) and C = ρ/2 (u_a² + (0.7 π n D)²) π D²/4,
+
+    T = CT(β) C,  Q = CQ(β) D C,
+
+which has no singular point: n = 0 is β = ±90 deg. Between the corners of the first quadrant, 0 <= β <= 31.9 deg
+(J = u_a/(n D) from 0 to 1.37), CT comes from the unit's own polynomial KT(J); elsewhere CT and CQ are those of the open
+propeller B4-70, P/D 1.4, scaled so that both bollard points are met (assumed; grade D outside the first quadrant).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from shipcosim.models.core.maths import atan2, even_table, interp_even, pi, sqrt, where
+from shipcosim.models.core.parameters import quantity
+
+# Fourier coefficients of CT and CQ of B4-70, P/D 1.4: Roddy, Hess and Faller, Neural network predictions of the
+# 4-quadrant Wageningen propeller series, NSWCCD-50-TR-2006/004, as tabulated in the Modelica library ShipSIM.
+# fmt: off
+_CT_COS = (
+    0.018891, 0.28033, 0.01886, 0.0059973, -0.010858, -0.064362, -0.0015631, 0.050311, -0.00063924, -0.020315,
+    0.0060866, 0.018917, -0.0041935, 0.0067181, 0.006423, 0.0072715, -0.0017483, 0.0017548, 0.003548, 0.000797,
+    -0.00099109, 0.0022019, -0.0004753, -0.0052461, 0.00053469, 0.0009951, -0.0016191, -0.0034163, 0.00025212,
+    4.6286e-05, -0.0020432,
+)
+
+_CT_SIN = (
+    0, -0.65683, -0.0023066, 0.074446, -0.012398, 0.047921, 0.0071695, 0.00034276, -0.0029434, 0.020101, 0.0027097,
+    0.001648, -0.0017983, 0.010989, -0.0016326, -0.013135, -3.0559e-05, 0.0046619, -0.0039988, -0.0074616,
+    0.00018552, -0.00091938, -0.0041697, -0.0030539, 0.0014211, 0.00063486, -0.0027402, 9.2732e-05, 0.0011064,
+    -0.00017769, 6.4717e-05,
+)
+
+_CQ_COS = (
+    0.006273, 0.059067, -0.0034811, 0.0043989, 0.0004052, -0.011843, -0.003086, 0.013137, 0.0014057, -0.0056834,
+    -0.00026129, 0.0045913, 0.00058107, 0.00012353, 0.0016486, 0.0043524, -0.00095606, -0.0020063, 0.00067764,
+    0.002086, -0.00010021, -0.0014317, 0.00040246, 0.00034768, -0.0011234, -0.001822, 0.00034224, 0.00067856,
+    -0.0008999, -0.0008462, 8.4567e-05,
+)
+
+_CQ_SIN = (
+    0, -0.13718, 6.0201e-05, 0.020555, -0.0033632, 0.0089586, 0.0026638, 0.0009819, -0.0022511, 0.00087269,
+    0.0031696, 0.0033156, -0.0021286, 0.0010776, 0.0013561, -0.0020842, -0.0020193, -0.00033011, 0.0010371,
+    -0.0013432, -0.0012629, -0.00039292, 0.00015316, -0.0012626, -0.001106, 0.00076676, 0.00071063, -7.8099e-05,
+    -0.00070479, 0.00066394, 0.00061846,
+)
+
+# fmt: on
+_KT = (0.8208, -0.6993, 0.1895, -0.0743)  # powers of J; PMAzimuth FMU of Gunnerus, 1260 points, rms 0.0018, grade B
+_END = 31.9  # deg, where the polynomial ends
+_CT_SCALE = ((-180.0, -90.0, 0.0, _END, 90.0, 180.0), (0.875, 1.0, 1.383, 0.441, 1.0, 0.875))
+_CQ_SCALE = ((-180.0, -90.0, 0.0, 90.0, 180.0), (0.813, 1.0, 0.742, 1.0, 0.813))
+_OUTSIDE = ((-180.0, -30.0, 0.0, _END, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0))
+_STEP = 0.1  # deg; linear interpolation then errs by at most 2e-5 in CT and 5e-6 in CQ, 1e-4 of their bollard values
+_AREA = pi / 4.0  # of the disc, in D^2
+_TIP = 0.7 * pi  # speed of the reference section in n D
+_ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
+
+
+@dataclass(frozen=True)
+class PropellerParameters:
+    """A propeller of this series."""
+
+    diameter: float = quantity(1.9, "m", "propeller diameter", "all FMU configurations, grade A", minimum=0.01)
+    water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
+    inflow: float = quantity(
+        1.0,
+        "1",
+        "share of the ship's speed that reaches the propeller; 0 keeps bollard thrust at any speed",
+        "the polynomial is over ship speed",
+        minimum=0.0,
+    )
+    thrust_scale: float = quantity(
+        1.0, "1", "factor on the thrust; 1 for propeller with nozzle", "neutral", tolerance=0.01, minimum=0.0
+    )
+    thrust_scale_outside: float = quantity(
+        1.0, "1", "further factor on the thrust outside the first quadrant", "neutral", tolerance=0.05, minimum=0.0
+    )
+    torque_scale: float = quantity(1.0, "1", "factor on the torque", "neutral", minimum=0.0)
+
+    @cached_property
+    def disc(self):
+        """C over the squared speed of the reference section, ρ/2 π D²/4. [kg/m]"""
+        return 0.5 * _AREA * self.diameter**2 * self.water_density
+
+    @cached_property
+    def bollard(self):
+        """Thrust, then torque, over squared shaft speed at no speed, each ahead and astern. [N.s2, N.m.s2]"""
+        D, (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.diameter, _bollard()
+        K = self.water_density * D**4
+        thrust, torque = K * self.thrust_scale, K * D * self.torque_scale
+        astern = thrust * self.thrust_scale_outside * KT_astern
+        return thrust * KT_ahead, astern, torque * KQ_ahead, torque * KQ_astern
+
+
+def propeller_loads(u_a, n, *, propeller):
+    """Thrust and torque in all four quadrants.
+
+    Parameters
+    ----------
+    u_a : float or (...) array or tensor
+        Speed of the unit through the water along its axis, positive when it advances. [m/s]
+    n : like u_a
+        Shaft speed, negative astern. [rev/s]
+    propeller : PropellerParameters
+        The propeller.
+
+    Returns
+    -------
+    tuple of two, like u_a
+        Thrust along the axis, and torque that the shaft must give. [N, N.m]
+
+    Examples
+    --------
+    At 200 rpm and no speed, as in the FMU of the unit, 121.7 kN:
+
+    >>> thrust, torque = propeller_loads(0.0, 200.0 / 60.0, propeller=PropellerParameters())
+    >>> round(thrust)
+    121824
+    """
+    D = propeller.diameter
+    tip, u_a = _TIP * D * n, propeller.inflow * u_a
+    ct, cq, outside = interp_even(atan2(u_a, tip), _table())
+    C = propeller.disc * (u_a * u_a + tip * tip)
+    scale = propeller.thrust_scale * (1.0 + outside * (propeller.thrust_scale_outside - 1.0))
+    return scale * ct * C, propeller.torque_scale * cq * D * C
+
+
+def bollard_torque(n, *, propeller):
+    """Torque at no speed.
+
+    Parameters
+    ----------
+    n : float or (...) array or tensor
+        Shaft speed. [rev/s]
+    propeller : PropellerParameters
+        The propeller.
+
+    Returns
+    -------
+    like n
+        Torque. [N.m]
+    """
+    _, _, ahead, astern = propeller.bollard
+    return n * abs(n) * where(n < 0.0, astern, ahead)
+
+
+def bollard_speed(thrust, *, propeller):
+    """Shaft speed that gives a thrust at no speed, the inverse of the bollard curve.
+
+    Parameters
+    ----------
+    thrust : float or (...) array or tensor
+        Thrust. [N]
+    propeller : PropellerParameters
+        The propeller.
+
+    Returns
+    -------
+    like thrust
+        Shaft speed. [rev/s]
+    """
+    ahead, astern, _, _ = propeller.bollard
+    speed = sqrt((abs(thrust) + _ALMOST_NONE) / where(thrust < 0.0, astern, ahead))
+    return where(thrust < 0.0, -speed, speed)
+
+
+def series(beta):
+    """CT and CQ of the open propeller B4-70, P/D 1.4, unscaled.
+
+    Parameters
+    ----------
+    beta : (n,) array
+        Hydrodynamic pitch angle. [rad]
+
+    Returns
+    -------
+    tuple of two (n,) arrays
+        CT, CQ. [1]
+    """
+    order = np.arange(len(_CT_COS))
+    c, s = np.cos(np.outer(beta, order)), np.sin(np.outer(beta, order))
+    return c @ _CT_COS + s @ _CT_SIN, c @ _CQ_COS + s @ _CQ_SIN
+
+
+@lru_cache(maxsize=1)
+def _table():
+    """CT, CQ and the weight of the scale outside the first quadrant over β, all 1."""
+    return even_table(*_arrays())
+
+
+@lru_cache(maxsize=1)
+def _arrays():
+    """Columns β, CT, CQ, weight outside the first quadrant over the whole circle."""
+    degrees = np.arange(-1800, 1801) * _STEP
+    ct, cq = series(np.radians(degrees))
+    ct, cq = ct * np.interp(degrees, *_CT_SCALE), cq * np.interp(degrees, *_CQ_SCALE)
+    first = (degrees > -0.5 * _STEP) & (degrees < _END + 0.5 * _STEP)
+    J = _TIP * np.tan(np.radians(degrees[first]))
+    ct[first] = np.polyval(_KT[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
+    return np.radians(degrees), ct, cq, np.interp(degrees, *_OUTSIDE)
+
+
+@lru_cache(maxsize=1)
+def _bollard():
+    """KT ahead and astern, KQ ahead and astern, over n abs(n)."""
+    _, ct, cq, _ = _arrays()
+    factor = 0.5 * _AREA * _TIP**2
+    middle = len(ct) // 2
+    return tuple((factor * np.array([ct[middle], -ct[0], cq[middle], -cq[0]])).tolist())

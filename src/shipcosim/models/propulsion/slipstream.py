@@ -1,0 +1,42 @@
+"""The slipstream of a thruster and what lies in it."""
+
+from shipcosim.models.core.maths import atan2, exp, pi, where, wrap
+
+
+def slipstream_share(x, y, azimuth, rpm, *, width):
+    """How much of a thruster's slipstream a point meets: exp(-(angle off its axis / width)²), at any distance.
+
+    The slipstream goes opposite to the thrust: towards azimuth + π at positive shaft speed, towards azimuth at
+    negative. A shaft that stands has none.
+
+    Parameters
+    ----------
+    x, y : float or (...) array or tensor
+        The point, forward and to starboard of the thruster. [m]
+    azimuth, rpm : like x
+        Direction of the thruster's positive thrust, clockwise from the bow, and its shaft speed. [rad, rpm]
+    width : like x
+        Angle off the axis at which 1/e is left. [rad]
+
+    Returns
+    -------
+    like azimuth
+        1 on the axis, 0 far beside it. [1]
+
+    References
+    ----------
+    The sector in which a slipstream meets a neighbour: DNV-ST-0111 and Dang and Laheij, Hydrodynamic aspects of
+    steerable thrusters, Dynamic Positioning Conference 2004. That its edge is a Gaussian is assumed.
+
+    Examples
+    --------
+    A unit that pushes to starboard throws its water at its neighbour to port, running astern it does not:
+
+    >>> [slipstream_share(0.0, -4.0, pi / 2, rpm, width=0.35) for rpm in (100.0, 0.0)]
+    [1.0, 0.0]
+    >>> slipstream_share(0.0, -4.0, pi / 2, -100.0, width=0.35) < 1e-30
+    True
+    """
+    towards = where(rpm > 0.0, azimuth + pi, azimuth)
+    angle = wrap(atan2(y, x) - towards) / width
+    return where(rpm == 0.0, 0.0 * abs(angle), exp(-angle * angle))

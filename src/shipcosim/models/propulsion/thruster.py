@@ -1,0 +1,380 @@
+"""Thrusters: from a thrust command over drive, motor and shaft to the loads on the ship.
+
+Limits, drive and motor are in `drive`, the propeller in `propeller`; here is what each kind of thruster adds to them.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from shipcosim.models.core.kinematics import load_at, velocity_at
+from shipcosim.models.core.maths import clip, cos, exp, hypot, pi, sin, sqrt, where, wrap
+from shipcosim.models.core.parameters import acts, quantity
+from shipcosim.models.propulsion.drive import at_rest, drive_step
+from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
+from shipcosim.models.propulsion.slipstream import slipstream_share
+
+_TURN = 2.0 * pi
+_ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
+_LOSS = "share of the thrust that is missing at the speed that the shaft has; torque and drive know nothing of it"
+_LIMITS = "Skulstad 2021, paper V, Table I, grade A"
+
+
+@dataclass(frozen=True)
+class AzimuthParameters(PropellerParameters):
+    """An azimuth thruster with its drive; the defaults are one unit of gunnerus-33m9, on the centreline."""
+
+    x: float = quantity(-14.02, "m", "position forward", "allocator of the thesis, grade B", tolerance=0.02)
+    y: float = quantity(0.0, "m", "position to starboard", "one unit on the centreline", tolerance=0.02)
+    side_force_coefficient: float = quantity(
+        0.80,
+        "1",
+        "side force coefficient: momentum drag and strut",
+        "fitted to 1260 points of the unit's FMU (0.796, leaves 3.7 kN rms of 36 kN), grade B",
+        tolerance=0.08,
+        minimum=0.0,
+    )
+    thrust_min: float = quantity(-30e3, "N", "largest thrust astern, negative", _LIMITS, maximum=0.0)
+    thrust_max: float = quantity(60e3, "N", "largest thrust ahead", _LIMITS, minimum=0.0)
+    thrust_rate: float = quantity(1e3, "N/s", "largest rate of the thrust command", _LIMITS, minimum=0.0)
+    azimuth_rate: float = quantity(10.0 * pi / 180.0, "rad/s", "largest rate of turning", _LIMITS, minimum=0.0)
+    rpm_max: float = quantity(203.0, "rpm", "largest shaft speed", "Vico, 100 %, grade A", minimum=1.0)
+    torque_max: float = quantity(23.5e3, "N.m", "largest motor torque", "500 kW at 203 rpm", minimum=0.0)
+    power_max: float = quantity(500e3, "W", "largest motor power", "thesis, grade A", minimum=0.0)
+    inertia: float = quantity(
+        600.0,
+        "kg.m2",
+        "motor, shaft, propeller and its water",
+        "Smogeli's 4 m unit scaled with D^5, grade D",
+        minimum=1e-6,
+    )
+    friction: float = quantity(
+        10.0, "N.m.s/rad", "friction torque over shaft speed", "1 % at 203 rpm, assumed", minimum=0.0
+    )
+    proportional_gain: float = quantity(
+        3e3, "N.m.s/rad", "k_p of the drive", "5 1/s times the inertia, tuned", minimum=0.0
+    )
+    integral_gain: float = quantity(6e3, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
+
+    thrust_loss: float = quantity(0.0, "1", _LOSS, "neutral", tolerance=0.01, maximum=1.0)
+    reverse_loss: float = quantity(
+        0.0,
+        "1",
+        "further loss of what is left at negative shaft speed",
+        "neutral; with thrust_loss 5 % outside the first quadrant",
+        tolerance=0.04,
+        maximum=1.0,
+    )
+    azimuth_offset: float = quantity(
+        0.0, "rad", "real direction of the thrust minus the given one", "neutral", tolerance=0.2 * pi / 180.0
+    )
+    rpm_offset: float = quantity(
+        0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", tolerance=0.1
+    )
+    interaction_loss: float = quantity(
+        0.0, "1", "share of the thrust that is lost on the axis of the neighbour's slipstream", "neutral", maximum=1.0
+    )
+    interaction_width: float = quantity(
+        20.0 * pi / 180.0,
+        "rad",
+        "angle off that axis at which 1/e of the loss is left",
+        "some 20 deg, assumed",
+        minimum=1e-3,
+    )
+    neighbour_x: float = quantity(0.0, "m", "position of the neighbour forward", "set by the system")
+    neighbour_y: float = quantity(0.0, "m", "position of the neighbour to starboard", "set by the system")
+
+    @cached_property
+    def loses(self):
+        """Whether some of the thrust of the propeller is lost."""
+        return any(map(acts, (self.thrust_loss, self.reverse_loss, self.interaction_loss)))
+
+
+@dataclass(frozen=True)
+class TunnelParameters:
+    """A tunnel thruster with its drive, speeds and torques on the motor's side; the defaults are gunnerus-33m9."""
+
+    x: float = quantity(14.48, "m", "position forward", "allocator of the thesis, grade B", tolerance=0.02)
+    thrust_coefficient: float = quantity(
+        6.83e-3,
+        "N/rpm2",
+        "thrust over squared motor speed",
+        "nominal curve of the thesis, grade B",
+        tolerance=1.4e-4,
+        minimum=1e-9,
+    )
+    torque_coefficient: float = quantity(
+        1073.0 / 1780.0**2, "N.m/rpm2", "torque over squared motor speed", "200 kW at 1780 rpm, assumed", minimum=0.0
+    )
+    speed_loss: float = quantity(
+        0.0, "s2/m2", "thrust falls with exp(-speed_loss u_r^2) under way; (1/2.2)^2 is typical", "neutral", minimum=0.0
+    )
+    thrust_min: float = quantity(-21.6e3, "N", "largest thrust to port, negative", "at 1780 rpm", maximum=0.0)
+    thrust_max: float = quantity(21.6e3, "N", "largest thrust to starboard", "at 1780 rpm", minimum=0.0)
+    thrust_rate: float = quantity(1e3, "N/s", "largest rate of the thrust command", _LIMITS, minimum=0.0)
+    rpm_max: float = quantity(1780.0, "rpm", "largest motor speed", "nominal curve of the thesis, grade B", minimum=1.0)
+    torque_max: float = quantity(1180.0, "N.m", "largest motor torque", "10 % above rated, assumed", minimum=0.0)
+    power_max: float = quantity(200e3, "W", "largest motor power", "thesis, grade A", minimum=0.0)
+    inertia: float = quantity(12.0, "kg.m2", "motor with what it drives", "assumed", minimum=1e-6)
+    friction: float = quantity(0.0, "N.m.s/rad", "friction torque over motor speed", "in the torque", minimum=0.0)
+    proportional_gain: float = quantity(
+        60.0, "N.m.s/rad", "k_p of the drive", "5 1/s times the inertia, tuned", minimum=0.0
+    )
+    integral_gain: float = quantity(120.0, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
+
+    thrust_loss: float = quantity(0.0, "1", _LOSS, "neutral; thrust_coefficient has the tolerance", maximum=1.0)
+    rpm_offset: float = quantity(
+        0.0, "rpm", "given motor speed of a replay minus the real one", "neutral", tolerance=1.0
+    )
+
+
+class Loads(NamedTuple):
+    """What a thruster does to the ship.
+
+    Parameters
+    ----------
+    thrust, side_force : float or (...) array or tensor
+        Force along the axis, and across it, 90 deg clockwise of the thrust. [N]
+    tau_X, tau_Y, tau_N : like thrust
+        Load about the origin. [N, N, N.m]
+    """
+
+    thrust: Any
+    side_force: Any
+    tau_X: Any
+    tau_Y: Any
+    tau_N: Any
+
+
+def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, unit):
+    """The azimuth thruster a step later.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State at the start.
+    thrust_cmd, azimuth_cmd : like the state
+        Commanded thrust and direction; the direction is taken the shortest way. [N, rad]
+    u_r, v_r, r : like the state
+        Velocity of the ship through the water. [m/s, m/s, rad/s]
+    failed : bool or array
+        Without power: no motor torque, the shaft runs free, the unit keeps its direction.
+    h : float
+        Step. [s]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        State at the end.
+    """
+    azimuth = turned(thruster.azimuth, azimuth_cmd, where(failed, 0.0, unit.azimuth_rate * h))
+    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
+    return drive_step(
+        thruster._replace(azimuth=azimuth),
+        thrust_cmd,
+        failed,
+        h,
+        unit,
+        lambda n: propeller_loads(u_a, n, propeller=unit),
+        lambda thrust: bollard_speed(thrust, propeller=unit),
+        lambda n: bollard_torque(n, propeller=unit),
+    )
+
+
+def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
+    """An azimuth thruster at a given shaft speed and direction, for replays; friction and propeller set its torque.
+
+    Parameters
+    ----------
+    n, azimuth : float or (...) array or tensor
+        Shaft speed and direction of positive thrust as given: less and plus the unit's offsets are the real ones.
+        [rev/s, rad]
+    u_r, v_r, r : like n
+        Velocity of the ship through the water. [m/s, m/s, rad/s]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        With the real shaft speed and the given direction.
+    """
+    thruster = azimuth_given(n, azimuth, unit=unit)
+    n = thruster.n
+    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
+    thrust, torque = propeller_loads(u_a, n, propeller=unit)
+    return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n)
+
+
+def azimuth_given(n, azimuth, *, unit):
+    """As `azimuth_replay`, where its thrust and torque are not asked for: both 0.
+
+    Parameters
+    ----------
+    n, azimuth : float or (...) array or tensor
+        Shaft speed and direction of positive thrust as given. [rev/s, rad]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+    """
+    return at_rest(azimuth)._replace(n=n - unit.rpm_offset / 60.0)
+
+
+def azimuth_loads(thruster, u_r, v_r, r, neighbour_azimuth=0.0, neighbour_rpm=0.0, *, unit):
+    """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, on the ship.
+
+    The thrust is that of the propeller less what is lost:
+    (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - interaction_loss · `slipstream_share`).
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State.
+    u_r, v_r, r : like the state
+        Velocity of the ship through the water. [m/s, m/s, rad/s]
+    neighbour_azimuth, neighbour_rpm : like the state
+        Direction of positive thrust and shaft speed of the unit whose slipstream can meet this one. [rad, rpm]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Loads
+    """
+    n, azimuth = thruster.n, thruster.azimuth + unit.azimuth_offset
+    u_a, u_s = _inflow(azimuth, u_r, v_r, r, unit)
+    thrust, _ = propeller_loads(u_a, n, propeller=unit)
+    if unit.loses:
+        thrust = thrust * _kept(n, neighbour_azimuth, neighbour_rpm, unit)
+    D = unit.diameter
+    side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + abs(n) * D) * u_s
+    c, s = cos(azimuth), sin(azimuth)
+    return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
+
+
+def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
+    """The tunnel thruster a step later.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State at the start.
+    thrust_cmd : like the state
+        Commanded thrust, positive to starboard. [N]
+    u_r : like the state
+        Forward speed of the ship through the water. [m/s]
+    failed : bool or array
+        Without power: no motor torque, the shaft runs free.
+    h : float
+        Step. [s]
+    tunnel : TunnelParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        State at the end.
+    """
+    loss = exp(-tunnel.speed_loss * u_r * u_r)
+    k_T, k_Q = 3600.0 * tunnel.thrust_coefficient, 3600.0 * tunnel.torque_coefficient
+
+    def speed(thrust):
+        n = sqrt((abs(thrust) + _ALMOST_NONE) / k_T)
+        return where(thrust < 0.0, -n, n)
+
+    def loads(n):
+        square = n * abs(n)
+        return loss * k_T * square, k_Q * square
+
+    return drive_step(thruster, thrust_cmd, failed, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
+
+
+def tunnel_replay(n, *, tunnel):
+    """A tunnel thruster at a given motor speed, for replays.
+
+    Parameters
+    ----------
+    n : float or (...) array or tensor
+        Motor speed as given; less the offset it is the real one. [rev/s]
+    tunnel : TunnelParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        With the real speed.
+    """
+    n = n - tunnel.rpm_offset / 60.0
+    square = 3600.0 * n * abs(n)
+    torque = tunnel.torque_coefficient * square + tunnel.friction * _TURN * n
+    return at_rest(0.5 * pi + 0.0 * n)._replace(n=n, thrust_cmd=tunnel.thrust_coefficient * square, torque=torque)
+
+
+def tunnel_loads(thruster, u_r, *, tunnel):
+    """Thrust of a tunnel thruster and its load on the ship.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State.
+    u_r : like the state
+        Forward speed of the ship through the water. [m/s]
+    tunnel : TunnelParameters
+        The thruster.
+
+    Returns
+    -------
+    Loads
+    """
+    n = 60.0 * thruster.n
+    kept = (1.0 - tunnel.thrust_loss) * exp(-tunnel.speed_loss * u_r * u_r)
+    thrust = tunnel.thrust_coefficient * n * abs(n) * kept
+    return Loads(thrust, 0.0 * n, 0.0 * n, thrust, tunnel.x * thrust)
+
+
+def turned(azimuth, azimuth_cmd, most):
+    """A direction after turning towards the commanded one, the shortest way round.
+
+    Parameters
+    ----------
+    azimuth, azimuth_cmd : float or (...) array or tensor
+        Where it points, and where it shall. [rad]
+    most : like azimuth
+        Largest turn. [rad]
+
+    Returns
+    -------
+    like azimuth
+        In [-π, π). [rad]
+
+    Examples
+    --------
+    From 170 deg to -170 deg the way is 20 deg, not 340:
+
+    >>> import math
+    >>> round(math.degrees(turned(math.radians(170.0), math.radians(-170.0), math.radians(5.0))), 6)
+    175.0
+    """
+    return wrap(azimuth + clip(wrap(azimuth_cmd - azimuth), -most, most))
+
+
+def _inflow(azimuth, u_r, v_r, r, unit):
+    """Velocity of the unit through the water, along and across its axis. [m/s]"""
+    u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
+    c, s = cos(azimuth), sin(azimuth)
+    return c * u + s * v, c * v - s * u
+
+
+def _kept(n, neighbour_azimuth, neighbour_rpm, unit):
+    """Share of the propeller's thrust that the losses leave. [1]"""
+    kept = (1.0 - unit.thrust_loss) * where(n < 0.0, 1.0 - unit.reverse_loss, 1.0)
+    if not acts(unit.interaction_loss):
+        return kept
+    x, y = unit.x - unit.neighbour_x, unit.y - unit.neighbour_y
+    share = slipstream_share(x, y, neighbour_azimuth, neighbour_rpm, width=unit.interaction_width)
+    return kept * (1.0 - unit.interaction_loss * share)

@@ -1,0 +1,1 @@
+"""The ship: hull, motion, sensors and what her instruments show."""

@@ -1,0 +1,295 @@
+"""Loads of the water on a hull that moves through it: a sum of named contributions, each zero where it is unused.
+
+Every contribution is a function of the velocity through the water (u, v, r) and of `HullParameters`. A hull uses those
+for which it has coefficients; a new effect is one more function here, with coefficients that are zero by default.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from shipcosim.models.core.maths import maximum, minimum
+from shipcosim.models.core.parameters import acts, quantity
+
+_MARLEY = "calibrated to the trials of 2022 by M. Marley, MCSim_python, grade B"
+_FITTED = "fitted to the steady turns of 2022, grade C"
+_UNUSED = "not used by this ship"
+_TINY = 1e-30
+
+
+def _unused(unit, description):
+    return quantity(0.0, unit, description, _UNUSED)
+
+
+@dataclass(frozen=True)
+class HullParameters:
+    """Mass and hydrodynamics of a hull; the defaults are R/V Gunnerus after lengthening, gunnerus-33m9.
+
+    Coefficients are named as in the source: ``X_rvu`` multiplies r v u in surge; ``mod`` stands for one absolute value,
+    ``Y_modrv`` multiplies v abs(r).
+    """
+
+    mass: float = quantity(531e3, "kg", "mass", "mean of the stability report, grade B", tolerance=5.31e3, minimum=1.0)
+    inertia_yaw: float = quantity(
+        43.0e6,
+        "kg.m2",
+        "moment of inertia in yaw",
+        "m (9 m)^2, " + _MARLEY,
+        tolerance=0.43e6,
+        minimum=1.0,
+    )
+    centre_of_gravity_x: float = quantity(0.0, "m", "centre of gravity forward of the origin", "origin in it")
+    A11: float = quantity(26_550.0, "kg", "added mass in surge", "0.05 m, " + _MARLEY, tolerance=800.0)
+    A22: float = quantity(212_400.0, "kg", "added mass in sway", "0.40 m, " + _MARLEY, tolerance=6.4e3)
+    A26: float = quantity(-637_200.0, "kg.m", "added mass, sway by yaw", "-3 m A22, " + _MARLEY, tolerance=19e3)
+    A62: float = quantity(-637_200.0, "kg.m", "added mass, yaw by sway", "-3 m A22, " + _MARLEY, tolerance=19e3)
+    A66: float = quantity(
+        19.12e6, "kg.m2", "added moment of inertia", "A22 ((9 m)^2 + (3 m)^2), " + _MARLEY, tolerance=0.57e6
+    )
+    added_mass_coriolis: float = quantity(
+        1.0, "1", "share of C_A(nu_r) nu_r; 0 for coefficients that contain it already", "Fossen 2021", minimum=0.0
+    )
+
+    water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
+    length: float = quantity(33.9, "m", "length between perpendiculars", "thesis Table 2.2, grade A", minimum=0.1)
+    breadth: float = quantity(9.6, "m", "breadth", "thesis Table 2.2, grade A", minimum=0.1)
+    draught: float = quantity(2.786, "m", "draught", "lines plan, " + _MARLEY, minimum=0.1)
+    cross_flow_drag: float = quantity(
+        1.5, "1", "cross-flow drag coefficient, uniform over the length", _MARLEY, tolerance=0.075, minimum=0.0
+    )
+    lift: float = quantity(
+        -30_000.0, "N.s2/m2", "side force of lift over abs(u_r) v_r", _FITTED, tolerance=3e3, maximum=0.0
+    )
+    lift_x: float = quantity(-2.3, "m", "where the lift acts, forward of the origin", _FITTED, tolerance=0.23)
+
+    X_u: float = _unused("N.s/m", "linear damping in surge")
+    Y_v: float = _unused("N.s/m", "linear damping in sway")
+    Y_r: float = _unused("N.s/rad", "linear damping, sway by yaw")
+    N_v: float = _unused("N.s", "linear damping, yaw by sway")
+    N_r: float = _unused("N.m.s/rad", "linear damping in yaw")
+
+    X_uu: float = quantity(
+        -1645.0, "N.s2/m2", "quadratic damping in surge, u abs(u)", "0.06 rho B T, " + _MARLEY, tolerance=82.0
+    )
+    Y_modvv: float = _unused("N.s2/m2", "quadratic damping in sway, v abs(v)")
+    N_modrr: float = _unused("N.m.s2/rad2", "quadratic damping in yaw, r abs(r)")
+
+    X_vv: float = _unused("N.s2/m2", "v v")
+    X_rr: float = _unused("N.s2/rad2", "r r")
+    X_rv: float = _unused("N.s2/(m.rad)", "r v")
+    X_uvv: float = _unused("N.s3/m3", "u v v")
+    X_rvu: float = _unused("N.s3/(m2.rad)", "r v u")
+    X_urr: float = _unused("N.s3/(m.rad2)", "u r r")
+    X_umodv: float = _unused("N.s2/m2", "u abs(v)")
+    Y_uv: float = _unused("N.s2/m2", "u v")
+    Y_ur: float = _unused("N.s2/(m.rad)", "u r")
+    Y_uur: float = _unused("N.s3/(m2.rad)", "u u r")
+    Y_uuv: float = _unused("N.s3/m3", "u u v")
+    Y_vvv: float = _unused("N.s3/m3", "v v v")
+    Y_rrr: float = _unused("N.s3/rad3", "r r r")
+    Y_rrv: float = _unused("N.s3/(m.rad2)", "r r v")
+    Y_vvr: float = _unused("N.s3/(m2.rad)", "v v r")
+    Y_modrv: float = _unused("N.s2/(m.rad)", "v abs(r)")
+    Y_modrr: float = _unused("N.s2/rad2", "r abs(r)")
+    Y_modvr: float = _unused("N.s2/(m.rad)", "r abs(v)")
+    N_uv: float = _unused("N.s2/m", "u v")
+    N_ur: float = _unused("N.s2/rad", "u r")
+    N_uur: float = _unused("N.s3/(m.rad)", "u u r")
+    N_uuv: float = _unused("N.s3/m2", "u u v")
+    N_vvv: float = _unused("N.s3/m2", "v v v")
+    N_rrr: float = _unused("N.m.s3/rad3", "r r r")
+    N_rrv: float = _unused("N.s3/rad2", "r r v")
+    N_vvr: float = _unused("N.s3/(m.rad)", "v v r")
+    N_modvv: float = _unused("N.s2/m", "v abs(v)")
+    N_modrv: float = _unused("N.s2/rad", "v abs(r)")
+    N_modvr: float = _unused("N.s2/rad", "r abs(v)")
+
+    mass_scale: float = quantity(
+        1.0, "1", "factor on mass and moment of inertia together; added mass stays", "neutral", minimum=0.01
+    )
+    drag_scale: float = quantity(1.0, "1", "factor on linear and quadratic damping in surge", "neutral", minimum=0.0)
+    cross_flow_scale: float = quantity(
+        1.0,
+        "1",
+        "factor on the cross-flow drag; without any, on linear and quadratic damping in sway and yaw",
+        "neutral",
+        minimum=0.0,
+    )
+
+    @cached_property
+    def contributions(self):
+        """Names of the contributions that this hull has coefficients for."""
+        return tuple(
+            name for name, (_, names) in CONTRIBUTIONS.items() if any(acts(getattr(self, one)) for one in names)
+        )
+
+    @cached_property
+    def rigid_body(self):
+        """Mass and moment of inertia with their scale. [kg, kg.m2]"""
+        return self.mass_scale * self.mass, self.mass_scale * self.inertia_yaw
+
+    @cached_property
+    def linear(self):
+        """Coefficients X_u, Y_v, Y_r, N_v, N_r with their scales."""
+        along, across = self._damping_scales
+        return along * self.X_u, across * self.Y_v, across * self.Y_r, across * self.N_v, across * self.N_r
+
+    @cached_property
+    def quadratic(self):
+        """Coefficients X_uu, Y_modvv, N_modrr with their scales."""
+        along, across = self._damping_scales
+        return along * self.X_uu, across * self.Y_modvv, across * self.N_modrr
+
+    @cached_property
+    def strips(self):
+        """Half the length l, and k l with k = rho C_d T / 2, of the cross flow. [m, kg/m]"""
+        half = 0.5 * self.length
+        return half, 0.5 * self.water_density * self.cross_flow_drag * self.draught * half * self.cross_flow_scale
+
+    @property
+    def _damping_scales(self):
+        return self.drag_scale, 1.0 if "cross_flow" in self.contributions else self.cross_flow_scale
+
+    @cached_property
+    def inverse_mass(self):
+        """Elements 11, 22, 26, 62, 66 of the inverse of M_RB + M_A."""
+        mass, inertia = self.rigid_body
+        static = mass * self.centre_of_gravity_x
+        m22, m26 = mass + self.A22, static + self.A26
+        m62, m66 = static + self.A62, inertia + self.A66
+        determinant = m22 * m66 - m26 * m62
+        return (
+            1.0 / (mass + self.A11),
+            m66 / determinant,
+            -m26 / determinant,
+            -m62 / determinant,
+            m22 / determinant,
+        )
+
+
+def hull_loads(u_r, v_r, r, *, hull):
+    """Sum of all contributions.
+
+    Parameters
+    ----------
+    u_r, v_r, r : float or (...) array or tensor
+        Velocity through the water. [m/s, m/s, rad/s]
+    hull : HullParameters
+        The hull.
+
+    Returns
+    -------
+    tuple of three, like u_r
+        X, Y, N. [N, N, N.m]
+    """
+    X = Y = N = 0.0 * u_r
+    for name in hull.contributions:
+        dX, dY, dN = CONTRIBUTIONS[name][0](u_r, v_r, r, hull=hull)
+        X, Y, N = X + dX, Y + dY, N + dN
+    return X, Y, N
+
+
+def added_mass_coriolis(u, v, r, *, hull):
+    """Loads -C_A(nu_r) nu_r, centripetal effect of the added mass.
+
+    Parameters and returns as `hull_loads`.
+
+    References
+    ----------
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
+    """
+    share = hull.added_mass_coriolis
+    surge = share * hull.A11 * u
+    sway = share * (hull.A22 * v + 0.5 * (hull.A26 + hull.A62) * r)
+    return sway * r, -surge * r, surge * v - sway * u
+
+
+def linear_damping(u, v, r, *, hull):
+    """Damping proportional to velocity. Parameters and returns as `hull_loads`."""
+    X_u, Y_v, Y_r, N_v, N_r = hull.linear
+    return X_u * u, Y_v * v + Y_r * r, N_v * v + N_r * r
+
+
+def quadratic_damping(u, v, r, *, hull):
+    """Damping proportional to the square of each velocity. Parameters and returns as `hull_loads`."""
+    X_uu, Y_vv, N_rr = hull.quadratic
+    return X_uu * u * abs(u), Y_vv * v * abs(v), N_rr * r * abs(r)
+
+
+def lift(u, v, r, *, hull):
+    """Side force of a hull at an angle of attack, acting at one point. Parameters and returns as `hull_loads`."""
+    Y = hull.lift * abs(u) * v
+    return 0.0 * u, Y, hull.lift_x * Y
+
+
+def cross_flow(u, v, r, *, hull):
+    """Drag of each strip's own sway velocity, integrated exactly over the length.
+
+    With k = rho C_d T / 2 and half the length l,
+
+        Y = -k ∫ abs(v + x r) (v + x r) dx,  N = -k ∫ x abs(v + x r) (v + x r) dx,  x from -l to l.
+
+    With w = r l, the larger M and the smaller m of abs(v) and abs(w), and q = m / abs(w) these are
+
+        Y = -2 k l v (M + m² / 3M),  N = -k l² w M (1/2 + q² - q⁴/6).
+
+    Parameters and returns as `hull_loads`.
+    """
+    half, k = hull.strips
+    w = r * half
+    larger, smaller = maximum(abs(v), abs(w)), minimum(abs(v), abs(w))
+    q = smaller / (abs(w) + _TINY)
+    q = q * q
+    Y = -2.0 * k * v * (larger + smaller * smaller / (3.0 * larger + _TINY))
+    return 0.0 * u, Y, -k * half * w * larger * (0.5 + q - q * q / 6.0)
+
+
+def polynomial(u, v, r, *, hull):
+    """Manoeuvring polynomial of the SIMVAL project, less its terms with Xudot, Yvdot, Yrdot and Nvdot.
+
+    Those are C_A(nu_r) nu_r written out and come from `added_mass_coriolis`: counted once.
+    Parameters and returns as `hull_loads`.
+
+    References
+    ----------
+    Structure after OMAE2015-41789, as in MCSim_python, RVG_maneuvering_3DOF_python/vesselmodel.py.
+    """
+    p, av, ar = hull, abs(v), abs(r)
+    uv, ur, rv, vv, rr, uu = u * v, u * r, r * v, v * v, r * r, u * u
+    X = p.X_vv * vv + p.X_rr * rr + p.X_rv * rv + u * (p.X_uvv * vv + p.X_rvu * rv + p.X_urr * rr + p.X_umodv * av)
+    Y = (
+        p.Y_uv * uv
+        + p.Y_ur * ur
+        + uu * (p.Y_uur * r + p.Y_uuv * v)
+        + vv * (p.Y_vvv * v + p.Y_vvr * r)
+        + rr * (p.Y_rrr * r + p.Y_rrv * v)
+        + p.Y_modrv * v * ar
+        + r * (p.Y_modrr * ar + p.Y_modvr * av)
+    )
+    N = (
+        p.N_uv * uv
+        + p.N_ur * ur
+        + uu * (p.N_uur * r + p.N_uuv * v)
+        + vv * (p.N_vvv * v + p.N_vvr * r)
+        + rr * (p.N_rrr * r + p.N_rrv * v)
+        + v * (p.N_modvv * av + p.N_modrv * ar)
+        + p.N_modvr * r * av
+    )
+    return X, Y, N
+
+
+CONTRIBUTIONS = {
+    "added_mass_coriolis": (added_mass_coriolis, ("added_mass_coriolis",)),
+    "linear_damping": (linear_damping, ("X_u", "Y_v", "Y_r", "N_v", "N_r")),
+    "quadratic_damping": (quadratic_damping, ("X_uu", "Y_modvv", "N_modrr")),
+    "cross_flow": (cross_flow, ("cross_flow_drag",)),
+    "lift": (lift, ("lift",)),
+    "polynomial": (
+        polynomial,
+        tuple(
+            "X_vv X_rr X_rv X_uvv X_rvu X_urr X_umodv "
+            "Y_uv Y_ur Y_uur Y_uuv Y_vvv Y_rrr Y_rrv Y_vvr Y_modrv Y_modrr Y_modvr "
+            "N_uv N_ur N_uur N_uuv N_vvv N_rrr N_rrv N_vvr N_modvv N_modrv N_modvr".split()
+        ),
+    ),
+}
+"""Name: function, and the coefficients without which it is left out."""

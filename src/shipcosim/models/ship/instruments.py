@@ -1,0 +1,150 @@
+"""What a ship's log shows of her motion, where antenna, compass, log or clock are not as assumed.
+
+The rules are those of logs: position and velocity are the antenna's; surge and sway are its velocity over ground,
+resolved with the measured heading.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from shipcosim.models.core.kinematics import to_body, to_ned, velocity_at
+from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.parameters import quantity
+
+
+@dataclass(frozen=True)
+class InstrumentParameters:
+    """What can be wrong between a ship and her log."""
+
+    heading_bias: float = quantity(0.0, "rad", "measured heading minus the true one", "neutral")
+    lever_x: float = quantity(0.0, "m", "antenna forward of the origin", "neutral")
+    lever_y: float = quantity(0.0, "m", "antenna to starboard of the origin", "neutral")
+    velocity_scale: float = quantity(1.0, "1", "logged over true surge and sway", "neutral", minimum=0.01)
+    lag: float = quantity(0.0, "s", "by how much all of it is late", "neutral", minimum=0.0)
+
+
+class Shown(NamedTuple):
+    """Motion as a log has it.
+
+    Parameters
+    ----------
+    x, y, psi : float or (...) array or tensor
+        Position north and east, heading. [m, m, rad]
+    u, v, r : like x
+        Velocity over ground forward and to starboard, yaw rate. [m/s, m/s, rad/s]
+    """
+
+    x: Any
+    y: Any
+    psi: Any
+    u: Any
+    v: Any
+    r: Any
+
+
+def shown(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, velocity_scale=1.0):
+    """What the log shows of a motion.
+
+    Parameters
+    ----------
+    x, y, psi : float or (...) array or tensor
+        True position of the origin, heading. [m, m, rad]
+    u, v, r : like x
+        True velocity of the origin over ground in body axes, yaw rate. [m/s, m/s, rad/s]
+    heading_bias, lever_x, lever_y, velocity_scale : like x
+        As in `InstrumentParameters`. [rad, m, m, 1]
+
+    Returns
+    -------
+    Shown
+
+    Examples
+    --------
+    Ahead at 5 m/s with a compass that shows 90 deg too much, the ship seems to slip to port:
+
+    >>> from math import pi
+    >>> [round(value, 3) for value in shown(0.0, 0.0, 0.0, 5.0, 0.0, 0.0, heading_bias=pi / 2)]
+    [0.0, 0.0, 1.571, 0.0, -5.0, 0.0]
+    """
+    north, east = to_ned(psi, lever_x, lever_y)
+    u, v = velocity_at(lever_x, lever_y, u, v, r)
+    u, v = to_body(heading_bias, velocity_scale * u, velocity_scale * v)
+    return Shown(x + north, y + east, wrap(psi + heading_bias), u, v, r)
+
+
+def motion_of(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, velocity_scale=1.0):
+    """The true motion of which the log shows this, the inverse of `shown`: for runs that start from a logged state.
+
+    Parameters
+    ----------
+    x, y, psi : float or (...) array or tensor
+        Logged position and heading. [m, m, rad]
+    u, v, r : like x
+        Logged velocity. [m/s, m/s, rad/s]
+    heading_bias, lever_x, lever_y, velocity_scale : like x
+        As in `InstrumentParameters`. [rad, m, m, 1]
+
+    Returns
+    -------
+    Shown
+        True position, heading and velocity of the origin.
+    """
+    psi = wrap(psi - heading_bias)
+    u, v = to_ned(heading_bias, u / velocity_scale, v / velocity_scale)
+    u, v = velocity_at(-lever_x, -lever_y, u, v, r)
+    north, east = to_ned(psi, lever_x, lever_y)
+    return Shown(x - north, y - east, psi, u, v, r)
+
+
+def remembered(history, t, values, since):
+    """A history with one more entry, and without those that nobody asks for any more.
+
+    Parameters
+    ----------
+    history : tuple of (float, Shown)
+        In the order of time.
+    t : float
+        Time of the new entry. [s]
+    values : Shown
+        The new entry.
+    since : float
+        Earliest time that will still be asked for. [s]
+
+    Returns
+    -------
+    tuple like history
+    """
+    first = next((number for number, (time, _) in enumerate(history) if time > since), len(history))
+    return (*history[max(first - 1, 0) :], (t, values))
+
+
+def recalled(history, t):
+    """What there was at a time: linear between entries, headings the shorter way.
+
+    Before the first entry all is as there, behind the last it goes on as between the last two: an FMU that shows what
+    is true at the end of its step has been told what was true at its start.
+
+    Parameters
+    ----------
+    history : tuple of (float, Shown)
+        In the order of time, not empty.
+    t : float
+        Time. [s]
+
+    Returns
+    -------
+    Shown
+
+    Examples
+    --------
+    >>> at_0, at_2 = Shown(0.0, 0.0, 3.1, 0.0, 0.0, 0.0), Shown(4.0, 0.0, -3.1, 0.0, 0.0, 0.0)
+    >>> half_way = recalled(((0.0, at_0), (2.0, at_2)), 1.0)
+    >>> half_way.x, round(half_way.psi, 3)
+    (2.0, -3.142)
+    """
+    later = next((number for number, (time, _) in enumerate(history) if time >= t), len(history) - 1)
+    (t_0, a), (t_1, b) = history[max(later - 1, 0)], history[later]
+    share = max((t - t_0) / (t_1 - t_0), 0.0) if t_1 > t_0 else 1.0
+    between = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
+    between[2] = wrap(a.psi + share * wrap(b.psi - a.psi))
+    return Shown(*between)

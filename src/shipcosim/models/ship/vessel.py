@@ -1,0 +1,191 @@
+"""Motion of a ship in surge, sway and yaw, in a current that is uniform and holds over a step."""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.maths import substeps, wrap
+from shipcosim.models.core.parameters import quantity
+from shipcosim.models.ship.hull import hull_loads
+from shipcosim.models.ship.load_tables import DRIFT_33M9
+
+_LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
+
+
+class Vessel(NamedTuple):
+    """State of a ship.
+
+    Parameters
+    ----------
+    x, y, psi : float or (...) array or tensor
+        Position north and east, heading. [m, m, rad]
+    u, v, r : like x
+        Velocity over ground in body axes. [m/s, m/s, rad/s]
+    """
+
+    x: Any
+    y: Any
+    psi: Any
+    u: Any
+    v: Any
+    r: Any
+
+
+@dataclass(frozen=True)
+class DriftParameters:
+    """What the waves' mean drift finds to act on."""
+
+    drift_table: str = quantity(
+        DRIFT_33M9,
+        "1",
+        "rows 'omega heading X Y N': mean wave drift loads per squared amplitude, N/m2, N.m/m2, by frequency in rad/s "
+        "and heading in deg, 0 following, 90 towards starboard, 180 head",
+        "VERES at zero speed, lengthened hull, grade B",
+    )
+
+
+def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
+    """The ship a step later.
+
+    M_RB ν̇ + C_RB(ν) ν + M_A ν̇_r + C_A(ν_r) ν_r + D(ν_r) = τ. Seen from the water, which moves uniformly,
+    this is the same law with ν_r in place of ν: it is integrated there (Runge-Kutta), the way of the water is added.
+
+    Parameters
+    ----------
+    vessel : Vessel
+        State at the start.
+    tau_X, tau_Y, tau_N : like the state
+        Loads from outside in body axes, held over the step. [N, N, N.m]
+    current_north, current_east : like the state
+        Velocity of the water, held over the step. [m/s]
+    h : float
+        Step, divided into equal parts of at most 0.1 s. [s]
+    hull : HullParameters
+        The hull.
+
+    Returns
+    -------
+    Vessel
+        State at the end.
+    """
+
+    u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
+    x, y, psi, r = vessel.x + h * current_north, vessel.y + h * current_east, vessel.psi, vessel.r
+    parts = substeps(h, _LONGEST_SUBSTEP)
+    for _ in range(parts):
+        x, y, psi, u_r, v_r, r = _part(x, y, psi, u_r, v_r, r, (tau_X, tau_Y, tau_N), h / parts, hull)
+    u_c, v_c = to_body(psi, current_north, current_east)
+    return Vessel(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
+
+
+def _part(x, y, psi, u, v, r, tau, h, hull):
+    """A Runge-Kutta step as `maths.rk4`, in the frame of the water, without its loops: half as long in floats."""
+    half, sixth = 0.5 * h, h / 6.0
+    u1, v1, r1 = accelerations(u, v, r, *tau, hull=hull)
+    ub, vb, rb = u + half * u1, v + half * v1, r + half * r1
+    u2, v2, r2 = accelerations(ub, vb, rb, *tau, hull=hull)
+    uc, vc, rc = u + half * u2, v + half * v2, r + half * r2
+    u3, v3, r3 = accelerations(uc, vc, rc, *tau, hull=hull)
+    ud, vd, rd = u + h * u3, v + h * v3, r + h * r3
+    u4, v4, r4 = accelerations(ud, vd, rd, *tau, hull=hull)
+    x1, y1 = to_ned(psi, u, v)
+    x2, y2 = to_ned(psi + half * r, ub, vb)
+    x3, y3 = to_ned(psi + half * rb, uc, vc)
+    x4, y4 = to_ned(psi + h * rc, ud, vd)
+    return (
+        x + sixth * (x1 + 2.0 * (x2 + x3) + x4),
+        y + sixth * (y1 + 2.0 * (y2 + y3) + y4),
+        psi + sixth * (r + 2.0 * (rb + rc) + rd),
+        u + sixth * (u1 + 2.0 * (u2 + u3) + u4),
+        v + sixth * (v1 + 2.0 * (v2 + v3) + v4),
+        r + sixth * (r1 + 2.0 * (r2 + r3) + r4),
+    )
+
+
+def accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, *, hull):
+    """Rates of the velocity through the water.
+
+    Parameters
+    ----------
+    u_r, v_r, r : float or (...) array or tensor
+        Velocity through the water. [m/s, m/s, rad/s]
+    tau_X, tau_Y, tau_N : like u_r
+        Loads from outside. [N, N, N.m]
+    hull : HullParameters
+        The hull.
+
+    Returns
+    -------
+    tuple of three, like u_r
+        Rates of u_r, v_r, r in body axes. [m/s2, m/s2, rad/s2]
+    """
+    return _accelerations(hull_loads(u_r, v_r, r, hull=hull), u_r, v_r, r, tau_X, tau_Y, tau_N, hull)
+
+
+def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
+    """`accelerations` with the hull's loads as they are."""
+    X, Y, N = loads
+    m, xg = hull.rigid_body[0], hull.centre_of_gravity_x
+    X = X + tau_X + m * r * (v_r + xg * r)
+    Y = Y + tau_Y - m * r * u_r
+    N = N + tau_N - m * xg * r * u_r
+    i11, i22, i26, i62, i66 = hull.inverse_mass
+    return i11 * X, i22 * Y + i26 * N, i62 * Y + i66 * N
+
+
+def through_water(psi, u, v, current_north, current_east):
+    """Velocity relative to the water.
+
+    Parameters
+    ----------
+    psi : float or (...) array or tensor
+        Heading. [rad]
+    u, v : like psi
+        Velocity over ground in body axes. [m/s]
+    current_north, current_east : like psi
+        Velocity of the water. [m/s]
+
+    Returns
+    -------
+    tuple of two, like psi
+        Components forward and to starboard. [m/s]
+
+    Examples
+    --------
+    Lying still in a current to the south, heading north:
+
+    >>> through_water(0.0, 0.0, 0.0, -0.5, 0.0)
+    (0.5, 0.0)
+    """
+    u_c, v_c = to_body(psi, current_north, current_east)
+    return u - u_c, v - v_c
+
+
+def nu_dot(vessel, tau_X, tau_Y, tau_N, current_north, current_east, *, hull):
+    """Rates of the velocity over ground; with ν̇_c = (r v_c, -r u_c, 0) of a constant current.
+
+    Parameters as `step`.
+
+    Returns
+    -------
+    tuple of three, like the state
+        Rates of u, v, r in body axes. [m/s2, m/s2, rad/s2]
+    """
+    return at_present(vessel, tau_X, tau_Y, tau_N, current_north, current_east, hull=hull)[1]
+
+
+def at_present(vessel, tau_X, tau_Y, tau_N, current_north, current_east, *, hull):
+    """What follows from state and loads at one time.
+
+    Parameters as `step`.
+
+    Returns
+    -------
+    tuple of tuples
+        Velocity through the water u_r, v_r; rates as of `nu_dot`; loads of the water on the hull as `hull_loads`.
+    """
+    u_c, v_c = to_body(vessel.psi, current_north, current_east)
+    u_r, v_r, r = vessel.u - u_c, vessel.v - v_c, vessel.r
+    loads = hull_loads(u_r, v_r, r, hull=hull)
+    u_dot, v_dot, r_dot = _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull)
+    return (u_r, v_r), (u_dot + r * v_c, v_dot - r * u_c, r_dot), loads

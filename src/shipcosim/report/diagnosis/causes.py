@@ -1,0 +1,225 @@
+"""Figures and tables of which cause: evidence, estimates, whiteness, and what this log could not have shown."""
+
+import numpy as np
+
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.noise import explained
+from shipcosim.diagnose.inference.search import without_causes
+from shipcosim.diagnose.inference.verdict import ENOUGH, STRANGE
+from shipcosim.report.diagnosis.data import TIME, line, panel, rounded
+from shipcosim.report.diagnosis.numbers import plain, span
+from shipcosim.report.diagnosis.words import title
+
+CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
+COLOURS = ("blue", "sky", "purple", "green", "olive", "orange")
+MOST_SETS, LAGS = 12, 30
+STRANGE_KINDS = {
+    "slow": "a slow force in the ship's frame",
+    "with the heading": "a force that goes with the heading",
+    "from part to part": "the best cause's size, from part to part of the log",
+    "beyond tolerances": "the ship's numbers, farther off than their tolerances say",
+    "periodic": "a periodic force",
+    "in a channel": "an error of a channel",
+}
+
+
+def label_of(fit):
+    """A set of causes as people write it."""
+    return "<br>+ ".join(title(s.cause, s.component) for s in fit.suspects) or "Nothing"
+
+
+def evidence_panel(fits, chosen):
+    """How much likelier the log is with each set of causes than with none.
+
+    Parameters
+    ----------
+    fits : list of Fit
+        Best first.
+    chosen : Fit
+        That the verdict rests on.
+    """
+    nothing = without_causes(fits).score
+    sets = [fit for fit in fits if fit.suspects][:MOST_SETS][::-1]
+    gains = [max(fit.score - nothing, 0.0) for fit in sets]
+    bars = {
+        **{"type": "bar", "orientation": "h", "y": [label_of(fit) for fit in sets], "x": rounded(gains, 4)},
+        "marker": {"color": ["@blue" if fit is chosen else "@faint" for fit in sets]},
+        **{"hovertemplate": "%{y}: %{x:.1f} nats<extra></extra>", "showlegend": False},
+        **{"text": [f"{fit.score - nothing:.1f}" for fit in sets], "textposition": "auto"},
+    }
+    enough = {"type": "line", "x0": ENOUGH, "x1": ENOUGH, "y0": 0, "y1": 1, "yref": "paper"}
+    shape = {**enough, "line": {"color": "@vermillion", "dash": "dot", "width": 1.5}}
+    note = (
+        f"Log-evidence over the ship without a cause, in nats: {ENOUGH:g} more (dotted) mean {np.exp(ENOUGH):.0f} "
+        "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
+    )
+    height = 90 + (12 + 16 * max([1, *(len(fit.suspects) for fit in sets)])) * max(len(sets), 2)
+    axes = {"xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"}, "yaxis": {"automargin": True}}
+    return panel("Evidence of the best sets of causes", "nats", [bars], note, shapes=[shape], height=height, **axes)
+
+
+def estimate_panel(fit):
+    """Estimates of a set's parameters, in units of the size that matters, with two standard deviations."""
+    knobs = [(s, k) for s in fit.suspects for k in s.knobs][::-1]
+    names = [f"{title(s.cause, s.component)}:<br>{k.name.replace('_', ' ')}" for s, k in knobs]
+    size = [(fit.values[k.paths[0]] - k.neutral) / k.typical for _, k in knobs]
+    wide = [2.0 * fit.std[k.paths[0]] / k.typical for _, k in knobs]
+    marks = {
+        **{"type": "scatter", "mode": "markers", "x": rounded(size, 4), "y": names, "showlegend": False},
+        "error_x": {"type": "data", "array": rounded(wide, 3), "color": "@blue", "thickness": 2},
+        **{"marker": {"color": "@blue", "size": 9}, "hovertemplate": "%{x:.2f} typical sizes<extra></extra>"},
+    }
+    axes = {
+        "xaxis": {"title": {"text": "typical sizes"}, "zeroline": True, "rangemode": "tozero"},
+        "yaxis": {"range": [-0.6, len(knobs) - 0.4]},
+    }
+    note = "From what the model has, at 0; 1 is a size that matters. Bars are two standard deviations."
+    return panel("How large, and how sure", "", [marks], note, height=110 + 40 * len(knobs), **axes)
+
+
+def strange_panel(strange):
+    """What errors without a name would gain beside the chosen causes."""
+    names = [STRANGE_KINDS.get(kind, kind) for kind in strange]
+    bars = {
+        **{
+            "type": "bar",
+            "orientation": "h",
+            "y": names,
+            "x": rounded([max(gain, 0.0) for gain in strange.values()], 4),
+        },
+        "marker": {"color": ["@vermillion" if gain > STRANGE else "@faint" for gain in strange.values()]},
+        **{"showlegend": False, "hovertemplate": "%{x:.1f} nats<extra></extra>"},
+        **{"text": ["none" if g <= 0.0 else f"{g:.1f}" for g in strange.values()], "textposition": "outside"},
+    }
+    limit = {"type": "line", "x0": STRANGE, "x1": STRANGE, "y0": 0, "y1": 1, "yref": "paper"}
+    shape = {**limit, "line": {"color": "@vermillion", "dash": "dot", "width": 1.5}}
+    axes = {"xaxis": {"title": {"text": "nats"}, "range": [0.0, 1.15 * max(STRANGE, *strange.values())]}}
+    note = "Beyond the dotted line something acts that no known cause explains: the verdict is then unknown."
+    height = 90 + 34 * len(names)
+    return panel(
+        "Errors without a name", "nats", [bars], note, shapes=[shape], height=height, yaxis={"automargin": True}, **axes
+    )
+
+
+def whiteness(case, fit, as_it_is=False):
+    """Autocorrelation of the whitened innovations that a fit leaves.
+
+    Parameters
+    ----------
+    case : Case
+    fit : Fit
+    as_it_is : bool
+        Without moving known numbers within their tolerances.
+
+    Returns
+    -------
+    (LAGS, 6) array
+        From a lag of one row on; NaN for a channel that was not measured.
+    """
+    theta = 0.0 * fit.left if as_it_is else fit.left
+    white = innovations(explained(fit.linear, theta), case.noise, case.record).white[..., 0]
+    white = np.where(fit.linear.whole, white, np.nan)
+    found = np.full((LAGS, white.shape[1]), np.nan)
+    for channel, values in enumerate(white.T):
+        if np.isfinite(values).sum() > 10 * LAGS:
+            values = values - np.nanmean(values)
+            power = np.nanmean(values**2)
+            found[:, channel] = [np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)]
+    return found
+
+
+def whiteness_panel(heading, correlation, step, rows, between):
+    """Autocorrelation of all channels over the lag, with the band of white noise."""
+    lag = step * np.arange(1, LAGS + 1)
+    traces = [
+        line(name, lag, correlation[:, i], COLOURS[i], mode="lines+markers", marker={"size": 4})
+        for i, name in enumerate(CHANNELS)
+        if np.isfinite(correlation[:, i]).any()
+    ]
+    band = {"type": "rect", "x0": 0, "x1": 1, "xref": "paper", "y0": -2 / np.sqrt(rows), "y1": 2 / np.sqrt(rows)}
+    shape = {**band, "layer": "below", "fillcolor": "@band", "line": {"width": 0}}
+    axes = {"xaxis": TIME, "yaxis": {"range": between}}
+    note = "Autocorrelation of the whitened innovations; inside the band they are as white as noise."
+    return panel(f"White? {heading}", "", traces, note, shapes=[shape], **axes)
+
+
+def manoeuvre_rows(manoeuvre):
+    """What to sail: from when to when, and what the ship or a thruster does, in order of time.
+
+    Parameters
+    ----------
+    manoeuvre : Manoeuvre
+        Of the diagnosis' library.
+
+    Returns
+    -------
+    list of (str, str)
+    """
+    found, start, before = [], 0.0, (0.0, 0.0, 0.0)
+    for duration, *there in manoeuvre.legs:
+        if not any(a <= start and start + duration <= b for a, b in manoeuvre.free):
+            found.append((start, start + duration, _leg(tuple(there), before)))
+        start, before = start + duration, tuple(there)
+    for push in manoeuvre.pushes:
+        angles = [round(float(np.degrees(angle))) for angle in push.azimuth]
+        towards = f", turned from {angles[0]} to {angles[1]}° off the bow" if angles[0] != angles[1] else ""
+        force = f"{'−' * (push.force < 0.0)}{plain(abs(push.force) / 1e3, 2)} kN"
+        doing = f"{push.thruster} pushes with {force} along its axis"
+        found.append((push.start, push.end, doing + towards))
+    found += [(a, min(b, start), "DP off, thrusters idle, the ship drifts") for a, b in manoeuvre.free]
+    return [(span(a, b), doing) for a, b, doing in sorted(found, key=lambda entry: entry[:2])]
+
+
+def _leg(there, before):
+    """A leg in words: where the ship goes, seen from where and how she lay at the start."""
+    if there == before:
+        return "hold position and heading"
+    ahead, across, turned = there
+    words = [f"{abs(ahead):.0f} m {'ahead' if ahead > 0.0 else 'astern'}"] if ahead else []
+    words += [f"{abs(across):.0f} m to {'starboard' if across > 0.0 else 'port'}"] if across else []
+    moved = there[:2] != before[:2]
+    text = f"move to {' and '.join(words) or 'the start'}" if moved else ""
+    if turned != before[2]:
+        text += f"{', ' if text else ''}turn to {np.degrees(turned):.0f}° clockwise of the first heading"
+    return text
+
+
+def not_testable_rows(case, names):
+    """Why this log could not have shown some causes: the cause, and what the log has of what would show it."""
+    sentences = {s.cause: s.effect.sentence for s in case.suspects}
+    return [(title(name), sentences.get(name, ""), _reason(name, case)) for name in names]
+
+
+def _reason(cause, case):
+    record, motion = case.record, case.motion
+    speed = np.hypot(motion.u, motion.v)
+    facts = {
+        "reverse_loss": lambda: f"units ran astern in {_reverse(case):.0f} % of the log",
+        "thruster_interaction": lambda: "units hardly pointed at each other while they thrust",
+        "drag": lambda: f"the ship moved ahead or astern at {_rms(motion.u)} m/s (rms)",
+        "crossflow": lambda: f"she moved sideways at {_rms(motion.v)} m/s (rms)",
+        "velocity_scale": lambda: f"she moved at {_rms(speed)} m/s (rms)",
+        "mass": lambda: f"she accelerated by {_rms(np.gradient(motion.u, record.step))} m/s² (rms)",
+        "lever_arm": lambda: f"she turned at {_rms(np.degrees(motion.r))} °/s (rms)",
+        "heading_bias": lambda: f"she moved at {_rms(speed)} m/s (rms), so its direction says little of the heading",
+        "wind_scale": lambda: _wind(record),
+        "wind_direction": lambda: _wind(record),
+        "navigation_lag": lambda: f"she moved at {_rms(speed)} m/s (rms)",
+    }
+    fact = facts[cause]() + "; " if cause in facts else ""
+    return f"{fact}an effect of typical size would not have stood out"
+
+
+def _rms(values):
+    return plain(float(np.sqrt(np.nanmean(np.asarray(values) ** 2))), 2)
+
+
+def _reverse(case):
+    shares = [np.mean(case.record.units[name][0] < 0.0) for name in case.plant.azimuths]
+    return 100.0 * max(shares, default=0.0)
+
+
+def _wind(record):
+    if record.wind is None:
+        return "there is no wind in the log"
+    return f"the wind was {plain(float(np.mean(record.wind[0])), 2)} m/s"

@@ -1,0 +1,107 @@
+"""Expectations as they are drawn: the allowed band of a signal in its window, coloured by whether it held."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.report.theme.display import wrapped
+
+
+@dataclass(frozen=True)
+class Band:
+    """Allowed values of a panel's quantity over a window.
+
+    Parameters
+    ----------
+    time, lower, upper : list of float
+        Corners, in the panel's unit. [s, -, -]
+    passed : bool
+        Whether the expectation holds.
+    """
+
+    time: list
+    lower: list
+    upper: list
+    passed: bool
+
+
+def window(time, expect):
+    """Rows that an expectation looks at, (m,)."""
+    start, end = expect.during or (-np.inf, np.inf)
+    return np.flatnonzero((time >= start - 1e-6) & (time <= end + 1e-6))
+
+
+def bands_of(shown, signal, verdicts, minus=None):
+    """Bands of all expectations on a signal.
+
+    Parameters
+    ----------
+    shown : xarray.Dataset
+        The table in the page's units.
+    signal : str
+        Signal that the panel draws.
+    verdicts : iterable of Verdict
+        What was expected.
+    minus : str, optional
+        Signal that the panel subtracts: the band of an error.
+
+    Returns
+    -------
+    list of Band
+    """
+    found = []
+    for verdict in verdicts:
+        rows = window(shown["time"].values, verdict.expect)
+        if signal in verdict.expect.signal and len(rows):
+            found.append(_band(shown.isel(time=rows), signal, verdict, minus))
+    return found
+
+
+def distance_bands(shown, signals, verdicts):
+    """Bands of the expectations that several signals together stay near a point."""
+    found = []
+    for verdict in verdicts:
+        time = shown["time"].values[window(shown["time"].values, verdict.expect)]
+        if verdict.expect.signal == signals and verdict.expect.near is not None and len(time):
+            limit = np.full(len(time), verdict.expect.within)
+            found.append(Band(*_corners(time, 0.0 * limit, limit), verdict.passed))
+    return found
+
+
+def _band(part, signal, verdict, minus):
+    """Band over the rows of `part`."""
+    drawn = part[signal].values
+    lower, upper = _limits(part, signal, verdict.expect)
+    if minus is not None:
+        middle = part[minus].values
+        lower, upper, drawn = lower - middle, upper - middle, drawn - middle
+        if part[signal].attrs["units"] == "deg":
+            turn = wrapped(lower) - lower
+            lower, upper = lower + turn, upper + turn
+    least, most = (pick(drawn[np.isfinite(drawn)], initial=0.0) for pick in (np.min, np.max))
+    pad = 0.1 * (most - least)
+    lower = np.where(np.isfinite(lower), lower, np.fmin(least, upper) - pad)
+    upper = np.where(np.isfinite(upper), upper, np.fmax(most, lower) + pad)
+    return Band(*_corners(part["time"].values, lower, upper), verdict.passed)
+
+
+def _limits(part, signal, expect):
+    """Least and largest allowed value in the page's unit, (m,) each; infinite on an open side."""
+    values, unit, factor = part[signal].values, part[signal].attrs["units"], part[signal].attrs["factor"]
+    ones = np.ones(len(values))
+    if expect.near is None:
+        least = -np.inf if expect.at_least is None else expect.at_least * factor
+        most = np.inf if expect.at_most is None else expect.at_most * factor
+        return least * ones, most * ones
+    near = expect.near[expect.signal.index(signal)]
+    middle = part[near].values if isinstance(near, str) else near * factor * ones
+    if unit == "deg":
+        middle = middle + 360.0 * np.round((values - middle) / 360.0)
+    return middle - expect.within * factor, middle + expect.within * factor
+
+
+def _corners(time, lower, upper):
+    """The same band with as few points as it needs."""
+    if np.ptp(lower) == 0.0 and np.ptp(upper) == 0.0:
+        time, lower, upper = time[[0, -1]], lower[[0, -1]], upper[[0, -1]]
+    return [np.round(values, 6).tolist() for values in (time, lower, upper)]

@@ -1,0 +1,84 @@
+"""Signals that no component puts out but every reader looks for: errors, distances, wind as speed and direction."""
+
+import numpy as np
+
+from shipcosim.report.run.bands import window
+from shipcosim.report.theme.display import as_variable, unturned, wrapped
+
+ERRORS = {"x": "north error", "y": "east error", "psi": "heading error"}
+FROM_REFERENCE, FROM_EXPECTED = "distance from reference", "distance from expected point"
+
+
+def add_derived(shown, table, roles, verdicts):
+    """The shown table with the derived signals that it has the ingredients for.
+
+    Parameters
+    ----------
+    shown : xarray.Dataset
+        The table in the page's units.
+    table : xarray.Dataset
+        The same in SI.
+    roles : Roles
+        What the signals stand for.
+    verdicts : sequence of Verdict
+        Expectations: the distance from an expected point is shown in its window.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    shown = shown.assign(errors(shown, roles))
+    return shown.assign({**distances(shown, table, roles, verdicts), **true_flow(shown, roles)})
+
+
+def desired(roles, axis):
+    """Signal that the ship's x, y or psi should follow: the reference, else the set point, or None."""
+    reference = roles.signal(roles.reference, f"{axis}_d")
+    return reference or next(iter(roles.anywhere(f"{axis}_set")), None)
+
+
+def errors(shown, roles):
+    """Ship minus reference in x, y and psi; headings the short way round."""
+    found = {}
+    for axis, name in ERRORS.items():
+        ship, reference = roles.signal(roles.ship, axis), desired(roles, axis)
+        if ship and reference:
+            error, unit = shown[ship].values - shown[reference].values, shown[ship].attrs["units"]
+            found[name] = as_variable(wrapped(error) if unit == "deg" else error, unit, name)
+    return found
+
+
+def distances(shown, table, roles, verdicts):
+    """Distance from the reference, and in the windows of expectations on the position the distance that was judged."""
+    if not {ERRORS["x"], ERRORS["y"]} <= set(shown):
+        return {}
+    distance = np.hypot(shown[ERRORS["x"]].values, shown[ERRORS["y"]].values)
+    found = {FROM_REFERENCE: as_variable(distance, "m", FROM_REFERENCE)}
+    judged = judged_distance(table, [roles.signal(roles.ship, axis) for axis in "xy"], verdicts)
+    if np.isfinite(judged).any():
+        found[FROM_EXPECTED] = as_variable(judged, "m", FROM_EXPECTED)
+    return found
+
+
+def judged_distance(table, signals, verdicts):
+    """Distance from the expected point where an expectation on these signals together looks, NaN elsewhere, (n,)."""
+    time, distance = table["time"].values, np.full(table.sizes["time"], np.nan)
+    for expect in (v.expect for v in verdicts if v.expect.signal == signals and v.expect.near is not None):
+        rows = window(time, expect)
+        targets = [table[n].values[rows] if isinstance(n, str) else n for n in expect.near]
+        gaps = [table[s].values[rows] - target for s, target in zip(signals, targets, strict=True)]
+        distance[rows] = np.linalg.norm(gaps, axis=0)
+    return distance
+
+
+def true_flow(shown, roles):
+    """Speed and direction of wind and current from their components north and east."""
+    found = {}
+    for what, sense, suffix in [("wind", -1.0, "from"), ("current", 1.0, "to")]:
+        parts = [roles.signal(roles.environment, f"{what}_{way}") for way in ("north", "east")]
+        if None not in parts:
+            north, east = (sense * shown[part].values for part in parts)
+            found[f"{what} speed"] = as_variable(np.hypot(north, east), "m/s", f"{what} speed")
+            angle = np.degrees(unturned(f"{what}_{suffix}", np.arctan2(east, north)))
+            found[f"{what} {suffix}"] = as_variable(angle, "deg", f"{what} {suffix}")
+    return found

@@ -1,0 +1,189 @@
+"""Which time series a page draws, in sections of panels; what a table does not hold is left out."""
+
+from dataclasses import dataclass, field
+
+from shipcosim.report.run.bands import bands_of, distance_bands
+from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE, desired
+from shipcosim.report.run.roles import join
+from shipcosim.report.theme import palette
+
+AXES = {"x": "North", "y": "East", "psi": "Heading"}
+LOADS = {"X": "Surge force", "Y": "Sway force", "N": "Yaw moment"}
+
+
+@dataclass(frozen=True)
+class Line:
+    """One curve: a signal of the shown table (None: not there) and how it looks."""
+
+    signal: str | None
+    label: str
+    colour: str
+    dash: str = "solid"
+    width: float = 1.5
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves over time on one axis, with the limits they should keep; `states` draws logical signals as bars."""
+
+    title: str
+    unit: str
+    lines: list
+    bands: list = field(default_factory=list)
+    states: bool = False
+
+
+@dataclass(frozen=True)
+class Section:
+    """Panels under one heading."""
+
+    title: str
+    panels: list
+
+
+def make_sections(shown, roles, verdicts):
+    """Every section that the table has signals for.
+
+    Parameters
+    ----------
+    shown : xarray.Dataset
+        The table in the page's units, with the derived signals.
+    roles : Roles
+        What the signals stand for.
+    verdicts : sequence of Verdict
+        Expectations to draw.
+
+    Returns
+    -------
+    list of Section
+    """
+    motion = _motion(shown, roles, verdicts)
+    made = {
+        "Reference and error": motion,
+        "Other expectations": _expected(shown, verdicts, {line.signal for panel in motion for line in panel.lines}),
+        "Forces on the ship": _loads(shown, roles),
+        "Thrusters": _thrusters(shown, roles),
+        "Environment": _environment(shown, roles),
+    }
+    return [Section(title, panels) for title, panels in made.items() if panels]
+
+
+def _panel(shown, title, lines, bands=(), states=False):
+    """The panel with those lines that are there, as a list of one or none."""
+    lines = [line for line in lines if line.signal in shown]
+    if not lines:
+        return []
+    return [Panel(title, shown[lines[0].signal].attrs["units"], lines, list(bands), states)]
+
+
+def _coloured(labels):
+    """Lines of equal rank, each in its colour; `labels` maps signals to labels."""
+    return [Line(s, label, palette.CYCLE[k % len(palette.CYCLE)]) for k, (s, label) in enumerate(labels.items())]
+
+
+def _first(names):
+    return next(iter(names), None)
+
+
+def _motion(shown, roles, verdicts):
+    """North, east and heading, each beside its error; distance and speeds."""
+    panels = []
+    for axis, title in AXES.items():
+        if ship := roles.signal(roles.ship, axis):
+            lines = [
+                Line(_first(roles.anywhere(f"{axis}_meas")), "measured", palette.MEASURED, width=1.0),
+                Line(_first(roles.anywhere(f"{axis}_set")), "set point", palette.SET_POINT, "dot"),
+                Line(roles.signal(roles.reference, f"{axis}_d"), "reference", palette.REFERENCE, "dash"),
+                Line(ship, "ship", palette.SHIP, width=2.0),
+            ]
+            panels += _panel(shown, title, lines, bands_of(shown, ship, verdicts))
+            error = [Line(ERRORS[axis], "ship − reference", palette.SHIP)]
+            limits = bands_of(shown, ship, verdicts, minus=desired(roles, axis)) if ERRORS[axis] in shown else ()
+            panels += _panel(shown, f"{title} error", error, limits)
+    return panels + _distance(shown, roles, verdicts) + _speeds(shown, roles)
+
+
+def _distance(shown, roles, verdicts):
+    lines = [
+        Line(FROM_REFERENCE, "from the reference", palette.SHIP),
+        Line(FROM_EXPECTED, "from the expected point", palette.EXPECTED, width=2.0),
+    ]
+    position = [roles.signal(roles.ship, axis) for axis in "xy"]
+    return _panel(shown, "Position error", lines, distance_bands(shown, position, verdicts))
+
+
+def _speeds(shown, roles):
+    ahead, sideways, turn = (roles.signal(roles.ship, connector) for connector in "uvr")
+    speeds = _panel(shown, "Speed over ground", _coloured({ahead: "ahead", sideways: "to starboard"}))
+    return speeds + _panel(shown, "Rate of turn", _coloured({turn: "to starboard"}))
+
+
+def _expected(shown, verdicts, drawn):
+    """A panel for every signal with an expectation that no other panel shows with its limits."""
+    signals = dict.fromkeys(s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn)
+    return [p for s in signals for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))]
+
+
+def _loads(shown, roles):
+    """Forces and moment by source, with what the controller asks for."""
+    panels = []
+    for axis, title in LOADS.items():
+        lines = [
+            Line(roles.signal(roles.ship, f"tau_{source}_{axis}"), source, palette.source(source, k))
+            for k, source in enumerate(roles.sources())
+        ]
+        asked = Line(_first(roles.anywhere(f"tau_{axis}_cmd")), "commanded", palette.COMMAND, "dot", 1.0)
+        panels += _panel(shown, title, [*lines, asked])
+    return panels
+
+
+def _thrusters(shown, roles):
+    """Thrust commanded and delivered per thruster; angles, speeds, power and limits of all."""
+    panels = []
+    for unit in roles.thrusters:
+        lines = [
+            Line(_command(roles, unit, "thrust"), "commanded", palette.COMMAND, "dot"),
+            Line(join(unit, "thrust"), "delivered", palette.SHIP),
+        ]
+        panels += _panel(shown, f"Thrust, {unit}", lines)
+    panels += _panel(shown, "Azimuth", _angles(roles))
+    turning = [unit for unit in roles.thrusters if roles.signal(unit, "azimuth")]
+    for units in (turning, [unit for unit in roles.thrusters if unit not in turning]):
+        lines = _coloured({roles.signal(unit, "rpm"): unit for unit in units})
+        panels += _panel(shown, f"Shaft speed, {', '.join(units)}", lines)
+    for quantity, title in {"power": "Power", "torque": "Torque"}.items():
+        panels += _panel(shown, title, _coloured({roles.signal(u, quantity): u for u in roles.thrusters}))
+    states = {signal: f"{c} {what}" for what in ("saturated", "failed") for c, signal in roles.flagged(what).items()}
+    return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
+
+
+def _angles(roles):
+    lines = []
+    for k, unit in enumerate(roles.thrusters):
+        commanded = _command(roles, unit, "azimuth")
+        lines.append(Line(commanded, f"{unit} commanded", palette.CYCLE[k % len(palette.CYCLE)], "dot"))
+        lines.append(Line(roles.signal(unit, "azimuth"), unit, palette.CYCLE[k % len(palette.CYCLE)]))
+    return lines
+
+
+def _command(roles, unit, quantity):
+    """Signal of a thruster's command: its own input, or the allocator's output of its name."""
+    return roles.signal(unit, f"{quantity}_cmd") or _first(roles.anywhere(f"{unit}_{quantity}_cmd"))
+
+
+def _environment(shown, roles):
+    """Wind, current and waves as speed and direction."""
+    at = lambda connector: roles.signal(roles.environment, connector)  # noqa: E731
+    flow = {
+        "Wind speed": ["wind speed", at("wind_speed_mean")],
+        "Wind from": ["wind from", at("wind_from_mean")],
+        "Current speed": ["current speed"],
+        "Current to": ["current to"],
+    }
+    panels = []
+    for title, signals in flow.items():
+        looks = [("with gusts", palette.SKY, "solid"), ("mean", palette.INK, "dash")]
+        lines = [Line(s, *look) for s, look in zip(signals, looks, strict=False)]
+        panels += _panel(shown, title, [Line(lines[0].signal, "current", palette.BLUE)] if len(lines) == 1 else lines)
+    waves = {at("elevation"): "surface"}
+    return panels + _panel(shown, "Waves", _coloured(waves))

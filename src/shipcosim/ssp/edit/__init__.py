@@ -1,0 +1,1 @@
+"""System structures changed and written."""

@@ -1,0 +1,195 @@
+"""A package whose SSD is held in memory: changed as a whole or not at all, checked, and its files brought together."""
+
+from collections import Counter
+from contextlib import contextmanager
+from copy import deepcopy
+from dataclasses import replace
+from filecmp import cmp
+from pathlib import Path
+from urllib.parse import quote
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp.edit.parameter_sets import Sets
+from shipcosim.ssp.edit.write import write_file
+from shipcosim.ssp.flatten.system import assemble_package
+from shipcosim.ssp.fmu.description import describe_fmu
+from shipcosim.ssp.read.declarations import unused
+from shipcosim.ssp.read.package import SYSTEM_STRUCTURE
+from shipcosim.ssp.read.structure import FMU
+from shipcosim.ssp.xml.archive import write_archive
+from shipcosim.ssp.xml.document import Document, Findings, child
+from shipcosim.ssp.xml.markup import to_bytes
+
+
+class Draft:
+    """An SSD in memory, with the package around it.
+
+    Parameters
+    ----------
+    package : Package
+        Where its files are; nothing is written there.
+    document : Document
+        The SSD; changed in place.
+    file : str
+        Name of the system as the user knows it.
+    """
+
+    def __init__(self, package, document, file):
+        self.file = file
+        self.package = replace(package, held={}, located={})
+        self.path = (package.folder / package.ssd).resolve()
+        self.package.held[self.path] = document
+        self._described, self._assembled, self._changing = {}, None, False
+        self.assemble()
+        self._came_with = set(self.package.located)
+
+    def copy(self):
+        """One more of it, changed independently."""
+        twin = Draft(self.package, self.package.held[self.path], self.file)
+        twin.package.held.update(self._snapshot())
+        twin._came_with = set(self._came_with)
+        return twin
+
+    @property
+    def root(self):
+        """Outermost element of the SSD."""
+        return self.package.held[self.path].root
+
+    @property
+    def system(self):
+        """The outermost System element."""
+        return child(self.root, "ssd:System")
+
+    @property
+    def sets(self):
+        """The parameter sets that it binds."""
+        return Sets(self.package, self.package.held[self.path])
+
+    def problem(self, what, found, remedy=""):
+        """Problem with something in the SSD."""
+        return Problem(f"{self.package.show(self.path)}: {what}", found, remedy)
+
+    # ---------------------------------------------------------------- reading
+
+    def assemble(self, parameters=()):
+        """System (None or incomplete where there are errors) and findings, as it is now."""
+        findings = Findings()
+        self.package.located.clear()
+        system = assemble_package(self.package, parameters, self.file, findings, self._described)
+        return system, findings
+
+    def assembled(self):
+        """Like `assemble`, but the same as before where nothing was changed since through `changes`."""
+        if self._assembled is None or self._changing:
+            self._assembled = self.assemble()
+        return self._assembled
+
+    def fmu_of(self, element):
+        """Description of a component's FMU; None for anything else, or where it cannot be read."""
+        if element.get("type", FMU) != FMU or not element.get("source"):
+            return None
+        folder = self.package.held[self.path].folder
+        file = self.package.locate(element.get("source"), folder, "", Findings())
+        if file is None:
+            return None
+        key = file, file.stat().st_mtime_ns
+        return self._described.get(key) or describe_fmu(file, Findings())
+
+    # ---------------------------------------------------------------- changing
+
+    @contextmanager
+    def changes(self):
+        """Changes within are checked at the end, and all undone if they bring new errors; nested ones are part."""
+        if self._changing:
+            yield
+            return
+        before, known = self._snapshot(), Counter(problem.found for problem in self.assembled()[1].errors)
+        self._changing = True
+        try:
+            yield
+            fresh = [p for p in dict.fromkeys(self.assembled()[1].errors) if not known[p.found]]
+            if fresh:
+                raise ShipcosimError(fresh)
+        except BaseException:
+            self.package.held.clear()
+            self.package.held.update(before)
+            self._assembled = None
+            raise
+        finally:
+            self._changing = False
+
+    def _snapshot(self):
+        return {
+            path: replace(held, root=_copied(held.root)) if isinstance(held, Document) else held
+            for path, held in self.package.held.items()
+        }
+
+    def resource(self, file):
+        """Address under which a file from elsewhere belongs to the package from now on."""
+        folder, top = self.path.parent / "resources", self.package.folder.resolve()
+        known = {top / name: path for name, path in self.package.located.items()}
+        known |= {path: held for path, held in self.package.held.items() if isinstance(held, Path)}
+        for place, path in known.items():
+            if place.name == file.name and path.is_file() and cmp(path, file, shallow=False):
+                return quote(place.relative_to(self.path.parent).as_posix())
+        names = {path.name for path in (*known, *self.package.held, *folder.glob("*"))}
+        name = unused(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
+        self.package.held[folder / name] = file.resolve()
+        return quote(f"resources/{name}")
+
+    # ---------------------------------------------------------------- writing
+
+    def write(self, path, fmus):
+        """Write the package: packed into a .ssp, as a .ssd with its files beside it, or as a folder."""
+        files = self._files()
+        packed = path.suffix.lower() == ".ssp"
+        if not (packed or fmus):
+            inside = self.package.folder.resolve()
+            files = {name: file for name, file in files.items() if not _is_elsewhere(file, inside)}
+        if packed:
+            contents = {name: file.read_bytes() if isinstance(file, Path) else file for name, file in files.items()}
+            write_archive(path, _with_ssd(contents, self.package.ssd, SYSTEM_STRUCTURE))
+            return
+        folder, ssd = (path.parent, path.name) if path.suffix.lower() == ".ssd" else (path, SYSTEM_STRUCTURE)
+        for name, file in _with_ssd(files, self.package.ssd, ssd).items():
+            target = folder / name
+            if not (isinstance(file, Path) and target.exists() and target.samefile(file)):
+                write_file(target, file.read_bytes() if isinstance(file, Path) else file)
+
+    def _files(self):
+        """Contents, or where they are, by name in the package; FMUs of removed components left out."""
+        self.assemble()
+        folder = self.package.folder.resolve()
+        files = {}
+        if not self.file.partition("#")[0].lower().endswith(".ssd"):  # a single .ssd says nothing about its neighbours
+            found = {path.relative_to(folder): path for path in sorted(folder.rglob("*")) if path.is_file()}
+            files = {name.as_posix(): path for name, path in found.items() if not _is_hidden(name)}
+        files |= self.package.located
+        for path, held in self.package.held.items():
+            if isinstance(held, Document):
+                files[path.relative_to(folder).as_posix()] = to_bytes(held.root, *PREFIXES.get(path.suffix, ()))
+        gone = {name for name in self._came_with - set(self.package.located) if name.endswith(".fmu")}
+        return {name: file for name, file in files.items() if name not in gone}
+
+
+PREFIXES = {".ssd": ("ssd", "ssc", "ssv", "osp"), ".ssv": ("ssv", "ssc")}
+
+
+def _copied(root):
+    """Copy of an element with what stands before and after it in its file."""
+    return deepcopy(root.getroottree()).getroot()
+
+
+def _is_hidden(name):
+    return any(part.startswith(".") for part in name.parts)
+
+
+def _is_elsewhere(file, folder):
+    return isinstance(file, Path) and file.suffix == ".fmu" and not file.resolve().is_relative_to(folder)
+
+
+def _with_ssd(files, name, wanted):
+    """Files with the SSD under the name that it is looked for, unless another one has it."""
+    if wanted == SYSTEM_STRUCTURE and SYSTEM_STRUCTURE in files:
+        return files
+    return {(wanted if known == name else known): file for known, file in files.items()}

@@ -1,0 +1,163 @@
+"""Elements of an SSD by their names as users write them: ``"ship.vessel"``, ``"vessel.psi"``."""
+
+from typing import NamedTuple
+
+from lxml import etree
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ssp.flatten.connectors import SOURCES_OUTSIDE
+from shipcosim.ssp.read.structure import KIND_NAMES
+from shipcosim.ssp.xml.document import child, children, local
+
+ELEMENTS = ("Component", "SignalDictionaryReference", "System")
+
+
+class Reading(NamedTuple):
+    """One way to read the name of a signal: a connector of an element in a system, or (None) of the system itself."""
+
+    system: etree._Element
+    element: etree._Element | None
+    connector: str
+
+    @property
+    def owner(self):
+        """The element that has the connector."""
+        return self.system if self.element is None else self.element
+
+    @property
+    def element_name(self):
+        """Of the element, as in a connection; None for the system itself."""
+        return None if self.element is None else self.element.get("name")
+
+    def declared(self):
+        """The Connector element, or None."""
+        return connector_of(self.owner, self.connector)
+
+    def gives(self):
+        """Whether a value comes from here; None where the connector does not say."""
+        connector = self.declared()
+        kind = None if connector is None else connector.get("kind")
+        if kind not in KIND_NAMES or kind in ("inout", "unspecified"):
+            return None
+        return (kind in SOURCES_OUTSIDE) == (self.element is not None)
+
+
+def parts(system):
+    """Elements that a system consists of."""
+    listed = child(system, "ssd:Elements")
+    return [] if listed is None else [part for part in listed if local(part) in ELEMENTS]
+
+
+def walk(system, name=""):
+    """(full name, element) of a system, nameless where it is the outermost one, and of everything in it."""
+    yield name, system
+    for part in parts(system):
+        inner = ".".join(filter(None, (name, part.get("name", ""))))
+        if local(part) == "System":
+            yield from walk(part, inner)
+        else:
+            yield inner, part
+
+
+def connector_of(element, name):
+    """Connector element of this name, or None."""
+    listed = children(element, "ssd:Connectors", "ssd:Connector")
+    return next((part for part in listed if part.get("name") == name), None)
+
+
+def find_element(system, name):
+    """Element of a full name (empty: the system itself), or None."""
+    return next((element for known, element in walk(system) if known == name), None)
+
+
+def find_connector(system, name):
+    """Connector element of a full name, or None."""
+    found = (reading.declared() for reading in readings(name, system))
+    return next((connector for connector in found if connector is not None), None)
+
+
+def split_owner(system, name):
+    """The system that something of this full name belongs to (None: there is none), and its own name there."""
+    outer, _, short = name.rpartition(".")
+    owner = find_element(system, outer)
+    return (owner if owner is not None and local(owner) == "System" else None), short
+
+
+def connections(system):
+    """((source, target), element) of all connections, nested ones included, by the full names of what they join."""
+    for name, element in walk(system):
+        for connection in children(element, "ssd:Connections", "ssd:Connection"):
+            ends = ((connection.get(f"{s}Element"), connection.get(f"{s}Connector")) for s in ("start", "end"))
+            yield tuple(".".join(filter(None, (name, *end))) for end in ends), connection
+
+
+def attached(system, name, is_element):
+    """(connection, attribute with its name) of all ends at an element or, else, at a connector."""
+    for owner, element in walk(system):
+        for connection in children(element, "ssd:Connections", "ssd:Connection"):
+            for side in ("start", "end"):
+                at = [owner, connection.get(f"{side}Element"), connection.get(f"{side}Connector")]
+                part = at[:2] if is_element else at
+                if at[1 if is_element else 2] and ".".join(filter(None, part)) == name:
+                    yield connection, f"{side}{'Element' if is_element else 'Connector'}"
+
+
+def readings(signal, system):
+    """Every way to read the name of a signal; names of elements and of connectors can have dots themselves."""
+    yield Reading(system, None, signal)
+    for part in parts(system):
+        start = f"{part.get('name')}."
+        if signal.startswith(start):
+            yield Reading(system, part, signal.removeprefix(start))
+            if local(part) == "System":
+                yield from readings(signal.removeprefix(start), part)
+
+
+def best_pair(source, target, system, exists, where):
+    """Readings of two signals that a connection can join: both in one system, and existing as far as possible.
+
+    Parameters
+    ----------
+    source, target : str
+        Names of the signals.
+    system : lxml element
+        The outermost one.
+    exists : callable
+        Whether a reading means something that is there.
+    where : str
+        For messages.
+
+    Raises
+    ------
+    ShipcosimError
+        If one of them names an element that is not there, or the two can only be joined through systems between them.
+    """
+    pairs = [
+        (start, end) for start in readings(source, system) for end in readings(target, system) if start[0] is end[0]
+    ]
+    start, end = max(pairs, key=lambda pair: sum(_likely(reading, exists) for reading in pair))
+    for signal, reading in ((source, start), (target, end)):
+        if not exists(reading):
+            _refuse_if_elsewhere(signal, reading, system, exists, f"{where}: {source} -> {target}")
+    return start, end
+
+
+def _likely(reading, exists):
+    return 2 if exists(reading) else 0 if _names_an_element(reading) else 1
+
+
+def _names_an_element(reading):
+    """Whether what is taken for a connector's name looks like one of a component that is not there."""
+    return reading.element is None and "." in reading.connector
+
+
+def _refuse_if_elsewhere(signal, reading, system, exists, where):
+    """Raise where a signal is in another system, or of an element that is not there; the check finds all else."""
+    if any(exists(other) for other in readings(signal, system)):
+        remedy = "A connection stays within one system: go through connectors of the systems between."
+        raise ShipcosimError(Problem(where, f"{signal} is in another system than the other end.", remedy))
+    if _names_an_element(reading):
+        names = [part.get("name", "") for part in parts(system)]
+        element = signal.partition(".")[0]
+        found = f"There is no element '{element}' in {system.get('name')}."
+        raise ShipcosimError(Problem(where, found, suggestion(element, names)))

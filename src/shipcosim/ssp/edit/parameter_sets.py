@@ -1,0 +1,243 @@
+"""Parameter sets that an SSD binds, changed where they stand: inline, or in files beside it."""
+
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import unquote, urlsplit
+
+from lxml import etree
+
+from shipcosim.ssp.edit.names import walk
+from shipcosim.ssp.read.declarations import define_unit
+from shipcosim.ssp.read.parameters import TOLERANCE
+from shipcosim.ssp.xml.document import Document, Findings, child, children, local, read_document
+from shipcosim.ssp.xml.markup import add, drop, ensure, put
+from shipcosim.ssp.xml.values import KINDS, text_of
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A parameter set where it is bound.
+
+    Parameters
+    ----------
+    owner : str
+        Full name of the element that it is bound to; empty for the outermost system.
+    binding : lxml element
+        The ParameterBinding.
+    root : lxml element
+        The ParameterSet.
+    file : Path or None
+        Its file in the package; None for an inline set.
+    shared : bool
+        Whether it is bound more than once, so that a change would reach further than it should.
+    """
+
+    owner: str
+    binding: etree._Element
+    root: etree._Element
+    file: Path | None
+    shared: bool
+
+    @property
+    def prefix(self):
+        """What its names start with, seen from the outermost system."""
+        return (f"{self.owner}." if self.owner else "") + self.binding.get("prefix", "")
+
+    @property
+    def mapped(self):
+        """Whether its names are not those of the parameters."""
+        return child(self.binding, "ssd:ParameterMapping") is not None
+
+    def parameter(self, name):
+        """Parameter element by its full name, or None."""
+        if self.mapped or not name.startswith(self.prefix):
+            return None
+        listed = children(self.root, "ssv:Parameters", "ssv:Parameter")
+        return next((part for part in listed if part.get("name") == name[len(self.prefix) :]), None)
+
+
+class Sets:
+    """The sets that an SSD binds, weakest first: those of inner elements, then of the systems around them.
+
+    Parameters
+    ----------
+    package : Package
+        Its `held` takes the files that are changed.
+    document : Document
+        The SSD.
+    """
+
+    def __init__(self, package, document):
+        self.package, self.document = package, document
+        system = child(document.root, "ssd:System")
+        self.elements = {} if system is None else dict(walk(system))
+        found = [
+            (name, part)
+            for name, element in self.elements.items()
+            for part in children(element, "ssd:ParameterBindings", "ssd:ParameterBinding")
+        ]
+        counts = Counter(self._file(part) for _, part in found)
+        bound = [self._bound(name, part, counts) for name, part in found]
+        depths = {name: self._depth(element) for name, element in self.elements.items()}
+        self.bound = sorted((one for one in bound if one is not None), key=lambda one: -depths[one.owner])
+
+    def _depth(self, element):
+        return sum(1 for _ in element.iterancestors())
+
+    def _file(self, binding, element=None):
+        """File in the package that a binding or mapping names, or None."""
+        source = (binding if element is None else element).get("source")
+        if not source or binding.get("sourceBase") == "component":
+            return None
+        return (self.document.folder / unquote(urlsplit(source).path)).resolve()
+
+    def _bound(self, owner, binding, counts):
+        file = self._file(binding)
+        inline = child(binding, "ssd:ParameterValues")
+        root = self._root(file) if file else None if inline is None else child(inline, "ssv:ParameterSet")
+        return None if root is None else Bound(owner, binding, root, file, counts[file] > 1 and file is not None)
+
+    def _root(self, file):
+        held = self.package.held.get(file, file)
+        if isinstance(held, Path):
+            held = read_document(held, self.package.show(file), Findings())
+        return None if held is None else held.root
+
+    def keep(self, file, root):
+        """Hold a changed file."""
+        if file is not None:
+            self.package.held[file] = Document(self.package.show(file), root, file.parent)
+
+    def put(self, name, value):
+        """Give a parameter a value where it has one, else in a set of its element's own.
+
+        Parameters
+        ----------
+        name : str
+            Full name.
+        value : ParameterValue
+            Its own name is not looked at.
+        """
+        places = [one for one in self.bound if one.parameter(name) is not None]
+        if places and not places[-1].shared:
+            write_value(places[-1].root, places[-1].parameter(name), value)
+            self.keep(places[-1].file, places[-1].root)
+            return
+        owner = places[-1].owner if places else self._owner(name)
+        own = [one for one in self.bound if one.owner == owner]
+        fits = own and not places and not own[0].shared and not own[0].mapped and name.startswith(own[0].prefix)
+        if fits:
+            self._add(own[0].root, name[len(own[0].prefix) :], value)
+            self.keep(own[0].file, own[0].root)
+        else:
+            self.append(owner, name, value)
+
+    def append(self, owner, name, value):
+        """Give a parameter a value in a new set behind all others of an element."""
+        element = self.elements[owner]
+        binding = add(ensure(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
+        title = owner or self.document.root.get("name") or "values"
+        root = add(ensure(binding, "ssd:ParameterValues"), "ssv:ParameterSet", version="1.0", name=title)
+        ensure(root, "ssv:Parameters")
+        self._add(root, name.removeprefix(f"{owner}.") if owner else name, value)
+
+    def _add(self, root, name, value):
+        parameter = add(ensure(root, "ssv:Parameters"), "ssv:Parameter", name=name)
+        write_value(root, parameter, value)
+
+    def _owner(self, name):
+        """Innermost element of this SSD that a parameter's full name begins with."""
+        return max((owner for owner in self.elements if not owner or name.startswith(f"{owner}.")), key=len)
+
+    def clear(self, name):
+        """Take a parameter out of all sets; false where it is in none, or in one that is bound more than once."""
+        places = [one for one in self.bound if one.parameter(name) is not None]
+        for one in places:
+            if one.shared:
+                return False
+            remove_parameter(one.parameter(name))
+            self.keep(one.file, one.root)
+        return bool(places)
+
+    def rename(self, old, new, *, exact=False):
+        """Follow a new full name in the sets of the systems around; None: what had it goes, and its values.
+
+        Parameters
+        ----------
+        old, new : str
+            Of an element, whose parameters' names begin with it, or (`exact`) of a system's connector.
+        """
+        for one in self.bound:
+            if one.owner and not old.startswith(f"{one.owner}."):
+                continue
+            names = _Names(*(name and name.removeprefix(f"{one.owner}.") for name in (old, new)), exact)
+            mapping = child(one.binding, "ssd:ParameterMapping")
+            if mapping is not None:
+                self._rename_targets(mapping, names)
+            elif one.binding.get("prefix"):
+                names.follow(one.binding, "prefix", drop)
+            elif not one.shared:
+                listed = children(one.root, "ssv:Parameters", "ssv:Parameter")
+                if any([names.follow(part, "name", remove_parameter) for part in listed]):
+                    self.keep(one.file, one.root)
+
+    def _rename_targets(self, mapping, names):
+        file = self._file(mapping)
+        root = self._root(file) if file else child(mapping, "ssm:ParameterMapping")
+        listed = () if root is None else children(root, "ssm:MappingEntry")
+        if any([names.follow(part, "target", root.remove) for part in listed]):
+            self.keep(file, root)
+
+
+class _Names(NamedTuple):
+    """An old and a new name of something, as a set sees them."""
+
+    old: str
+    new: str | None
+    exact: bool
+
+    def follow(self, element, attribute, remove):
+        """Change an attribute that has the old name; whether it had."""
+        text = element.get(attribute, "")
+        if text != self.old if self.exact else not text.startswith(f"{self.old}."):
+            return False
+        if self.new is None:
+            remove(element)
+        else:
+            element.set(attribute, self.new + text.removeprefix(self.old))
+        return True
+
+
+def remove_parameter(parameter):
+    """Take a Parameter out of its set, which may be empty then."""
+    parameter.getparent().remove(parameter)
+
+
+def write_value(root, parameter, value):
+    """Write a value into a Parameter element; description and tolerance are the new value's, other things stay.
+
+    Parameters
+    ----------
+    root : lxml element
+        The ParameterSet, which gets the unit's definition.
+    parameter : lxml element
+        In it.
+    value : ParameterValue
+        What to write.
+    """
+    for part in [part for part in parameter if local(part) in KINDS]:
+        parameter.remove(part)
+    typed = add(parameter, f"ssv:{value.kind}", value=text_of(value.value))
+    if value.unit is not None and define_unit(root, "ssv:Units", value.unit):
+        typed.set("unit", value.unit.name)
+    parameter.attrib.pop("description", None)
+    if value.description:
+        parameter.set("description", value.description)
+    for annotation in children(parameter, "ssv:Annotations", "ssc:Annotation"):
+        if annotation.get("type") == TOLERANCE:
+            drop(annotation)
+    if value.tolerance is not None:
+        annotation = add(ensure(parameter, "ssv:Annotations"), "ssc:Annotation", type=TOLERANCE)
+        put(annotation, annotation.makeelement("tolerance", value=repr(float(value.tolerance))))

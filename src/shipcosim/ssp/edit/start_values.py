@@ -1,0 +1,152 @@
+"""Start values of a system that is edited, as a mapping of names to values in the FMUs' units."""
+
+from collections.abc import MutableMapping
+from math import isfinite
+
+from shipcosim.errors import ShipcosimError, suggestion
+from shipcosim.ssp.edit.write import KIND_OF
+from shipcosim.ssp.read.parameters import ParameterValue, tolerance_of
+from shipcosim.ssp.xml.document import children, qualified
+from shipcosim.ssp.xml.markup import drop
+from shipcosim.ssp.xml.units import conversion, find_unit, read_units, relation
+
+
+class StartValues(MutableMapping):
+    """Start values by full name: ``values["vessel.mass"]``.
+
+    Every parameter, input and other variable with a start value can be read and, where it is settable, set; what the
+    mapping has (``in``, ``len``, iteration) is what the system sets. ``del`` leaves a variable to its FMU again.
+
+    Parameters
+    ----------
+    draft : Draft
+        The system.
+    """
+
+    def __init__(self, draft):
+        self._draft = draft
+
+    def _system(self):
+        system, findings = self._draft.assembled()
+        if system is None:
+            raise ShipcosimError(findings.errors)
+        return system
+
+    def __getitem__(self, name):
+        return _value(self._system(), name)
+
+    def __setitem__(self, name, value):
+        with self._draft.changes():
+            self.put(name, value)
+
+    def __delitem__(self, name):
+        with self._draft.changes():
+            if not self._draft.sets.clear(name) or name in self:
+                where = "It is set in a set that is bound more than once, or by a mapping."
+                found, remedy = (where, "") if name in self else ("The system does not set it.", suggestion(name, self))
+                raise ShipcosimError(self._draft.problem(name, found, remedy))
+
+    def __iter__(self):
+        system = self._system()
+        bound = self._draft.sets.bound
+        for name in system.inputs | system.parameters:
+            if any(one.parameter(name) is not None for one in bound):
+                yield name
+        for component in system.components.values():
+            yield from (f"{component.name}.{variable}" for variable in component.start)
+
+    def __contains__(self, name):
+        return name in set(self)
+
+    def __len__(self):
+        return len(set(self))
+
+    def __repr__(self):
+        return repr(dict(self))
+
+    def put(self, name, value, unit=None, description="", tolerance=None):
+        """Set a value where it stands or, if that has no effect, over everything; see `SystemStructure.set`."""
+        kind, own, items = _target(self._system(), name)
+        value = getattr(value, "item", lambda: value)()  # NumPy's scalars
+        if kind == "Enumeration" and type(value) is int:
+            value = next((item for item, number in items.items() if number == value), str(value))
+        value = self._converted(name, value, unit, own)
+        kind = self._kind(name, value, kind)
+        value = float(value) if kind == "Real" else value
+        given = ParameterValue(name, kind, value, own if kind == "Real" else None, description, tolerance=tolerance)
+        before = len(self._draft.assembled()[1].errors)
+        self._draft.sets.put(name, given)
+        system, findings = self._draft.assembled()
+        wanted = items.get(value, value) if kind == "Enumeration" else value
+        if len(findings.errors) <= before and _value(system, name) != wanted:
+            self._draft.sets.append("", name, given)  # a mapping or a connector of a system has the last word
+
+    def bind_to_components(self):
+        """See `SystemStructure.bind_to_components`."""
+        system, bound = self._system(), self._draft.sets.bound
+        values = {name: _given(system, bound, name) for name in self}
+        for binding in list(self._draft.root.iter(qualified("ssd:ParameterBinding"))):
+            drop(binding)
+        for name, value in values.items():
+            self._draft.sets.put(name, value)
+        for one in self._draft.sets.bound:
+            one.root.set("name", self._draft.root.get("name") or "values")  # ecos applies the sets of one name alone
+
+    def _kind(self, name, value, kind):
+        if type(value) not in KIND_OF:
+            found = f"{value!r} is no value."
+            raise ShipcosimError(self._draft.problem(name, found, "A value is a number, true or false, or a text."))
+        if isinstance(value, float) and not isfinite(value):
+            raise ShipcosimError(self._draft.problem(name, f"{value} is not a finite number."))
+        own = KIND_OF[type(value)]
+        fits = (own, kind) in (("Integer", "Real"), ("String", "Enumeration"))
+        return kind if fits else own
+
+    def _converted(self, name, value, unit, own):
+        if unit is None:
+            return value
+        given = find_unit(unit, read_units(children(self._draft.root, "ssd:Units", "ssc:Unit")))
+        if own is None or relation(given, own) in ("unknown", "incompatible"):
+            found = f"A value in {unit}, but {name} is in {own.name if own else 'no unit'}."
+            raise ShipcosimError(self._draft.problem(name, found, "These cannot be converted."))
+        factor, offset = conversion(given, own)
+        return factor * value + offset
+
+
+def _value(system, name):
+    """Start value of a signal; None where nobody gives one."""
+    component, variable = system.split(name)
+    if component is None:
+        return _signal(system, variable).start
+    return system.components[component].start_value(variable)
+
+
+def _target(system, name):
+    """Type, unit and items of a signal."""
+    component, variable = system.split(name)
+    if component is None:
+        signal = _signal(system, variable)
+        return signal.type, find_unit(signal.unit), signal.items
+    fmu = system.components[component].fmu
+    variable = fmu.variables[variable]
+    return variable.kind, find_unit(variable.unit, fmu.units), variable.items
+
+
+def _given(system, bound, name):
+    """Start value of a signal as it goes into a set, with what the set that it comes from says about it."""
+    kind, unit, items = _target(system, name)
+    value = _value(system, name)
+    if kind == "Enumeration":
+        value = next(item for item, number in items.items() if number == value)
+    found = [one.parameter(name) for one in bound]
+    origin = next((part for part in reversed(found) if part is not None), None)
+    described = {}
+    if origin is not None:
+        same_unit = unit is None or any(part.get("unit") == unit.name for part in origin)
+        described = {"description": origin.get("description", "")}
+        described["tolerance"] = tolerance_of(origin) if same_unit else None
+    return ParameterValue(name, kind, value, unit if kind == "Real" else None, **described)
+
+
+def _signal(system, name):
+    return (system.inputs | system.outputs | system.parameters)[name]

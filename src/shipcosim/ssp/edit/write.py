@@ -1,0 +1,119 @@
+"""Parameter sets written, and systems packed into an .ssp."""
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from lxml import etree
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp.edit.parameter_sets import write_value
+from shipcosim.ssp.flatten.system import assemble_package
+from shipcosim.ssp.read.package import open_package
+from shipcosim.ssp.read.parameters import ParameterValue
+from shipcosim.ssp.xml.archive import write_archive
+from shipcosim.ssp.xml.document import Findings, qualified
+from shipcosim.ssp.xml.markup import add, ensure, to_bytes
+from shipcosim.ssp.xml.units import find_unit
+
+KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}
+
+
+def parameter(name, value, unit=None, description="", *, tolerance=None):
+    """A value for a parameter set, of the kind of its Python type.
+
+    Parameters
+    ----------
+    name : str
+        ``"vessel.mass"``, or the variable alone in a set for one component.
+    value : float, int, bool, str or bytes
+        The value; an int with a unit is a Real.
+    unit : str, optional
+        FMI's spelling, e.g. ``"kg.m2"``.
+    description : str
+        What it is and where the number comes from.
+    tolerance : float, optional
+        Standard deviation within which the value counts as known, in `unit`.
+
+    Returns
+    -------
+    ParameterValue
+
+    Raises
+    ------
+    ShipcosimError
+        If the unit's spelling makes no sense.
+    """
+    if unit is not None and find_unit(unit).exponents is None:
+        raise ShipcosimError(Problem(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'."))
+    kind = "Real" if unit is not None and type(value) is int else KIND_OF[type(value)]
+    return ParameterValue(name, kind, value, find_unit(unit), description, tolerance=tolerance)
+
+
+def write_ssv(path, name, values):
+    """Write a parameter set; complete or not at all.
+
+    Parameters
+    ----------
+    path : path
+        The .ssv.
+    name : str
+        Of the set; some tools apply none without.
+    values : iterable of ParameterValue
+        As `parameter` makes them.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
+    root = etree.Element(qualified("ssv:ParameterSet"), {"version": "1.0", "name": name})
+    listed = ensure(root, "ssv:Parameters")
+    for value in values:
+        write_value(root, add(listed, "ssv:Parameter", name=value.name), value)
+    write_file(Path(path), to_bytes(root, "ssv", "ssc"))
+
+
+def write_file(path, data):
+    """Write a file, complete or not at all; its folder is made if needed."""
+    partial = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partial.write_bytes(data)
+        os.replace(partial, path)
+    except OSError as error:
+        with suppress(OSError):
+            partial.unlink()
+        raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None
+
+
+def pack(folder, fmus, out):
+    """Pack a folder with a SystemStructure.ssd and its FMUs into an .ssp; the same input gives the same bytes.
+
+    Parameters
+    ----------
+    folder : path
+        With the SSD and its resources; hidden files stay out.
+    fmus : iterable of path
+        Folders with the FMUs that are not in `folder`.
+    out : path
+        The .ssp.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is wrong with the system, or if the archive cannot be written.
+    """
+    findings, folder = Findings(), Path(folder)
+    package = open_package(folder, findings, fmus)
+    if package is not None:
+        assemble_package(package, (), str(folder), findings)
+    if findings.errors:
+        raise ShipcosimError(list(dict.fromkeys(findings.errors)))
+    files = {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and not any(part.startswith(".") for part in path.relative_to(folder).parts)
+    }
+    files |= {name: path.read_bytes() for name, path in package.located.items() if name not in files}
+    write_archive(out, files)

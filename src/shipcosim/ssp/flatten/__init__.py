@@ -1,0 +1,1 @@
+"""From nested systems to a flat one: components, connections, start values, loops."""

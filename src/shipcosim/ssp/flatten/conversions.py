@@ -1,0 +1,159 @@
+"""What happens to a value on its way from port to port: units, linear transformations, mapping tables, types."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from shipcosim.ssp.xml.units import Unit, conversion, relation
+from shipcosim.ssp.xml.values import has
+
+TAKES = {
+    "Real": ("Real", "Integer"),
+    "Integer": ("Integer", "Enumeration"),
+    "Enumeration": ("Enumeration", "Integer"),
+}
+"""Types that a type takes without loss; all others take their own alone."""
+
+
+@dataclass(frozen=True)
+class Flow:
+    """A value on its way: factor * mapping[source] + offset, in `unit`.
+
+    Parameters
+    ----------
+    type : str or None
+        Real, Integer, ...; None while no port has stated it.
+    unit : Unit or None
+        Of the value so far.
+    items : mapping of str to int
+        Of an enumeration.
+    factor, offset : float
+        So far, from the source's unit to `unit`.
+    mapping : mapping or None
+        Of discrete values, before factor and offset; values not in it stay as they are.
+    """
+
+    type: str | None
+    unit: Unit | None = None
+    items: Mapping = field(default_factory=dict)
+    factor: float = 1.0
+    offset: float = 0.0
+    mapping: Mapping | None = None
+
+    def __call__(self, value):
+        """Target's value of a source's value."""
+        if self.mapping is not None:
+            value = self.mapping.get(value, value)
+        if self.type == "Real":
+            return self.factor * value + self.offset
+        return value
+
+    def scaled(self, factor, offset):
+        """With one more linear step behind it."""
+        return replace(self, factor=factor * self.factor, offset=factor * self.offset + offset)
+
+    def in_unit(self, unit):
+        """Converted to a unit; unchanged where the unit is not known."""
+        if unit is None:
+            return self
+        return replace(self.scaled(*conversion(self.unit, unit)), unit=unit)
+
+
+def advance(flow, wire, port, what, findings):
+    """Flow behind a wire or a mapping entry.
+
+    Units are converted as late as possible, so that what comes back to its unit comes back to its value.
+
+    Parameters
+    ----------
+    flow : Flow
+        Before.
+    wire : Wire or Setting
+        Has `transformation` and `suppress_unit_conversion`.
+    port : Port
+        Where it leads.
+    what : tuple of two str
+        Place and the names of source and target, for messages.
+    findings : Findings
+        Takes what is wrong.
+    """
+    place, names = what
+    if port.type is not None and flow.type is not None and flow.type not in TAKES.get(port.type, (port.type,)):
+        findings.error(place, f"{names[0]} is {flow.type}, {names[1]} is {port.type}.", "Connect equal types.")
+        return replace(flow, type=port.type)
+    if wire.suppress_unit_conversion:
+        flow = replace(flow, unit=port.unit)
+    _compare_units(flow, port, place, names, findings)
+    transformation = wire.transformation
+    if transformation is not None and transformation.kind != "Linear":
+        flow = _mapped(flow, transformation, port, place, findings)
+    flow = _items_checked(flow, port, transformation, place, findings)
+    flow = replace(flow, type=port.type or flow.type, unit=flow.unit or port.unit, items=port.items or flow.items)
+    if transformation is not None and transformation.kind == "Linear":
+        if flow.type not in ("Real", None):
+            found = f"A linear transformation of {flow.type} values."
+            findings.error(place, found, "It is for Real; use a mapping transformation.")
+        return flow.in_unit(port.unit).scaled(transformation.factor, transformation.offset)
+    return flow
+
+
+def _compare_units(flow, port, place, names, findings):
+    if flow.unit is None or port.unit is None:
+        return
+    related = relation(flow.unit, port.unit)
+    found = f"{names[0]} is in {flow.unit.name}, {names[1]} in {port.unit.name}"
+    if related == "incompatible":
+        remedy = "Correct the unit." if names[0] == "the value" else "Connect like quantities or correct a unit."
+        findings.error(place, f"{found}; these cannot be converted.", remedy)
+    elif related == "unknown":
+        findings.remark(place, f"{found}: not converted, the definition of one of them is missing.", "Add it to Units.")
+    elif related == "angle":
+        findings.remark(place, f"{found}: taken as equal kinds, with 1 rad = 1.")
+
+
+def _mapped(flow, transformation, port, place, findings):
+    kind = transformation.kind
+    allowed = {"Boolean": ("Boolean",), "Integer": ("Integer", "Enumeration"), "Enumeration": ("Enumeration",)}[kind]
+    if flow.type not in (*allowed, None) or port.type not in (*allowed, None):
+        findings.error(
+            place, f"A mapping of {kind} values between {flow.type} and {port.type}.", "Take the one that fits."
+        )
+        return flow
+    table = transformation.table
+    if kind == "Enumeration":
+        table = _by_number(table, flow.items, port.items or flow.items, place, findings)
+    elif port.items:
+        _check_numbers(table, flow.items, port.items, place, findings)
+    before = flow.mapping or {}
+    after = {value: table.get(between, between) for value, between in before.items()}
+    return replace(flow, mapping={**table, **after})
+
+
+def _by_number(table, source, target, place, findings):
+    """Table of numbers from a table of item names."""
+    for name, items in [(name, source) for name in table] + [(name, target) for name in table.values()]:
+        if name not in items:
+            findings.error(place, f"The enumeration has no item '{name}'.", has(name, items))
+    return {source[a]: target[b] for a, b in table.items() if a in source and b in target}
+
+
+def _check_numbers(table, source, target, place, findings):
+    """What a mapping by numbers makes of a source's items must be items of the target."""
+    made = {table.get(value, value) for value in (source.values() or table)}
+    if lost := sorted(made - set(target.values())):
+        found = f"The mapping gives {', '.join(map(str, lost))}, which the target's enumeration has not."
+        findings.error(place, found, f"It has: {', '.join(f'{name} ({value})' for name, value in target.items())}.")
+
+
+def _items_checked(flow, port, transformation, place, findings):
+    """Two enumerations must agree in what their numbers mean, unless a mapping says otherwise."""
+    if not flow.items or not port.items or transformation is not None:
+        return flow
+    lost = sorted(set(flow.items.values()) - set(port.items.values()))
+    if lost:
+        found = f"Values {', '.join(map(str, lost))} of the source's enumeration do not exist in the target's."
+        findings.error(place, found, "Add an EnumerationMappingTransformation.")
+    elif any(port.items.get(name, value) != value for name, value in flow.items.items()):
+        findings.error(
+            place, "Items of the same name have different values.", "Add an EnumerationMappingTransformation."
+        )
+    return flow

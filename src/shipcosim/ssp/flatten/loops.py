@@ -1,0 +1,183 @@
+"""Algebraic loops of a system: links and direct feedthrough that lead back to where they start."""
+
+from collections import defaultdict, deque
+from dataclasses import dataclass
+
+from shipcosim.errors import Problem
+from shipcosim.ssp.fmu.feedthrough import feedthrough
+
+MOST_STARTS = 50
+"""Variables of a loop from which its shortest way round is sought."""
+MOST_TRIED = 50
+"""Components of which it is tried whether they break a loop."""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A loop, or several that share variables.
+
+    Parameters
+    ----------
+    links : list of (source, target)
+        The shortest way round: names of the variables that connections join, in order.
+    others : int
+        Connections that belong to it beside these.
+    components : list of str
+        That it goes through, in the system's order.
+    silent : list of str
+        Those of them whose FMU does not say what its outputs follow at once, so that all of them may follow all inputs.
+    breaking : list of str
+        Each of them alone would break it, if its outputs followed its inputs a step later.
+    """
+
+    links: list
+    others: int
+    components: list
+    silent: list
+    breaking: list
+
+
+def find_loops(system, at_start=False):
+    """Loops of a checked system.
+
+    Parameters
+    ----------
+    system : System
+        Flat.
+    at_start : bool
+        Those of the initialisation instead of those of the run.
+
+    Returns
+    -------
+    list of Loop
+    """
+    links = [c for c in system.connections if c.source[0] and c.target[0] and not c.initial]
+    links = list({(c.source, c.target): None for c in links})
+    rough = [(source[0], target[0]) for source, target in links]
+    circling = {name for part in _strong(_graph(rough), rough) for name in part}
+    links = [link for link in links if link[0][0] in circling and link[1][0] in circling]
+    fmus = {name: system.components[name].fmu for name in circling}
+    read = {fmu.path: feedthrough(fmu, at_start) for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()}
+    stated = {name: read[fmu.path] for name, fmu in fmus.items()}
+    edges = links + [edge for name in circling for edge in _inside(name, links, stated[name])]
+    return [_loop(part, edges, links, stated, list(system.components)) for part in _strong(_graph(edges), edges)]
+
+
+def loop_problems(system):
+    """A remark on each loop of the run, and on each that is one at the start alone; with what it does and breaks it."""
+    running = find_loops(system)
+    for loop in running:
+        does = (
+            "In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
+        )
+        yield _problem(system, loop, "An algebraic loop", does)
+    seen = [set(loop.components) for loop in running]
+    for loop in find_loops(system, at_start=True):
+        if not any(set(loop.components) <= components for components in seen):
+            does = "The start is iterated, which may not settle; the run is free of it."
+            yield _problem(system, loop, "An algebraic loop at the start", does)
+
+
+def _problem(system, loop, kind, does):
+    shown = ", ".join(f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links)
+    found = f"{kind}, outputs that follow inputs at once: {shown}."
+    if loop.others:
+        found += f" {loop.others} more connections belong to it."
+    found += f" {does}"
+    if loop.silent:
+        found += f" Not said by their FMUs, and so taken to be so: {', '.join(loop.silent)}."
+    return Problem(f"{system.file}: {', '.join(loop.components)}", found, _remedy(loop), "remark")
+
+
+def _remedy(loop):
+    says = 'over a step, which its FMU says in its ModelStructure (dependencies="")'
+    if len(loop.breaking) > 1:
+        return f"Broken where one of these holds its outputs {says}: {', '.join(loop.breaking)}."
+    if loop.breaking:
+        return f"Broken where {loop.breaking[0]} holds its outputs {says}."
+    more = "" if len(loop.components) > MOST_TRIED else " One alone does not do it."
+    return f"Broken where enough of them hold theirs {says}.{more}"
+
+
+def _inside(name, links, stated):
+    """Edges from inputs to outputs of a component; outputs that it says nothing of hang on a knot of all inputs."""
+    inputs = {target for _, target in links if target[0] == name}
+    knot = name, None
+    yield from ((end, knot) for end in sorted(inputs))
+    for output in {source: None for source, _ in links if source[0] == name}:
+        if output[1] in stated:
+            yield from ((end, output) for end in sorted(inputs) if end[1] in stated[output[1]])
+        else:
+            yield knot, output
+
+
+def _loop(part, edges, links, stated, names):
+    part = set(part)
+    inside, edges = ([edge for edge in several if part.issuperset(edge)] for several in (links, edges))
+    way = _shortest(inside, edges)
+    components = [name for name in names if any(end[0] == name for end in part)]
+    silent = [name for name in components if (name, None) in part]
+    breaking = [name for name in components[:MOST_TRIED] if _breaks(name, edges)]
+    return Loop(way, len(inside) - len(way), components, silent, breaking)
+
+
+def _breaks(name, edges):
+    """Whether nothing goes round any more without what goes on inside a component."""
+    rest = [edge for edge in edges if not edge[0][0] == edge[1][0] == name]
+    return not _strong(_graph(rest), rest)
+
+
+def _shortest(links, edges):
+    """Links of the shortest way round."""
+    graph, ways, known = _graph(edges), [], set(links)
+    for source, target in links[:MOST_STARTS]:
+        before, queue = {target: None}, deque([target])
+        while queue and source not in before:
+            node = queue.popleft()
+            for following in graph[node]:
+                if following not in before:
+                    before[following] = node
+                    queue.append(following)
+        way, node = [source], source
+        while (node := before[node]) is not None:
+            way.insert(0, node)
+        steps = list(zip([source, *way], way, strict=False))
+        ways.append([step for step in steps if step in known])
+    return min(ways, key=len)
+
+
+def _graph(edges):
+    graph = defaultdict(list)
+    for source, target in edges:
+        graph[source].append(target)
+        graph[target]
+    return dict(graph)
+
+
+def _strong(graph, edges):
+    """Sets of nodes that can all be reached from each other over at least one edge (Kosaraju, without recursion)."""
+    done, order = set(), []
+    for start in graph:
+        stack = [(start, iter(graph[start]))] if start not in done else []
+        done.add(start)
+        while stack:
+            node, following = stack[-1]
+            fresh = next((one for one in following if one not in done), None)
+            if fresh is None:
+                order.append(node)
+                stack.pop()
+            else:
+                done.add(fresh)
+                stack.append((fresh, iter(graph[fresh])))
+    back, parts, placed = _graph([(target, source) for source, target in edges]), [], set()
+    for start in reversed(order):
+        part, queue = [], deque([start] if start not in placed else [])
+        placed.add(start)
+        while queue:
+            part.append(node := queue.popleft())
+            fresh = [one for one in back[node] if one not in placed]
+            placed.update(fresh)
+            queue.extend(dict.fromkeys(fresh))
+        if len(part) > 1 or (part and part[0] in graph[part[0]]):
+            parts.append(part)
+    return parts

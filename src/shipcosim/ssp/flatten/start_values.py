@@ -1,0 +1,184 @@
+"""Parameter values brought to the variables that they are for, in the FMU's unit and type.
+
+Order, as the standard has it: a component's own bindings first, then those of the systems around it from the inside
+out, then sets given for this run; at one level in the order of the file. Later values replace earlier ones.
+"""
+
+import re
+from collections import defaultdict
+from dataclasses import replace
+from difflib import get_close_matches
+
+from shipcosim.errors import suggestion
+from shipcosim.ssp.flatten.connectors import SOURCES_INSIDE, Key, variable_port
+from shipcosim.ssp.flatten.conversions import Flow, advance
+from shipcosim.ssp.xml.values import has
+
+
+class Settings:
+    """Applies a tree's settings.
+
+    Parameters
+    ----------
+    tree : Tree
+        With its ports, wires and settings.
+    findings : Findings
+        Takes what is wrong.
+
+    Attributes
+    ----------
+    start : dict of path to dict of variable to value
+        For the components' variables, in the FMU's unit and type.
+    tolerances : dict of path to dict of variable to float
+        Of those of them that have one, in the FMU's unit.
+    system_start : dict of str to value
+        For the outermost system's own connectors, in the connector's unit.
+    """
+
+    def __init__(self, tree, findings):
+        self.tree, self.findings = tree, findings
+        self.start, self.tolerances, self.system_start = defaultdict(dict), defaultdict(dict), {}
+        self.tolerance = None  # of the value that is being delivered
+        self.outgoing = defaultdict(list)
+        for wire in tree.wires:
+            self.outgoing[wire.source].append(wire)
+        self.named = self._names()
+
+    def _names(self):
+        """Ports by their full name; names need not be unique where element names have dots, then all are meant."""
+        named = defaultdict(list)
+        for path, (_, fmu) in self.tree.components.items():
+            for name in () if fmu is None else fmu.variables:
+                named[".".join((*path, name))].append(Key(path, name))
+        for key, port in self.tree.ports.items():
+            if port.owner == "system":
+                named[".".join((*key.path, key.name))].append(key)
+        return named
+
+    def apply(self):
+        """Bring every value to its variables."""
+        for setting in self.tree.settings:
+            keys = self.named.get(".".join((*setting.path, setting.name)), ())
+            if not keys:
+                self._unknown(setting)
+            value = setting.value
+            flow = Flow(value.kind, value.unit)
+            self.tolerance = value.tolerance
+            for key in keys:
+                self._deliver(value.value, flow, setting, key, value.place)
+
+    def _deliver(self, value, flow, step, key, place):
+        """Take a value over one step to a port, and on from there; once to each port, also where wires go round."""
+        ahead, seen = [(value, flow, step, key)], set()
+        while ahead:
+            *arriving, key = ahead.pop()
+            if key not in seen:
+                seen.add(key)
+                ahead += self._arrive(*arriving, key, place)
+
+    def _arrive(self, value, flow, step, key, place):
+        """What goes on from a port that a value has come to: (value, flow, wire, next port) each."""
+        port = self._port(key)
+        if flow.type == "Enumeration" and isinstance(value, str):
+            value, flow, step = self._number(value, flow, step, port, place)
+            if value is None:
+                return ()
+        flow = advance(flow, step, port, (place, ("the value", str(key))), self.findings)
+        if port.owner == "component":
+            self._start(value, flow, key, port, place)
+            return ()
+        if port.owner == "system" and port.kind not in SOURCES_INSIDE:
+            self.findings.remark(place, f"{key} is of kind {port.kind}; a start value there has no effect.")
+            return ()
+        if key.path == () and port.owner == "system":
+            self.system_start[key.name] = flow.in_unit(port.unit)(value)
+        return [(value, flow, wire, wire.target) for wire in self.outgoing[key]]
+
+    def _port(self, key):
+        if key in self.tree.ports:
+            return self.tree.ports[key]
+        _, fmu = self.tree.components[key.path]
+        return variable_port(fmu.variables[key.name], fmu, "")
+
+    def _number(self, value, flow, step, port, place):
+        """Number of an enumeration's item, at the first port that knows its items; a mapping of names comes before.
+
+        None with an error where there is no such item.
+        """
+        if not port.items:
+            return value, flow, step
+        table = step.transformation.table if step.transformation else {}
+        name = table.get(value, value)
+        if name not in port.items:
+            self.findings.error(place, f"The enumeration has no item '{name}'.", has(name, port.items))
+        step = replace(step, transformation=None)
+        return port.items.get(name), replace(flow, items=port.items), step
+
+    def _start(self, value, flow, key, port, place):
+        variable = port.variable
+        if variable is None:
+            return  # its FMU is missing, which is an error already
+        if not variable.settable:
+            found = f"{key} is of causality {variable.causality}, a value that the FMU calculates."
+            self.findings.error(place, found, "Set parameters and inputs.")
+            return
+        convert = flow.in_unit(port.variable_unit or port.unit)
+        if check_bounds(convert(value), variable, place, str(key), self.findings):
+            self.start[key.path][key.name] = convert(value)
+            self.tolerances[key.path].pop(key.name, None)
+            if self.tolerance is not None:
+                self.tolerances[key.path][key.name] = abs(convert(value + self.tolerance) - convert(value))
+
+    def _unknown(self, setting):
+        """A set may hold more than is used here, as the standard says; but what looks like a slip is an error."""
+        place, name = setting.value.place, setting.name
+        element, known = self._nearest(setting)
+        if element is not None:
+            self.findings.error(place, f"{element} has no parameter '{name}'.", has(name, known))
+            return
+        elements = sorted({key.split(".")[0] for key in known})
+        first = name.split(".")[0]
+        close = get_close_matches(first, elements, n=1, cutoff=0.8)
+        if close and not _differ_in_number(first, close[0]):
+            self.findings.error(place, f"There is no element '{first}'.", suggestion(first, elements))
+        else:
+            self.findings.remark(place, f"There is no element '{first}' in this system; the value is not used.")
+
+    def _nearest(self, setting):
+        """Element that a name means, by the longest path that exists, and the names that can be set in it."""
+        start = "".join(f"{part}." for part in setting.path)
+        names = [name.removeprefix(start) for name in self.named if name.startswith(start)]
+        if setting.near and setting.path in self.tree.components:
+            if self.tree.components[setting.path][1] is None:
+                return None, names
+            return ".".join(setting.path), self._settable(names, start)
+        parts = setting.name.split(".")
+        for n in range(len(parts) - 1, 0, -1):
+            prefix = ".".join(parts[:n]) + "."
+            inside = [name for name in names if name.startswith(prefix)]
+            if inside:
+                return start + prefix[:-1], self._settable(inside, start)
+        return None, names
+
+    def _settable(self, names, start):
+        ports = {name: self._port(self.named[start + name][0]) for name in names}
+        return [name for name, port in ports.items() if port.variable is None or port.variable.settable]
+
+
+def _differ_in_number(one, other):
+    """Whether two names are meant to be different: ``thruster_1`` and ``thruster_2``."""
+    return re.sub(r"\d+", "", one).strip("_") == re.sub(r"\d+", "", other).strip("_")
+
+
+def check_bounds(value, variable, place, name, findings):
+    """Whether a value is one that a variable can have, with an error if not."""
+    if variable.items and value not in variable.items.values():
+        findings.error(place, f"{name} cannot be {value}.", f"Items: {dict(variable.items)}.")
+        return False
+    low, high = variable.minimum, variable.maximum
+    if (low is not None and value < low) or (high is not None and value > high):
+        bounds = f"at least {low:g}" if high is None else f"at most {high:g}" if low is None else f"{low:g} to {high:g}"
+        unit = f" {variable.unit}" if variable.unit else ""
+        findings.error(place, f"{name} cannot be {value:.10g}{unit}.", f"Allowed: {bounds}{unit}.")
+        return False
+    return True

@@ -1,0 +1,113 @@
+"""Connections from variable to variable, through whatever systems and dictionaries lie between."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from shipcosim.ssp.flatten.conversions import Flow, advance
+
+
+@dataclass(frozen=True)
+class Connection:
+    """What a component's variable or an output of the system gets, and from where.
+
+    Values: ``target = factor * mapping.get(source, source) + offset``; factor and offset for a real target alone.
+    Several connections into one target add up, in their order: a Sum of OSP. SSP has none.
+
+    Parameters
+    ----------
+    source : tuple of (str or None, str)
+        Component and variable; None and the name for an input of the outermost system.
+    target : tuple of (str or None, str)
+        Component and variable; None and the name for an output of the outermost system.
+    factor, offset : float
+        Unit conversions and linear transformations on the way, together.
+    mapping : mapping or None
+        Discrete values that change on the way: by number for enumerations.
+    initial : bool
+        Whether the target is a parameter: the value goes over once, at the start.
+    place : str
+        Where its last part stands, for messages.
+    """
+
+    source: tuple[str | None, str]
+    target: tuple[str | None, str]
+    factor: float = 1.0
+    offset: float = 0.0
+    mapping: Mapping | None = None
+    initial: bool = False
+    place: str = ""
+
+
+def connect(tree, findings):
+    """Connections of a tree.
+
+    Parameters
+    ----------
+    tree : Tree
+        Ports and wires.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    tuple of Connection
+    """
+    incoming = _incoming(tree, findings)
+    connections = []
+    for key, port in tree.ports.items():
+        if key in incoming and _is_end(key, port):
+            wires = _way(key, incoming, findings)
+            if wires and (source := _source(wires[0].source, tree)) is not None:
+                connections.append(_connection(wires, source, tree, findings))
+    return tuple(connections)
+
+
+def _incoming(tree, findings):
+    """The wire into each port."""
+    incoming = {}
+    for wire in tree.wires:
+        if wire.target in incoming:
+            first = incoming[wire.target]
+            found = f"A second connection into {wire.target}. It gets {first.source} already ({first.place})."
+            findings.error(wire.place, found, "Remove one of them.")
+        else:
+            incoming[wire.target] = wire
+    return incoming
+
+
+def _is_end(key, port):
+    return port.owner == "component" or (port.owner == "system" and key.path == ())
+
+
+def _way(key, incoming, findings):
+    """Wires that lead to a port, first one first; empty where they go in a circle."""
+    wires, seen = [], set()
+    while key in incoming:
+        seen.add(key)
+        wires.append(incoming[key])
+        key = incoming[key].source
+        if key in seen:
+            findings.error(wires[0].place, "The connections go in a circle without a component.", "Remove one of them.")
+            return []
+    return wires[::-1]
+
+
+def _source(key, tree):
+    """Component (None: the outermost system) and name of a source; None where values end in nothing."""
+    port = tree.ports[key]
+    if port.owner == "component":
+        return ".".join(key.path), key.name
+    return (None, key.name) if port.owner == "system" and key.path == () else None
+
+
+def _connection(wires, source, tree, findings):
+    first, last = tree.ports[wires[0].source], tree.ports[wires[-1].target]
+    flow = Flow(first.type, first.variable_unit or first.unit, first.items)
+    for wire in wires:
+        what = wire.place, (str(wire.source), str(wire.target))
+        flow = advance(flow, wire, tree.ports[wire.target], what, findings)
+    flow = flow.in_unit(last.variable_unit or last.unit)
+    key = wires[-1].target
+    target = (".".join(key.path) if last.owner == "component" else None, key.name)
+    initial = last.owner == "component" and last.kind in ("parameter", "structuralParameter")
+    return Connection(source, target, flow.factor, flow.offset, flow.mapping, initial, wires[-1].place)

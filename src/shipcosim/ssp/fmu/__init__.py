@@ -1,0 +1,1 @@
+"""FMUs by their modelDescription.xml."""

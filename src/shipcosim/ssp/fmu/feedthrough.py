@@ -1,0 +1,67 @@
+"""Which outputs of an FMU follow which inputs at once, as its ModelStructure says.
+
+Reference: FMI 1.0 co-simulation, section 3.3 (DirectDependency); FMI 2.0.4, section 2.2.8; FMI 3.0.1, section 2.4.8.
+"""
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp.xml.archive import read_entry
+from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, local, parse
+
+
+def feedthrough(fmu, at_start=False):
+    """Inputs that outputs follow at once.
+
+    Parameters
+    ----------
+    fmu : FmuDescription
+        Whose file is read again.
+    at_start : bool
+        During the initialisation, where outputs can follow inputs that they follow a step later in a run. An FMU that
+        says nothing of it is taken by what it says of the run.
+
+    Returns
+    -------
+    dict of str to frozenset of str
+        By output. One that is not in it may follow every input: the FMU does not say.
+    """
+    try:
+        data = read_entry(fmu.path, "modelDescription.xml", LARGEST_FILE)
+    except ShipcosimError:
+        data = None
+    root = None if data is None else parse(data, fmu.path.name, Findings(), utf8=False)
+    if root is None:
+        return {}
+    variables = [part for group in root if local(group) == "ModelVariables" for part in group if local(part)]
+    if root.get("fmiVersion", "").startswith("1"):
+        return _direct(variables)
+    structure = [part for group in root if local(group) == "ModelStructure" for part in group if local(part)]
+    if root.get("fmiVersion", "").startswith("3"):
+        key, names = "valueReference", {part.get("valueReference"): part.get("name") for part in variables}
+        listed = {tag: [part for part in structure if local(part) == tag] for tag in ("Output", "InitialUnknown")}
+    else:
+        key, names = "index", {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
+        groups = {local(group): [part for part in group if local(part)] for group in structure}
+        listed = {"Output": groups.get("Outputs", []), "InitialUnknown": groups.get("InitialUnknowns", [])}
+    if not (at_start and listed["InitialUnknown"]):
+        return _stated(listed["Output"], key, names)
+    unknown = {names.get(part.get(key)) for part in listed["InitialUnknown"]}
+    known = {name: frozenset() for name in fmu.named("output") if name not in unknown}
+    return known | _stated(listed["InitialUnknown"], key, names)
+
+
+def _stated(outputs, key, names):
+    """Outputs that have an attribute `dependencies`, which can be empty."""
+    return {
+        names[part.get(key)]: frozenset(names[one] for one in part.get("dependencies").split() if one in names)
+        for part in outputs
+        if part.get("dependencies") is not None and part.get(key) in names
+    }
+
+
+def _direct(variables):
+    """Outputs of FMI 1.0 that have a list of their direct dependencies."""
+    found = {}
+    for variable in variables:
+        for part in (part for part in variable if local(part) == "DirectDependency"):
+            found[variable.get("name")] = frozenset((name.text or "").strip() for name in part if local(name))
+    return found

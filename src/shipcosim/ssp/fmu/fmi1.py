@@ -1,0 +1,51 @@
+"""What model descriptions of FMI 1.0 say in another way, in the words of FMI 2.0.
+
+Reference: FMI 1.0.1 for co-simulation, section 3.3; FMI 1.0.1 for model exchange, section 3.
+"""
+
+from shipcosim.ssp.xml.document import is_true, local
+
+
+def interfaces_of(root):
+    """Attributes of the one form that an FMU has: co-simulation with an Implementation, model exchange without."""
+    attributes = {"modelIdentifier": root.get("modelIdentifier", "")}
+    implementation = next((part for part in root if local(part) == "Implementation"), None)
+    if implementation is None:
+        return {"ModelExchange": attributes}
+    for part in implementation.iter():
+        if local(part) == "Capabilities":
+            attributes |= dict(part.attrib)
+        elif local(part) == "CoSimulation_Tool":
+            attributes["needsExecutionTool"] = "true"
+    return {"CoSimulation": attributes}
+
+
+def traits_of(element, typed, kind):
+    """Causality, variability and initial of a variable."""
+    causality, variability = element.get("causality", "internal"), element.get("variability", "continuous")
+    if variability == "parameter":
+        return {"causality": "parameter", "variability": "fixed", "initial": "exact"}
+    if variability == "continuous" and kind != "Real":
+        variability = "discrete"
+    initial = None
+    if causality != "input" and typed.get("start") is not None:
+        initial = "exact" if is_true(typed.get("fixed", "true")) else "approx"
+    return {
+        "causality": causality if causality in ("input", "output") else "local",
+        "variability": variability,
+        "initial": initial,
+    }
+
+
+def is_negated(element):
+    """Whether a variable is the negative of the one whose value reference it shares."""
+    return element.get("alias") == "negatedAlias"
+
+
+def items_of(declaration):
+    """Items of an enumeration, numbered from its least value on, which is 1 where nothing else is given."""
+    if declaration is None:
+        return {}
+    first = int(declaration.get("min") or 1)
+    items = [part for part in declaration if local(part) == "Item"]
+    return {item.get("name"): number for number, item in enumerate(items, start=first)}

@@ -1,0 +1,1 @@
+"""OspSystemStructure.xml, read and written."""

@@ -1,0 +1,119 @@
+"""Functions of an OspSystemStructure.xml: what they take and give, and which connections they amount to."""
+
+from dataclasses import dataclass
+
+from shipcosim.ssp.flatten.wiring import Connection
+from shipcosim.ssp.xml.document import local
+from shipcosim.ssp.xml.values import has
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function between variables. Real numbers only.
+
+    Parameters
+    ----------
+    kind, name : str
+        ``"LinearTransformation"``, ``"Sum"`` or ``"VectorSum"``.
+    inputs, dimension : int
+        How many it adds up, and how many numbers each of them has.
+    factor, offset : float
+        Of a linear transformation.
+    place : str
+        Where it stands, for messages.
+    """
+
+    kind: str
+    name: str
+    inputs: int = 1
+    dimension: int = 1
+    factor: float = 1.0
+    offset: float = 0.0
+    place: str = ""
+
+    @property
+    def rows(self):
+        """For each number that it gives: the names of the signals that go into it, and of its own."""
+        if self.kind == "LinearTransformation":
+            return [(["in"], "out")]
+        inputs = [f"in[{i}]" for i in range(self.inputs)]
+        if self.kind == "Sum":
+            return [(inputs, "out")]
+        return [([f"{name}[{j}]" for name in inputs], f"out[{j}]") for j in range(self.dimension)]
+
+    @property
+    def signals(self):
+        """Names that a SignalConnection can have."""
+        return [name for inputs, output in self.rows for name in (*inputs, output)]
+
+    @property
+    def groups(self):
+        """Names that a SignalGroupConnection can have."""
+        return [f"in[{i}]" for i in range(self.inputs)] + ["out"] if self.kind == "VectorSum" else []
+
+
+MOST_SIGNALS = 10_000
+"""Of one function: a few digits in a file can ask for more than any memory holds."""
+
+
+def read_function(element, place, findings):
+    """Function of its element, checked against the schema before; None with an error where it is too large."""
+    inputs, dimension = (int(element.get(name, 1)) for name in ("inputCount", "dimension"))
+    if inputs * dimension > MOST_SIGNALS:
+        findings.error(place, f"It has {inputs * dimension} inputs.", f"At most {MOST_SIGNALS} are taken.")
+        return None
+    factor, offset = float(element.get("factor", 1.0)), float(element.get("offset", 0.0))
+    return Function(local(element), element.get("name"), inputs, dimension, factor, offset, place)
+
+
+class Wiring:
+    """Connections of variables with signals of functions, as they are found.
+
+    Parameters
+    ----------
+    functions : mapping of str to Function
+        By name.
+    findings : Findings
+        Takes what is wrong.
+    """
+
+    def __init__(self, functions, findings):
+        self.functions, self.findings = functions, findings
+        self._ends, self._given_up = {}, set()
+
+    def give_up(self, function):
+        """Note that something is wrong with a function already, so that what it misses is no news."""
+        self._given_up.add(function)
+
+    def take(self, function, signal, end, place):
+        """Note that a variable (None: one with an error) is connected with a signal."""
+        if end is None:
+            self.give_up(function)
+            return
+        known = self.functions[function]
+        if signal not in known.signals:
+            found = f"The {known.kind} '{function}' has no signal '{signal}'."
+            self.findings.error(place, found, has(signal, known.signals))
+            return
+        ends = self._ends.setdefault((function, signal), [])
+        if ends and not signal.startswith("out"):
+            self.findings.error(place, f"A second connection into {function}:{signal}.", "Remove one of them.")
+        elif ends:
+            found = f"{function}:{signal} has more than one connection; libcosim makes the first alone."
+            self.findings.remark(place, found, "Give each target a function of its own.")
+        ends.append((end, place))
+
+    def connections(self):
+        """(output signal, connection from variable to variable) of all functions; a sum is several into one."""
+        for function in self.functions.values():
+            for inputs, output in function.rows if function.name not in self._given_up else ():
+                missing = [name for name in (*inputs, output) if (function.name, name) not in self._ends]
+                if missing:
+                    found = f"The {function.kind} '{function.name}' has nothing connected to {', '.join(missing[:5])}."
+                    self.findings.error(function.place, found, "Connect every signal of it, or remove it.")
+                    continue
+                sources = [self._ends[function.name, name][0][0] for name in inputs]
+                for target, place in self._ends[function.name, output]:
+                    for source in sources:
+                        connection = Connection(source, target, function.factor, function.offset, place=place)
+                        yield (function.name, output), connection

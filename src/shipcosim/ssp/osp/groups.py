@@ -1,0 +1,97 @@
+"""Variable groups of an FMU, from the OspModelDescription.xml beside it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from shipcosim.ssp.xml.document import local, read_document
+from shipcosim.ssp.xml.values import has
+
+ENDING = "_OspModelDescription.xml"
+
+
+@dataclass(frozen=True)
+class Group:
+    """A variable group.
+
+    Parameters
+    ----------
+    name, kind : str
+        Its name, and its element: ``"Force"``, ``"LinearMechanicalPort"``, ``"Generic"``, ...
+    variables : tuple of str
+        Names of the FMU's variables, in order.
+    groups : tuple of Group
+        Groups in it, in order.
+    """
+
+    name: str
+    kind: str
+    variables: tuple[str, ...]
+    groups: tuple["Group", ...] = ()
+
+    def all(self):
+        """The group and all in it."""
+        yield self
+        for group in self.groups:
+            yield from group.all()
+
+
+def read_groups(fmu, folder, findings):
+    """Groups of an FMU by name; those within groups too, under the name of their own, as libcosim finds them.
+
+    Parameters
+    ----------
+    fmu : FmuDescription
+        Whose file is looked for beside it and beside the system structure.
+    folder : Path
+        Of the system structure.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    dict of str to Group, or None where there is no such file
+    """
+    file = _file(fmu, folder, findings)
+    document = None if file is None else read_document(file, str(file), findings)
+    if document is None:
+        return None
+    found = {}
+    for listed in (part for part in document.root if local(part) == "VariableGroups"):
+        for element in filter(local, listed):
+            for group in _group(element, fmu, document, findings).all():
+                if group.name in found:
+                    findings.error(document.place(element, group.name), "A second group has this name.", "Rename it.")
+                found[group.name] = group
+    return found
+
+
+def file_names(fmu):
+    """Names that the file can have: by the model's name, as libcosim looks for it, or by the FMU's file."""
+    return list(dict.fromkeys(f"{name}{ENDING}" for name in (fmu.model_name, fmu.path.stem)))
+
+
+def _file(fmu, folder, findings):
+    wanted, *others = file_names(fmu)
+    places = [fmu.path.parent, Path(folder)]
+    for name in (wanted, *others):
+        for place in places:
+            if "/" not in name and (place / name).is_file():
+                if name != wanted:
+                    found = f"libcosim looks for {wanted} instead, by the model's name."
+                    findings.remark(str(place / name), found, "Rename the file.")
+                return place / name
+    return None
+
+
+def _group(element, fmu, document, findings):
+    variables, groups = [], []
+    for part in filter(local, element):
+        if local(part) == "Variable":
+            name = part.get("ref", "")
+            if name not in fmu.variables:
+                found = f"{fmu.path.name} has no variable '{name}'."
+                findings.error(document.place(part, element.get("name", "")), found, has(name, fmu.variables))
+            variables.append(name)
+        else:
+            groups.append(_group(part, fmu, document, findings))
+    return Group(element.get("name", ""), local(element), tuple(variables), tuple(groups))

@@ -1,0 +1,54 @@
+"""Times, steps and the algorithm of an OspSystemStructure.xml."""
+
+from shipcosim.ssp.read.structure import Experiment
+from shipcosim.ssp.xml.document import local, reporting
+from shipcosim.ssp.xml.values import read_value
+
+DEFAULT_STEP = 0.1  # s; libcosim's where a file states none
+
+
+def read_experiment(document, findings):
+    """Start, end and base step of a document; remarks on what is not used of it."""
+    root = document.root
+    times = {local(part): part for part in root if local(part).endswith(("Time", "StepSize"))}
+    read = {name: _seconds(document, part, part.text, findings) for name, part in times.items()}
+    if "BaseStepSize" not in times:
+        found = f"It has no BaseStepSize: {DEFAULT_STEP} s is taken, as libcosim does."
+        findings.remark(document.place(root), found, "Add one.")
+    elif read["BaseStepSize"] is not None and read["BaseStepSize"] <= 0.0:
+        place = document.place(times["BaseStepSize"])
+        findings.error(place, "The base step size must be positive.", "Give it in seconds.")
+    _remark_algorithm(document, findings)
+    step = read.get("BaseStepSize", DEFAULT_STEP)
+    return Experiment(read.get("StartTime") or 0.0, read.get("EndTime"), step or None)
+
+
+def own_step(document, element, findings):
+    """Step size of a simulator, or None where it is the base step. [s]"""
+    if element.get("stepSize") is None:
+        return None
+    step = _seconds(document, element, element.get("stepSize"), findings)
+    if step is not None and step < 0.0:
+        found = f"stepSize is {step:g}."
+        findings.error(document.place(element, element.get("name")), found, "It must be positive.")
+    return step or None
+
+
+def _remark_algorithm(document, findings):
+    parts = {local(part): part for part in document.root}
+    if "Algorithm" not in parts:
+        found = "It names no algorithm, and libcosim refuses such a file."
+        findings.remark(document.place(document.root), found, "Add <Algorithm>fixedStep</Algorithm>.")
+    elif (name := (parts["Algorithm"].text or "").strip()) != "fixedStep":
+        found = f"The algorithm '{name}' is not known: it runs with fixed steps."
+        findings.remark(document.place(parts["Algorithm"]), found)
+    if "EccoConfiguration" in parts:
+        place = document.place(parts["EccoConfiguration"])
+        findings.remark(place, "The configuration of the algorithm ecco is not used.")
+
+
+def _seconds(document, element, text, findings):
+    """Time in whole nanoseconds, in which OSP counts; None with an error. [s]"""
+    with reporting(document, element, findings, local(element)):
+        return round(read_value("Real", text or "") * 1e9) / 1e9
+    return None

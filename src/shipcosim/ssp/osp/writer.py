@@ -1,0 +1,120 @@
+"""OspSystemStructure.xml written, so that libcosim reads back every digit."""
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from xml.sax.saxutils import quoteattr
+
+from shipcosim.ssp.osp.schema import NAMESPACE
+from shipcosim.ssp.read.declarations import unused
+from shipcosim.ssp.xml.values import text_of
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """A simulator as it is written.
+
+    Parameters
+    ----------
+    name, source : str
+        Its name and the address of its FMU.
+    step_size : float
+        A multiple of the base step. [s]
+    values : mapping of str to (kind, value)
+        Initial values by variable; kinds Real, Integer, Boolean, String.
+    """
+
+    name: str
+    source: str
+    step_size: float
+    values: Mapping = field(default_factory=dict)
+
+
+def structure_text(simulators, connections, step_size, end_time=None):
+    """Text of an OspSystemStructure.xml.
+
+    Parameters
+    ----------
+    simulators : sequence of Simulator
+        In their order.
+    connections : iterable of Connection
+        Between their variables: Real ones with factor and offset, several into one target as a sum.
+    step_size : float
+        Base step. [s]
+    end_time : float, optional
+        [s]
+
+    Returns
+    -------
+    str
+    """
+    functions, joined = _connections(connections, [simulator.name for simulator in simulators])
+    end = "" if end_time is None else f"\n  <EndTime>{end_time!r}</EndTime>"
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        f'<OspSystemStructure xmlns="{NAMESPACE}" version="0.1">\n  <StartTime>0.0</StartTime>{end}\n'
+        f"  <BaseStepSize>{seconds_text(step_size)}</BaseStepSize>\n  <Algorithm>fixedStep</Algorithm>"
+        + _group("Simulators", [line for simulator in simulators for line in _lines(simulator)])
+        + _group("Functions", functions)
+        + _group("Connections", joined)
+        + "\n</OspSystemStructure>\n"
+    )
+
+
+def seconds_text(seconds):
+    """Seconds as libcosim, which counts nanoseconds and cuts off fractions of one, reads them without losing one.
+
+    Examples
+    --------
+    >>> seconds_text(0.29)
+    '0.29000000025'
+    """
+    nanoseconds = round(seconds * 1e9)
+    return f"{nanoseconds // 10**9}.{nanoseconds % 10**9:09d}25"
+
+
+def _lines(simulator):
+    step = seconds_text(simulator.step_size)
+    head = f'<Simulator name={quoteattr(simulator.name)} source={quoteattr(simulator.source)} stepSize="{step}"'
+    if not simulator.values:
+        return [f"{head}/>"]
+    values = (
+        f"    <InitialValue variable={quoteattr(name)}><{kind} value={quoteattr(text_of(value))}/></InitialValue>"
+        for name, (kind, value) in simulator.values.items()
+    )
+    return [f"{head}>", "  <InitialValues>", *values, "  </InitialValues>", "</Simulator>"]
+
+
+def _connections(connections, taken):
+    """Elements of the functions, in the order that libcosim wants, and of the connections."""
+    into, linear, sums, joined = defaultdict(list), [], [], []
+    for connection in connections:
+        into[connection.target].append(connection)
+    for target, feeding in into.items():
+        first = feeding[0]
+        if len(feeding) > 1:
+            name = unused(f"sum_{len(sums)}", taken)
+            sums.append(f'<Sum name="{name}" inputCount="{len(feeding)}"/>')
+            joined += [_signal(c.source, name, f"in[{i}]") for i, c in enumerate(feeding)]
+            joined.append(_signal(target, name, "out"))
+        elif (first.factor, first.offset) != (1.0, 0.0):
+            name = unused(f"linear_{len(linear)}", taken)
+            how = f'factor="{first.factor!r}" offset="{first.offset!r}"'
+            linear.append(f'<LinearTransformation name="{name}" {how}/>')
+            joined += [_signal(first.source, name, "in"), _signal(target, name, "out")]
+        else:
+            joined.append(f"<VariableConnection>{_variable(first.source)}{_variable(target)}</VariableConnection>")
+    return linear + sums, joined
+
+
+def _signal(end, function, name):
+    signal = f'<Signal function="{function}" name="{name}"/>'
+    return f"<SignalConnection>{_variable(end)}{signal}</SignalConnection>"
+
+
+def _variable(end):
+    return f"<Variable simulator={quoteattr(end[0])} name={quoteattr(end[1])}/>"
+
+
+def _group(name, lines):
+    return f"\n  <{name}>" + "".join(f"\n    {line}" for line in lines) + f"\n  </{name}>" if lines else ""

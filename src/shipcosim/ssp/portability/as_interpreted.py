@@ -1,0 +1,166 @@
+"""A system as a tool takes it that reads its file itself: with the values and connections that it applies.
+
+What it refuses or dies of is not looked at; see `shipcosim.ssp.portability.support_table`.
+"""
+
+from dataclasses import dataclass, replace
+
+from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.portability.features import hints_of_others, linear_without_factor, model_exchange_asked
+from shipcosim.ssp.portability.subject import subject_of
+
+
+@dataclass(frozen=True)
+class Taken:
+    """One respect in which a tool takes a system otherwise.
+
+    Parameters
+    ----------
+    what : str
+        In words: which values are not applied, which connections are something else.
+    system : System
+        As we take it but for this.
+    """
+
+    what: str
+    system: System
+
+
+def told_set(path, *, fmus=()):
+    """Name of the first parameter set on a component, which ecos is told; None where there is none."""
+    subject = subject_of(path, fmus)
+    return next((values.name for *_, values in subject.sets), None) if subject is not None else None
+
+
+def taken_by(host, path, *, fmus=()):
+    """Respects in which a tool takes a system otherwise, and the system with all of them together.
+
+    Parameters
+    ----------
+    host : str
+        ``"libcosim"`` or ``"ecos"``; that is told the name of the first parameter set.
+    path, fmus
+        As for `shipcosim.ssp.portability.check.check_for`.
+
+    Returns
+    -------
+    list of Taken, System
+        Nothing and None where the file cannot be read.
+    """
+    subject = subject_of(path, fmus)
+    if subject is None:
+        return [], None
+    whole, found = subject.system, []
+    for change in (_values, _connections, _steps, _forms):
+        what, changed = change(host, subject, subject.system)
+        if what:
+            found.append(Taken(what, changed))
+            whole = change(host, subject, whole)[1]
+    return found, whole
+
+
+def _values(host, subject, system):
+    """Start values: a component's first set or, in ecos, its last of the name told; each value as the number it is."""
+    applied = {name: {} for name in system.components}
+    sets = list(subject.sets)
+    for k, (part, fmu, _, values) in enumerate(sets):
+        first = all(part is not other for other, *_ in sets[:k])
+        if fmu is not None and (first if host == "libcosim" else values.name == sets[0][-1].name):
+            applied[part.name] = {}
+            for value in values.values:
+                variable = fmu.variables.get(value.name)
+                if variable is not None and _takes(host, value, variable, fmu):
+                    applied[part.name][value.name] = float(value.value) if variable.kind == "Real" else value.value
+    other = [
+        _instead(component, variable, applied[name])
+        for name, component in system.components.items()
+        for variable in {**component.start, **applied[name]}
+        if _value(component, variable, applied[name]) != component.start_value(variable)
+    ]
+    components = {name: replace(part, start=applied[name]) for name, part in system.components.items()}
+    return _listed("parameters are not applied", other), replace(system, components=components)
+
+
+def _takes(host, value, variable, fmu):
+    if host == "libcosim":
+        known = ("input",) if fmu.fmi_version.startswith("1") else ("parameter", "input")
+        if value.kind != variable.kind or variable.causality not in known:
+            return False
+    return variable.kind in ("Real", "Integer", "Boolean", "String") and value.kind != "Enumeration"
+
+
+def _value(component, variable, applied):
+    return applied.get(variable, component.fmu.variables[variable].start)
+
+
+def _instead(component, variable, applied):
+    there, here = _value(component, variable, applied), component.start_value(variable)
+    return f"{component.name}.{variable} is {there!r} instead of {here!r}"
+
+
+def _connections(host, subject, system):
+    """Connections: as they are written, no units and mappings; those that are written the other way round left out."""
+    links = {}
+    for link, _, _ in subject.links:
+        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
+        how = link.transformation
+        linear = how is not None and how.kind == "Linear"
+        links[ends] = (how.factor, how.offset) if linear else (1.0, 0.0), link.place
+    if host == "ecos":
+        misread = {place for place, _ in linear_without_factor(subject)}
+        lines = {place.partition(": ")[0] for place in misread}
+        links = {
+            ends: ((0.0, how[1]), place) if _holds(place, lines) else (how, place)
+            for ends, (how, place) in links.items()
+        }
+    taken, other = [], []
+    for connection in system.connections:
+        ends, name = (connection.source, connection.target), _arrow(connection)
+        if ends in links and not connection.initial:
+            (factor, offset), _ = links[ends]
+            same = (factor, offset) == (connection.factor, connection.offset) and connection.mapping is None
+            if not same:
+                other.append(f"{name} is {_how(factor, offset, connection)}")
+            taken.append(replace(connection, factor=factor, offset=offset, mapping=None))
+        elif connection.source[0] is None or connection.target[0] is None:
+            taken.append(connection)
+        else:
+            other.append(f"{name} is not made")
+    return _listed("connections are something else", other), replace(system, connections=tuple(taken))
+
+
+def _holds(place, lines):
+    """Whether a connection's place is that of a transformation in it, in the same line or the next one."""
+    file, _, line = place.partition(": ")[0].rpartition(", line ")
+    return any(f"{file}, line {int(line) + more}" in lines for more in (0, 1)) if line.isdigit() else False
+
+
+def _how(factor, offset, connection):
+    if connection.mapping is not None:
+        return "made without its mapping"
+    return f"{factor:g} times plus {offset:g} instead of {connection.factor:g} times plus {connection.offset:g}"
+
+
+def _arrow(connection):
+    return " -> ".join(".".join(filter(None, end)) for end in (connection.source, connection.target))
+
+
+def _steps(host, subject, system):
+    """Steps of components that only another tool's annotation states."""
+    if not any(True for _ in hints_of_others(subject)):
+        return "", system
+    plain = {name: replace(part, step_size=None) for name, part in system.components.items()}
+    other = [f"{name} steps with the base step" for name, part in system.components.items() if part.step_size]
+    return _listed("step sizes are not read", other), replace(system, components=plain)
+
+
+def _forms(host, subject, system):
+    """Co-simulation, whatever the system asks for."""
+    plain = {name: replace(part, implementation="any") for name, part in system.components.items()}
+    other = [f"{name} runs as co-simulation" for name, _ in model_exchange_asked(subject)]
+    return _listed("forms are not looked at", other), replace(system, components=plain)
+
+
+def _listed(what, found):
+    more = f" and {len(found) - 5} more" if len(found) > 5 else ""
+    return f"{what}: {'; '.join(found[:5])}{more}" if found else ""

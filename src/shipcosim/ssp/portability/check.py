@@ -1,0 +1,65 @@
+"""What a tool that reads a system's file itself would ignore, misread or die of: `check --for`."""
+
+from dataclasses import replace
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ssp.osp.reader import assemble_osp, osp_file
+from shipcosim.ssp.portability.subject import Subject, subject_of
+from shipcosim.ssp.portability.support_table import FEATURES, HOSTS, TOLD
+from shipcosim.ssp.xml.document import Findings, read_document
+
+
+def check_host(host):
+    """Raise ShipcosimError where nothing is known of a tool."""
+    if host not in HOSTS:
+        raise ShipcosimError(Problem(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS)))
+
+
+def check_for(host, path, *, fmus=()):
+    """What a tool that reads the file itself would ignore, misread or die of.
+
+    Parameters
+    ----------
+    host : str
+        One of HOSTS.
+    path : path
+        As for `read_system`.
+    fmus : iterable of path
+        Folders searched for FMUs that are not beside the system structure.
+
+    Returns
+    -------
+    list of Problem
+        Errors; remarks on what the tool has to be told. Empty where the file cannot be read: `check` says why.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such tool.
+    """
+    check_host(host)
+    osp = osp_file(path)
+    if osp is not None and host == "ecos":
+        remedy = "Give it the system as an SSP."
+        return [Problem(str(path), "ecos does not read an OspSystemStructure.xml.", remedy)]
+    subject = subject_of(path, fmus) if osp is None else _osp_subject(osp, fmus)
+    if subject is None:
+        return []
+    known = (feature for feature in FEATURES if host in feature.becomes)
+    return list(dict.fromkeys(problem for feature in known for problem in _problems(host, feature, subject)))
+
+
+def _problems(host, feature, subject):
+    verdict = feature.becomes[host]
+    for place, what in feature.find(subject):
+        found = f"{what or feature.about}: {host} {verdict}."
+        named = not found.partition(" ")[0].isalpha()  # such as gain.fmu
+        problem = Problem(place, found if named else found[0].upper() + found[1:], feature.remedy)
+        yield replace(problem, severity="remark") if verdict == TOLD else problem
+
+
+def _osp_subject(path, fmus):
+    findings = Findings()
+    system = assemble_osp(path, (), fmus, findings)
+    document = read_document(path, str(path), findings)
+    return None if findings.errors else Subject(None, None, None, None, system, document)

@@ -1,0 +1,1 @@
+"""SSP files as written: structure, parameter sets, mappings, dictionaries."""

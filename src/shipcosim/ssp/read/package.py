@@ -1,0 +1,170 @@
+"""Where a system's files are: a .ssp (unpacked on the side), a folder, or a .ssd with its neighbours."""
+
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+from shipcosim.errors import ShipcosimError, suggestion
+from shipcosim.ssp.xml.archive import read_entry, unpack
+from shipcosim.ssp.xml.document import LARGEST_FILE, Document, parse, read_document
+from shipcosim.ssp.xml.values import has
+
+SYSTEM_STRUCTURE = "SystemStructure.ssd"
+
+
+@dataclass(frozen=True)
+class Package:
+    """Files that belong together; nothing outside `folder` and `fmus` is read.
+
+    Parameters
+    ----------
+    folder : Path
+        Their root on disk.
+    shown : str
+        The root's name in messages.
+    ssd : str
+        Name of the SSD, relative to the root.
+    fmus : tuple of Path
+        Folders searched for FMUs that are not in the package.
+    unpacked : TemporaryDirectory or None
+        Holds the folder; it is removed with the last reference to it.
+    held : dict of Path to Document or Path
+        What stands for a file of the folder: a document in memory, or a file elsewhere. For systems that are edited.
+    located : dict of str to Path
+        Files that were asked for, by their names in the package: where they are.
+    """
+
+    folder: Path
+    shown: str
+    ssd: str = SYSTEM_STRUCTURE
+    fmus: tuple[Path, ...] = ()
+    unpacked: tempfile.TemporaryDirectory | None = field(default=None, repr=False, compare=False)
+    held: dict = field(default_factory=dict, repr=False, compare=False)
+    located: dict = field(default_factory=dict, repr=False, compare=False)
+
+    def show(self, path):
+        """Name of a file of the package as the user knows it."""
+        path, folder = Path(path).resolve(), self.folder.resolve()
+        return f"{self.shown}/{path.relative_to(folder).as_posix()}" if path.is_relative_to(folder) else str(path)
+
+    def __getstate__(self):
+        # a copy in another process uses the files, and does not remove them
+        return self.__dict__ | {"unpacked": None, "held": {}}
+
+    def document(self, findings):
+        """The SSD, or None where it cannot be read."""
+        return self.read(self.folder / self.ssd, findings)
+
+    def read(self, path, findings):
+        """Document of one of the package's files."""
+        held = self.held.get(Path(path).resolve())
+        return held if isinstance(held, Document) else read_document(path, self.show(path), findings)
+
+    def locate(self, uri, base, place, findings):
+        """File that a relative address means, or None with an error.
+
+        Parameters
+        ----------
+        uri : str
+            As in the SSD, perhaps percent-encoded.
+        base : Path
+            Folder of the SSD.
+        place : str
+            Where the address stands, for messages.
+        findings : Findings
+            Takes what is wrong.
+        """
+        try:
+            return self._located(uri, base, place, findings)
+        except (ValueError, OSError) as error:  # a NUL in it, longer than any file system takes, ...
+            findings.error(place, f"'{uri[:80]}' is no usable address: {error}.")
+            return None
+
+    def _located(self, uri, base, place, findings):
+        parts = urlsplit(uri)
+        if parts.scheme or parts.netloc or uri.startswith("/") or not parts.path:
+            remedy = "Addresses are relative to the SSD, e.g. resources/name.fmu."
+            findings.error(place, f"'{uri}' is no address within the package.", remedy)
+            return None
+        paths = [(base / name).resolve() for name in (unquote(parts.path), parts.path)]
+        folder = self.folder.resolve()
+        if not all(path.is_relative_to(folder) for path in paths):
+            findings.error(place, f"'{uri}' lies outside the package.", "Put the file beside the SSD, in resources/.")
+            return None
+        elsewhere = [folder / paths[0].name for folder in self.fmus if paths[0].suffix == ".fmu"]
+        found = next((path for path in (*paths, *elsewhere) if self._is_there(path)), None)
+        if found is None:
+            is_folder = any(path.is_dir() for path in (*paths, *elsewhere))
+            what = "is a folder, not a file" if is_folder else "does not exist"
+            findings.error(place, f"The file '{uri}' {what}.", self._present(paths[0]))
+            return None
+        if isinstance(self.held.get(found), Path):
+            found, name = self.held[found], found
+        else:
+            name = found if found in paths else paths[0]
+        self.located[name.relative_to(folder).as_posix()] = found
+        return found
+
+    def _is_there(self, path):
+        held = self.held.get(path, path)
+        return isinstance(held, Document) or held.is_file()
+
+    def _present(self, path):
+        folders = [path.parent, *(self.fmus if path.suffix == ".fmu" else ())]
+        files = [file for folder in folders if folder.is_dir() for file in folder.glob(f"*{path.suffix}")]
+        there = {file.name for file in files if file.is_file()}
+        return f"In {' and '.join(map(str, folders))} there{suggestion(path.name, there).removeprefix('There')}"
+
+
+def open_package(path, findings, fmus=(), shown=None):
+    """Package of a path, or None with an error.
+
+    Parameters
+    ----------
+    path : path
+        A .ssp (with ``#Variant.ssd`` behind it for another SSD than the default one), a folder with an SSD, or a .ssd.
+    findings : Findings
+        Takes what is wrong.
+    fmus : iterable of path
+        Folders searched for FMUs that are not in the package.
+    shown : str, optional
+        Name of the path in messages, where it is another.
+    """
+    text, _, variant = str(path).partition("#")
+    path, shown, fmus = Path(text), shown or text, tuple(Path(folder) for folder in fmus)
+    if path.is_dir():
+        return Package(path, shown, variant or SYSTEM_STRUCTURE, fmus)
+    if not path.is_file():
+        findings.error(shown, "There is no such file or folder.", "Right would be a .ssp, a .ssd or a folder with one.")
+        return None
+    if path.suffix.lower() == ".ssd":
+        return Package(path.parent, str(Path(shown).parent), path.name, fmus)
+    unpacked = tempfile.TemporaryDirectory(prefix="shipcosim-")
+    try:
+        unpack(path, unpacked.name, shown)
+    except ShipcosimError as error:
+        findings.problems += error.problems
+        return None
+    package = Package(Path(unpacked.name), shown, variant or SYSTEM_STRUCTURE, fmus, unpacked)
+    if not (package.folder / package.ssd).is_file():
+        there = [file.name for file in package.folder.glob("*.ssd")]
+        findings.error(shown, f"The archive has no {package.ssd} at its top.", has(package.ssd, there))
+        return None
+    return package
+
+
+def read_in_component(fmu, uri, place, findings):
+    """Document inside an FMU (``sourceBase="component"``), or None with an error."""
+    name = unquote(uri)
+    try:
+        data = read_entry(fmu.path, name, LARGEST_FILE)
+    except ShipcosimError as error:
+        findings.problems += error.problems
+        return None
+    if data is None:
+        findings.error(place, f"{fmu.path.name} has no file '{name}'.", "Addresses start at the FMU's top.")
+        return None
+    file = f"{fmu.path.name}/{name}"
+    root = parse(data, file, findings)
+    return None if root is None else Document(file, root)

@@ -1,0 +1,276 @@
+"""Parameter sets (SSV), parameter mappings (SSM) and signal dictionaries (SSB).
+
+Reference: System Structure and Parameterization 1.0, sections 4.5, 6, 7 and 8.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from shipcosim.ssp.xml.document import NAMESPACES, children, is_true, local, qualified, reporting, validate
+from shipcosim.ssp.xml.units import Unit, find_unit, read_units
+from shipcosim.ssp.xml.values import KINDS, read_value
+
+TOLERANCE = "shipcosim.tolerance"
+"""Type of the annotation with a parameter's tolerance."""
+
+MAPPINGS = {
+    "BooleanMappingTransformation": "Boolean",
+    "IntegerMappingTransformation": "Integer",
+    "EnumerationMappingTransformation": "Enumeration",
+}
+
+
+@dataclass(frozen=True)
+class Transformation:
+    """What a connection or a mapping does to a value.
+
+    Parameters
+    ----------
+    kind : str
+        ``"Linear"``, or of a table: ``"Boolean"``, ``"Integer"``, ``"Enumeration"`` (its entries are item names).
+    factor, offset : float
+        target = factor * source + offset, after the conversion of units.
+    table : mapping
+        Target by source; a value that is not in it stays as it is.
+    """
+
+    kind: str = "Linear"
+    factor: float = 1.0
+    offset: float = 0.0
+    table: Mapping = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ParameterValue:
+    """A value in a parameter set.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter, with the names of the elements before it: ``"vessel.mass"``.
+    kind : str
+        Real, Integer, Boolean, String, Enumeration or Binary.
+    value : float, int, bool, str or bytes
+        An enumeration's value is the name of its item.
+    unit : Unit or None
+        Of a real value.
+    description : str
+        What it is and where the number comes from.
+    place : str
+        Where it stands, for messages.
+    tolerance : float or None
+        Standard deviation within which the value counts as known, in `unit`; kept in an annotation of ours.
+    dimensions : tuple of int
+        Of an array, whose `value` is a tuple, the last index fastest; empty for a scalar.
+    """
+
+    name: str
+    kind: str
+    value: object
+    unit: Unit | None = None
+    description: str = ""
+    place: str = ""
+    tolerance: float | None = None
+    dimensions: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """A named set of values; `file` for messages."""
+
+    name: str
+    values: tuple[ParameterValue, ...]
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class MappingEntry:
+    """Which parameter of a set goes where, and how."""
+
+    source: str
+    target: str
+    transformation: Transformation | None = None
+    suppress_unit_conversion: bool = False
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class DictionaryEntry:
+    """A signal of a dictionary: a type as a connector's."""
+
+    name: str
+    kind: str
+    unit: Unit | None = None
+    items: Mapping = field(default_factory=dict)
+
+
+def has_root(document, tag, findings):
+    """Whether a document is what it should be, with an error if not."""
+    if document.root.tag == qualified(tag):
+        return True
+    found = f"Its outermost element is <{local(document.root)}>."
+    prefix, name = tag.split(":")
+    findings.error(document.place(document.root), found, f'Right would be <{name} xmlns="{NAMESPACES[prefix]}">.')
+    return False
+
+
+def read_parameter_set(document, findings):
+    """Values of an SSV document.
+
+    Parameters
+    ----------
+    document : Document
+        File or inline element.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    ParameterSet, empty where the document is no such thing
+    """
+    root = document.root
+    if not has_root(document, "ssv:ParameterSet", findings):
+        return ParameterSet("", (), document.file)
+    before = len(findings.errors)
+    validate(root, "ssv", document.file, findings)
+    values = {}
+    sound = len(findings.errors) == before
+    units = {}
+    with reporting(document, root, findings):
+        units = read_units(children(root, "ssv:Units", "ssc:Unit"))
+    for element in children(root, "ssv:Parameters", "ssv:Parameter") if sound else ():
+        value = _parameter(document, element, units, findings)
+        if value is not None and value.name in values:
+            first = values[value.name].place.rpartition(", line ")[2].partition(":")[0]
+            findings.error(value.place, f"The set has this parameter already, in line {first}.", "Keep one of them.")
+        elif value is not None:
+            values[value.name] = value
+    return ParameterSet(root.get("name", ""), tuple(values.values()), document.file)
+
+
+def _parameter(document, element, units, findings):
+    name = element.get("name", "")
+    typed = next((part for part in element if local(part) in KINDS), None)
+    if typed is None or not name:
+        findings.error(document.place(element, name), "A parameter needs a name and one element with type and value.")
+        return None
+    kind = KINDS[local(typed)]
+    try:
+        sizes = tuple(read_value("Integer", part.get("size", "")) for part in element if local(part) == "Dimension")
+        value = _values(kind, typed) if sizes else read_value(kind, _text(typed))
+        tolerance = tolerance_of(element)
+    except ValueError as error:
+        findings.error(document.place(element, name), str(error), "Correct it, or leave the parameter to its default.")
+        return None
+    unit = find_unit(typed.get("unit"), units)
+    description = element.get("description", "")
+    return ParameterValue(name, kind, value, unit, description, document.place(element, name), tolerance, sizes)
+
+
+def _values(kind, typed):
+    """Values of an array: a list in one attribute, or elements of their own for what may hold blanks."""
+    listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
+    return tuple(read_value(kind, text) for text in listed or typed.get("value", "").split())
+
+
+def _text(typed):
+    """Text of a single value, which may stand in an element of its own in SSP 2.0."""
+    listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
+    return listed[0] if len(listed) == 1 and typed.get("value") is None else typed.get("value", "")
+
+
+def tolerance_of(element):
+    """Tolerance in our annotation of a Parameter element, or None."""
+    for annotation in children(element, "ssv:Annotations", "ssc:Annotation"):
+        if annotation.get("type") == TOLERANCE and len(annotation):
+            return read_value("Real", annotation[0].get("value", ""))
+    return None
+
+
+def read_mapping(document, findings):
+    """Entries of an SSM document, as a tuple of MappingEntry."""
+    if not has_root(document, "ssm:ParameterMapping", findings):
+        return ()
+    before = len(findings.errors)
+    validate(document.root, "ssm", document.file, findings)
+    entries = {}
+    for element in children(document.root, "ssm:MappingEntry") if len(findings.errors) == before else ():
+        source, target = element.get("source", ""), element.get("target", "")
+        place = document.place(element, f"{source} -> {target}")
+        suppressed = is_true(element.get("suppressUnitConversion"))
+        if target in entries:
+            findings.error(
+                place, f"'{entries[target].source}' is mapped to this parameter already.", "Keep one of them."
+            )
+        entries[target] = MappingEntry(
+            source, target, read_transformation(document, element, findings), suppressed, place
+        )
+    return tuple(entries.values())
+
+
+def read_transformation(document, element, findings):
+    """Transformation that an element (connection or mapping entry) contains, or None."""
+    for part in element:
+        if local(part) == "LinearTransformation":
+            numbers = [_attribute(document, part, name, "Real", findings) for name in ("factor", "offset")]
+            return Transformation(factor=1.0 if numbers[0] is None else numbers[0], offset=numbers[1] or 0.0)
+        if local(part) in MAPPINGS:
+            return _table(document, part, MAPPINGS[local(part)], findings)
+    return None
+
+
+def _table(document, element, kind, findings):
+    table = {}
+    for entry in children(element, "ssc:MapEntry"):
+        source, target = (_attribute(document, entry, name, kind, findings) for name in ("source", "target"))
+        if source is None or target is None:
+            continue  # the schema or `_attribute` has said so
+        if source in table:
+            findings.error(document.place(entry), f"The value '{source}' is mapped twice.", "Keep one of the entries.")
+        table[source] = target
+    return Transformation(kind=kind, table=table)
+
+
+def _attribute(document, element, name, kind, findings):
+    """Value of an attribute; None where it is missing or, with an error, makes no sense."""
+    value = None
+    if element.get(name) is not None:
+        with reporting(document, element, findings, f"{local(element)}, {name}"):
+            value = read_value(kind, element.get(name))
+    return value
+
+
+def read_dictionary(document, findings):
+    """Entries of an SSB document by name."""
+    if not has_root(document, "ssb:SignalDictionary", findings):
+        return {}
+    root = document.root
+    before = len(findings.errors)
+    validate(root, "ssb", document.file, findings)
+    if len(findings.errors) > before:
+        return {}
+    units, enumerations = {}, {}
+    with reporting(document, root, findings):
+        units = read_units(children(root, "ssb:Units", "ssc:Unit"))
+        enumerations = read_enumerations(children(root, "ssb:Enumerations", "ssc:Enumeration"))
+    entries = {}
+    for element in children(root, "ssb:DictionaryEntry"):
+        typed = next((part for part in element if local(part) in KINDS), None)
+        if element.get("name") in entries:
+            place = document.place(element, element.get("name"))
+            findings.error(place, "The dictionary has this entry already.", "Names must differ.")
+        if typed is not None:
+            items = enumerations.get(typed.get("name"), {})
+            unit = find_unit(typed.get("unit"), units)
+            entries[element.get("name")] = DictionaryEntry(element.get("name"), KINDS[local(typed)], unit, items)
+    return entries
+
+
+def read_enumerations(elements):
+    """Items (name to value) of Enumeration elements, by the enumeration's name."""
+    return {
+        element.get("name"): {
+            item.get("name"): read_value("Integer", item.get("value", "")) for item in children(element, "ssc:Item")
+        }
+        for element in elements
+    }

@@ -1,0 +1,1 @@
+"""XML of SSP, FMI and OSP files: documents, schemas, values, archives."""

@@ -1,0 +1,67 @@
+"""What annotations of other tools ask for: step sizes, which are honoured, and algorithms, which are named as ignored.
+
+The standard leaves step size and algorithm to the tools. Known are those of OSP (libcosim), ecos and Vico, and
+OMSimulator; elements are found by their names in any namespace, since ecos and older versions of OSP use their own.
+"""
+
+import re
+
+from shipcosim.ssp.xml.document import child, children, local, qualified
+
+STEP_SIZES = {"FixedStepAlgorithm": "baseStepSize", "FixedStepMaster": "stepSize"}
+"""Where annotations give the base step size: libcosim and ecos; OMSimulator and older OSP."""
+
+STEP_SIZE_HINTS = {"StepSizeHint": "value"}
+"""Where annotations of a component give its own step size: ecos and Vico."""
+
+ASKS = re.compile(r"(Algorithm|Master|Solver|StepSizeHint|Bus|^Connection)$")
+
+
+def step_sizes(root):
+    """(element, attribute) of all that state the base step size in an SSD, the one that counts first."""
+    for owner in (child(root, "ssd:DefaultExperiment"), child(root, "ssd:System")):
+        yield from stated(owner, STEP_SIZES)
+
+
+def stated(owner, names):
+    """(element, attribute) of all in an element's own annotations that give a number under one of these names."""
+    for annotation in () if owner is None else children(owner, "ssd:Annotations", "ssc:Annotation"):
+        for part in annotation.iter("{*}*"):
+            attribute = names.get(local(part))
+            if attribute and part.get(attribute) is not None:
+                yield part, attribute
+
+
+def remark_ignored(document, findings):
+    """Name every algorithm, step size and connection that annotations of an SSD ask for and do not get."""
+    honoured = [part for part, _ in list(step_sizes(document.root))[:1]]
+    for component in document.root.iter(qualified("ssd:Component")):
+        honoured += [part for part, _ in list(stated(component, STEP_SIZE_HINTS))[:1]]
+    for annotation in document.root.iter(qualified("ssc:Annotation")):
+        for part in annotation.iter("{*}*"):
+            if _asks(part) and part not in honoured and not _repeats(part, honoured[:1]):
+                _remark(part, annotation, document, findings)
+
+
+def _asks(part):
+    """Whether an element asks for an algorithm or a step itself, rather than through one in it."""
+    within = [inner for inner in part.iterdescendants("{*}*") if ASKS.search(local(inner))]
+    return bool(ASKS.search(local(part))) and not within
+
+
+def _repeats(part, honoured):
+    """Whether an element states the step size that holds anyway."""
+    sizes = [one.get(STEP_SIZES.get(local(one), "stepSize")) for one in (part, *honoured)]
+    return len(sizes) == 2 and sizes[0] is not None and sizes[0] == sizes[1]
+
+
+def _remark(part, annotation, document, findings):
+    owner = annotation.getparent().getparent()
+    numbers = STEP_SIZES | STEP_SIZE_HINTS
+    attribute = "description" if part.get("description") else numbers.get(local(part), "description")
+    detail = f" ({part.get(attribute)})" if part.get(attribute) else ""
+    found = f"An annotation asks for {local(part)}{detail}, which is ignored."
+    remedy = "All components step with one fixed base step, or a multiple of it that their StepSizeHint gives."
+    if local(part) in ("Bus", "Connection"):
+        remedy = "Only the connections of the standard are made."
+    findings.remark(document.place(part, owner.get("name") or local(owner)), found, remedy)

@@ -1,0 +1,257 @@
+"""XML read safely and checked against its schema: no entities, no network, every finding with file and line."""
+
+import re
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+
+from lxml import etree
+
+from shipcosim.errors import Problem
+
+NAMESPACES = {
+    prefix: f"http://ssp-standard.org/SSP1/SystemStructure{name}"
+    for prefix, name in {
+        "ssd": "Description",
+        "ssc": "Common",
+        "ssv": "ParameterValues",
+        "ssm": "ParameterMapping",
+        "ssb": "SignalDictionary",
+    }.items()
+}
+SCHEMAS = {
+    "ssd": "ssp/schema/SystemStructureDescription.xsd",
+    "ssv": "ssp/schema/SystemStructureParameterValues.xsd",
+    "ssm": "ssp/schema/SystemStructureParameterMapping.xsd",
+    "ssb": "ssp/schema/SystemStructureSignalDictionary.xsd",
+    "fmi1": "schema/fmi1/fmiModelDescription.xsd",
+    "fmi2": "schema/fmi2/fmi2ModelDescription.xsd",
+    "fmi3": "schema/fmi3/fmi3ModelDescription.xsd",
+}
+WORDS = {"double": "a number", "int": "a whole number", "boolean": "a Boolean (true, false, 1, 0)"}
+REMEDIES = {
+    "is not a Boolean": "Write true or false.",
+    "is not a whole number": "Write a whole number, e.g. 3.",
+    "number": "Write a number with a decimal point, e.g. 1.5.",
+    "is not allowed": "Correct its name or remove it.",
+    "is required but missing": "Add it.",
+    "unique": "Names must differ.",
+    "is not expected": "Remove it.",
+    "is invalid": "Correct it.",
+}
+"""What would be right, by part of what was found."""
+LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
+
+
+class Findings:
+    """What has been found so far, collected so that a user sees all of it at once."""
+
+    def __init__(self):
+        self.problems = []
+        self._errors, self._looked_at = [], 0
+        self.refused_lines = set()  # by a schema: what else is wrong with a value there has been said
+
+    def error(self, where, found, remedy=""):
+        """Note what makes the input unusable."""
+        self.problems.append(Problem(where, found, remedy))
+
+    def remark(self, where, found, remedy=""):
+        """Note what a user should know although it stops nothing."""
+        self.problems.append(Problem(where, found, remedy, severity="remark"))
+
+    def back_to(self, count):
+        """Forget all but the first problems."""
+        del self.problems[count:]
+        self._errors, self._looked_at = [], 0
+
+    @property
+    def errors(self):
+        """Those of the problems that make the input unusable."""
+        self._errors += [problem for problem in self.problems[self._looked_at :] if problem.severity == "error"]
+        self._looked_at = len(self.problems)
+        return self._errors
+
+    @property
+    def remarks(self):
+        """The other ones."""
+        return [problem for problem in self.problems if problem.severity != "error"]
+
+
+@dataclass(frozen=True)
+class Document:
+    """An XML file or the inline part of one.
+
+    Parameters
+    ----------
+    file : str
+        Name as the user knows it, also for what lies inside an archive.
+    root : lxml element
+        Its outermost element.
+    folder : Path or None
+        Folder that relative addresses in it start from.
+    """
+
+    file: str
+    root: etree._Element
+    folder: Path | None = None
+
+    def place(self, element, what=""):
+        """Where an element stands, for the user to look it up."""
+        line = f", line {element.sourceline}" if element.sourceline else ""  # none where it was made in memory
+        return f"{self.file}{line}" + (f": {what}" if what else "")
+
+
+@contextmanager
+def reporting(document, element, findings, what=""):
+    """Turn a ValueError of reading an attribute into a finding about this element."""
+    try:
+        yield
+    except ValueError as error:
+        if document.place(element) not in findings.refused_lines:
+            findings.error(document.place(element, what), str(error), remedy_for(str(error)))
+
+
+def remedy_for(found):
+    """What would be right instead of a value of the wrong form.
+
+    Examples
+    --------
+    >>> remedy_for("'2,0' is not a number.")
+    'Write a number with a decimal point, e.g. 1.5.'
+    """
+    return next((remedy for part, remedy in REMEDIES.items() if part in found), "Correct it.")
+
+
+def qualified(tag):
+    """Tag in lxml's notation from one with our prefix: ``ssd:System``."""
+    prefix, name = tag.split(":")
+    return f"{{{NAMESPACES[prefix]}}}{name}"
+
+
+def child(element, tag):
+    """First child of this tag, whatever prefix the file uses, or None."""
+    return element.find(qualified(tag))
+
+
+def children(element, *path):
+    """Children of the last tag of a path, ``"ssd:Connectors", "ssd:Connector"``; none where the path ends early."""
+    return element.findall("/".join(qualified(tag) for tag in path))
+
+
+def local(element):
+    """Name of an element without its namespace; empty for comments and the like."""
+    return etree.QName(element).localname if isinstance(element.tag, str) else ""
+
+
+def is_true(text):
+    """Truth of an xs:boolean attribute; a missing one is false."""
+    return (text or "").strip() in ("true", "1")
+
+
+def parse(data, file, findings, *, utf8=True):
+    """Root element of an XML text.
+
+    Parameters
+    ----------
+    data : bytes
+        The text.
+    file : str
+        Name for messages.
+    findings : Findings
+        Takes what is wrong.
+    utf8 : bool
+        Insist on UTF-8, as the SSP standard does.
+
+    Returns
+    -------
+    lxml element, or None where there is no usable one.
+    """
+    if len(data) > LARGEST_FILE:
+        findings.error(file, "The file is too large.", f"At most {LARGEST_FILE >> 20} MiB are read.")
+        return None
+    if utf8 and not _is_utf8(data):
+        findings.error(file, "The file is not UTF-8.", "SSP files must be: save it with this encoding.")
+        return None
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+    try:
+        root = etree.fromstring(data, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None)
+        text = re.sub(r", line \d+, column \d+.*", "", str(error), flags=re.DOTALL)
+        findings.error(
+            f"{file}, line {line}" if line else file, f"Not well-formed XML: {text}.", "Correct or export anew."
+        )
+        return None
+    if root.getroottree().docinfo.internalDTD is not None:
+        findings.error(file, "The file has a document type declaration.", "Remove <!DOCTYPE ...> and its entities.")
+        return None
+    return root
+
+
+def read_document(path, shown, findings):
+    """Document of a file on disk, relative addresses from its folder; None where there is no usable one."""
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        findings.error(shown, f"Cannot be read: {error.strerror}.")
+        return None
+    root = parse(data, shown, findings)
+    return None if root is None else Document(shown, root, path.parent)
+
+
+def _is_utf8(data):
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return not re.match(rb"""<\?xml[^>]*encoding\s*=\s*["'](?!utf-?8)""", data, re.IGNORECASE)
+
+
+def validate(root, schema, file, findings):
+    """Check an element against a schema that FMPy brings; SSP 2.0 has none there, see `shipcosim.ssp.xml.version_2`.
+
+    Parameters
+    ----------
+    root : lxml element
+        Outermost element, also one inside another file.
+    schema : str
+        A key of SCHEMAS.
+    file : str
+        Name for messages.
+    findings : Findings
+        Takes what is wrong.
+    """
+    if schema.startswith("ss") and root.get("version", "").startswith("2."):
+        import_module("shipcosim.ssp.xml.version_2").validate_2(root, schema, file, findings)
+    else:
+        report_schema(schema_of(schema), root, file, findings)
+
+
+def report_schema(checker, root, file, findings):
+    """Note where an element breaks a schema of lxml's, in our words."""
+    if checker.validate(root):
+        return
+    for entry in checker.error_log:
+        text = re.sub(r"\{(http|urn)[^}]*\}", "", entry.message)
+        for kind, word in WORDS.items():
+            text = text.replace(f"a valid value of the atomic type 'xs:{kind}'", word)
+        text, _, choice = re.sub(r"\[facet '[^']*'\] ", "", text).partition(" is not an element of the set ")
+        found, _, expected = (f"{text} does not exist." if choice else text).partition(" Expected is ")
+        where = f"{file}, line {entry.line}" if entry.line else file
+        findings.refused_lines.add(where)
+        if choice:
+            expected = f"one of: {choice.strip('{}.')}."
+        findings.error(where, found, f"Expected is {expected}" if expected else remedy_for(found))
+
+
+@cache
+def schema_of(name):
+    """Schema by its name in SCHEMAS."""
+    folder = Path(find_spec("fmpy").submodule_search_locations[0])  # finds FMPy without running its slow import
+    parser = etree.XMLParser(no_network=True)
+    return etree.XMLSchema(etree.parse(str(folder / SCHEMAS[name]), parser))

@@ -1,0 +1,138 @@
+"""XML of system structures changed in place and written: what is not touched stays as it is.
+
+Elements are put where the schema wants them and indented like their neighbours.
+"""
+
+from copy import deepcopy
+
+from lxml import etree
+
+from shipcosim.ssp.xml.document import NAMESPACES, child, children, local, qualified
+
+INDENT = "  "
+ORDER = {
+    "SystemStructureDescription": ("System", "Enumerations", "Units", "DefaultExperiment", "Annotations"),
+    "System": (
+        "Connectors",
+        "ElementGeometry",
+        "ParameterBindings",
+        "Elements",
+        "Connections",
+        "SignalDictionaries",
+        "SystemGeometry",
+        "GraphicalElements",
+        "Annotations",
+    ),
+    "Component": ("Connectors", "ElementGeometry", "ParameterBindings", "Annotations"),
+    "ParameterSet": ("Parameters", "Enumerations", "Units", "Annotations"),
+    "Parameter": ("Real", "Integer", "Boolean", "String", "Enumeration", "Binary", "Annotations"),
+}
+"""Children in the order of the schema, of the elements that have several. All others take theirs in any order."""
+
+OSP = "https://opensimulationplatform.com/SSP/OSPAnnotations"
+OSP_TYPE = "com.opensimulationplatform"
+OSP_MARK = "opensimulationplatform"
+
+
+def add(parent, tag, **attributes):
+    """Put a new element into a parent, where the schema wants it: behind its likes, before what comes later.
+
+    Parameters
+    ----------
+    parent : lxml element
+        Changed in place.
+    tag : str
+        With our prefix: ``"ssd:Connector"``.
+    **attributes : str or None
+        None: left out.
+
+    Returns
+    -------
+    lxml element
+    """
+    given = {name: value for name, value in attributes.items() if value is not None}
+    element = parent.makeelement(qualified(tag), given)
+    put(parent, element)
+    return element
+
+
+def put(parent, element):
+    """Put an element into a parent, where the schema wants it."""
+    order = ORDER.get(local(parent), ())
+    later = order[order.index(local(element)) + 1 :] if local(element) in order else ()
+    index = next((parent.index(part) for part in parent if local(part) in later), len(parent))
+    level = sum(1 for _ in parent.iterancestors())
+    before = parent[index - 1] if index else None
+    parent.insert(index, element)
+    etree.indent(element, space=INDENT, level=level + 1)
+    if before is None:
+        parent.text = "\n" + INDENT * (level + 1)
+    else:
+        before.tail = "\n" + INDENT * (level + 1)
+    element.tail = "\n" + INDENT * (level + (index + 1 < len(parent)))
+
+
+def ensure(parent, *tags):
+    """Child of the last tag of a path, made if it is not there."""
+    for tag in tags:
+        found = child(parent, tag)
+        parent = add(parent, tag) if found is None else found
+    return parent
+
+
+def drop(element):
+    """Remove an element, and the list that it was the last one of: the schema has no empty ones."""
+    parent, before = element.getparent(), element.getprevious()
+    if element.getnext() is None and before is not None:
+        before.tail = element.tail
+    parent.remove(element)
+    if parent.find("*") is None and parent.getparent() is not None and not parent.attrib:
+        drop(parent)
+
+
+def add_osp(root, parent, *names, **attributes):
+    """Put an OSP annotation into an element of an SSD: nested elements of these names, the attributes on the last."""
+    listed = ensure(parent, "ssd:Annotations")
+    marked = [part for part in children(listed, "ssc:Annotation") if part.get("type") == OSP_TYPE]
+    element = marked[0] if marked else add(listed, "ssc:Annotation", type=OSP_TYPE)
+    uri = osp_namespace(root)
+    for name in names:
+        inner = element.makeelement(f"{{{uri}}}{name}", nsmap={"osp": uri})
+        put(element, inner)
+        element = inner
+    element.attrib.update(attributes)
+
+
+def to_bytes(root, *prefixes):
+    """File of an element, with the prefixes of the standard declared on the root.
+
+    libcosim knows elements by these very prefixes, and those of OSP only where the root declares theirs. Everything
+    else, also what no schema knows, comes out as it is.
+
+    Parameters
+    ----------
+    root : lxml element
+        Outermost element.
+    *prefixes : str
+        Declared whether they are used or not; those in use are anyway.
+    """
+    used = {etree.QName(element).namespace for element in root.iter(etree.Element)}
+    known = NAMESPACES | {"osp": osp_namespace(root)}
+    known = dict(sorted(known.items(), key=lambda item: item[1] != etree.QName(root).namespace))  # its own one first
+    names = {prefix: uri for prefix, uri in known.items() if prefix in prefixes or uri in used}
+    foreign = {p: uri for p, uri in root.nsmap.items() if p and p not in names and uri not in names.values()}
+    copied = etree.Element(root.tag, dict(root.attrib), names | foreign)
+    copied.text = root.text
+    copied.extend(deepcopy(part) for part in root)  # which brings their prefixes in line with the root's
+    for outside in reversed(list(root.itersiblings(preceding=True))):
+        copied.addprevious(deepcopy(outside))
+    for outside in reversed(list(root.itersiblings())):
+        copied.addnext(deepcopy(outside))
+    return etree.tostring(copied.getroottree(), xml_declaration=True, encoding="UTF-8").rstrip() + b"\n"
+
+
+def osp_namespace(root):
+    """Namespace of the OSP annotations in a file, first of all of the algorithm; the usual one where there are none."""
+    found = [element.tag for element in root.iter("{*}Algorithm", "{*}*") if OSP_MARK in element.tag]
+    found.sort(key=lambda tag: not tag.endswith("}Algorithm"))
+    return etree.QName(found[0]).namespace if found else OSP

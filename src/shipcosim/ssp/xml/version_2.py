@@ -1,0 +1,87 @@
+"""SSP 2.0 held against the schema of 1.0: what 2.0 has added is taken out of a copy, and the rest must be as in 1.0.
+
+No package brings the schemas of 2.0. What is unknown here may be something of 2.0 that this module does not know, so it
+is a remark, that it is not used; what is missing or has a wrong value is an error.
+
+Reference: System Structure and Parameterization 2.0, sections 4 to 8.
+"""
+
+from copy import deepcopy
+
+from shipcosim.ssp.xml.document import NAMESPACES, Findings, local, report_schema, schema_of
+from shipcosim.ssp.xml.values import KINDS, read_value
+
+RANGES = {f"Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)}
+RANGES |= {f"UInt{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)}
+ADDED = ("Dimension", "MetaData", "Signature", "Clock")
+ADDED_ATTRIBUTES = ("startIndices", "endIndices", "systemInnerX", "systemInnerY")
+UNKNOWN = ("is not expected", "is not allowed")
+
+
+def validate_2(root, schema, file, findings):
+    """Check an element of SSP 2.0; see `shipcosim.ssp.xml.document.validate`."""
+    reduced = deepcopy(root)
+    for element in list(reduced.iter("{*}*")):
+        if element.tag.startswith(tuple(f"{{{uri}}}" for uri in NAMESPACES.values())):
+            if wrong := _out_of_range(element):
+                findings.error(f"{file}, line {element.sourceline}", *wrong)
+            _reduce(element)
+    found = Findings()
+    report_schema(schema_of(schema), reduced, file, found)
+    findings.refused_lines |= found.refused_lines
+    for problem in found.problems:
+        if any(mark in problem.found for mark in UNKNOWN):
+            findings.remark(problem.where, problem.found, "It is not used. " + problem.remedy)
+        else:
+            findings.error(problem.where, problem.found, problem.remedy)
+
+
+def _reduce(element):
+    """Make an element one of SSP 1.0 or, where that has nothing of the kind, take it out."""
+    name, parent = local(element), element.getparent()
+    if name in ADDED and parent is not None:
+        parent.remove(element)
+        return
+    if (element.get("version") or "").startswith("2."):
+        element.set("version", "1.0")
+    for attribute in ADDED_ATTRIBUTES:
+        element.attrib.pop(attribute, None)
+    if name == "Connector" and element.get("kind") is not None:
+        element.set("kind", "inout")  # which kinds there are is known where connectors are read
+    if name == "Component":
+        element.set("source", element.get("source", "none"))
+        if element.get("implementation") == "ScheduledExecution":
+            element.set("implementation", "any")
+    if name in KINDS:
+        _reduce_type(element, name)
+
+
+def _reduce_type(element, name):
+    """A type under its name in 1.0, with one value that has its form where there are several."""
+    space = element.tag.partition("}")[0]
+    listed = [part for part in element if local(part) == "Value"]
+    for part in listed:
+        element.remove(part)
+    if listed:
+        element.set("value", listed[0].get("value") or listed[0].text or "")
+    kind, text = KINDS[name], element.get("value")
+    if text is not None and kind in ("Real", "Integer", "Boolean"):
+        texts = text.split() or [""]
+        bad = [one for one in texts if not _is(kind, one)]
+        element.set("value", bad[0] if bad else "0" if kind == "Integer" else texts[0])
+    element.tag = f"{space}}}{kind}"
+
+
+def _is(kind, text):
+    try:
+        return read_value(kind, text) is not None
+    except ValueError:
+        return False
+
+
+def _out_of_range(element):
+    """Found and remedy where an integer of so many bits cannot have a value that it is given, or None."""
+    low, high = RANGES.get(local(element), (0, 0))
+    texts = (element.get("value") or "").split() if high else []
+    bad = [text for text in texts if _is("Integer", text) and not low <= read_value("Integer", text) <= high]
+    return bad and (f"'{bad[0]}' is not a value of {local(element)}.", f"It has those from {low} to {high}.")

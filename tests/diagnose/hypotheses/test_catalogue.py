@@ -1,0 +1,146 @@
+"""The catalogue holds the contract's causes with sizes that make sense, and takes a user's own."""
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
+from shipcosim.diagnose.ship.model import plant_of
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp import new
+
+CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
+    "current": {"north": "m/s", "east": "m/s"},
+    "current_varying": dict.fromkeys(("north_start", "east_start", "north_end", "east_end"), "m/s"),
+    "wave_drift": {"north": "N", "east": "N"},
+    "tow": {"north": "N", "east": "N"},
+    "wind_scale": {"scale": "1"},
+    "wind_direction": {"offset": "deg"},
+    "thrust_loss": {"loss": "1"},
+    "azimuth_offset": {"offset": "deg"},
+    "rpm_offset": {"offset": "rpm"},
+    "reverse_loss": {"loss": "1"},
+    "thruster_interaction": {"loss": "1"},
+    "mass": {"scale": "1"},
+    "drag": {"scale": "1"},
+    "crossflow": {"scale": "1"},
+    "heading_bias": {"offset": "deg"},
+    "lever_arm": {"x": "m", "y": "m"},
+    "velocity_scale": {"scale": "1"},
+    "navigation_lag": {"lag": "s"},
+    "thruster_lag": {"lag": "s"},
+}
+WHERE = {
+    "thrust_loss": ["port", "starboard", "tunnel"],
+    "azimuth_offset": ["port", "starboard"],
+    "rpm_offset": ["port", "starboard", "tunnel"],
+}
+MINE = """
+cause = "side_force"
+sentence = "The unit's side force is larger or smaller than modelled"
+reference = "-"
+for_each = "azimuth"
+
+[parameters.coefficient]
+of = ["{thruster}.side_force_coefficient"]
+typical = 0.5
+relative_to = "{thruster}.side_force_coefficient"
+bounds = [-1.0, 4.0]
+"""
+
+
+@pytest.fixture(scope="module")
+def everyone():
+    return suspects(read_catalogue(), twin.plant())
+
+
+def test_every_physical_cause_of_the_contract_is_there_with_its_parameters_and_units():
+    found = {c: {n: p.unit for n, p in effect.parameters.items()} for c, effect in read_catalogue().items()}
+    assert found == CONTRACT
+
+
+def test_each_cause_sits_where_the_contract_says(everyone):
+    found = {}
+    for suspect in everyone:
+        found.setdefault(suspect.cause, []).append(suspect.component)
+    assert found == {cause: WHERE.get(cause, [None]) for cause in CONTRACT}
+
+
+def test_every_file_says_what_it_is_and_where_it_is_from():
+    for effect in read_catalogue().values():
+        assert effect.sentence[0].isupper() and len(effect.sentence) > 20 and len(effect.reference) > 10
+
+
+def test_bounds_hold_the_model_and_what_is_typical_is_above_what_matters_above_what_is_tolerated(everyone):
+    for suspect in everyone:
+        for knob in suspect.knobs:
+            low, high = sorted(knob.bounds)
+            assert low <= knob.neutral <= high, suspect.label
+            assert max(high - knob.neutral, knob.neutral - low) >= knob.typical, suspect.label
+            assert knob.typical > suspect.effect.least * knob.typical >= 1.5 * knob.tolerance, suspect.label
+
+
+def test_companions_are_numbers_of_the_ship_that_are_only_known_within_a_tolerance(everyone):
+    for suspect in everyone:
+        assert all(twin.plant().tolerances[path] > 0.0 for path in suspect.effect.companions)
+        assert all(twin.plant().has(path) for path in suspect.effect.replaces)
+
+
+def test_units_of_a_file_are_those_of_the_report_and_the_ships_numbers_are_in_hers(everyone):
+    knobs = {suspect.label: suspect.knobs[0] for suspect in everyone}
+    offset = knobs["heading_bias"]
+    assert offset.typical == pytest.approx(np.radians(3.0)) and offset.factor == pytest.approx(180.0 / np.pi)
+    assert knobs["rpm_offset of tunnel"].typical == pytest.approx(0.06 * 1780.0)
+    assert knobs["rpm_offset of tunnel"].bounds == pytest.approx((-0.3 * 1780.0, 0.3 * 1780.0))
+    assert knobs["tow"].typical == pytest.approx(0.004 * 531e3)
+    assert knobs["mass"].factor == 1.0
+
+
+def test_tolerances_are_those_of_the_parameter_sets_where_they_say(everyone):
+    knobs = {suspect.label: suspect.knobs[0] for suspect in everyone}
+    assert knobs["thrust_loss of port"].tolerance == 0.01
+    assert knobs["heading_bias"].tolerance == pytest.approx(np.radians(0.1))
+
+
+def test_reverse_loss_turns_both_units_at_once(everyone):
+    (knob,) = next(suspect for suspect in everyone if suspect.cause == "reverse_loss").knobs
+    assert knob.paths == ("port.reverse_loss", "starboard.reverse_loss")
+
+
+def test_a_ship_without_a_thruster_has_no_causes_of_one(root):
+    hull = new("barge")
+    hull.add_component("ship", twin.build_stale(root) / "vessel.fmu", kinds=())
+    found = {suspect.cause for suspect in suspects(read_catalogue(), plant_of(hull.checked()))}
+    assert not found & {"thrust_loss", "azimuth_offset", "rpm_offset", "reverse_loss", "thruster_interaction"}
+    assert {"current", "mass", "heading_bias"} <= found
+
+
+def test_a_cause_of_ones_own_takes_one_file(tmp_path):
+    (tmp_path / "side_force.toml").write_text(MINE, encoding="utf-8")
+    (tmp_path / "notes.txt").write_text("not a cause", encoding="utf-8")
+    catalogue = read_catalogue(tmp_path)
+    assert set(catalogue) == {*CONTRACT, "side_force"}
+    mine = [suspect for suspect in suspects(catalogue, twin.plant()) if suspect.cause == "side_force"]
+    assert [suspect.label for suspect in mine] == ["side_force of port", "side_force of starboard"]
+    (knob,) = mine[0].knobs
+    assert (knob.neutral, knob.typical) == pytest.approx((0.8, 0.4))
+
+
+def test_a_file_with_the_name_of_a_known_cause_replaces_it(tmp_path):
+    mine = MINE.replace('"side_force"', '"mass"').replace('"azimuth"', '"ship"')
+    mine = mine.replace("{thruster}.side_force_coefficient", "vessel.mass_scale")
+    (tmp_path / "mass.toml").write_text(mine, encoding="utf-8")
+    catalogue = read_catalogue(tmp_path)
+    assert set(catalogue) == set(CONTRACT) and list(catalogue["mass"].parameters) == ["coefficient"]
+
+
+def test_everything_wrong_in_a_folder_is_said_with_file_and_field(tmp_path):
+    (tmp_path / "one.toml").write_text(MINE.replace("typical = 0.5", 'typical = "much"'), encoding="utf-8")
+    (tmp_path / "two.toml").write_text(MINE.replace("for_each", "foreach"), encoding="utf-8")
+    (tmp_path / "three.toml").write_text("cause =", encoding="utf-8")
+    with pytest.raises(ShipcosimError) as caught:
+        read_catalogue(tmp_path)
+    said = {problem.where.rpartition("/")[2]: str(problem) for problem in caught.value.problems}
+    assert set(said) == {"one.toml", "two.toml", "three.toml"}
+    assert "parameters.coefficient.typical" in said["one.toml"] and "foreach" in said["two.toml"]
+    assert all("add-a-cause.md" in text for text in said.values())

@@ -1,0 +1,309 @@
+"""Each fault put into a made-up log is named, with its place and channels; a log that is right gives none."""
+
+import numpy as np
+import pytest
+from diagnose.logs import measured, table
+
+from shipcosim.diagnose.log.checks.examine import examine
+from shipcosim.diagnose.log.checks.wind import leaps
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.log.repair import repaired
+
+
+def only(log):
+    """The one finding of a log."""
+    found = examine(table(log))
+    assert len(found) == 1, [(f.cause, f.channels, f.segments, f.note) for f in found]
+    assert found[0].kind == "data" and 0.5 < found[0].probability <= 1.0
+    return found[0]
+
+
+def near(segments, *expected, within=12.0):
+    assert len(segments) == len(expected)
+    for found, right in zip(segments, expected, strict=True):
+        assert found == pytest.approx(right, abs=within)
+
+
+def inside(log, first, last):
+    return (log["time"] >= first) & (log["time"] <= last)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_right_log_gives_no_finding(seed):
+    assert examine(table(measured(seed=seed))) == []
+
+
+def test_a_ship_at_rest_gives_no_finding():
+    log = measured(seed=3)
+    random = np.random.default_rng(3)
+    quiet = {"north": 0.2, "east": 0.2, "surge": 0.02, "sway": 0.02, "yaw_rate": 0.05, "heading": 0.1}
+    log |= {role: spread * random.normal(size=len(log["time"])) for role, spread in quiet.items()}
+    log["heading"] = np.mod(log["heading"] + 40.0, 360.0)
+    assert examine(table(log)) == []
+
+
+@pytest.mark.parametrize("kind", ["missing", "empty", "held", "interpolated"])
+def test_lost_rows_are_a_gap_however_they_are_filled(kind):
+    log = measured(seed=4)
+    here = inside(log, 500, 540)
+    if kind == "missing":
+        log = {role: values[~here] for role, values in log.items()}
+    for role in () if kind == "missing" else set(log) - {"time"}:
+        first, last = log[role][499], log[role][541]
+        filled = {"empty": np.nan, "held": first, "interpolated": np.linspace(first, last, 43)[1:-1]}
+        log[role] = np.where(here, 0.0, log[role])
+        log[role][here] = filled[kind]
+    finding = only(log)
+    near(finding.segments, (500.0, 540.0), within=2.0)
+    assert finding.cause == "gap" and set(finding.channels) == set(log) - {"time"}
+    assert np.isnan(repaired(table(log), [finding])["surge"].values[505:535]).all()
+
+
+def test_samples_between_both_sides_of_north_are_a_heading_wrap():
+    log = measured(seed=5)
+    raw = np.round(log["heading"], 1)
+    rows = np.flatnonzero(np.abs(np.diff(raw)) > 180.0)
+    rows = rows[np.diff(rows, prepend=-9) > 4]
+    rows = rows[(rows > 2) & (rows < len(raw) - 5)]
+    for row in rows:
+        raw[row + 1] = round(0.5 * (raw[row] + raw[row + 2]), 1)
+    crossing = [row for row in rows if abs(raw[row + 2] - raw[row]) > 180.0]
+    finding = only(log | {"heading": raw})
+    assert finding.cause == "heading_wrap" and len(crossing) > 2
+    assert {segment[0] for segment in finding.segments} >= {float(row + 1) for row in crossing}
+    again = repaired(table(log | {"heading": raw}), [finding])["heading"].values
+    assert np.isnan(again[[row + 1 for row in crossing]]).all()
+
+
+def test_a_heading_wrap_is_found_where_a_sample_beside_it_is_missing():
+    log = measured(seed=5)
+    row = int(np.argmax(np.abs(np.diff(np.round(log["heading"], 1))) > 180.0))
+    raw = log["heading"].copy()
+    for k in range(1, 4):
+        raw[row + k] = raw[row] + (raw[row + 4] - raw[row]) * k / 4.0
+    raw[row + 4 : row + 6] = np.nan
+    found = [finding for finding in examine(table(log | {"heading": raw})) if finding.cause == "heading_wrap"]
+    assert [finding.segments for finding in found] == [((float(row + 1), float(row + 3)),)]
+
+
+def test_samples_of_a_heading_wrap_that_lie_near_north_are_cut_out_with_it():
+    log = measured(seed=5)
+    row = int(np.argmax(np.abs(np.diff(np.round(log["heading"], 1))) > 180.0))
+    raw = log["heading"].copy()
+    raw[row + 1 : row + 3] = raw[row] + (raw[row + 3] - raw[row]) * np.array([0.08, 0.6])
+    found = [finding for finding in examine(table(log | {"heading": raw})) if finding.cause == "heading_wrap"]
+    assert [finding.segments for finding in found] == [((float(row + 1), float(row + 2)),)]
+
+
+@pytest.mark.parametrize("lost", ["value", "row"])
+def test_a_heading_wrap_is_found_where_a_sample_of_it_is_missing(lost):
+    log = measured(seed=5)
+    row = int(np.argmax(np.abs(np.diff(np.round(log["heading"], 1))) > 180.0))
+    raw = log["heading"].copy()
+    for k in range(1, 4):
+        raw[row + k] = raw[row] + (raw[row + 4] - raw[row]) * k / 4.0
+    if lost == "value":
+        raw[row + 2] = np.nan
+        log = log | {"heading": raw}
+    else:
+        log = {role: np.delete(values, row + 2) for role, values in (log | {"heading": raw}).items()}
+    assert abs(raw[row + 4] - raw[row]) > 180.0
+    found = [finding for finding in examine(table(log)) if finding.cause == "heading_wrap"]
+    assert [finding.segments for finding in found] == [((float(row + 1), float(row + 3)),)]
+
+
+@pytest.mark.parametrize("rate", [0.8, 1.2])
+def test_a_clock_that_runs_wrong_for_a_while_is_named_with_its_rate_and_undone(rate):
+    log = measured(seed=6, rate=rate)
+    finding = only(log)
+    assert finding.cause == "clock" and finding.channels == ("time",)
+    near(finding.segments, (400.0, 600.0), within=15.0)
+    estimate = finding.parameters["rate"]
+    assert estimate.estimate == pytest.approx(rate, abs=0.04) and estimate.std < 0.03
+    again = repaired(table(log), [finding])
+    assert again["time"].values[-1] == pytest.approx(1199.0 + 200.0 * (rate - 1.0), abs=10.0)
+    assert examine(again.drop_vars("logged_time")) == []
+
+
+def test_a_clock_that_is_wrong_for_headings_alone_is_no_clock():
+    log = measured(seed=7)
+    log["yaw_rate"] = np.where(inside(log, 400, 600), 0.8, 1.0) * log["yaw_rate"]
+    assert examine(table(log)) == []
+
+
+SEGMENTS = [None, (300.0, 800.0)]
+LABELS = {
+    "surge": ("sign", ("surge",), lambda log: {"surge": -log["surge"]}),
+    "sway": ("sign", ("sway",), lambda log: {"sway": -log["sway"]}),
+    "east": ("sign", ("east",), lambda log: {"east": -log["east"]}),
+    "yaw_rate": ("sign", ("yaw_rate",), lambda log: {"yaw_rate": -log["yaw_rate"]}),
+    "wind_from": ("sign", ("wind_from",), lambda log: {"wind_from": np.mod(-log["wind_from"], 360.0)}),
+    "body": ("channel_swap", ("surge", "sway"), lambda log: {"surge": log["sway"], "sway": log["surge"]}),
+    "earth": ("channel_swap", ("north", "east"), lambda log: {"north": log["east"], "east": log["north"]}),
+    "knots": ("frame", ("surge", "sway"), lambda log: {r: log[r] * 3600 / 1852 for r in ("surge", "sway")}),
+    "radians": ("frame", ("yaw_rate",), lambda log: {"yaw_rate": np.radians(log["yaw_rate"])}),
+    "from north": (
+        "frame",
+        ("wind_from",),
+        lambda log: {"wind_from": np.mod(log["wind_from"] + log["heading"], 360.0)},
+    ),
+    "earth-fixed": (
+        "frame",
+        ("surge", "sway"),
+        lambda log: {
+            "surge": log["surge"] * np.cos(np.radians(log["heading"]))
+            - log["sway"] * np.sin(np.radians(log["heading"])),
+            "sway": log["surge"] * np.sin(np.radians(log["heading"]))
+            + log["sway"] * np.cos(np.radians(log["heading"])),
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize("segment", SEGMENTS, ids=["throughout", "in a part"])
+@pytest.mark.parametrize("fault", LABELS)
+def test_a_mislabelled_channel_is_named_and_put_right(fault, segment):
+    cause, channels, change = LABELS[fault]
+    right = measured(seed=8)
+    here = inside(right, *segment) if segment else np.ones(len(right["time"]), bool)
+    wrong = right | {role: np.where(here, values, right[role]) for role, values in change(right).items()}
+    finding = only(wrong)
+    assert (finding.cause, finding.channels) == (cause, channels)
+    near(finding.segments, *([segment] if segment else []), within=15.0)
+    again = repaired(table(wrong), [finding])
+    for role in channels:
+        off = again[role].values[350:750] - right[role][350:750]
+        off = np.mod(off + 180.0, 360.0) - 180.0 if role == "wind_from" else off
+        assert np.nanmax(np.abs(off)) < 1e-6
+
+
+def test_a_segment_ends_at_the_leap_though_the_ship_has_lain_still_there_for_minutes():
+    log, random = measured(seed=9), np.random.default_rng(1)
+    still = np.flatnonzero(log["time"] > 700.0)
+    for role, noise in {"north": 0.2, "east": 0.2, "heading": 0.1}.items():
+        log[role][still] = log[role][still[0]] + noise * random.normal(size=len(still))
+    for role, noise in {"surge": 0.02, "sway": 0.02, "yaw_rate": 0.05}.items():
+        log[role][still] = noise * random.normal(size=len(still))
+    log["east"][inside(log, 300.0, 850.0)] *= -1.0
+    found = [finding for finding in examine(table(log)) if finding.channels == ("east",)]
+    assert [(finding.cause, finding.segments) for finding in found] == [("sign", ((300.0, 850.0),))]
+
+
+def test_rows_lost_between_even_times_are_a_gap():
+    """As in a real log: the stamps go on evenly while the ship is minutes further three rows later."""
+    log = measured(seed=9)
+    for role in ("north", "east"):
+        log[role][600:] += 80.0
+        log[role][598:601] = np.interp([598, 599, 600], [597, 601], [log[role][597], log[role][601]])
+    finding = next(f for f in examine(table(log)) if f.cause == "gap")
+    near(finding.segments, (597.0, 601.0), within=2.0)
+
+
+def moved(log, **changes):
+    return examine(table(log | changes))
+
+
+@pytest.fixture(scope="module")
+def faulty():
+    """A log with held rows and a wrong sign in a part, and what is found in it."""
+    log = measured(seed=10)
+    log["sway"] = np.where(inside(log, 300, 800), -1.0, 1.0) * log["sway"]
+    for role in set(log) - {"time"}:
+        log[role][900:930] = log[role][899]
+    return log, examine(table(log))
+
+
+def causes(found):
+    return sorted((f.cause, f.channels) for f in found)
+
+
+def test_turning_the_earth_frame_changes_nothing(faulty):
+    log, found = faulty
+    turn = np.exp(1j * np.radians(70.0))
+    position = (log["north"] + 1j * log["east"]) * turn
+    heading = np.mod(log["heading"] + 70.0, 360.0)
+    again = moved(log, north=position.real, east=position.imag, heading=heading)
+    assert causes(again) == causes(found)
+    assert [f.cause for f in found] == ["gap", "sign"]
+    for one, other in zip(again, found, strict=True):
+        near(one.segments, *other.segments, within=8.0)
+
+
+def test_a_ship_in_the_mirror_gives_the_same_faults(faulty):
+    log, found = faulty
+    mirrored = {role: -log[role] for role in ("east", "sway", "yaw_rate")}
+    angles = {role: np.mod(-log[role], 360.0) for role in ("heading", "wind_from")}
+    assert causes(moved(log, **mirrored, **angles)) == causes(found)
+
+
+def test_a_later_start_moves_the_segments_along(faulty):
+    log, found = faulty
+    again = moved(log, time=log["time"] + 5000.0)
+    for one, other in zip(again, found, strict=True):
+        near(one.segments, *[(a + 5000.0, b + 5000.0) for a, b in other.segments], within=0.01)
+
+
+def test_other_units_in_the_file_change_nothing(faulty, tmp_path):
+    log, found = faulty
+    units = {"surge": ("kn", 3600 / 1852), "sway": ("kn", 3600 / 1852), "heading": ("rad", np.pi / 180)}
+    units |= {"yaw_rate": ("deg/min", 60.0), "north": ("km", 1e-3), "east": ("km", 1e-3), "time": ("min", 1 / 60)}
+    headers = [f"{role} [{units[role][0]}]" if role in units else role for role in log]
+    columns = np.column_stack([units.get(role, ("", 1.0))[1] * values for role, values in log.items()])
+    np.savetxt(tmp_path / "log.csv", columns, delimiter=",", header=",".join(headers), comments="", fmt="%.9f")
+    again = examine(read_log(tmp_path / "log.csv"))
+    assert causes(again) == causes(found)
+    for one, other in zip(again, found, strict=True):
+        near(one.segments, *other.segments, within=1.0)
+
+
+def still(seed):
+    """A log of a ship that hardly moves: a tenth of a degree to and fro, and a few centimetres."""
+    log, calm = measured(seed=seed), measured(seed=seed, noise=0.0)
+    turned = np.mod(calm["heading"] + 180.0, 360.0) - 180.0
+    return log | {
+        "north": log["north"] - 0.99 * calm["north"],
+        "east": log["east"] - 0.99 * calm["east"],
+        "heading": np.mod(120.0 + log["heading"] - calm["heading"] + 0.01 * turned, 360.0),
+        "surge": log["surge"] - 0.99 * calm["surge"],
+        "sway": log["sway"] - 0.99 * calm["sway"],
+        "yaw_rate": log["yaw_rate"] - 0.99 * calm["yaw_rate"],
+        "wind_from": np.mod(80.0 + 4.0 * np.random.default_rng(seed).normal(size=len(log["time"])), 360.0),
+    }
+
+
+WINDS = {
+    "knots": ("wind_speed", lambda log: log["wind_speed"] * 3600 / 1852),
+    "mirrored": ("wind_from", lambda log: np.mod(-log["wind_from"], 360.0)),
+    "from north": ("wind_from", lambda log: np.mod(log["wind_from"] + log["heading"], 360.0)),
+}
+
+
+@pytest.mark.parametrize("fault", WINDS)
+def test_the_wind_of_a_ship_that_keeps_still_jumps_where_its_label_is_wrong(fault):
+    role, change = WINDS[fault]
+    log = still(seed=11)
+    assert examine(table(log)) == []
+    finding = only(log | {role: np.where(inside(log, 300, 800), change(log), log[role])})
+    assert role in finding.channels and finding.kind == "data"
+    near(finding.segments, (300.0, 800.0), within=3.0)
+
+
+@pytest.mark.parametrize("segment", [(300.0, 700.0), (0.0, 500.0), None])
+def test_another_unit_of_the_wind_leaps_at_its_ends_and_a_lee_does_not(segment):
+    time, random = np.arange(1200.0), np.random.default_rng(2)
+    speed = 9.0 + np.cumsum(0.03 * random.normal(size=len(time)))
+    here = (time >= segment[0]) & (time <= segment[1]) if segment else np.ones(len(time), bool)
+    assert leaps(time, np.where(here, 3600.0 / 1852.0, 1.0) * speed, segment, 3600.0 / 1852.0)
+    assert leaps(time, speed, segment, 3600.0 / 1852.0) == (segment is None)
+
+
+def test_a_rate_that_is_rounded_away_is_told_by_the_signs_of_its_zeros():
+    log = measured(seed=12)
+    rate = np.round(np.radians(0.04 * log["yaw_rate"]), 2)
+    turned = np.mod(log["heading"] + 180.0, 360.0) - 180.0
+    log = log | {"heading": np.mod(0.04 * turned, 360.0), "yaw_rate": rate}
+    assert np.mean(rate == 0.0) > 0.9
+    finding = only(log)
+    assert (finding.cause, finding.channels, finding.segments) == ("frame", ("yaw_rate",), ())
+    assert np.isnan(repaired(table(log), [finding])["yaw_rate"].values).all()
+    assert "frame" not in [f.cause for f in examine(table(log | {"yaw_rate": np.abs(rate)}))]

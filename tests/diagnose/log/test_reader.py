@@ -1,0 +1,124 @@
+"""Logs are read by roles or by a channel file, units converted, no row lost; an unusable file is refused in words."""
+
+import gzip
+
+import numpy as np
+import pyarrow
+import pyarrow.parquet
+import pytest
+
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.errors import ShipcosimError
+from shipcosim.series import read_table, write_table
+
+
+def written(folder, text, name="log.csv"):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+PLAIN = "time [s],surge [kn],heading [deg],bow_rpm,note\n0,1,359,60,a\n0.5,2,1,,b\n1,3,3,62,c\n"
+
+
+def test_columns_named_by_roles_are_read_in_the_units_of_the_roles(tmp_path):
+    log = read_log(written(tmp_path, PLAIN))
+    assert log["surge"].values == pytest.approx(np.array([1.0, 2.0, 3.0]) * 1852 / 3600, rel=1e-12)
+    assert log["surge"].attrs["units"] == "m/s" and log["bow_rpm"].attrs["units"] == "rpm"
+    assert log["time"].values.tolist() == [0.0, 0.5, 1.0] and log["heading"].values.tolist() == [359.0, 1.0, 3.0]
+    assert np.isnan(log["bow_rpm"].values).tolist() == [False, True, False]
+    assert log.attrs["unused_columns"] == ["note"]
+
+
+@pytest.mark.parametrize("suffix", [".csv.gz", ".parquet", ".nc"])
+def test_every_format_gives_the_same_log(tmp_path, suffix):
+    plain = written(tmp_path, PLAIN.replace(",note", "").replace(",a\n", "\n").replace(",b\n", "\n").replace(",c", ""))
+    path = tmp_path / f"other{suffix}"
+    if suffix == ".csv.gz":
+        path.write_bytes(gzip.compress(plain.read_bytes()))
+    elif suffix == ".parquet":
+        pyarrow.parquet.write_table(pyarrow.csv.read_csv(plain), path)
+    else:
+        write_table(read_table(plain), path)
+    assert read_log(path).identical(read_log(plain))
+
+
+def test_rows_stay_as_they_are_in_the_file_however_the_times_are(tmp_path):
+    log = read_log(written(tmp_path, "time,surge\n2,1\n1,2\n1,3\n,4\n5,5\n"))
+    assert log["time"].values.tolist()[:3] == [2.0, 1.0, 1.0] and np.isnan(log["time"].values[3])
+    assert log["surge"].values.tolist() == [1.0, 2.0, 3.0, 4.0, 5.0]
+
+
+CHANNELS = """
+time = {column = "t", unit = "ms"}
+surge = {column = "u", unit = "kn"}
+sway = {column = "v", sign = -1}
+heading = {column = "psi", offset = -0.1}
+bow_rpm = "n"
+"thruster.n" = {column = "n", unit = "rad/s"}
+"""
+
+
+def test_a_channel_file_gives_roles_units_signs_and_offsets(tmp_path):
+    path = written(tmp_path, "t,u,v [kn],psi [rad],n\n0,1,1,0.1,5\n500,2,2,3.2415926535897932,6\n")
+    log = read_log(path, written(tmp_path, CHANNELS, "channels.toml"))
+    assert log["time"].values.tolist() == [0.0, 0.5]
+    assert log["surge"].values == pytest.approx([1852 / 3600, 3704 / 3600], rel=1e-12)
+    assert log["sway"].values == pytest.approx([-1852 / 3600, -3704 / 3600], rel=1e-12)
+    assert log["heading"].values == pytest.approx([0.0, 180.0], abs=1e-9)
+    assert log["thruster.n"].attrs["units"] == "rad/s" and log["thruster.n"].values.tolist() == [5.0, 6.0]
+    assert log["bow_rpm"].values.tolist() == [5.0, 6.0] and log.attrs["unused_columns"] == []
+
+
+def test_a_degree_of_latitude_is_as_long_as_surveyors_say(tmp_path):
+    """At 60 degrees: 111.412 km and 55.800 km, tables of the WGS 84 ellipsoid."""
+    path = written(tmp_path, "time,latitude,longitude\n0,,\n1,60,10\n2,60.001,10\n3,60,10.001\n4,60,370.001\n")
+    log = read_log(path)
+    assert log["north"].values[1:] == pytest.approx([0.0, 111.412, 0.0, 0.0], abs=2e-3)
+    assert log["east"].values[1:] == pytest.approx([0.0, 0.0, 55.800, 55.800], abs=2e-3)
+    assert (log.attrs["latitude_origin"], log.attrs["longitude_origin"]) == pytest.approx((60.0, 10.0))
+
+
+def test_stamps_of_date_and_time_become_seconds(tmp_path):
+    path = written(tmp_path, "time,surge\n2022-10-27 08:00:01,1\n2022-10-27 08:01:00,2\n")
+    assert read_log(path)["time"].values.tolist() == [0.0, 59.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t,surge\n0,1\n1,2\n", "has no column 'time', only 't', 'surge'"),
+        ("time,u\n0,1\n1,2\n", "no column but time has a role: 'time', 'u'"),
+        ("time,surge [deg]\n0,1\n1,2\n", "cannot convert 'deg' into 'm/s'"),
+        ("time,surge\n0,1\n1,fast\n", "holds 'fast' in row 3, not only numbers"),
+        ("time,surge\n0,1\n", "fewer than two different times"),
+        ("time,surge,surge\n0,1,1\n", "column 'surge': is there twice"),
+        ("time,surge\n", "has no row below its header"),
+    ],
+)
+def test_an_unusable_file_is_refused_with_what_is_wrong(tmp_path, text, said):
+    with pytest.raises(ShipcosimError, match=said):
+        read_log(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('surge = "u"', "says no column for time"),
+        ('time = "t"\nsurge = "uu"', "there is no column 'uu'. There is: t, u. Did you mean 'u'?"),
+        ('time = "t"\nsurg = "u"', "is no role. .* Did you mean 'surge'"),
+        ('time = "t"\nnorth = "u"', "has north without east"),
+        ('time = "t"\nsurge = {column = "u", sign = 2}', "surge.sign"),
+        ('time = "t"\nsurge = {column = "u", scale = 2}', "surge.scale"),
+        ('time = "t"\nsurge = {column = "u", unit = "deg"}', "cannot convert 'deg' into 'm/s'"),
+        ("time = ", "cannot be read"),
+    ],
+)
+def test_a_bad_channel_file_is_refused_with_what_is_wrong(tmp_path, text, said):
+    with pytest.raises(ShipcosimError, match=said):
+        read_log(written(tmp_path, "t,u\n0,1\n1,2\n"), written(tmp_path, text, "channels.toml"))
+
+
+def test_a_zero_keeps_its_sign(tmp_path):
+    values = read_log(written(tmp_path, "time,yaw_rate [deg/s]\n0,-0.0\n1,0.0\n"))["yaw_rate"].values
+    assert np.signbit(values).tolist() == [True, False]

@@ -1,0 +1,75 @@
+"""A clock that runs wrong while a ship keeps still is told by how she answers, at its rate; a right one is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.log.repair import repaired
+from shipcosim.diagnose.log_faults import clock as timing
+from shipcosim.diagnose.log_faults.clock import clock_by_answer, is_testable, with_rate
+from shipcosim.diagnose.result import Estimate, Finding
+
+FIRST, LAST, RATE = 150.0, 300.0, 1.3
+
+
+def hurried(log):
+    """The log as a clock writes it that counts a second in FIRST to LAST of its own time while RATE pass."""
+    time = log["time"].values
+    pace = np.where((time[1:] > FIRST) & (time[1:] <= LAST), RATE, 1.0)
+    true = np.r_[0.0, np.cumsum(pace * np.diff(time))] + time[0]
+    rows = true <= time[-1]
+    table = {str(name): np.interp(true[rows], time, log[name].values) for name in log.data_vars}
+    for name in ("heading", "wind_from"):
+        table[name] = np.mod(np.interp(true[rows], time, np.unwrap(log[name].values, period=360.0)), 360.0)
+    return log.isel(time=rows).assign({name: ("time", values, log[name].attrs) for name, values in table.items()})
+
+
+def test_a_right_clock_is_not_suspected():
+    log = twin.logs()["healthy"]
+    assert clock_by_answer(twin.ready(log)) is None
+
+
+def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
+    log = hurried(twin.logs()["healthy"])
+    finding = clock_by_answer(twin.ready(log))
+    assert (finding.cause, finding.channels) == ("clock", ("time",))
+    ((first, last),) = finding.segments
+    assert abs(first - FIRST) < 20.0 and abs(last - LAST) < 20.0
+    right = repaired(log, [finding])
+    settled = with_rate(twin.ready(right), finding, right["logged_time"].values).parameters["rate"]
+    assert settled.estimate == pytest.approx(RATE, abs=0.05)
+
+
+def test_a_clock_is_testable_where_the_ship_moves_and_not_where_nothing_happens():
+    case = twin.ready(twin.logs()["healthy"])
+    assert is_testable(case)
+    motion = case.motion
+    still = motion._replace(**{name: 0.0 * getattr(motion, name) for name in ("u", "v", "r")})
+    units = {name: (0.0 * speed, angle) for name, (speed, angle) in case.record.units.items()}
+    calm = replace(case.record, units=units, wind=tuple(0.0 * series for series in case.record.wind))
+    assert not is_testable(replace(case, motion=still, record=calm))
+
+
+def test_a_compass_that_deviates_with_the_heading_is_no_clock():
+    """While she turns it tells of more or less turning, as a wrong clock would; her way goes on at the right rate."""
+    log = twin.logs()["healthy"]
+    heading = log["heading"].values
+    deviated = np.mod(heading + 15.0 * np.sin(np.radians(heading) + 4.5), 360.0)
+    case = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
+    gain, finding = timing._most_likely(timing._blocks(case, timing._edges(case), case.known(())))
+    assert gain > 30.0 and finding.cause == "clock"
+    assert not timing._is_said_by_all(case, finding, case.known(())) and clock_by_answer(case) is None
+
+
+def test_thrusters_that_push_less_for_a_while_are_no_clock():
+    """The speed answers at another rate then, but she comes as far at her speed as before."""
+    log = twin.logs()["healthy"]
+    here = (log["time"].values > FIRST) & (log["time"].values < LAST)
+    told = {role: ("time", np.where(here, 1.25, 1.0) * log[role].values) for role in log.data_vars if "_rpm" in role}
+    clock = Finding("clock", None, "data", 0.98, {"rate": Estimate(0.8, 0.02, "1")}, ((FIRST, LAST),), ("time",))
+    case = twin.ready(log.assign(told))
+    assert not timing._is_said_by_all(case, clock, case.known(()))
+    slow, told = twin.ready(hurried(log)), {"rate": Estimate(RATE, 0.02, "1")}
+    assert timing._is_said_by_all(slow, replace(clock, parameters=told), slow.known(()))

@@ -1,0 +1,43 @@
+"""What a log alone was read as is put right as the ship's answer says."""
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
+from shipcosim.diagnose.log_faults.corrections import with_right_wind
+from shipcosim.diagnose.log_faults.input_labels import with_label
+
+FROM_NORTH, OVER_GROUND_FROM_NORTH = WIND_LABELS[1], WIND_LABELS[3]
+
+
+def counted_from_north(log):
+    """A log with the direction of the wind counted from north."""
+    return log.assign(wind_from=log["wind_from"].copy(data=np.mod(log["wind_from"] + log["heading"], 360.0)))
+
+
+def over_ground_from_north(log):
+    """A log with the wind over ground, counted from north."""
+    speed, angle = log["wind_speed"].values, np.radians(log["wind_from"].values)
+    ahead, aside = speed * np.cos(angle) - log["surge"].values, speed * np.sin(angle) - log["sway"].values
+    angle = log["wind_from"].copy(data=np.degrees(np.arctan2(aside, ahead)))
+    return counted_from_north(
+        log.assign(wind_speed=log["wind_speed"].copy(data=np.hypot(ahead, aside)), wind_from=angle)
+    )
+
+
+@pytest.mark.parametrize(
+    "hidden, label",
+    [(counted_from_north, FROM_NORTH), (over_ground_from_north, OVER_GROUND_FROM_NORTH)],
+    ids=["from north", "over ground, from north"],
+)
+def test_a_wind_told_to_be_counted_from_north_is_over_ground_too_where_the_ship_says_so(hidden, label):
+    log = hidden(twin.logs()["healthy"])
+    told = finding_of(FROM_NORTH, 0.99)
+    clean = with_label(log, FROM_NORTH)
+    case = twin.ready(clean)
+    (found,), clean, case = with_right_wind(log, [told], clean, case, twin.plant(), read_catalogue())
+    assert (found.note, found.channels, found.segments) == (label.sentence, label.channels, ())
+    right = twin.logs()["healthy"]
+    np.testing.assert_allclose(clean["wind_speed"], right["wind_speed"], atol=1e-9)

@@ -1,0 +1,86 @@
+"""Channels of thrusters and wind that are not what they are labelled are told by the ship's answer, and where."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
+from shipcosim.diagnose.log_faults.input_labels import best_run, settled, suspected, with_label
+
+KNOTS = next(label for label in WIND_LABELS if "in kn," in label.sentence)
+FIRST, LAST = 120.0, 260.0
+
+
+def changed(channels, part=True):
+    """The healthy log with other values in some channels, in a part or throughout."""
+    log = twin.logs()["healthy"]
+    time = log["time"].values
+    here = (time >= FIRST) & (time <= LAST) | (not part)
+    return log.assign({role: ("time", np.where(here, values, log[role].values)) for role, values in channels.items()})
+
+
+def best(log):
+    _, mislabel, finding = suspected(log, twin.ready(log))[0]
+    return finding, with_label(log, mislabel, finding.segments)
+
+
+def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
+    healthy = twin.logs()["healthy"]
+    finding, right = best(changed({"tunnel_rpm": -healthy["tunnel_rpm"].values}))
+    assert (finding.cause, finding.channels, finding.kind) == ("sign", ("tunnel_rpm",), "data")
+    ((first, last),) = finding.segments
+    assert abs(first - FIRST) < 20.0 and abs(last - LAST) < 20.0
+    time = healthy["time"].values
+    inner = (time > FIRST + 20.0) & (time < LAST - 20.0)
+    np.testing.assert_array_equal(right["tunnel_rpm"].values[inner], healthy["tunnel_rpm"].values[inner])
+
+
+def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
+    """From ends that are half a minute off, about the motion that the log tells of with those."""
+    log = changed({"tunnel_rpm": -twin.logs()["healthy"]["tunnel_rpm"].values})
+    _, mislabel, finding = suspected(log, twin.ready(log))[0]
+    finding = replace(finding, segments=((FIRST + 25.0, LAST - 30.0),))
+    for _ in range(2):
+        finding = settled(log, mislabel, finding, twin.ready(with_label(log, mislabel, finding.segments)))
+    ((first, last),) = finding.segments
+    assert abs(first - FIRST) <= 4.0 and abs(last - LAST) <= 4.0
+
+
+@pytest.mark.parametrize("part", [True, False], ids=["in a part", "throughout"])
+def test_what_is_told_throughout_is_settled_to_the_part_where_it_is_so(part):
+    log = changed({"wind_speed": 3600.0 / 1852.0 * twin.logs()["healthy"]["wind_speed"].values}, part)
+    told = finding_of(KNOTS, 0.99)
+    found = settled(log, KNOTS, told, twin.ready(with_label(log, KNOTS)))
+    np.testing.assert_allclose(found.segments, [(FIRST, LAST)] if part else np.zeros(0), atol=10.0)
+
+
+def test_a_tunnel_of_the_other_sign_throughout_has_no_segment():
+    healthy = twin.logs()["healthy"]
+    finding, right = best(changed({"tunnel_rpm": -healthy["tunnel_rpm"].values}, part=False))
+    assert (finding.cause, finding.channels, finding.segments) == ("sign", ("tunnel_rpm",), ())
+    np.testing.assert_array_equal(right["tunnel_rpm"].values, healthy["tunnel_rpm"].values)
+
+
+def test_swapped_twins_are_found_by_their_channels():
+    healthy = twin.logs()["healthy"]
+    pairs = [(f"port_{what}", f"starboard_{what}") for what in ("rpm", "azimuth")]
+    pairs += [pair[::-1] for pair in pairs]
+    finding, right = best(changed({role: healthy[other].values for role, other in pairs}, part=False))
+    assert finding.cause == "channel_swap"
+    assert set(finding.channels) == {role for pair in pairs for role in pair}
+    for role in finding.channels:
+        np.testing.assert_array_equal(right[role].values, healthy[role].values)
+
+
+@pytest.mark.parametrize("name", ["healthy", "thrust_loss"])
+def test_right_channels_are_not_suspected(name):
+    assert suspected(twin.logs()[name], twin.ready(twin.logs()[name])) == []
+
+
+def test_thebest_run_is_the_one_of_all_runs_that_adds_up_to_most():
+    gain = np.random.default_rng(0).normal(-0.1, 1.0, 80)
+    runs = {(a, b): gain[a : b + 1].sum() for a in range(80) for b in range(a + 9, 80)}
+    first, last, total = best_run(gain, 10)
+    assert (first, last) == max(runs, key=runs.get) and total == pytest.approx(max(runs.values()))

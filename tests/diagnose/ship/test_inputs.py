@@ -1,0 +1,145 @@
+"""A log as arrays: even, in SI, nothing made up where nothing is known, late channels put where they belong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.ship.inputs import first_motion, record_of
+from shipcosim.errors import ShipcosimError
+from shipcosim.series import make_table
+
+TIME = np.arange(400.0)
+RAMP = {
+    "north": (0.5 * TIME, "m"),
+    "east": (-0.25 * TIME, "m"),
+    "heading": (np.mod(350.0 + 0.1 * TIME, 360.0), "deg"),
+    "surge": (0.4 + 0.0 * TIME, "m/s"),
+    "sway": (0.1 + 0.0 * TIME, "m/s"),
+    "yaw_rate": (0.1 + 0.0 * TIME, "deg/s"),
+    "wind_speed": (5.0 + 0.01 * TIME, "m/s"),
+    "wind_from": (np.mod(100.0 + 0.2 * TIME, 360.0), "deg"),
+    "port_rpm": (60.0 + 0.3 * TIME, "rpm"),
+    "port_azimuth": (np.mod(170.0 + 0.5 * TIME + 180.0, 360.0) - 180.0, "deg"),
+    "starboard_rpm": (100.0 + 0.0 * TIME, "rpm"),
+    "starboard_azimuth": (-20.0 + 0.0 * TIME, "deg"),
+    "tunnel_rpm": (600.0 - 0.6 * TIME, "rpm"),
+}
+INNER = slice(20, -20)
+
+
+def log(without=(), **changed):
+    channels = {role: (changed.get(role, values), unit) for role, (values, unit) in RAMP.items() if role not in without}
+    return make_table(TIME, [(role, values, unit, "") for role, (values, unit) in channels.items()])
+
+
+def holed(role, first, last):
+    values = RAMP[role][0].copy()
+    values[first : last + 1] = np.nan
+    return {role: values}
+
+
+def test_channels_are_in_si_and_angles_do_not_jump():
+    record = record_of(log(), twin.plant())
+    np.testing.assert_allclose(record.measured[:, 2], np.radians(350.0 + 0.1 * TIME), atol=1e-12)
+    np.testing.assert_allclose(record.measured[:, 5], np.radians(0.1), rtol=1e-12)
+    n, azimuth = record.units["port"]
+    np.testing.assert_allclose(n[1:-1], 1.0 + 0.005 * TIME[1:-1], rtol=1e-12)
+    np.testing.assert_allclose(np.diff(azimuth[1:-1]), np.radians(0.5), rtol=1e-9)
+    np.testing.assert_allclose(np.diff(record.wind[1][1:-1]), np.radians(0.2), rtol=1e-9)
+    assert record.step == 1.0 and record.known.all() and record.remarks == ()
+
+
+@pytest.mark.parametrize("role", ["port_rpm", "starboard_azimuth", "tunnel_rpm", "wind_from"])
+def test_steps_next_to_a_gap_in_what_drives_the_ship_are_not_known(role):
+    """Over rows 100 to 110 nothing is known: not what happens from row 99 on, but from row 111 on."""
+    record = record_of(log(**holed(role, 100, 110)), twin.plant())
+    assert np.flatnonzero(~record.known).tolist() == list(range(99, 111))
+    for series in (*record.units["port"], *record.units["starboard"], *record.wind):
+        assert np.isfinite(series).all()
+
+
+def test_a_gap_in_a_measurement_stays_one_and_the_ship_is_driven_on():
+    record = record_of(log(**holed("north", 100, 110)), twin.plant())
+    assert np.flatnonzero(np.isnan(record.measured[:, 0])).tolist() == list(range(100, 111))
+    assert record.known.all()
+
+
+def test_heading_does_not_jump_across_a_gap_through_north():
+    record = record_of(log(**holed("heading", 90, 110)), twin.plant())
+    np.testing.assert_allclose(record.measured[111:, 2], np.radians(350.0 + 0.1 * TIME[111:]), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("lag", "thrusters", "wind"),
+    [
+        # thrusters logged late: what acts now is found that much later in their channels
+        ("thruster_lag", 3.0, 0.0),
+        # navigation logged late: what drove the ship that is seen now acted, and was logged, that much earlier
+        ("navigation_lag", -3.0, -3.0),
+        ("wind_lag", 0.0, 3.0),
+    ],
+)
+@pytest.mark.parametrize("share", [0.0, 0.5])
+def test_late_channels_are_taken_where_they_belong(lag, thrusters, wind, share):
+    none = {"instruments.wind_lag": 0.0}
+    plant = twin.plant().with_values(none | {f"instruments.{lag}": 3.0})
+    drivers = record_of(log(), plant).drivers(plant, share)
+    at = TIME[:-1] + share
+    np.testing.assert_allclose(drivers.time, at)
+    np.testing.assert_allclose(drivers.units["tunnel"][0][INNER], (10.0 - 0.01 * (at + thrusters))[INNER], rtol=1e-9)
+    np.testing.assert_allclose(drivers.wind_speed[INNER], (5.0 + 0.01 * (at + wind))[INNER], rtol=1e-9)
+
+
+def test_a_sensor_that_averages_over_the_last_seconds_is_read_half_of_them_later():
+    """The mean over 2.5 s of a ramp is its value 1.25 s before: the default of the wind's lag."""
+    averaged = 5.0 + 0.01 * (TIME - 1.25)
+    drivers = record_of(log(wind_speed=averaged), twin.plant()).drivers(twin.plant())
+    np.testing.assert_allclose(drivers.wind_speed[INNER], 5.0 + 0.01 * TIME[:-1][INNER], rtol=1e-9)
+
+
+def test_what_is_not_in_the_log_is_said():
+    absent = ("tunnel_rpm", "port_azimuth", "wind_speed")
+    record = record_of(log(absent), twin.plant())
+    tunnel, port = record.remarks[1], record.remarks[0]
+    assert "'tunnel'" in tunnel and "stand still" in tunnel and "'port'" in port and "point ahead" in port
+    assert "No wind" in record.remarks[2] and record.wind is None and len(record.remarks) == 3
+    assert record.drivers(twin.plant()).wind_speed is None
+    assert (record.units["tunnel"][0] == 0.0).all() and record.known.all()
+
+
+def test_wind_over_ground_serves_where_there_is_no_apparent_wind():
+    table = log(("wind_speed", "wind_from")).assign(
+        true_wind_speed=("time", 7.0 + 0.0 * TIME), true_wind_from=("time", 20.0 + 0.0 * TIME)
+    )
+    record = record_of(table, twin.plant())
+    np.testing.assert_allclose(record.wind, (np.full(400, 7.0), np.full(400, np.radians(20.0))))
+
+
+@pytest.mark.parametrize(
+    ("table", "said"), [(log(("east", "heading")), "no channel east, heading"), (None, "100 rows")]
+)
+def test_too_little_is_refused_with_what_is_needed(table, said):
+    table = log().isel(time=slice(100)) if table is None else table
+    with pytest.raises(ShipcosimError, match=f"{said}.*north, east and heading over at least two minutes"):
+        record_of(table, twin.plant())
+
+
+def test_first_motion_has_rates_of_positions_where_none_are_measured():
+    given = first_motion(record_of(log(), twin.plant()), twin.plant())
+    made = first_motion(record_of(log(("surge", "sway", "yaw_rate")), twin.plant()), twin.plant())
+    psi = np.radians(350.0 + 0.1 * TIME)
+    np.testing.assert_allclose(made.psi[INNER], psi[INNER], atol=1e-9)
+    np.testing.assert_allclose(made.r[INNER], np.radians(0.1), rtol=1e-6)
+    np.testing.assert_allclose(made.u[INNER], (0.5 * np.cos(psi) - 0.25 * np.sin(psi))[INNER], atol=1e-6)
+    np.testing.assert_allclose(made.v[INNER], (-0.25 * np.cos(psi) - 0.5 * np.sin(psi))[INNER], atol=1e-6)
+    np.testing.assert_allclose(given.u, 0.4)
+
+
+def test_several_logs_are_driven_as_each_alone():
+    plant, record = twin.plant(), record_of(log(), twin.plant())
+    both = {name: tuple(np.stack([series, 2.0 * series]) for series in pair) for name, pair in record.units.items()}
+    drivers = replace(record, units=both).drivers(plant, 0.5)
+    alone = record.drivers(plant, 0.5)
+    np.testing.assert_allclose(drivers.units["port"][0], np.stack([alone.units["port"][0], 2 * alone.units["port"][0]]))

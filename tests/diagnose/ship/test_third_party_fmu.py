@@ -1,0 +1,402 @@
+"""Thrusters of somebody else: their law is found by co-simulation, and what is wrong with them by name."""
+
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+
+import numpy as np
+import pytest
+from diagnose import boat, twin
+
+import shipcosim as sc
+from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
+from shipcosim.diagnose.inference.problem import prepare
+from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.ship import model as plant_module
+from shipcosim.diagnose.ship.inputs import first_motion, record_of
+from shipcosim.diagnose.ship.model import Motion, loads, plant_of
+from shipcosim.diagnose.ship.surrogate import bollard_of, lawful
+from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.errors import ShipcosimError
+from shipcosim.series import write_table
+
+
+@cache
+def logged(minutes=6.0, seed=0, **factors):
+    return boat.log(minutes, seed, boat.structure(**factors))
+
+
+@cache
+def along(minutes=6.0):
+    """The boat with the laws of her propellers along a log: plant, record, motion."""
+    plant = plant_of(boat.structure().checked())
+    return with_laws(plant, logged(minutes))
+
+
+def with_laws(plant, log):
+    record = record_of(log, plant)
+    motion = first_motion(record, plant)
+    return lawful(plant, record, motion), record, motion
+
+
+def at_rows(plant, record, motion):
+    """Loads at each row but the last."""
+    return loads(Motion(*(value[:-1] for value in motion)), record.drivers(plant), plant)
+
+
+def closed_form(side, n, u, r, gain=boat.GAIN):
+    """Push of the propeller, and its moment, by the equations of its FMU."""
+    aside = boat.SIDES[side]
+    speed = 0.8 * (u - aside * r)
+    push = gain * (np.where(n > 0.0, 1.0, 0.7) * n * np.abs(n) - np.abs(n) * speed / 1.5)
+    return push, -aside * push
+
+
+def pushes(motion, record, side, off=0.0, **changed):
+    n = record.units[side][0][:-1]
+    return closed_form(side, n + off, motion.u[:-1], motion.r[:-1], **changed)
+
+
+@pytest.mark.parametrize("side", boat.SIDES)
+def test_along_the_log_the_load_is_that_of_the_fmu(side):
+    plant, record, motion = along()
+    X, Y, N = at_rows(plant, record, motion)[side]
+    push, moment = pushes(motion, record, side)
+    np.testing.assert_allclose(X, push, atol=1e-6 * np.abs(push).max())
+    np.testing.assert_allclose(N, moment, atol=1e-6 * np.abs(moment).max())
+    assert not Y.any()
+
+
+def test_beside_the_log_the_load_changes_as_that_of_the_fmu():
+    plant, record, motion = along()
+    moved = motion._replace(u=motion.u + 0.2, r=motion.r - 0.05)
+    change = at_rows(plant, record, moved)["left"][0] - at_rows(plant, record, motion)["left"][0]
+    right = pushes(moved, record, "left")[0] - pushes(motion, record, "left")[0]
+    np.testing.assert_allclose(change, right, atol=1e-3 * np.abs(right).max())
+
+
+def test_its_numbers_change_the_load_as_they_say():
+    plant, record, motion = along()
+    push, _ = pushes(motion, record, "left")
+
+    def found(**values):
+        return at_rows(plant.with_values({f"left.{k}": v for k, v in values.items()}), record, motion)["left"][0]
+
+    np.testing.assert_allclose(found(thrust_loss=0.3), 0.7 * push, atol=1e-3)
+    np.testing.assert_allclose(found(gain=7.0), pushes(motion, record, "left", gain=7.0)[0], atol=1e-3)
+    late = pushes(motion, record, "left", off=-0.5)[0]
+    np.testing.assert_allclose(found(rpm_offset=30.0), late, atol=0.02 * np.abs(push).max())
+
+
+def test_a_speed_of_the_other_sign_gets_about_the_load_of_the_fmu():
+    """Far from what it was linearised about, the bollard law holds."""
+    plant, record, motion = along()
+    n, azimuth = record.units["left"]
+    drivers = record.drivers(plant)._replace(units=record.drivers(plant).units | {"left": (-n[:-1], azimuth[:-1])})
+    X, _, _ = loads(Motion(*(value[:-1] for value in motion)), drivers, plant)["left"]
+    right, _ = closed_form("left", -n[:-1], motion.u[:-1], motion.r[:-1])
+    assert np.sqrt(np.mean((X - right) ** 2)) < 0.3 * np.sqrt(np.mean(right**2))
+
+
+def test_bollard_law_of_a_unit_that_turns_is_found_with_its_place():
+    random = np.random.default_rng(0)
+    rpm, azimuth = random.uniform(-200.0, 300.0, 400), random.uniform(-3.0, 3.0, 400)
+    thrust = np.where(rpm > 0.0, 2.0, 1.3) * rpm * np.abs(rpm)
+    X, Y = thrust * np.cos(azimuth), thrust * np.sin(azimuth)
+    assert bollard_of(np.stack([X, Y, -7.0 * Y - 1.5 * X]), rpm, azimuth, True) == pytest.approx(
+        (2.0, 1.3, 0.0, -7.0, 1.5)
+    )
+    across = bollard_of(np.stack([0.0 * thrust, -thrust, -4.0 * thrust]), rpm, 0.0 * rpm, False)
+    assert across == pytest.approx((2.0, 1.3, -0.5 * np.pi, 4.0, 0.0), abs=1e-9)
+
+
+def test_a_dp_knows_where_it_pushes_and_leaves_alone_what_does_not():
+    plant, record, motion = along()
+    left = pusher_of(plant, "left")
+    assert (left.x, left.y, left.axis) == pytest.approx((0.0, -0.9, 0.0), abs=1e-9)
+    assert left.ahead == pytest.approx(boat.GAIN, rel=0.2)
+    still, *_ = with_laws(plant_of(boat.structure().checked()), logged().assign(left_rpm=0.0 * logged().left_rpm))
+    assert pusher_of(still, "left").ahead == 0.0 and pusher_of(still, "right").ahead > 0.0
+
+
+def test_suspects_and_tolerances_are_those_that_it_has():
+    plant, *_ = along()
+    found = {suspect.label: suspect for suspect in suspects(read_catalogue(), plant)}
+    assert {"thrust_loss of left", "rpm_offset of right", "mass"} <= set(found)
+    assert not {"azimuth_offset of left", "reverse_loss"} & set(found)
+    fastest = np.abs(logged().left_rpm.values).max()
+    assert found["rpm_offset of left"].knobs[0].typical == pytest.approx(0.06 * fastest, rel=0.02)
+    assert plant.tolerances["left.gain"] == pytest.approx(boat.TOLERANCE)
+
+
+def test_a_law_is_kept_for_a_part_of_its_log_and_made_anew_for_other_drivers():
+    plant, *_ = along()
+    part = logged().isel(time=slice(100, 300))
+    assert with_laws(plant, part)[0].strangers["left"].law is plant.strangers["left"].law
+    other = part.assign(left_rpm=part.left_rpm.copy(data=-part.left_rpm.values))
+    again = with_laws(plant, other)[0].strangers
+    assert again["left"].law is not plant.strangers["left"].law
+    assert again["right"].law is plant.strangers["right"].law
+
+
+@pytest.fixture
+def strange_azimuths(monkeypatch):
+    """Our azimuth thrusters are taken for somebody else's, once the logs of our ship are made."""
+    twin.plant(), twin.logs()
+    known = plant_module._holds
+    strange = lambda c, kind: "azimuth_in" not in c.fmu.variables and known(c, kind)  # noqa: E731
+    monkeypatch.setattr(plant_module, "_holds", strange)
+
+
+def test_our_azimuth_as_a_black_box_has_the_loads_of_the_array_form(strange_azimuths):
+    plant, record, motion = with_laws(plant_of(twin.system()), twin.logs()["healthy"])
+    assert list(plant.strangers) == ["port", "starboard"]
+    for name in plant.strangers:
+        most = np.abs(at_rows(twin.plant(), record, motion)[name]).max(axis=1)
+        assert (missed(plant, record, motion, name, 0.0) < 1e-9 * most).all()
+        near, far = (missed(plant, record, motion, name, by) for by in (0.05, 0.2))
+        assert (far < 0.03 * most).all() and (near < far / 8.0).all()  # of second order: a sixteenth
+
+
+def missed(plant, record, motion, name, by):
+    """How far off the loads of a black box are where the ship is so much faster, root mean square by axis."""
+    moved = motion._replace(u=motion.u + by, v=motion.v - 0.5 * by)
+    found, right = (np.stack(at_rows(ship, record, moved)[name]) for ship in (plant, twin.plant()))
+    return np.sqrt(np.mean((found - right) ** 2, axis=1))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["thrust_loss", "azimuth_offset"])
+def test_our_azimuth_as_a_black_box_gets_the_same_diagnosis(name, strange_azimuths, tmp_path):
+    write_table(twin.logs()[name], tmp_path / "log.csv")
+    diagnosis, details = diagnose(tmp_path / "log.csv", twin.system())
+    assert details.case.plant.strangers
+    (finding,) = diagnosis.findings
+    (path, truth), *_ = twin.PLANTED[name].items()
+    assert f"{finding.component}.{finding.cause}" == path
+    truth = np.degrees(truth) if name == "azimuth_offset" else truth
+    (estimate,) = finding.parameters.values()
+    assert abs(estimate.estimate - truth) < 2.0 * estimate.std
+
+
+@cache
+def diagnosed(**factors):
+    path = Path(mkdtemp(prefix="shipcosim-")) / "log.csv"
+    write_table(logged(20.0, 0, **factors), path)
+    return diagnose(path, boat.structure().checked())
+
+
+@pytest.mark.slow
+def test_the_boats_weak_propeller_is_named_with_its_loss():
+    diagnosis, _ = diagnosed(left=0.75)
+    (finding,) = diagnosis.findings
+    loss = finding.parameters["loss"]
+    assert (diagnosis.verdict, finding.label) == ("named", "thrust_loss of left")
+    assert abs(loss.estimate - 0.25) < 2.0 * loss.std
+
+
+@pytest.mark.slow
+def test_the_healthy_boat_is_consistent():
+    assert diagnosed()[0].verdict == "consistent"
+
+
+@pytest.mark.slow
+def test_swapped_propellers_are_a_fault_of_the_log(tmp_path):
+    log = logged(20.0)
+    log = log.assign(left_rpm=log.right_rpm, right_rpm=log.left_rpm)
+    write_table(log, tmp_path / "log.csv")
+    diagnosis, _ = diagnose(tmp_path / "log.csv", boat.structure().checked())
+    (finding,) = diagnosis.findings
+    assert (finding.cause, finding.channels) == ("channel_swap", ("left_rpm", "right_rpm"))
+
+
+@pytest.mark.slow
+def test_the_extended_boat_replays_with_less_error(tmp_path):
+    from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
+    from shipcosim.diagnose.validation.gain import compare
+
+    diagnosis, details = diagnosed(left=0.75)
+    extension = extend(boat.structure(), diagnosis.findings, tmp_path)
+    extended = Replayed(sc.read(extension.ssp).checked(), extension.signals)
+    errors = simulated(compare(details.case, details.fit), Replayed(boat.structure().checked()), extended)
+    rms = np.sqrt((errors["position"].sel(horizon=60.0) ** 2).mean("segment"))
+    assert rms.sel(model="extended") < 0.25 * rms.sel(model="plain")
+    assert errors["difference"].sel(replayed="plain", horizon=60.0).mean() < 0.2
+
+
+LOSS = Finding("thrust_loss", "left", parameters={"loss": Estimate(0.25, 0.02, "1")})
+TACHO = Finding("rpm_offset", "right", parameters={"offset": Estimate(30.0, 2.0, "rpm")})
+
+
+def test_the_extended_boat_has_it_on_her_connections(tmp_path):
+    extension = extend(boat.structure(), [LOSS, TACHO], tmp_path)
+    inputs = logged()[["left_rpm", "right_rpm"]]
+    plain, extended = (
+        sc.simulate(system, stop_time=60.0, step_size=0.1, inputs=inputs)
+        for system in (boat.structure(), sc.read(extension.ssp))
+    )
+    n = (extended["right_rpm"].values[:-1] - 30.0) / 60.0
+    push, _ = closed_form("right", n, extended["boat.u_r"].values[:-1], extended["boat.r"].values[:-1])
+    np.testing.assert_allclose(extended["right.push"].values[1:], push, rtol=1e-9)
+    ends = [end for end in sc.read(extension.ssp).checked().connections if end.source[0] == "left"]
+    assert [end.factor for end in ends] == [0.75, 0.75]
+    assert np.abs(extended["boat.psi"].values[-1] - plain["boat.psi"].values[-1]) > 0.1
+    assert extension.values == {} and extension.remarks == (
+        "thrust_loss of left: carried as factor 0.750 on the connections of its loads.",
+        "rpm_offset of right: carried as offset of -30 rpm on the connection of its rpm.",
+    )
+
+
+def test_a_line_that_only_the_motion_of_the_ship_drives_is_a_load_and_no_thruster(root):
+    ship = sc.read(root / "ssp" / "gunnerus_open", fmus=[twin.build_stale(root)])
+    ship.add_component("line", sc.build_fmu(root / "docs" / "examples" / "line", mkdtemp(prefix="shipcosim-")))
+    for name in ("x", "y", "psi"):
+        ship.connect(f"vessel.{name}", f"line.{name}")
+    for axis in "XYN":
+        ship.connect(f"line.tau_{axis}", f"vessel.tau_{axis}_4")
+    plant, record, motion = with_laws(plant_of(ship.checked()), twin.logs()["healthy"])
+    assert plant.thrusters == ["port", "starboard", "tunnel"]
+    X, Y, N = at_rows(plant, record, motion)["line"]
+    north = -117.0 - motion.x + 17.0 * np.cos(motion.psi)
+    east = -motion.y + 17.0 * np.sin(motion.psi)
+    tension = 5000.0 * np.maximum(np.hypot(north, east) - 99.0, 0.0)
+    np.testing.assert_allclose(np.hypot(X, Y), tension[:-1], atol=1e-6 * tension.max())
+    np.testing.assert_allclose(N, -17.0 * Y, atol=1e-6 * np.abs(N).max())
+
+
+def test_a_stranger_that_nothing_of_a_log_feeds_is_refused_with_what_would_be_right():
+    ship = boat.structure()
+    for target in ("left.shaft", "left.way", "left.swing"):
+        ship.disconnect(target)
+    with pytest.raises(ShipcosimError, match=r"'left' \(screw\) puts a load on 'boat'.*named 'left_rpm'"):
+        plant_of(ship.checked())
+
+
+def test_a_log_without_its_speed_is_refused_and_one_with_it_is_said_what_it_rests_on():
+    plant, record, _ = along()
+    assert any("'left' is somebody else's FMU (screw)" in remark for remark in record.remarks)
+    with pytest.raises(ShipcosimError, match="no channel left_rpm, which drives 'left'"):
+        record_of(logged().drop_vars("left_rpm"), plant)
+
+
+def test_what_nobody_logs_keeps_its_start_value_and_that_is_said(strange_azimuths):
+    plant = plant_of(twin.system())
+    assert set(plant.strangers["port"].idle) == {"neighbour_rpm", "neighbour_azimuth"}
+    assert any("neighbour_rpm" in remark for remark in record_of(twin.logs()["healthy"], plant).remarks)
+
+
+def test_a_case_of_the_boat_is_prepared_with_her_laws():
+    case = prepare(logged(), plant_of(boat.structure().checked()), read_catalogue())
+    assert all(one.law for one in case.plant.strangers.values())
+    assert {"left.gain", "left.rpm_offset", "left.thrust_loss"} <= set(case.plant.tolerances)
+
+
+def with_input(ship, name, unit, target="left.shaft"):
+    """The boat whose left shaft is fed by an input of another name."""
+    with ship.changes():
+        ship.disconnect(target)
+        ship.add_connector(name, "input", unit=unit)
+        ship.connect(name, target)
+    return ship
+
+
+def test_an_input_of_another_name_is_known_by_its_unit_and_its_factor_followed():
+    ship = with_input(boat.structure(), "throttle", "rad/s")
+    (link,) = [link for link in plant_of(ship.checked()).strangers["left"].links if link.quantity == "rpm"]
+    assert (link.variable, link.factor) == ("shaft", pytest.approx(2.0 * np.pi / 60.0))
+    ship.disconnect("throttle", "left.shaft")
+    ship.connect("throttle", "left.shaft", factor=0.5, offset=3.0)
+    (link,) = [link for link in plant_of(ship.checked()).strangers["left"].links if link.quantity == "rpm"]
+    assert (link.factor, link.offset) == (pytest.approx(np.pi / 60.0), 3.0)
+
+
+def test_two_inputs_that_could_be_the_speed_are_refused_by_name():
+    ship = with_input(with_input(boat.structure(), "engine", "rpm"), "rate", "rad/s", "left.swing")
+    with pytest.raises(ShipcosimError, match="'left' .*any of shaft, swing could be what drives it"):
+        plant_of(ship.checked())
+
+
+POD = """
+from math import cos, radians, sin
+
+from shipcosim.fmi import Fmu, Input, Output
+
+
+class Pod(Fmu):
+    \"\"\"Pushes as it is told, where it is told.\"\"\"
+
+    wanted = Input("N", "thrust")
+    angle = Input("deg", "direction of the thrust")
+    ahead = Output("kN", "force ahead")
+    aside = Output("kN", "force to starboard")
+
+    def start(self):
+        self.ahead = 0.9e-3 * self.wanted * cos(radians(self.angle))
+        self.aside = 0.9e-3 * self.wanted * sin(radians(self.angle))
+
+    def step(self, t, h):
+        self.start()
+"""
+
+
+@pytest.fixture
+def podded(tmp_path):
+    """The boat with a pod at her origin that is told its thrust and its direction."""
+    (tmp_path / "pod.py").write_text(POD, encoding="utf-8")
+    ship = boat.structure()
+    with ship.changes():
+        ship.add_component("pod", sc.build_fmu(tmp_path / "pod.py", tmp_path))
+        for role, unit, variable in (("thrust", "kN", "wanted"), ("azimuth", "rad", "angle")):
+            ship.add_connector(f"pod_{role}", "input", unit=unit)
+            ship.connect(f"pod_{role}", f"pod.{variable}")
+        ship.connect("pod.ahead", "boat.tau_X_3")
+        ship.connect("pod.aside", "boat.tau_Y_3")
+    return ship
+
+
+def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(podded):
+    plant = plant_of(podded.checked())
+    assert plant.drives("pod") == ("thrust", "azimuth") and not plant.has("pod.rpm_offset")
+    log = logged().assign(pod_thrust=200.0 + logged().left_rpm, pod_azimuth=0.2 * logged().right_rpm)
+    plant, record, motion = with_laws(plant, log)
+    wanted, azimuth = (series[:-1] for series in record.units["pod"])
+    X, Y, N = at_rows(plant.with_values({"pod.thrust_loss": 0.5}), record, motion)["pod"]
+    np.testing.assert_allclose(X, 0.45 * wanted * np.cos(azimuth), atol=1e-6 * wanted.max())
+    np.testing.assert_allclose(Y, 0.45 * wanted * np.sin(azimuth), atol=1e-6 * wanted.max())
+    assert wanted.max() > 500.0 and np.ptp(azimuth) > 2.0 and not N.any()
+    assert pusher_of(plant, "pod").ahead == 0.0
+
+
+def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(podded, tmp_path):
+    off = Finding("azimuth_offset", "pod", parameters={"offset": Estimate(8.0, 0.3, "deg")})
+    extension = extend(podded, [off], tmp_path)
+    run = sc.simulate(
+        sc.read(extension.ssp), stop_time=0.2, step_size=0.1, set={"pod_thrust": 1.0, "pod_azimuth": np.radians(20.0)}
+    )
+    np.testing.assert_allclose(run["pod.ahead"].values[-1], 0.9 * np.cos(np.radians(28.0)), rtol=1e-9)
+    np.testing.assert_allclose(run["pod.aside"].values[-1], 0.9 * np.sin(np.radians(28.0)), rtol=1e-9)
+
+
+MINE = """
+cause = "worn_blades"
+sentence = "Blades have lost their edge"
+reference = "-"
+for_each = "thruster"
+
+[parameters.gain]
+of = ["{thruster}.gain"]
+unit = "kg.m"
+typical = 0.2
+relative_to = "{thruster}.gain"
+bounds = [0.3, 1.2]
+"""
+
+
+def test_a_cause_of_ones_own_can_turn_a_parameter_that_has_a_tolerance(tmp_path):
+    (tmp_path / "worn_blades.toml").write_text(MINE, encoding="utf-8")
+    found = suspects(read_catalogue(tmp_path), along()[0])
+    knobs = {suspect.component: suspect.knobs[0] for suspect in found if suspect.cause == "worn_blades"}
+    assert set(knobs) == set(boat.SIDES)
+    assert (knobs["left"].neutral, knobs["left"].tolerance) == (boat.GAIN, pytest.approx(boat.TOLERANCE))

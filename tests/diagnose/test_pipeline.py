@@ -1,0 +1,102 @@
+"""From a file to a diagnosis: planted causes are named at their place with their size, healthy logs left alone."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.errors import ShipcosimError
+from shipcosim.series import write_table
+
+PARAMETERS = {  # truth by cause and component, in the contract's units
+    "current": {("current", None): {"north": 0.22, "east": -0.12}},
+    "thrust_loss": {("thrust_loss", "port"): {"loss": 0.25}},
+    "heading_bias": {("heading_bias", None): {"offset": 3.0}},
+    "mass": {("mass", None): {"scale": 1.25}},
+    "two": {("thrust_loss", "tunnel"): {"loss": 0.3}, ("lever_arm", None): {"x": 5.0, "y": 2.0}},
+}
+
+LONG = "thrust_loss", "heading_bias", "mass", "two"
+
+
+@pytest.fixture(scope="module")
+def diagnosed(tmp_path_factory):
+    """Function from the name of a planted log to its diagnosis and details."""
+
+    @cache
+    def of(name):
+        path = tmp_path_factory.mktemp("log") / "log.csv"
+        write_table(twin.logs()[name], path)
+        return diagnose(path, twin.system())
+
+    return of
+
+
+@pytest.mark.parametrize("name", ["current", *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)])
+def test_planted_causes_are_named_with_their_parameters(name, diagnosed):
+    diagnosis, _ = diagnosed(name)
+    assert diagnosis.verdict == "named"
+    found = {(finding.cause, finding.component): finding for finding in diagnosis.findings}
+    assert set(found) == set(PARAMETERS[name])
+    for key, parameters in PARAMETERS[name].items():
+        assert found[key].probability > 0.9 and found[key].onset is None
+        for parameter, truth in parameters.items():
+            estimate = found[key].parameters[parameter]
+            assert abs(estimate.estimate - truth) < 3.0 * estimate.std, parameter
+
+
+def test_a_healthy_log_is_consistent_and_progress_is_told_in_words(tmp_path):
+    path, said = tmp_path / "log.csv", []
+    write_table(twin.logs()["healthy"], path)
+    diagnosis, details = diagnose(path, twin.system(), progress=said.append)
+    assert len(said) >= 3 and all(" " in words for words in said)
+    assert (diagnosis.verdict, diagnosis.findings, diagnosis.prescription) == ("consistent", (), None)
+    assert max(details.strange.values()) <= 0.0 and details.fit.suspects == ()
+
+
+def test_what_a_diagnosis_rests_on_comes_with_it(diagnosed):
+    diagnosis, details = diagnosed("current")
+    assert details.fit in details.fits and details.fit.label == "current"
+    assert details.log.sizes["time"] == details.clean.sizes["time"] == 361
+    kinds = {"slow", "with the heading", "periodic", "in a channel", "from part to part", "beyond tolerances"}
+    assert set(details.strange) == kinds
+    assert "current" not in diagnosis.not_testable
+    gain = details.fit.score - next(fit.score for fit in details.fits if not fit.suspects)
+    assert gain > 100.0 and details.chance == {}
+
+
+@pytest.mark.slow
+def test_without_wind_in_the_log_its_causes_are_not_testable_and_that_is_said(tmp_path):
+    path = tmp_path / "log.csv"
+    write_table(twin.logs()["heading_bias"].drop_vars("wind_speed"), path)
+    diagnosis, details = diagnose(path, twin.system())
+    assert any("No wind in the log" in remark for remark in details.case.record.remarks)
+    assert {"wind_scale", "wind_direction"} <= set(diagnosis.not_testable)
+
+
+def test_a_thruster_without_a_command_in_the_log_is_said_and_not_blamed():
+    case, fits = twin.explained(twin.logs()["thrust_loss"].drop_vars("tunnel_rpm"))
+    assert any("No speed of 'tunnel'" in remark for remark in case.record.remarks)
+    assert not any(suspect.label == "thrust_loss of tunnel" for suspect in fits[0].suspects)
+
+
+def test_a_parked_ship_can_show_little(tmp_path):
+    """Six minutes at rest, by a log that is noise: nothing is named, and most causes are not testable."""
+    random, log = np.random.default_rng(0), twin.logs()["healthy"]
+    still = {role: 0.0 * log[role] for role in log.data_vars}
+    noise = dict(zip(twin.ROLES, twin.WHITE * np.array(twin.TO_LOG), strict=True))
+    still |= {role: 0.0 * log[role] + std * random.standard_normal(log.sizes["time"]) for role, std in noise.items()}
+    path = tmp_path / "log.csv"
+    write_table(log.assign(still), path)
+    diagnosis, _ = diagnose(path, twin.system())
+    assert not [finding for finding in diagnosis.findings if finding.kind == "physics"]
+    assert {"mass", "drag", "crossflow", "thrust_loss", "velocity_scale"} <= set(diagnosis.not_testable)
+
+
+def test_a_log_that_is_too_short_is_refused(tmp_path):
+    path = tmp_path / "log.csv"
+    write_table(twin.logs()["healthy"].isel(time=slice(60)), path)
+    with pytest.raises(ShipcosimError, match="60 rows"):
+        diagnose(path, twin.system())

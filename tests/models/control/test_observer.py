@@ -1,0 +1,114 @@
+"""Observer against textbook solutions and a plant written apart."""
+
+import math
+
+import numpy as np
+import pytest
+
+from shipcosim.models.control import observer
+from shipcosim.models.control.observer import DpShip, Measurement, ObserverParameters, at_rest, design, kalman_gain
+
+SHIP, PARAMETERS = DpShip(), ObserverParameters()
+DESIGN = design(SHIP, PARAMETERS)
+MASS = np.array(
+    [
+        [SHIP.mass_surge, 0.0, 0.0],
+        [0.0, SHIP.mass_sway, SHIP.mass_sway_yaw],
+        [0.0, SHIP.mass_sway_yaw, SHIP.mass_yaw],
+    ]
+)
+DAMPING = np.diag([SHIP.damping_surge, SHIP.damping_sway, SHIP.damping_yaw])
+
+
+def step(estimate, measured, load=(0.0, 0.0, 0.0)):
+    return observer.step(estimate, measured, load, ship=SHIP, parameters=PARAMETERS, design=DESIGN)
+
+
+def test_gain_solves_the_riccati_equation():
+    linalg = pytest.importorskip("scipy.linalg")
+    transition = np.array([[1.0, 0.1, 0.0], [0.0, 0.98, 0.1], [0.0, 0.0, 1.0]])
+    noise, output, output_noise = np.diag([0.0, 1e-4, 1e-6]), np.array([[1.0, 0.0, 0.0]]), np.array([[0.04]])
+    covariance = linalg.solve_discrete_are(transition.T, output.T, noise, output_noise)
+    expected = covariance @ output.T / (output @ covariance @ output.T + output_noise)
+    np.testing.assert_allclose(kalman_gain(transition, noise, output, output_noise), expected, rtol=1e-9)
+
+
+def test_gains_of_many_observers_are_those_of_each():
+    many = design(SHIP, ObserverParameters(position_noise=np.array([0.2, 0.5])))
+    alone = design(SHIP, ObserverParameters(position_noise=0.5))
+    np.testing.assert_allclose([gain[1] for gain in many.horizontal], alone.horizontal, rtol=1e-9)
+
+
+def test_wave_model_moves_as_a_damped_oscillator():
+    expm = pytest.importorskip("scipy.linalg").expm
+    found = np.reshape(observer.wave_transition(0.3, 1.1, 0.2), (2, 2))
+    np.testing.assert_allclose(found, expm(0.3 * np.array([[0.0, 1.0], [-1.21, -0.44]])), rtol=1e-12)
+
+
+def plant(position, velocity, load, force, steps):
+    """Measurements without noise of a linear ship with an unknown force in north-east-down. The load is body-fixed."""
+    h = 0.01
+    for _ in range(steps):
+        for _ in range(10):
+            c, s = math.cos(position[2]), math.sin(position[2])
+            body = np.array([c * force[0] + s * force[1], c * force[1] - s * force[0], force[2]])
+            u, v, r = velocity
+            frame = np.array([r * v, -r * u, 0.0])
+            velocity = velocity + h * (np.linalg.solve(MASS, load + body - DAMPING @ velocity) + frame)
+            u, v, r = velocity
+            position = position + h * np.array([c * u - s * v, s * u + c * v, r])
+        yield Measurement(*position, *velocity)
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.5])
+def test_unknown_force_is_found_with_its_size_and_direction(heading):
+    force, load = np.array([4e3, -3e3, 2e4]), np.array([1e3, 0.0, -2e4])
+    measured = list(plant(np.array([1.0, 2.0, heading]), np.zeros(3), load, force, 1500))
+    estimate = at_rest(measured[0])
+    for one in measured:
+        estimate = step(estimate, one, tuple(load))
+    assert (estimate.bias_north, estimate.bias_east) == pytest.approx((4e3, -3e3), rel=0.03)
+    assert estimate.bias_N == pytest.approx(2e4, rel=0.03)
+    assert estimate[:6] == pytest.approx(measured[-1], abs=0.02)
+
+
+def test_estimate_of_a_resting_ship_stays_there():
+    measured = Measurement(3.0, -2.0, 1.0, 0.0, 0.0, 0.0)
+    estimate = at_rest(measured)
+    for _ in range(100):
+        estimate = step(estimate, measured)
+    assert estimate == pytest.approx(at_rest(measured), abs=1e-9)
+
+
+@pytest.mark.parametrize("period", [5.0, 6.0])
+def test_less_than_a_fifth_of_the_wave_motion_passes(period):
+    w, amplitude = 2.0 * math.pi / period, 0.05
+    estimate, found = at_rest(Measurement(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), []
+    for k in range(4000):
+        swing, rate = amplitude * math.sin(w * 0.1 * k), amplitude * w * math.cos(w * 0.1 * k)
+        estimate = step(estimate, Measurement(swing, 0.0, 0.0, rate, 0.0, 0.0))
+        found.append((estimate.x, estimate.u))
+    x, u = np.abs(found[2000:]).max(axis=0)
+    assert x < 0.2 * amplitude
+    assert u < 0.2 * amplitude * w
+
+
+def test_noise_of_the_sensors_is_filtered_to_centimetres():
+    random = np.random.default_rng(1)
+    noise = random.normal(size=(6000, 6)) * [0.2, 0.2, 0.1 * observer.DEGREE, 0.02, 0.02, 0.05 * observer.DEGREE]
+    estimate, found = at_rest(Measurement(*noise[0])), []
+    for row in noise:
+        estimate = step(estimate, Measurement(*row))
+        found.append(estimate[:6])
+    x, y, psi, u, v, r = np.std(found[1000:], axis=0)
+    assert max(x, y) < 0.04 and max(u, v) < 0.004
+    assert psi < 0.03 * observer.DEGREE and r < 0.01 * observer.DEGREE
+
+
+def test_heading_through_south_does_not_jump():
+    estimate = at_rest(Measurement(0.0, 0.0, math.pi - 0.01, 0.0, 0.0, 0.002))
+    for k in range(300):
+        heading = math.remainder(math.pi - 0.01 + 0.002 * 0.1 * k, 2.0 * math.pi)
+        estimate = step(estimate, Measurement(0.0, 0.0, heading, 0.0, 0.0, 0.002))
+    assert math.remainder(estimate.psi - heading, 2.0 * math.pi) == pytest.approx(0.0, abs=2e-3)
+    assert estimate.r == pytest.approx(0.002, abs=2e-4)

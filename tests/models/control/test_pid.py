@@ -1,0 +1,114 @@
+"""Control law against closed forms of the loop it makes with an ideal ship."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shipcosim.models.control import pid as control
+from shipcosim.models.control.observer import DpShip, Estimate
+from shipcosim.models.control.pid import ControlParameters, Desired, at_rest
+from shipcosim.models.core.kinematics import to_body
+
+FREE = DpShip(damping_surge=0.0, damping_sway=0.0, damping_yaw=0.0)
+PARAMETERS = ControlParameters()
+MASS = np.array(
+    [[FREE.mass_surge, 0.0, 0.0], [0.0, FREE.mass_sway, FREE.mass_sway_yaw], [0.0, FREE.mass_sway_yaw, FREE.mass_yaw]]
+)
+CALM = (0.0, 0.0, 0.0)
+STAY = Desired(*(0.0,) * 9)
+
+
+def ask(estimate, desired=STAY, state=None, wind=CALM, parameters=PARAMETERS):
+    state = state or at_rest(wind)
+    return control.step(state, estimate, desired, state[-3:], wind, 0.1, ship=FREE, parameters=parameters)
+
+
+def sail(start, seconds, *, force=CALM, most=math.inf, parameters=PARAMETERS, desired=STAY):
+    """Position and heading, every 0.1 s, of a ship of known mass that gets what is asked for, up to a limit of force.
+
+    `force` is a constant load in body axes.
+    """
+    position, velocity, state, rows = np.array(start, float), np.zeros(3), at_rest(CALM), []
+    given = np.zeros(3)
+    for k in range(round(10 * seconds)):
+        pushed = np.array(force(0.1 * k) if callable(force) else force)
+        estimate = Estimate(*position, *velocity)
+        state = control.step(state, estimate, desired, tuple(given), CALM, 0.1, ship=FREE, parameters=parameters)
+        given = np.clip(state[-3:], [-most, -most, -14.0 * most], [most, most, 14.0 * most])
+        for _ in range(10):
+            u, v, r = velocity
+            c, s = math.cos(position[2]), math.sin(position[2])
+            velocity = velocity + 0.01 * (np.linalg.solve(MASS, given + pushed) + [r * v, -r * u, 0.0])
+            position = position + 0.01 * np.array([c * u - s * v, s * u + c * v, r])
+        rows.append(position)
+    return np.array(rows)
+
+
+def test_ship_at_rest_on_her_place_is_left_alone():
+    assert ask(Estimate(0.0, 0.0, 0.0))[-3:] == (0.0, 0.0, 0.0)
+
+
+def test_wind_is_met_by_its_opposite():
+    assert ask(Estimate(0.0, 0.0, 0.0), wind=(-1e3, 2e3, 3e4))[-3:] == pytest.approx((1e3, -2e3, -3e4))
+
+
+def test_loop_without_integral_is_critically_damped_at_its_frequencies():
+    parameters = replace(PARAMETERS, integral_ratio=0.0, damping_ratio=1.0)
+    t = 0.1 * np.arange(1, 501)
+    rows = sail((2.0, 0.0, 0.0), 50.0, parameters=parameters)
+    w = parameters.surge_frequency
+    np.testing.assert_allclose(rows[:, 0], 2.0 * (1.0 + w * t) * np.exp(-w * t), atol=0.03)  # sampled, so not exact
+    rows = sail((0.0, 0.0, 0.1), 50.0, parameters=parameters)
+    w = parameters.yaw_frequency
+    np.testing.assert_allclose(rows[:, 2], 0.1 * (1.0 + w * t) * np.exp(-w * t), atol=0.0025)
+    assert np.abs(rows[:, 1]).max() < 0.01  # the coupling of sway and yaw in the mass is accounted for
+
+
+def test_reference_is_followed_without_error_by_a_ship_of_known_mass():
+    t = 7.0
+    desired = Desired(0.5, -0.2, 0.3, 0.1, -0.05, 0.01, 0.004, 0.003, 0.001)
+    u, v = to_body(0.3, 0.1, -0.05)
+    X, Y, N = ask(Estimate(0.5, -0.2, 0.3, u, v, 0.01), desired)[-3:]
+    u_dot, v_dot = to_body(0.3, 0.004, 0.003)
+    assert (X, Y, N) == pytest.approx(tuple(MASS @ [u_dot, v_dot, 0.001])), t
+
+
+@pytest.mark.parametrize("heading", [0.7, -2.5])
+def test_turning_everything_turns_no_load(heading):
+    c, s = math.cos(heading), math.sin(heading)
+    straight = ask(Estimate(1.0, 2.0, 0.0, 0.1, 0.2, 0.01))
+    turned = ask(Estimate(c - 2.0 * s, s + 2.0 * c, heading, 0.1, 0.2, 0.01), STAY._replace(psi=heading))
+    assert turned[-3:] == pytest.approx(straight[-3:])
+
+
+def test_integral_takes_up_a_constant_force_at_any_heading():
+    for heading in (0.0, 2.0):
+        rows = sail((0.0, 0.0, heading), 400.0, force=(5e3, -8e3, 4e4), desired=STAY._replace(psi=heading))
+        assert np.abs(rows[-1] - [0.0, 0.0, heading]).max() < 1e-3
+
+
+def test_far_away_the_ship_is_pulled_no_harder_than_at_the_limit():
+    near, far = (ask(Estimate(distance, 0.0, 0.0), state=at_rest(CALM)) for distance in (2.5, 800.0))
+    assert far.tau_X == pytest.approx(near.tau_X)
+    assert abs(near.tau_X) > abs(ask(Estimate(2.4, 0.0, 0.0)).tau_X)
+
+
+def test_what_was_integrated_while_overloaded_does_not_carry_the_ship_past_her_place():
+    def storm(t):
+        return (25e3, 0.0, 0.0) if t < 100.0 else CALM
+
+    never = replace(PARAMETERS, missed_force_max=1e12, position_error_max=1e6)
+    wound_up = sail((0.0, 0.0, 0.0), 1500.0, force=storm, most=20e3, parameters=never)
+    rows = sail((0.0, 0.0, 0.0), 1500.0, force=storm, most=20e3)
+    assert wound_up[1000:, 0].min() < -10.0
+    assert rows[999, 0] > 20.0
+    assert rows[1000:, 0].min() > -2.0
+    assert np.abs(rows[-1]).max() < 0.05
+
+
+def test_errors_are_distance_and_shortest_turn():
+    distance, turn = control.errors(Estimate(3.0, 4.0, 3.1), STAY._replace(psi=-3.1))
+    assert distance == 5.0
+    assert turn == pytest.approx(6.2 - 2.0 * math.pi)

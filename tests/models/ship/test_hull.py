@@ -1,0 +1,133 @@
+"""Hull loads against integrals by strips, symmetry, the source's polynomial written out, and energy."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shipcosim.models.ship import hull as models
+from shipcosim.models.ship.hull import HullParameters, hull_loads
+from shipcosim.models.ship.vessel import accelerations
+from shipcosim.models.ships import parameters
+
+LONG = HullParameters()
+SHORT = parameters(HullParameters, "gunnerus-28m9", "vessel")
+RANDOM = np.random.default_rng(1)
+ANY_VELOCITY = RANDOM.uniform(-1.0, 1.0, (3, 5000)) * [[8.0], [3.0], [0.3]]
+
+
+def mass_matrix(hull):
+    static = hull.mass * hull.centre_of_gravity_x
+    return np.array(
+        [
+            [hull.mass + hull.A11, 0.0, 0.0],
+            [0.0, hull.mass + hull.A22, static + hull.A26],
+            [0.0, static + hull.A62, hull.inertia_yaw + hull.A66],
+        ]
+    )
+
+
+@pytest.mark.parametrize(
+    "v, r",
+    [(1.0, 0.0), (1.0, 0.02), (0.1, 0.08), (-0.3, 0.05), (0.2, -0.06), (0.0, 0.1), (0.5, 0.5 / 16.95), (0.0, 0.0)],
+)
+def test_cross_flow_is_the_sum_over_strips(v, r):
+    x = (np.arange(100_000) + 0.5) / 100_000 * 33.9 - 16.95
+    strips = -0.5 * 1025.0 * 1.5 * 2.786 * np.abs(v + x * r) * (v + x * r) * (33.9 / len(x))
+    _, Y, N = models.cross_flow(0.0, v, r, hull=LONG)
+    assert Y == pytest.approx(np.sum(strips), rel=1e-8, abs=1e-6)
+    assert N == pytest.approx(np.sum(x * strips), rel=1e-8, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", models.CONTRIBUTIONS)
+@pytest.mark.parametrize("hull", [LONG, SHORT], ids=["long", "short"])
+def test_port_mirrors_starboard(name, hull):
+    load, _ = models.CONTRIBUTIONS[name]
+    u, v, r = ANY_VELOCITY
+    X, Y, N = load(u, v, r, hull=hull)
+    np.testing.assert_allclose(load(u, -v, -r, hull=hull), (X, -Y, -N), rtol=1e-12)
+
+
+def test_added_mass_does_no_work():
+    u, v, r = ANY_VELOCITY
+    X, Y, N = models.added_mass_coriolis(u, v, r, hull=LONG)
+    np.testing.assert_allclose(X * u + Y * v + N * r, 0.0, atol=1e-6 * np.max(np.abs(N * r)))
+
+
+def test_the_water_never_gives_the_long_hull_energy():
+    u, v, r = ANY_VELOCITY
+    X, Y, N = hull_loads(u, v, r, hull=LONG)
+    assert np.max(X * u + Y * v + N * r) <= 0.0
+
+
+def test_short_hull_is_the_source_polynomial_which_holds_the_added_mass(shared):
+    """Parameter sheet 2.1 with Xuu as u abs(u): C_A in it, so counted once."""
+    source = json.loads((shared / "reference/data/gunnerus_28p9_simval_hull.json").read_text())
+    u, v, r = ANY_VELOCITY
+    found = hull_loads(u, v, r, hull=SHORT)
+    names = dict(source["coefficients_SI"], u=u, v=v, r=r, Xuu=0.0, Xuuu=0.0)
+    drag = (-2100.0 * u * np.abs(u), 0.0, 0.0)
+    for axis, extra, load in zip("XYN", drag, found, strict=True):
+        formula = source[axis].replace("^", "**")
+        for letter in "uvr":
+            formula = formula.replace(f"|{letter}|", f"abs({letter})")
+        np.testing.assert_allclose(load, eval(formula, {}, names) + extra, rtol=1e-9, atol=1e-3)
+
+
+def test_only_what_a_hull_has_coefficients_for_is_computed():
+    assert LONG.contributions == ("added_mass_coriolis", "quadratic_damping", "cross_flow", "lift")
+    assert SHORT.contributions == ("added_mass_coriolis", "quadratic_damping", "polynomial")
+    assert replace(LONG, N_r=np.zeros(2)).contributions[1] == "linear_damping"
+
+
+def test_inverse_mass_is_the_inverse():
+    hull = replace(LONG, centre_of_gravity_x=0.5, A62=-6e5)
+    i11, i22, i26, i62, i66 = hull.inverse_mass
+    inverse = [[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]
+    np.testing.assert_allclose(mass_matrix(hull) @ inverse, np.eye(3), atol=1e-12)
+
+
+def test_mass_scale_is_a_ship_of_that_mass_and_inertia_in_the_same_water():
+    """Heavier by 15 % with her added mass: the same accelerations as of a hull whose numbers say so, turning too."""
+    scaled = replace(LONG, mass_scale=1.15, centre_of_gravity_x=0.7)
+    heavy = replace(LONG, mass=1.15 * 531e3, inertia_yaw=1.15 * 43.0e6, centre_of_gravity_x=0.7)
+    motion = (*ANY_VELOCITY, 2e4, -1e4, 3e5)
+    np.testing.assert_allclose(accelerations(*motion, hull=scaled), accelerations(*motion, hull=heavy), rtol=1e-12)
+    at_rest = accelerations(0.0, 0.0, 0.0, 1e4, 0.0, 0.0, hull=replace(LONG, mass_scale=1.15))
+    assert at_rest == pytest.approx((1e4 / (1.15 * 531e3 + 26_550.0), 0.0, 0.0))
+
+
+def test_drag_scale_multiplies_the_resistance_ahead_and_nothing_else():
+    hull = replace(LONG, X_u=-400.0, Y_v=-300.0)
+    u, v, r = ANY_VELOCITY
+    X, Y, N = hull_loads(u, v, r, hull=replace(hull, drag_scale=2.5))
+    X_once, Y_once, N_once = hull_loads(u, v, r, hull=hull)
+    np.testing.assert_allclose(X - X_once, 1.5 * (-400.0 * u - 1645.0 * u * np.abs(u)), rtol=1e-9, atol=1e-6)
+    assert np.array_equal(Y, Y_once) and np.array_equal(N, N_once)
+
+
+def test_cross_flow_scale_multiplies_the_strips_and_nothing_else():
+    u, v, r = ANY_VELOCITY
+    found = np.subtract(hull_loads(u, v, r, hull=replace(LONG, cross_flow_scale=1.4)), hull_loads(u, v, r, hull=LONG))
+    np.testing.assert_allclose(found, 0.4 * np.array(models.cross_flow(u, v, r, hull=LONG)), rtol=1e-6, atol=1e-3)
+
+
+def test_cross_flow_scale_of_a_hull_without_strips_is_on_damping_in_sway_and_yaw():
+    u, v, r = ANY_VELOCITY
+    hull = replace(SHORT, Y_v=-500.0, Y_r=100.0, N_v=200.0, N_r=-3e4, X_u=-50.0, N_modrr=-1e6)
+    found = np.subtract(hull_loads(u, v, r, hull=replace(hull, cross_flow_scale=1.4)), hull_loads(u, v, r, hull=hull))
+    Y = -500.0 * v + 100.0 * r + hull.Y_modvv * v * np.abs(v)
+    N = 200.0 * v - 3e4 * r - 1e6 * r * np.abs(r)
+    np.testing.assert_allclose(found, (0.0 * u, 0.4 * Y, 0.4 * N), rtol=1e-6, atol=1e-2)
+
+
+@pytest.mark.parametrize("hull", [LONG, SHORT], ids=["long", "short"])
+@pytest.mark.parametrize("name", ["mass_scale", "drag_scale", "cross_flow_scale"])
+def test_scales_as_an_array_are_as_many_hulls(name, hull):
+    scales = np.array([1.0, 1.3, 0.6])
+    motion = (2.0, -0.4, 0.05, 1e4, 2e3, -3e4)
+    each = [accelerations(*motion, hull=replace(hull, **{name: float(scale)})) for scale in scales]
+    together = accelerations(*motion, hull=replace(hull, **{name: scales}))
+    np.testing.assert_allclose(np.broadcast_arrays(*together), np.transpose(each), rtol=1e-12)
+    np.testing.assert_array_equal(each[0], accelerations(*motion, hull=hull))

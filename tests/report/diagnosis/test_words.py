@@ -1,0 +1,135 @@
+"""What a diagnosis says in words: numbers with fitting digits, causes, verdicts, what to do next."""
+
+import pytest
+
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding, Prescription
+from shipcosim.report.diagnosis.numbers import plain, plus_minus, vector
+from shipcosim.report.diagnosis.words import ADVICE, estimate_rows, next_steps, outcome, title, told, where
+
+LOSS = Finding("thrust_loss", "port", parameters={"loss": Estimate(0.337, 0.0121, "1")})
+GAP = Finding("gap", kind="data", segments=((463.0, 499.0), (912.0, 1001.0)), channels=("north", "east"))
+
+
+def pair(cause, north, east, unit, std=0.01):
+    return Finding(cause, parameters={"north": Estimate(north, std, unit), "east": Estimate(east, std, unit)})
+
+
+@pytest.mark.parametrize(
+    ("estimate", "text"),
+    [
+        (Estimate(0.33729, 0.0121, "1"), "0.337 ± 0.012"),
+        (Estimate(-4.43, 0.15, "deg"), "−4.43 ± 0.15°"),
+        (Estimate(-4.43, 0.4, "deg"), "−4.4 ± 0.4°"),
+        (Estimate(4122.8, 80.4, "N"), "4.12 ± 0.08 kN"),
+        (Estimate(400.0, 80.4, "N"), "400 ± 80 N"),
+        (Estimate(2.0, 0.0, "s"), "2.00 ± 0.00 s"),
+    ],
+)
+def test_number_has_the_digits_that_its_uncertainty_is_worth(estimate, text):
+    assert plus_minus(estimate) == text
+
+
+def test_parts_of_a_vector_share_one_unit():
+    rows = estimate_rows(pair("tow", 4122.0, 87.0, "N", std=80.0))
+    assert [unit for _, _, _, unit in rows] == ["kN", "kN"]
+
+
+@pytest.mark.parametrize(
+    ("north", "east", "direction"),
+    [(1.0, 0.0, "000°"), (0.0, 1.0, "090°"), (-1.0, 0.0, "180°"), (0.0, -1.0, "270°"), (1.0, -1e-4, "000°")],
+)
+def test_direction_of_a_vector_is_clockwise_from_north(north, east, direction):
+    assert vector(Estimate(north, 0.1, "m/s"), Estimate(east, 0.1, "m/s")).endswith(direction)
+
+
+def test_what_is_not_known_is_a_dash():
+    assert plain(None) == plain(float("nan")) == "–"
+
+
+@pytest.mark.parametrize(
+    ("finding", "said"),
+    [
+        (LOSS, "the port thruster delivers 34 ± 1 % less thrust"),
+        (pair("current", 0.0, -0.2, "m/s"), "a current of 0.200 ± 0.010 m/s towards 270°"),
+        (Finding("mass", parameters={"scale": Estimate(0.9, 0.02, "1")}), "10 ± 2 % lighter"),
+        (Finding("drag", parameters={"scale": Estimate(2.2, 0.1, "1")}), "120 ± 10 % larger"),
+        (Finding("heading_bias", parameters={"offset": Estimate(-3.0, 0.2, "deg")}), "shows 3.0 ± 0.2° too little"),
+        (
+            Finding("azimuth_offset", "port", parameters={"offset": Estimate(5.0, 0.2, "deg")}),
+            "points 5.0 ± 0.2° clockwise of what its feedback says",
+        ),
+        (
+            Finding("rpm_offset", "port", parameters={"offset": Estimate(8.0, 0.3, "rpm")}),
+            "logged 8.0 ± 0.3 rpm too high",
+        ),
+        (
+            Finding("lever_arm", parameters={"x": Estimate(-4.0, 0.3, "m"), "y": Estimate(2.0, 0.3, "m")}),
+            "4.0 ± 0.3 m aft and 2.0 ± 0.3 m to starboard",
+        ),
+        (GAP, "data was lost or filled in for 125 s in 2 stretches"),
+        (Finding("sign", kind="data", channels=("sway",)), "wrong sign (sway)"),
+    ],
+    ids=lambda value: value.cause if isinstance(value, Finding) else "",
+)
+def test_sense_and_size_of_a_cause_are_told(finding, said):
+    assert said in told(finding)
+
+
+def test_onset_is_told():
+    finding = Finding("mass", parameters={"scale": Estimate(1.1, 0.02, "1")}, onset=612.0)
+    assert told(finding).endswith(", from 612 s on")
+
+
+def test_cause_of_ones_own_speaks_by_its_own_sentence():
+    effect = read_catalogue()["drag"].model_copy(update={"cause": "ice", "sentence": "Ice is on the hull"})
+    ice = Finding("ice", parameters={"thickness": Estimate(0.2, 0.05, "m")})
+    assert told(ice, {"ice": effect}) == "ice is on the hull: thickness 0.20 ± 0.05 m"
+
+
+def test_every_cause_of_the_catalogue_has_advice():
+    assert set(read_catalogue()) == set(ADVICE)
+
+
+@pytest.mark.parametrize(
+    ("diagnosis", "word", "said"),
+    [
+        (Diagnosis("consistent"), "CONSISTENT", ["agree, within noise"]),
+        (Diagnosis("named", (LOSS,)), "NAMED", ["One thing is not as modelled", "port thruster"]),
+        (Diagnosis("named", (LOSS, pair("tow", 1.0, 2.0, "N"))), "NAMED", ["2 things are", " and a pull of"]),
+        (Diagnosis("named", (GAP,)), "NAMED", ["The log is faulty", "Apart from that, simulation and log agree"]),
+        (Diagnosis("named", (GAP, LOSS)), "NAMED", ["port thruster", "The log itself is faulty: data was lost"]),
+        (Diagnosis("unknown", (GAP,)), "UNKNOWN", ["none of the known causes explains", "The log itself is faulty"]),
+        (
+            Diagnosis("ambiguous", indistinguishable=(Candidate("mass", None, 0.6), Candidate("drag", None, 0.4))),
+            "AMBIGUOUS",
+            ["cannot tell which: mass or drag"],
+        ),
+    ],
+    ids=["consistent", "one", "two", "data", "both", "unknown", "ambiguous"],
+)
+def test_verdict_is_one_sentence_on_model_and_log(diagnosis, word, said):
+    found, sentence = outcome(diagnosis)
+    assert found == word and all(text in sentence for text in said)
+
+
+def test_next_steps_name_what_to_inspect_what_to_run_and_what_stays_open():
+    steps = next_steps(Diagnosis("named", (GAP, LOSS), not_testable=("drag", "mass")), "out/extended.ssp")
+    text = "\n".join(steps)
+    assert "Inspect the port thruster" in text and "shipcosim simulate out/extended.ssp" in text
+    assert "Correct the logging" in text and "says nothing about drag or mass" in text
+
+
+def test_ambiguous_log_asks_for_the_prescribed_manoeuvre():
+    manoeuvre = Prescription("heading_turn", 8.0, (("wind_scale", "current"),))
+    (step, *_) = next_steps(Diagnosis("ambiguous", prescription=manoeuvre))
+    assert "heading turn, 8 minutes" in step and "wind scale from current" in step
+
+
+def test_consistent_log_asks_for_nothing():
+    assert next_steps(Diagnosis("consistent")) == ["Nothing needs to be done."]
+
+
+def test_place_in_the_log_and_title():
+    assert where(GAP) == "463–499 s, 912–1001 s" and where(LOSS) == "the whole log"
+    assert title("rpm_offset", "tunnel") == "Rpm offset of tunnel"

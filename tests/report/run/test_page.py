@@ -1,0 +1,199 @@
+"""The page as a browser shows it."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.report import write_report
+from shipcosim.report.run.page import render
+from shipcosim.scenario import Scenario
+
+
+@pytest.fixture(scope="module")
+def file(four_corner, scenario, verdicts, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "report.html"
+    table = four_corner()
+    table.attrs |= {"engine": "fmpy", "start_values": '{"vessel.length": 33.9, "vessel.breadth": 9.6, "seed": 7}'}
+    write_report(table, path, scenario=scenario, verdicts=verdicts)
+    return path
+
+
+@pytest.fixture
+def page(browse, file):
+    return browse(file)
+
+
+def test_page_opens_without_error_and_without_network(page):
+    assert page.errors() == []
+    assert page.requests() == []
+    assert "http" not in (page.ask("return [...document.querySelectorAll('[src],link')].map(e => e.outerHTML).join()"))
+
+
+def test_header_says_what_it_is_and_how_it_went(page):
+    assert page.text("h1") == "Four corners & more"
+    assert "FAIL" in page.text("#verdict") and "1 of 11" in page.text("#verdict")
+
+
+def test_expectations_are_listed_in_degrees_with_pass_or_fail(page):
+    rows = page.text("#expectations tbody").splitlines()
+    assert sum("✓ pass" in row for row in rows) == 10 and sum("✗ FAIL" in row for row in rows) == 1
+    assert any("vessel.psi" in row and "-45" in row and "deg" in row for row in rows)
+    assert any("(20,\u00a0-20)" in row for row in rows)
+
+
+def test_track_is_east_right_and_north_up_to_one_scale(page):
+    scale = page.ask(
+        "const {xaxis, yaxis} = document.getElementById('track')._fullLayout;"
+        "return [xaxis.c2p(1000) - xaxis.c2p(0), yaxis.c2p(0) - yaxis.c2p(1000)]"
+    )
+    assert scale[0] > 0 and scale == pytest.approx([scale[0]] * 2, rel=1e-5)
+
+
+def test_ranges_of_the_chart_hold_the_track_and_every_outline(page):
+    ranges = page.ask("const l = document.getElementById('track')._fullLayout; return [l.xaxis.range, l.yaxis.range]")
+    for name in ("track", "start", "end", "ship on the way"):
+        for axis, (low, high) in zip(page.trace(name), ranges, strict=True):
+            assert low < min(v for v in axis if v is not None) and max(v for v in axis if v is not None) < high
+
+
+def test_ship_is_outlined_to_scale_at_start_end_and_on_the_way(page, four_corner):
+    """Each leg is 20 m and an outline is due every 0.3 lengths, 10.2 m: one a leg; two in the turns of 45 deg."""
+    outlines = page.trace("ship on the way")[0].count(None)
+    assert 6 <= outlines <= 12
+    for name, row in (("start", 0), ("end", -1)):
+        east, north = (np.array(axis[:-1], float) for axis in page.trace(name))
+        table = four_corner()
+        x, y = (float(table[f"vessel.{axis}"][row]) for axis in "xy")
+        corners = np.hypot(east - y, north - x)
+        assert corners.max() == pytest.approx(np.hypot(16.95, 0.44 * 9.6), rel=0.01)  # a corner of the stern
+        assert north.max() - north.min() == pytest.approx(33.9, abs=0.1)  # she heads north
+        assert east.max() - east.min() == pytest.approx(9.6, abs=0.15)
+
+
+def test_every_section_draws_its_curves(page):
+    panels = page.panels()
+    assert {"measured", "set point", "reference", "ship"} <= set(panels["North [m]"])
+    assert {"measured", "set point", "reference", "ship"} <= set(panels["Heading [deg]"])
+    assert "ship − reference" in panels["East error [m]"]
+    assert panels["Yaw moment [kN·m]"] == ["wind", "drift", "hull", "thrusters", "commanded"]
+    assert panels["Thrust, tunnel [kN]"] == ["commanded", "delivered"]
+    assert panels["Azimuth [deg]"] == ["port commanded", "port", "starboard commanded", "starboard"]
+    assert panels["Shaft speed, port, starboard [rpm]"] == ["port", "starboard"]
+    assert panels["Shaft speed, tunnel [rpm]"] == ["tunnel"]
+    assert panels["Power [kW]"] == ["port", "starboard", "tunnel"]
+    assert panels["Wind speed [m/s]"] == ["with gusts", "mean"]
+    assert {"Current speed [m/s]", "Current to [deg]", "Waves [m]", "At a limit, failed"} <= set(panels)
+
+
+def test_limits_are_drawn_in_their_windows_and_tell_pass_from_fail(page):
+    panels = page.panels()
+    assert panels["North [m]"].count("limit, held") == 5
+    assert panels["Position error [m]"].count("limit, held") == 5
+    assert "limit, missed" in panels["port.power [kW]"]
+    colours = page.ask(
+        "return [...document.querySelectorAll('.panel')].flatMap(p => p.data)"
+        ".filter(t => t.name?.startsWith('limit')).map(t => t.name + t.line.color)"
+    )
+    assert len(set(colours)) == 2
+
+
+def test_zoom_in_one_panel_shows_the_same_time_in_all(page):
+    page.ask("Plotly.relayout(document.getElementById('panel-0'), {'xaxis.range[0]': 200, 'xaxis.range[1]': 300})")
+    page.wait("return document.body.dataset.drawn === 'all'")
+    ranges = page.ask("return [...document.querySelectorAll('.panel')].map(p => p._fullLayout.xaxis.range)")
+    assert ranges == [[200, 300]] * len(ranges) and len(ranges) > 15
+    page.driver.find_element(By.ID, "reset").click()
+    page.wait("return document.body.dataset.drawn === 'all'")
+    ranges = page.ask("return [...document.querySelectorAll('.panel')].map(p => p._fullLayout.xaxis.range)")
+    assert ranges == [[0, 1100]] * len(ranges)
+
+
+def test_pointer_over_a_panel_names_all_its_values_and_places_the_ship_on_the_chart(page):
+    panel = page.driver.find_element(By.ID, "panel-0")
+    page.ask("arguments[0].scrollIntoView({block: 'center'})", panel)
+    ActionChains(page.driver).move_to_element(panel).perform()
+    page.wait("return document.querySelector('#panel-0 .hoverlayer text') !== null")
+    hover = page.text("#panel-0 .hoverlayer") or page.ask(
+        "return document.querySelector('#panel-0 .hoverlayer').textContent"
+    )
+    assert all(label in hover for label in ("ship", "reference", "set point", " m"))
+    page.wait("return document.getElementById('cursor').innerText.startsWith('t = ')")
+    assert len(page.trace("at the cursor")[0]) > 5
+
+
+def test_any_signal_can_be_chosen_and_found_by_its_name(page):
+    page.driver.find_element(By.ID, "filter").send_keys("tau_wind")
+    visible = [label.text for label in page.driver.find_elements(By.CSS_SELECTOR, "#choices label") if label.text]
+    assert len(visible) == 3 and all("tau_wind" in label for label in visible)
+    for name in ("vessel.tau_wind_X", "vessel.tau_wind_Y", "vessel.tau_wind_N"):
+        page.driver.find_element(By.CSS_SELECTOR, f"#choices input[value='{name}']").click()
+    drawn = page.ask("return [...document.querySelectorAll('#chosen .panel')].map(p => p.data.map(t => t.name))")
+    assert drawn == [["vessel.tau_wind_X", "vessel.tau_wind_Y"], ["vessel.tau_wind_N"]]
+
+
+def test_interrupted_run_is_marked_as_partial(browse, four_corner, tmp_path):
+    table = four_corner().isel(time=slice(0, 400))
+    table.attrs["complete"] = 0
+    write_report(table, tmp_path / "partial.html")
+    page = browse(tmp_path / "partial.html")
+    assert "PARTIAL" in page.text("#verdict") and "199.5 s" in page.text("#verdict")
+    assert page.errors() == []
+
+
+def test_system_without_a_ship_shows_its_first_signals(browse, tmp_path):
+    time = np.linspace(0.0, 10.0, 101)
+    table = xr.Dataset(
+        {"mass.position": ("time", np.cos(time), {"units": "m"}), "on": ("time", time > 5.0, {"units": ""})},
+        coords={"time": time},
+    )
+    write_report(table, tmp_path / "spring.html")
+    page = browse(tmp_path / "spring.html")
+    assert page.text("#track") is None
+    assert page.panels() == {"mass.position [m]": ["mass.position"], "on": ["on"]}
+    assert page.errors() == []
+
+
+def test_page_of_a_single_row_opens(browse, four_corner, tmp_path):
+    write_report(four_corner().isel(time=[0]), tmp_path / "start.html")
+    page = browse(tmp_path / "start.html")
+    assert page.errors() == []
+
+
+def test_texts_from_files_stay_texts(browse, four_corner, tmp_path):
+    evil = "</script><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">"
+    table = four_corner().isel(time=slice(None, None, 20)).rename({"vessel.u": f"vessel.{evil}"})
+    table.attrs["remark"] = evil
+    table[f"vessel.{evil}"].attrs |= {"units": evil, "long_name": evil}
+    write_report(table, tmp_path / "evil.html", scenario=Scenario(description=evil, stop_time=1.0, step_size=0.5))
+    page = browse(tmp_path / "evil.html")
+    assert page.text("h1") == evil
+    page.driver.find_element(By.CSS_SELECTOR, "#choices input[value*='script']").click()
+    assert page.ask("return document.title") != "owned"
+    assert page.requests() == []
+
+
+def test_page_stays_small_and_says_what_it_does_not_draw(four_corner, browse, tmp_path):
+    write_report(four_corner(0.05), tmp_path / "long.html")
+    assert (tmp_path / "long.html").stat().st_size < 8e6
+    page = browse(tmp_path / "long.html")
+    assert "of 22001 rows" in page.text("#thinning")
+
+
+def test_short_run_is_drawn_row_by_row(page):
+    assert page.text("#thinning") is None
+    assert page.ask("return document.getElementById('panel-0').data.at(-1).x.length") == 2201
+
+
+def test_page_that_cannot_be_written_leaves_nothing(four_corner, tmp_path):
+    with pytest.raises(ShipcosimError, match="page.html"):
+        write_report(four_corner().isel(time=slice(None, None, 20)), tmp_path / "missing" / "page.html")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_same_run_makes_the_same_page(four_corner):
+    assert render(four_corner().isel(time=slice(None, None, 20))) == render(
+        four_corner().isel(time=slice(None, None, 20))
+    )

@@ -1,0 +1,130 @@
+"""Scenario files of OSP: what they mean is what libcosim does with them."""
+
+import json
+
+import pytest
+import yaml
+
+from shipcosim.cosim import simulate
+from shipcosim.errors import ShipcosimError
+from shipcosim.scenario.osp import read_osp_scenario, write_osp_scenario
+
+EVENTS = [
+    {"time": 0.1, "model": "law", "variable": "u", "action": "override", "value": 2.5},
+    {"time": 0.2, "model": "law", "variable": "u", "action": "bias", "value": -0.25},
+    {"time": 0.3, "variable": "u", "action": "reset"},
+    {"time": 0.43, "model": "plant", "variable": "y", "value": 1.5},
+    {"time": 0.5, "model": "plant", "variable": "y", "action": "bias", "value": 1e-1},
+]
+DEFAULTS = {"model": "law", "action": "override"}
+
+
+def written(path, **content):
+    text = json.dumps(content) if path.suffix == ".json" else yaml.safe_dump(content)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("suffix", [".json", ".yaml"])
+@pytest.mark.parametrize("end", [None, 0.2, 0.72, 100.0])
+def test_events_defaults_and_end_act_as_in_libcosim(make_system, make_scenario, tmp_path, suffix, end):
+    pytest.importorskip("libcosimpy.CosimExecution", reason="needs libcosim")
+    from osp_execution import assert_same, rows_of
+
+    from shipcosim.cosim.export.osp import write_osp
+
+    system = make_system(
+        {"plant": ("integrator", {"y_start": 0.3}), "law": ("gain", {"factor": -0.9})},
+        ["plant.y -> law.u", "law.y -> plant.u"],
+    )
+    more = {} if end is None else {"end": end}
+    file = written(tmp_path / f"events{suffix}", description="five", defaults=DEFAULTS, events=EVENTS, **more)
+    scenario = make_scenario(1.2, 0.05)
+    read = read_osp_scenario(file, 0.05, 1.2)
+    assert read.description == "five"
+    assert [problem.found[:18] for problem in read.remarks] == ([] if end else ["It has no end: as "])
+    write_osp(system, scenario, tmp_path / "osp")
+    table = simulate(system, scenario.model_copy(update={"events": read.events}))
+    assert_same(table, rows_of(tmp_path / "osp", system, 24, file))
+
+
+def test_times_count_from_the_start_of_the_run_and_move_up_to_a_step(tmp_path):
+    file = written(tmp_path / "events.json", events=EVENTS[3:4] + EVENTS[:1], defaults=DEFAULTS, end=0.6)
+    read = read_osp_scenario(file, 0.05, 12.0, start_time=10.0)
+    assert [round(event.time, 9) for event in read.events] == [10.45, 10.1, 10.6, 10.6]
+    assert [event.changes[0][:2] for event in read.events[2:]] == [("reset", "plant.y"), ("reset", "law.u")]
+
+
+def test_yaml_takes_numbers_and_truths_as_libcosims_reader_does(tmp_path):
+    file = tmp_path / "events.yaml"
+    file.write_text(
+        "events:\n"
+        "- {time: 0, model: a, variable: x, action: override, value: 1e5}\n"
+        "- {time: 0, model: a, variable: b, action: override, value: true}\n"
+        "- {time: '0.5', model: a, variable: n, action: override, value: '7'}\n"
+        "end: 9\n"
+    )
+    values = [event.changes[0][2] for event in read_osp_scenario(file, 0.5, 2.0).events]
+    assert values == [1e5, True, 7] and [type(value) for value in values] == [float, bool, int]
+
+
+def test_what_is_written_is_read_back(tmp_path):
+    events = [EVENTS[0], EVENTS[1], EVENTS[4]]
+    for name in ("a.json", "a.yaml"):
+        write_osp_scenario(tmp_path / name, "Größe", events, 1e3)
+        read = read_osp_scenario(tmp_path / name, 0.05, 1.0)
+        assert read.description == "Größe" and read.remarks == []
+        changes = [(event.time, *event.changes[0]) for event in read.events]
+        wanted = [(e["time"], e["action"], f"{e['model']}.{e['variable']}", e["value"]) for e in events]
+        assert changes == wanted
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("[1, 2]", "It holds no object at its top."),
+        ("{", "cannot be read as JSON"),
+        ('{"events": [], "events": []}', "'events' is there twice"),
+        ('{"events": 3}', "'events' a list"),
+        ('{"events": [3]}', "event 1: An event has to be an object."),
+        ('{"events": [{}]}', "event 1: It has no time."),
+        ('{"events": [{"time": "soon"}]}', "time is 'soon'. Give it in seconds."),
+        (
+            '{"events": [{"time": 1, "variable": "b", "action": "reset"}]}',
+            "It has no model, and the defaults have none.",
+        ),
+        (
+            '{"events": [{"time": 1, "model": "a", "variable": "b", "action": "overide", "value": 1}]}',
+            "The action 'overide' is not known. There is: bias, override, reset. Did you mean 'override'?",
+        ),
+        ('{"events": [{"time": 1, "model": "a", "variable": "b", "action": "override"}]}', "It has no value."),
+        (
+            '{"events": [{"time": 1, "model": "a", "variable": "b", "action": "override", "value": NaN}]}',
+            "nan is no usable number.",
+        ),
+        (
+            '{"events": [{"time": 1, "model": "a", "variable": "b", "action": "bias", "value": true}]}',
+            "A bias of True.",
+        ),
+    ],
+)
+def test_a_faulty_file_is_refused_with_its_place(tmp_path, content, message):
+    file = tmp_path / "events.json"
+    file.write_text(content)
+    with pytest.raises(ShipcosimError) as error:
+        read_osp_scenario(file, 0.1, 1.0)
+    assert message in str(error.value) and str(file) in str(error.value)
+
+
+def test_aliases_of_yaml_are_refused(tmp_path):
+    file = tmp_path / "events.yml"
+    file.write_text("a: &a [1]\nevents: [*a, *a]\n")
+    with pytest.raises(ShipcosimError, match="alias"):
+        read_osp_scenario(file, 0.1, 1.0)
+
+
+def test_two_changes_of_a_signal_in_one_step_and_unknown_keys_are_remarked(tmp_path):
+    events = [EVENTS[0], EVENTS[0] | {"value": 3.0, "comment": "later"}]
+    read = read_osp_scenario(written(tmp_path / "events.json", events=events, end=1.0), 0.05, 1.0)
+    text = "\n".join(map(str, read.remarks))
+    assert "event 2: 'comment' is not used." in text and "law.u is changed twice in the step at 0.1 s" in text
