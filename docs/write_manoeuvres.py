@@ -10,9 +10,9 @@ import numpy as np
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.experiment.design import testability
 from shipcosim.diagnose.experiment.manoeuvres import library
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.innovations import Noise
-from shipcosim.diagnose.ship.model import plant_of
+from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -25,13 +25,13 @@ NOISE = Noise(WHITE, np.array([1e-3, 1e-3, 1e-4]), np.array([1e-5, 1e-5, 1e-6]))
 
 def tables():
     """Both tables as Markdown."""
-    plant = plant_of(read_system(ROOT / "ssp" / "gunnerus_open", fmus=[build_stale(ROOT)]))
-    manoeuvres = library(plant)
+    model = ship_model_of(read_system(ROOT / "ssp" / "gunnerus_open", fmus=[build_stale(ROOT)]))
+    manoeuvres = library(model)
     lines = ["| | manoeuvre | minutes |", "|---|---|---|"]
     lines += [f"| {i} | {one.name} | {one.minutes:g} |" for i, one in enumerate(manoeuvres, start=1)]
     numbers = " | ".join(str(i) for i in range(1, 1 + len(manoeuvres)))
     lines += ["", f"| cause of typical size | {numbers} |", "|---" * (1 + len(manoeuvres)) + "|"]
-    found = testability(plant, suspects(read_catalogue(), plant), NOISE, manoeuvres, WIND)
+    found = testability(model, hypotheses_of(read_catalogue(), model), NOISE, manoeuvres, WIND)
     lines += [f"| {label.replace('_', ' ')} | {' | '.join(map(_nats, nats))} |" for label, nats in found.items()]
     return "\n".join(lines) + "\n"
 

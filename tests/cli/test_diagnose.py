@@ -47,7 +47,7 @@ class Finding(Candidate):
     note: str | None = None
 
 
-class Prescription(Strict):
+class ExperimentDesign(Strict):
     manoeuvre: str
     minutes: float
     separates: list[tuple[str, str]]
@@ -78,7 +78,7 @@ class Schema(Strict):
     candidates: list[Candidate]
     indistinguishable: list[Candidate]
     not_testable: list[str]
-    prescription: Prescription | None
+    prescription: ExperimentDesign | None
     baseline: Baseline | None
     gain: Gain | None
 

@@ -73,4 +73,4 @@ def test_a_wrong_connection_is_found_there(log, root):
     diagnosis, details = diagnose(log, structure.checked())
     assert (diagnosis.verdict, named(diagnosis)) == ("named", [("connection", "port")])
     assert diagnosis.findings[0].note == "its rpm comes from starboard_rpm"
-    assert details.case.plant.wiring is None
+    assert details.problem.model.wiring is None

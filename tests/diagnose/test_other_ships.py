@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
-from shipcosim.diagnose.inference.fitting import Case
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.linearisation import advanced, linearise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.null_distribution import healthy_records
@@ -18,7 +18,7 @@ from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.pipeline import diagnose
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Drivers, Motion, loads, motion_rates, plant_of
+from shipcosim.diagnose.ship.model import Inputs, Motion, loads, motion_rates, ship_model_of
 from shipcosim.diagnose.ship.thrusters import pusher_of
 from shipcosim.models.propulsion.thruster import AzimuthParameters
 from shipcosim.series import write_table
@@ -31,73 +31,73 @@ short_usv = cache(lambda: usv.log(minutes=3.0))
 
 @cache
 def along(ship, log):
-    """Plant of a system, record and motion of a log of her."""
-    plant = plant_of(ship().checked())
-    record = record_of(log(), plant)
-    return plant, record, first_motion(record, plant)
+    """ShipModel of a system, record and motion of a log of her."""
+    model = ship_model_of(ship().checked())
+    record = record_of(log(), model)
+    return model, record, first_motion(record, model)
 
 
 def test_a_propeller_that_nothing_turns_pushes_where_the_system_points_it():
-    plant, record, _ = along(usv.structure, short_usv)
-    assert plant.thrusters == ["left", "right"] and plant.azimuths == []
+    model, record, _ = along(usv.structure, short_usv)
+    assert model.thrusters == ["left", "right"] and model.azimuths == []
     assert not any("irection" in remark for remark in record.remarks)
     units = {"left": (10.0, LEFT_TOE), "right": (0.0, 0.0)}
-    X, Y, N = loads(Motion(*np.zeros(6)), Drivers(0.0, units, None, None), plant)["left"]
+    X, Y, N = loads(Motion(*np.zeros(6)), Inputs(0.0, units, None, None), model)["left"]
     np.testing.assert_allclose(record.units["left"][1], LEFT_TOE)
     assert X > 0.0 and pytest.approx(np.tan(LEFT_TOE)) == Y / X
     assert pytest.approx(-2.2 * Y + 0.7 * X) == N
-    assert (pusher_of(plant, "left").axis, pusher_of(plant, "left").turns) == (LEFT_TOE, False)
+    assert (pusher_of(model, "left").axis, pusher_of(model, "left").turns) == (LEFT_TOE, False)
 
 
 def test_a_propeller_that_nothing_turns_can_lose_thrust_astern_and_has_no_offset_of_direction():
-    plant, *_ = along(usv.structure, short_usv)
-    labels = {suspect.label for suspect in suspects(read_catalogue(), plant)}
+    model, *_ = along(usv.structure, short_usv)
+    labels = {hypothesis.label for hypothesis in hypotheses_of(read_catalogue(), model)}
     assert {"thrust_loss of left", "rpm_offset of right", "reverse_loss"} <= labels
     assert not {"azimuth_offset of left", "azimuth_offset of right"} & labels
 
 
 def test_a_small_craft_is_moved_from_row_to_row_as_an_integrator_with_small_steps_moves_her():
     """Side forces of the propellers turn her away within a third of a row: one step of a row runs away."""
-    plant, record, motion = along(usv.structure, short_usv)
+    model, record, motion = along(usv.structure, short_usv)
     rows = np.arange(40, 100, 10)
-    found = np.stack(advanced(Motion(*(value[:-1] for value in motion)), record, plant))[:, rows]
-    right = np.stack([_integrated(motion, record, plant, row) for row in rows], axis=-1)
+    found = np.stack(advanced(Motion(*(value[:-1] for value in motion)), record, model))[:, rows]
+    right = np.stack([_integrated(motion, record, model, row) for row in rows], axis=-1)
     assert (np.abs(found - right) < [[2e-3], [2e-3], [1e-3], [5e-3], [2e-3], [1e-3]]).all()
 
 
-def _integrated(motion, record, plant, row):
+def _integrated(motion, record, model, row):
     def rates(t, state):
-        drivers = record.drivers(plant, t)
-        units = {name: tuple(series[row] for series in pair) for name, pair in drivers.units.items()}
-        here = Drivers(drivers.time[row], units, drivers.wind_speed[row], drivers.wind_from[row])
-        return np.array(motion_rates(Motion(*state), here, plant)) * record.step
+        inputs = record.inputs(model, t)
+        units = {name: tuple(series[row] for series in pair) for name, pair in inputs.units.items()}
+        here = Inputs(inputs.time[row], units, inputs.wind_speed[row], inputs.wind_from[row])
+        return np.array(motion_rates(Motion(*state), here, model)) * record.step
 
     return solve_ivp(rates, (0.0, 1.0), [value[row] for value in motion], rtol=1e-8, atol=1e-10).y[:, -1]
 
 
 def test_columns_of_a_small_craft_are_what_her_motion_changes_by():
-    plant, record, motion = along(usv.structure, short_usv)
+    model, record, motion = along(usv.structure, short_usv)
     turns = [{"left.thrust_loss": 0.1}, {"hull.drag_scale": 0.5}, {"right.rpm_offset": 10.0}]
-    linear = linearise(motion, record, plant, turns)
+    linear = linearise(motion, record, model, turns)
     start = Motion(*(value[:-1] for value in motion))
     for column, change in enumerate(turns, start=1):
-        other = plant.with_values({path: plant.get(path) + by for path, by in change.items()})
-        real = np.stack(advanced(start, record, other)) - np.stack(advanced(start, record, plant))
+        other = model.with_values({path: model.get(path) + by for path, by in change.items()})
+        real = np.stack(advanced(start, record, other)) - np.stack(advanced(start, record, model))
         told = -np.moveaxis(linear.driven[:, :6, column], 0, -1)
         apart = np.sqrt(((real - told) ** 2).sum(1) / (real**2).sum(1))
         assert apart[3] < 0.3 and (column == 2 or apart[5] < 0.4)  # surge; yaw rate, which drag hardly changes
 
 
 def test_a_ship_of_our_own_size_is_still_moved_by_one_step_a_row():
-    record = record_of(twin.logs()["healthy"], twin.plant())
-    assert record.substeps(twin.plant()) == 1
+    record = record_of(twin.logs()["healthy"], twin.model())
+    assert record.substeps(twin.model()) == 1
     assert record.substeps(along(usv.structure, short_usv)[0]) == 4
 
 
 def test_healthy_ferries_drawn_with_places_of_their_thrusters_keep_to_the_track():
-    plant, record, motion = along(ferry.structure, short_ferry)
-    case = Case(record, plant, (), first_noise(record, 96.0), motion)
-    healthy = healthy_records(case, motion, 4, np.random.default_rng(0))
+    model, record, motion = along(ferry.structure, short_ferry)
+    problem = IdentificationProblem(record, model, (), first_noise(record, 96.0), motion)
+    healthy = healthy_records(problem, motion, 4, np.random.default_rng(0))
     off = np.hypot(healthy.measured[..., 0] - motion.x, healthy.measured[..., 1] - motion.y)
     assert off.shape == (4, record.time.size) and off.max() < 10.0
 
@@ -106,25 +106,25 @@ def test_the_slipstream_is_that_of_the_unit_which_the_system_wires():
     system = ferry.structure()
     for kind in ("azimuth", "rpm"):
         system.connect(f"aft_port.{kind}", f"fore_port.neighbour_{kind}")
-    plant = plant_of(system.checked())
-    assert plant.neighbours["fore_port"] == "aft_port"
-    assert plant.neighbours["fore_starboard"] == "fore_port"
-    assert plant.get("fore_port.neighbour_x") == -42.0
+    model = ship_model_of(system.checked())
+    assert model.neighbours["fore_port"] == "aft_port"
+    assert model.neighbours["fore_starboard"] == "fore_port"
+    assert model.get("fore_port.neighbour_x") == -42.0
 
 
 def test_what_no_set_says_is_known_in_proportion_to_the_ship():
-    plants = along(ferry.structure, short_ferry)[0], along(usv.structure, short_usv)[0], twin.plant()
+    models = along(ferry.structure, short_ferry)[0], along(usv.structure, short_usv)[0], twin.model()
     at = {"hull": ("fore_port", "ship"), "usv": ("left", "hull"), "ours": ("port", "vessel")}
-    for plant, (unit, vessel) in zip(plants, at.values(), strict=True):
-        most = plant.get(f"{unit}.rpm_max") / AzimuthParameters.rpm_max
-        assert plant.tolerances[f"{unit}.rpm_offset"] == pytest.approx(0.1 * most)
-        length = plant.get(f"{vessel}.length") / 33.9
-        assert plant.get("water.drift_yaw_arm") == pytest.approx(-1.5 * length)
-        lever = next(s for s in suspects(read_catalogue(), plant) if s.cause == "lever_arm").knobs[0]
+    for model, (unit, vessel) in zip(models, at.values(), strict=True):
+        most = model.get(f"{unit}.rpm_max") / AzimuthParameters.rpm_max
+        assert model.tolerances[f"{unit}.rpm_offset"] == pytest.approx(0.1 * most)
+        length = model.get(f"{vessel}.length") / 33.9
+        assert model.get("water.drift_yaw_arm") == pytest.approx(-1.5 * length)
+        lever = next(s for s in hypotheses_of(read_catalogue(), model) if s.cause == "lever_arm").parameters[0]
         assert lever.typical == pytest.approx(4.0 * length, rel=1e-3)
     without = usv.structure()
     without.set("hull.N_vvv", -80.0)
-    assert plant_of(without.checked()).tolerances["hull.N_vvv"] == pytest.approx(4.0)  # 5 %: ours has none
+    assert ship_model_of(without.checked()).tolerances["hull.N_vvv"] == pytest.approx(4.0)  # 5 %: ours has none
 
 
 def test_the_wind_that_a_fast_craft_meets_is_no_fault_of_its_labels():

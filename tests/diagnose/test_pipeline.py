@@ -53,7 +53,7 @@ def test_a_healthy_log_is_consistent_and_progress_is_told_in_words(tmp_path):
     diagnosis, details = diagnose(path, twin.system(), progress=said.append)
     assert len(said) >= 3 and all(" " in words for words in said)
     assert (diagnosis.verdict, diagnosis.findings, diagnosis.prescription) == ("consistent", (), None)
-    assert max(details.strange.values()) <= 0.0 and details.fit.suspects == ()
+    assert max(details.unmodelled.values()) <= 0.0 and details.fit.hypotheses == ()
 
 
 def test_what_a_diagnosis_rests_on_comes_with_it(diagnosed):
@@ -61,9 +61,9 @@ def test_what_a_diagnosis_rests_on_comes_with_it(diagnosed):
     assert details.fit in details.fits and details.fit.label == "current"
     assert details.log.sizes["time"] == details.clean.sizes["time"] == 361
     kinds = {"slow", "with the heading", "periodic", "in a channel", "from part to part", "beyond tolerances"}
-    assert set(details.strange) == kinds
+    assert set(details.unmodelled) == kinds
     assert "current" not in diagnosis.not_testable
-    gain = details.fit.score - next(fit.score for fit in details.fits if not fit.suspects)
+    gain = details.fit.score - next(fit.score for fit in details.fits if not fit.hypotheses)
     assert gain > 100.0 and details.chance == {}
 
 
@@ -72,14 +72,14 @@ def test_without_wind_in_the_log_its_causes_are_not_testable_and_that_is_said(tm
     path = tmp_path / "log.csv"
     write_table(twin.logs()["heading_bias"].drop_vars("wind_speed"), path)
     diagnosis, details = diagnose(path, twin.system())
-    assert any("No wind in the log" in remark for remark in details.case.record.remarks)
+    assert any("No wind in the log" in remark for remark in details.problem.record.remarks)
     assert {"wind_scale", "wind_direction"} <= set(diagnosis.not_testable)
 
 
 def test_a_thruster_without_a_command_in_the_log_is_said_and_not_blamed():
-    case, fits = twin.explained(twin.logs()["thrust_loss"].drop_vars("tunnel_rpm"))
-    assert any("No speed of 'tunnel'" in remark for remark in case.record.remarks)
-    assert not any(suspect.label == "thrust_loss of tunnel" for suspect in fits[0].suspects)
+    problem, fits = twin.explained(twin.logs()["thrust_loss"].drop_vars("tunnel_rpm"))
+    assert any("No speed of 'tunnel'" in remark for remark in problem.record.remarks)
+    assert not any(hypothesis.label == "thrust_loss of tunnel" for hypothesis in fits[0].hypotheses)
 
 
 def test_a_parked_ship_can_show_little(tmp_path):

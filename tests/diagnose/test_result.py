@@ -2,7 +2,7 @@
 
 import json
 
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding, Prescription
+from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
 
 ENTRIES = {
     *("schema", "verdict", "findings", "candidates", "indistinguishable"),
@@ -49,7 +49,7 @@ def test_a_diagnosis_has_all_entries_of_the_contract_whatever_is_known():
 
 def test_an_ambiguous_diagnosis_names_the_manoeuvre_and_the_pairs_it_separates():
     pair = (Candidate("tow", None, 0.6), Candidate("wave_drift", None, 0.4))
-    sail = Prescription("turn by 90 deg and hold", 6.0, (("tow", "wave_drift"),))
+    sail = ExperimentDesign("turn by 90 deg and hold", 6.0, (("tow", "wave_drift"),))
     entries = json.loads(json.dumps(Diagnosis("ambiguous", indistinguishable=pair, prescription=sail).as_json()))
     assert entries["indistinguishable"][0] == {"cause": "tow", "component": None, "probability": 0.6}
     assert entries["prescription"] == {

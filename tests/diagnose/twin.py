@@ -1,7 +1,7 @@
 """Logs of the modelled ship herself with a known number wrong: what the diagnosis must find if its inference is right.
 
-Several ships sail at once, one for each planted cause, by the same thrusters and wind. Physics is the plant's, so these
-logs say nothing about the models, only about what is concluded from them.
+Several ships sail at once, one for each planted cause, by the same thrusters and wind. Physics is the ship model's, so
+these logs say nothing about the models, only about what is concluded from them.
 """
 
 from dataclasses import replace
@@ -19,7 +19,7 @@ from shipcosim.diagnose.inference.linearisation import STATES
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.problem import prepare
 from shipcosim.diagnose.inference.search import explain
-from shipcosim.diagnose.ship.model import Drivers, Motion, motion_rates, plant_of, shown
+from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, ship_model_of, shown
 from shipcosim.models.environment.wind_loads import apparent_wind
 from shipcosim.models.ship import instruments
 from shipcosim.series import make_table
@@ -65,9 +65,9 @@ def system():
 
 
 @cache
-def plant(minutes=6.0):
+def model(minutes=6.0):
     """Her array form, for a log of so many minutes."""
-    return replace(plant_of(system()), span=(0.0, 60.0 * minutes))
+    return replace(ship_model_of(system()), span=(0.0, 60.0 * minutes))
 
 
 def commands(time, seed=0):
@@ -86,12 +86,12 @@ def commands(time, seed=0):
     }
 
 
-def sailed(cases, minutes=6.0, seed=0, push=None):
+def sailed(problems, minutes=6.0, seed=0, push=None):
     """Logs of ships with numbers changed.
 
     Parameters
     ----------
-    cases : dict of str to dict of str to float
+    problems : dict of str to dict of str to float
         By name, what is wrong.
     minutes : float
     seed : int
@@ -103,10 +103,10 @@ def sailed(cases, minutes=6.0, seed=0, push=None):
     dict of str to xarray.Dataset
         As `repaired` gives them.
     """
-    random, m = np.random.default_rng(seed), len(cases)
-    paths = {path for values in cases.values() for path in values}
-    ship = plant(minutes).with_values(
-        {path: np.array([values.get(path, plant().get(path)) for values in cases.values()]) for path in paths}
+    random, m = np.random.default_rng(seed), len(problems)
+    paths = {path for values in problems.values() for path in values}
+    ship = model(minutes).with_values(
+        {path: np.array([values.get(path, model().get(path)) for values in problems.values()]) for path in paths}
     )
     time = np.arange(0.0, 60.0 * minutes + FINE / 2, FINE)
     units = commands(time, seed)
@@ -119,17 +119,17 @@ def sailed(cases, minutes=6.0, seed=0, push=None):
         wind = apparent_wind(motion.psi, motion.u, motion.v, -speed[k] * np.cos(from_[k]), -speed[k] * np.sin(from_[k]))
         rows.append(np.stack(motion))
         winds.append(np.stack(wind))
-        drivers = Drivers(t, {name: (n[k] / 60.0, azimuth[k]) for name, (n, azimuth) in units.items()}, *wind)
+        inputs = Inputs(t, {name: (n[k] / 60.0, azimuth[k]) for name, (n, azimuth) in units.items()}, *wind)
         extra = push(t) if push else (0.0, 0.0, 0.0)
-        first = motion_rates(motion, drivers, ship, extra)
+        first = motion_rates(motion, inputs, ship, extra)
         middle = Motion(*(value + 0.5 * FINE * rate for value, rate in zip(motion, first, strict=True)))
-        rates = motion_rates(middle, drivers, ship, extra)
+        rates = motion_rates(middle, inputs, ship, extra)
         motion = Motion(*(value + FINE * rate for value, rate in zip(motion, rates, strict=True)))
         motion = motion._replace(u=motion.u + jolts[k, 0], v=motion.v + jolts[k, 1], r=motion.r + jolts[k, 2])
     seen = np.stack(shown(Motion(*np.moveaxis(np.stack(rows), 1, 0)), ship))[:, :: round(1 / FINE)]
     noise = WHITE[:, None] * random.standard_normal((6, seen.shape[1]))
     table = _table(time, seen + noise[..., None], np.stack(winds), units)
-    return {name: table(i) for i, name in enumerate(cases)}
+    return {name: table(i) for i, name in enumerate(problems)}
 
 
 def _table(time, seen, winds, units):
@@ -162,14 +162,14 @@ def logs(minutes=6.0, seed=0):
 def ready(log):
     """A log as a case."""
     with threadpool_limits(1):  # small matrices: threads would only wait for each other
-        return prepare(log, plant(), read_catalogue())
+        return prepare(log, model(), read_catalogue())
 
 
 def explained(log):
     """A log as a case, and what explains it, best first."""
     with threadpool_limits(1):
-        case = ready(log)
-        return case, explain(case)
+        problem = ready(log)
+        return problem, explain(problem)
 
 
 @cache
@@ -178,7 +178,7 @@ def of(name):
     return explained(logs()[name])
 
 
-def case(name):
+def problem(name):
     return of(name)[0]
 
 

@@ -156,17 +156,17 @@ def _with_errors(story):
     from shipcosim.diagnose.validation.missing_force import missing_force
 
     details, named = story.details, _is_named(story.diagnosis)
-    case, fit = details.case, details.fit
+    problem, fit = details.problem, details.fit
     if not named:
-        fit = next(one for one in details.fits if not one.suspects)
-    comparison = compare(case, fit)
+        fit = next(one for one in details.fits if not one.hypotheses)
+    comparison = compare(problem, fit)
     diagnosis = story.diagnosis
     if comparison is not None:
         errors = comparison.errors
         diagnosis = replace(diagnosis, baseline=baseline(errors), gain=gain(errors) if named else None)
-    force = missing_force(case, case.plant, case.motion)
-    left = missing_force(case, fit.plant, fit.motion) if named else None
-    unseen = compare_unseen(case, fit) if named and comparison is not None else {}
+    force = missing_force(problem, problem.model, problem.motion)
+    left = missing_force(problem, fit.model, fit.motion) if named else None
+    unseen = compare_unseen(problem, fit) if named and comparison is not None else {}
     story = replace(story, diagnosis=diagnosis, comparison=comparison, force=force, force_left=left)
     return replace(story, unseen=unseen, unseen_errors={name: one.errors for name, one in unseen.items()})
 
@@ -192,7 +192,7 @@ def _simulated(story, given, effects, fmus, link):
     from shipcosim.diagnose.validation.cosimulation import MOST
     from shipcosim.diagnose.validation.gain import baseline, gain
 
-    if story.comparison is None or (story.comparison.fit.suspects and story.extension is None):
+    if story.comparison is None or (story.comparison.fit.hypotheses and story.extension is None):
         return story
     run = partial(_co_simulated, story, given, effects, fmus, lambda n, of: link(LINKS[3], n, of))
     try:
@@ -214,8 +214,8 @@ def _co_simulated(story, given, effects, fmus, progress, comparison, most):
 
     extended = None
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
-        if comparison.fit.suspects:
-            about = {"span": comparison.fit.plant.span}
+        if comparison.fit.hypotheses:
+            about = {"span": comparison.fit.model.span}
             catalogue = read_catalogue(effects)
             made = extend(given, _findings(comparison.fit), folder, log_attributes=about, catalogue=catalogue)
             extended = Replayed(read_system(str(made.ssp), fmus=fmus), made.signals)
@@ -227,16 +227,14 @@ def _findings(fit):
 
     return [
         Finding(
-            suspect.cause,
-            suspect.component,
+            hypothesis.cause,
+            hypothesis.component,
             parameters={
-                knob.name: Estimate(
-                    fit.values[knob.paths[0]] * knob.factor, abs(fit.std[knob.paths[0]] * knob.factor), knob.unit
-                )
-                for knob in suspect.knobs
+                of.name: Estimate(fit.values[of.paths[0]] * of.factor, abs(fit.std[of.paths[0]] * of.factor), of.unit)
+                for of in hypothesis.parameters
             },
         )
-        for suspect in fit.suspects
+        for hypothesis in fit.hypotheses
     ]
 
 

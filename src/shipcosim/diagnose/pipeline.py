@@ -5,9 +5,9 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.experiment.design import prescribe
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
-from shipcosim.diagnose.inference.change_point import from_onset
+from shipcosim.diagnose.experiment.design import design_experiment
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
+from shipcosim.diagnose.inference.change_point import from_change_point
 from shipcosim.diagnose.inference.evidence import gram
 from shipcosim.diagnose.inference.fitting import probes
 from shipcosim.diagnose.inference.innovations import innovations
@@ -15,7 +15,7 @@ from shipcosim.diagnose.inference.null_distribution import null_gains
 from shipcosim.diagnose.inference.problem import prepare
 from shipcosim.diagnose.inference.search import explain, without_causes
 from shipcosim.diagnose.inference.unmodelled import FORCES, unexplained
-from shipcosim.diagnose.inference.verdict import STRANGE, gained, judge, not_testable
+from shipcosim.diagnose.inference.verdict import UNMODELLED, gained, judge, not_testable
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
@@ -23,16 +23,16 @@ from shipcosim.diagnose.log_faults.clock import is_testable
 from shipcosim.diagnose.log_faults.corrections import (
     rewired,
     with_right_clock,
-    with_right_drivers,
+    with_right_inputs,
     with_right_sensors,
     with_right_wind,
 )
 from shipcosim.diagnose.result import Diagnosis
-from shipcosim.diagnose.ship.model import plant_of
+from shipcosim.diagnose.ship.model import ship_model_of
 
 __all__ = ["Details", "diagnose"]
 
-_FAULTS = 2  # of the drivers' channels, at most
+_FAULTS = 2  # of the inputs' channels, at most
 _WITHOUT_WIND = 40.0  # nats more that a cause has to gain where the wind could be it (assumed)
 _BLIND = 25.0  # nats, that a cause may gain by chance where that cannot be tried (assumed)
 _SURE = 100.0  # nats, far above what any healthy log gained
@@ -46,12 +46,12 @@ class Details:
     ----------
     log, clean : xarray.Dataset
         As read, and repaired.
-    case : Case
+    problem : IdentificationProblem
     fits : list of Fit
         Best first.
     fit : Fit
         The set of causes that the verdict rests on; empty where nothing is named.
-    strange : dict of str to float
+    unmodelled : dict of str to float
         Gain of errors without a name beside it, by kind. [nats]
     chance : dict of str to float
         What its causes gain on healthy logs like this one; empty where they gain far more anyway. [nats]
@@ -59,10 +59,10 @@ class Details:
 
     log: Any
     clean: Any
-    case: Any
+    problem: Any
     fits: list
     fit: Any
-    strange: dict
+    unmodelled: dict
     chance: dict
 
 
@@ -97,106 +97,108 @@ def diagnose(data, system, channels=None, effects=None, progress=None):
         log = read_log(data, channels)
         faults = examine(log)
         clean = repaired(log, faults)
-        plant, catalogue = plant_of(system), read_catalogue(effects)
+        model, catalogue = ship_model_of(system), read_catalogue(effects)
         say("which causes explain it?")
-        case = prepare(clean, plant, catalogue)
-        plant = replace(plant, strangers=case.plant.strangers)
-        faults, clean, case = with_right_sensors(log, faults, clean, case, plant, catalogue)
-        faults, clean, case = with_right_clock(log, faults, clean, case, plant, catalogue)
-        faults, clean, case = with_right_wind(log, faults, clean, case, plant, catalogue)
-        wrong, plant, case = rewired(clean, plant, catalogue, case)
-        fits = explain(case)
-        clean, case, fits, more, began = _looked_closer(clean, case, fits, plant, catalogue)
+        problem = prepare(clean, model, catalogue)
+        model = replace(model, third_party=problem.model.third_party)
+        faults, clean, problem = with_right_sensors(log, faults, clean, problem, model, catalogue)
+        faults, clean, problem = with_right_clock(log, faults, clean, problem, model, catalogue)
+        faults, clean, problem = with_right_wind(log, faults, clean, problem, model, catalogue)
+        wrong, model, problem = rewired(clean, model, catalogue, problem)
+        fits = explain(problem)
+        clean, problem, fits, more, began = _looked_closer(clean, problem, fits, model, catalogue)
         faults += more
         say("what do healthy ships look like?")
-        judgement, strange, chance = _judged(case, fits)
+        judgement, unmodelled, chance = _judged(problem, fits)
         verdict = "named" if (faults or wrong) and judgement.verdict == "consistent" else judgement.verdict
         diagnosis = Diagnosis(
             verdict,
             (*faults, *wrong, *(replace(finding, onset=began) for finding in judgement.findings)),
             judgement.candidates,
             judgement.indistinguishable,
-            tuple(sorted({*_not_testable(case, fits), *_hidden(catalogue, case)})),
-            prescribe(case, judgement.fit, judgement.rivals) if judgement.rivals and not plant.strangers else None,
+            tuple(sorted({*_not_testable(problem, fits), *_hidden(catalogue, problem)})),
+            design_experiment(problem, judgement.fit, judgement.rivals)
+            if judgement.rivals and not model.third_party
+            else None,
         )
-        return diagnosis, Details(log, clean, case, fits, judgement.fit, strange, chance)
+        return diagnosis, Details(log, clean, problem, fits, judgement.fit, unmodelled, chance)
 
 
-def _looked_closer(clean, case, fits, plant, catalogue):
-    """Where something is wrong: whether channels of the drivers are wrong instead, or it began during the log.
+def _looked_closer(clean, problem, fits, model, catalogue):
+    """Where something is wrong: whether channels of the inputs are wrong instead, or it began during the log.
 
     Returns
     -------
     tuple
         Log, case and fits with that put right; faults of the data; time from which on causes act, or None. [s]
     """
-    faults, began, healthy = [], None, _is_healthy(case, fits[0])
+    faults, began, healthy = [], None, _is_healthy(problem, fits[0])
     while len(faults) < _FAULTS and not healthy:
-        better = with_right_drivers(clean, case, fits, plant, catalogue)
+        better = with_right_inputs(clean, problem, fits, model, catalogue)
         if better is None or any(set(better[0].channels) & set(fault.channels) for fault in faults):
             break  # nothing, or what a channel already put right elsewhere cannot be: something else is wrong with it
-        fault, clean, case, fits = better
+        fault, clean, problem, fits = better
         faults.append(fault)
-        healthy = _is_healthy(case, fits[0])
+        healthy = _is_healthy(problem, fits[0])
     if not healthy:
-        later = from_onset(clean, case, fits, lambda part: prepare(part, plant, catalogue, case.noise))
+        later = from_change_point(clean, problem, fits, lambda part: prepare(part, model, catalogue, problem.noise))
         if later is not None:
-            began, clean, case, fits = later
-    return clean, case, fits, faults, began
+            began, clean, problem, fits = later
+    return clean, problem, fits, faults, began
 
 
-def _is_healthy(case, fit):
+def _is_healthy(problem, fit):
     """Whether neither a cause nor an error without a name is in sight."""
-    return not fit.suspects and max(unexplained(case, fit).values()) < STRANGE
+    return not fit.hypotheses and max(unexplained(problem, fit).values()) < UNMODELLED
 
 
-def _judged(case, fits):
+def _judged(problem, fits):
     """The verdict, errors without a name beside it, and what its causes would have gained by chance."""
-    strange, unknown_wind = {}, case.record.wind is None
+    unmodelled, unknown_wind = {}, problem.record.wind is None
 
     def beside(fit):
-        if fit not in strange:
-            strange[fit] = unexplained(case, fit)
+        if fit not in unmodelled:
+            unmodelled[fit] = unexplained(problem, fit)
         # where nobody knows the wind, a force that nobody explains is no surprise
-        return {kind: gain for kind, gain in strange[fit].items() if kind not in FORCES or not unknown_wind}
+        return {kind: gain for kind, gain in unmodelled[fit].items() if kind not in FORCES or not unknown_wind}
 
-    chance = {suspect.label: _WITHOUT_WIND for suspect in case.suspects if unknown_wind}
+    chance = {hypothesis.label: _WITHOUT_WIND for hypothesis in problem.hypotheses if unknown_wind}
     judgement = judge(fits, beside, chance)
     if judgement.verdict == "unknown" and judge([without_causes(fits)], beside).verdict == "unknown":
-        return judgement, strange[judgement.fit], chance  # whatever its causes gain by chance
-    more = _by_chance(case, judgement.fit, fits)
+        return judgement, unmodelled[judgement.fit], chance  # whatever its causes gain by chance
+    more = _by_chance(problem, judgement.fit, fits)
     if more:
         chance = {label: chance.get(label, 0.0) + gain for label, gain in more.items()}
         judgement = judge(fits, beside, chance)
-    return judgement, strange[judgement.fit], chance
+    return judgement, unmodelled[judgement.fit], chance
 
 
-def _by_chance(case, fit, fits):
+def _by_chance(problem, fit, fits):
     """What causes gain on healthy logs like this one, where that could matter: mean and three deviations.
 
     Where no healthy ship keeps to the log's track, as one that cannot go sideways, nobody knows: it is assumed.
     """
-    if not any(gained(suspect, fit, fits) < _SURE for suspect in fit.suspects):
+    if not any(gained(hypothesis, fit, fits) < _SURE for hypothesis in fit.hypotheses):
         return {}
-    found = null_gains(case, fit.motion, fit.suspects)
+    found = null_gains(problem, fit.motion, fit.hypotheses)
     return {
         label: float(max(values.mean() + 3.0 * values.std(), values.max())) if values.size else _BLIND
         for label, values in found.items()
     }
 
 
-def _hidden(catalogue, case):
+def _hidden(catalogue, problem):
     """Causes that are suspected nowhere."""
-    there = {suspect.cause for suspect in case.suspects}
-    return [suspect.cause for suspect in suspects(catalogue, case.plant) if suspect.cause not in there]
+    there = {hypothesis.cause for hypothesis in problem.hypotheses}
+    return [hypothesis.cause for hypothesis in hypotheses_of(catalogue, problem.model) if hypothesis.cause not in there]
 
 
-def _not_testable(case, fits):
+def _not_testable(problem, fits):
     nothing = without_causes(fits)
     columns, groups = list(nothing.columns), []
-    for suspect in case.suspects:
-        for group in probes(suspect):
-            groups.append((suspect, list(range(len(columns), len(columns) + len(group)))))
+    for hypothesis in problem.hypotheses:
+        for group in probes(hypothesis):
+            groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
             columns.extend(group)
-    products = gram(innovations(case.base_of(columns), case.noise, case.record)).products
-    return (*not_testable(case, products, columns, groups), *(() if is_testable(case) else ("clock",)))
+    products = gram(innovations(problem.base_of(columns), problem.noise, problem.record)).products
+    return (*not_testable(problem, products, columns, groups), *(() if is_testable(problem) else ("clock",)))

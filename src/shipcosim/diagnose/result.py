@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, dataclass, field
 
-__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "Prescription", "label_of"]
+__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "ExperimentDesign", "label_of"]
 
 SCHEMA = "shipcosim-diagnosis/1"
 
@@ -91,7 +91,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Prescription:
+class ExperimentDesign:
     """A manoeuvre that tells causes apart which the log could not."""
 
     manoeuvre: str
@@ -112,7 +112,7 @@ class Diagnosis:
     candidates, indistinguishable : tuple of Candidate
     not_testable : tuple of str
         Causes that this log could not have shown.
-    prescription : Prescription or None
+    prescription : ExperimentDesign or None
     baseline, gain : dict or None
         As in the contract; None where there was too little data.
     """
@@ -122,7 +122,7 @@ class Diagnosis:
     candidates: tuple[Candidate, ...] = ()
     indistinguishable: tuple[Candidate, ...] = ()
     not_testable: tuple[str, ...] = ()
-    prescription: Prescription | None = None
+    prescription: ExperimentDesign | None = None
     baseline: dict | None = None
     gain: dict | None = None
 

@@ -9,7 +9,7 @@ from trial.tools import system, with_drift
 
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.pipeline import diagnose
-from shipcosim.diagnose.ship.model import Drivers, Motion, motion_rates, shown
+from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, shown
 from shipcosim.diagnose.validation.gain import compare, gain
 from shipcosim.diagnose.validation.predictions import missing
 from shipcosim.diagnose.validation.split import in_rows
@@ -38,40 +38,40 @@ def gains(path):
         `gain` of the diagnosis and ``network_m``; None where the log is too short for a gain.
     """
     _, details = diagnose(path, system())
-    comparison = compare(details.case, details.fit)
+    comparison = compare(details.problem, details.fit)
     if comparison is None:
         return None
-    off = missed(details.case, comparison)
+    off = missed(details.problem, comparison)
     return gain(comparison.errors) | {"network_m": float(np.sqrt((off**2).mean()))}
 
 
-def missed(case, comparison):
+def missed(problem, comparison):
     """Position errors after 60 s of the plain model with a network, on the predictions of a comparison, (s,) array."""
     plain = comparison.predictors["plain"]
-    network = trained(case, plain, comparison.train)
+    network = trained(problem, plain, comparison.train)
     last = in_rows(plain.record)[-1]
     found = predicted(plain, comparison.rows, network, last)
-    return missing(shown(found, plain.plant), comparison.seen, comparison.rows + last)["position"]
+    return missing(shown(found, plain.model), comparison.seen, comparison.rows + last)["position"]
 
 
-def features(motion, drivers):
+def features(motion, inputs):
     """State and inputs, (..., m) array."""
     columns = [10.0 * motion.u, 10.0 * motion.v, 100.0 * motion.r, np.cos(motion.psi), np.sin(motion.psi)]
-    for n, azimuth in drivers.units.values():
+    for n, azimuth in inputs.units.values():
         thrust = n * np.abs(n)
         columns += [thrust * np.cos(azimuth), thrust * np.sin(azimuth)]
-    if drivers.wind_speed is not None:
-        pressure, relative = drivers.wind_speed**2 / 50.0, drivers.wind_from - motion.psi
+    if inputs.wind_speed is not None:
+        pressure, relative = inputs.wind_speed**2 / 50.0, inputs.wind_from - motion.psi
         columns += [pressure * np.cos(relative), pressure * np.sin(relative)]
     return np.stack(np.broadcast_arrays(*columns), axis=-1)
 
 
-def trained(case, plain, train):
+def trained(problem, plain, train):
     """Function from features to accelerations in surge, sway and yaw.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
         Prepared.
     plain : Predictor
         Of the model without a cause.
@@ -83,12 +83,12 @@ def trained(case, plain, train):
     callable
     """
     torch.manual_seed(1)
-    step = linearise(case.motion, case.record, case.plant, []).driven[:, 3:6, 0] / case.record.step
+    step = linearise(problem.motion, problem.record, problem.model, []).driven[:, 3:6, 0] / problem.record.step
     kernel = np.ones(SMOOTH) / SMOOTH
     missed = np.stack([np.convolve(-axis, kernel, "same") for axis in step.T], axis=1)
-    rows = np.flatnonzero(train[:-1] & case.record.known[:-1])
-    here = Motion(*(value[:-1] for value in case.motion))
-    inputs, scale = features(here, plain.record.drivers(plain.plant))[rows], missed[rows].std(axis=0)
+    rows = np.flatnonzero(train[:-1] & problem.record.known[:-1])
+    here = Motion(*(value[:-1] for value in problem.motion))
+    inputs, scale = features(here, plain.record.inputs(plain.model))[rows], missed[rows].std(axis=0)
     centre, width = inputs.mean(axis=0), inputs.std(axis=0) + 1e-9
     net = torch.nn.Sequential(
         torch.nn.Linear(inputs.shape[1], HIDDEN), torch.nn.Tanh(), torch.nn.Linear(HIDDEN, HIDDEN), torch.nn.Tanh(),
@@ -131,23 +131,23 @@ def predicted(plain, rows, network, steps):
     Motion
         After so many rows.
     """
-    record, plant, h = plain.record, plain.plant, plain.record.step
-    here, half = (record.drivers(plant, share) for share in (0.0, 0.5))
+    record, model, h = plain.record, plain.model, plain.record.step
+    here, half = (record.inputs(model, share) for share in (0.0, 0.5))
     motion = Motion(*(value[rows] for value in plain.motion))
     for k in range(steps):
-        first = _rates(motion, _at(here, rows + k), plant, network)
+        first = _rates(motion, _at(here, rows + k), model, network)
         middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(motion, first, strict=True)))
-        second = _rates(middle, _at(half, rows + k), plant, network)
+        second = _rates(middle, _at(half, rows + k), model, network)
         motion = Motion(*(value + h * rate for value, rate in zip(motion, second, strict=True)))
     return motion
 
 
-def _rates(motion, drivers, plant, network):
-    rates, extra = motion_rates(motion, drivers, plant), network(features(motion, drivers))
+def _rates(motion, inputs, model, network):
+    rates, extra = motion_rates(motion, inputs, model), network(features(motion, inputs))
     return rates._replace(u=rates.u + extra[..., 0], v=rates.v + extra[..., 1], r=rates.r + extra[..., 2])
 
 
-def _at(drivers, rows):
-    units = {name: tuple(series[rows] for series in pair) for name, pair in drivers.units.items()}
-    wind = (None if series is None else series[rows] for series in (drivers.wind_speed, drivers.wind_from))
-    return Drivers(drivers.time[rows], units, *wind)
+def _at(inputs, rows):
+    units = {name: tuple(series[rows] for series in pair) for name, pair in inputs.units.items()}
+    wind = (None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from))
+    return Inputs(inputs.time[rows], units, *wind)

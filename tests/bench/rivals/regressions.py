@@ -12,13 +12,13 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from trial.tools import system
 
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Motion, motion_rates, plant_of, shown
+from shipcosim.diagnose.ship.model import Motion, motion_rates, ship_model_of, shown
 
 SMOOTH = 4.0  # s, standard deviation of the Gaussian that measurements and model are smoothed with
 SHARE = 0.2  # of a typical effect, for differences
@@ -34,20 +34,20 @@ class Problem:
 
     Attributes
     ----------
-    record, plant, motion
+    record, ship model, motion
         As the diagnosis has them; the motion is smoothed and differentiated, so is the model's acceleration.
     scale : (3,) array
         Standard deviation of what is not explained without a cause, by axis.
-    suspects : list of Suspect
+    hypotheses : list of Hypothesis
     faults : tuple of Finding
         Of the data, found beforehand by the project's own examination.
     """
 
     record: object
-    plant: object
+    model: object
     motion: object
     scale: object
-    suspects: list
+    hypotheses: list
     faults: tuple
 
 
@@ -56,20 +56,20 @@ def problem_of(path):
     log = read_log(path)
     faults = tuple(examine(log))
     clean = repaired(log, faults)
-    plant = replace(plant_of(system()), span=(float(clean["time"][0]), float(clean["time"][-1])))
-    record = record_of(clean, plant)
-    motion = first_motion(record, plant, SMOOTH)
-    problem = Problem(record, plant, motion, np.ones(3), list(suspects(read_catalogue(), plant)), faults)
+    model = replace(ship_model_of(system()), span=(float(clean["time"][0]), float(clean["time"][-1])))
+    record = record_of(clean, model)
+    motion = first_motion(record, model, SMOOTH)
+    problem = Problem(record, model, motion, np.ones(3), list(hypotheses_of(read_catalogue(), model)), faults)
     scale = missing_acceleration(problem, {}).reshape(3, -1).std(axis=1)
     return replace(problem, scale=scale)
 
 
 def missing_acceleration(problem, values):
     """Measured minus modelled acceleration over `scale`, of the rows where all is known, one axis after the other."""
-    plant, seen, h = problem.plant.with_values(values), problem.motion, problem.record.step
-    motion = Motion(*(2.0 * value - other for value, other in zip(seen, shown(seen, plant), strict=True)))
+    model, seen, h = problem.model.with_values(values), problem.motion, problem.record.step
+    motion = Motion(*(2.0 * value - other for value, other in zip(seen, shown(seen, model), strict=True)))
     here = Motion(*(value[:-1] for value in motion))
-    modelled = motion_rates(here, problem.record.drivers(plant), plant)
+    modelled = motion_rates(here, problem.record.inputs(model), model)
     known = problem.record.known[:-1]
     rows = [
         (np.gradient(getattr(motion, name), h)[:-1] - gaussian_filter1d(getattr(modelled, name), SMOOTH / h))[known]
@@ -79,13 +79,14 @@ def missing_acceleration(problem, values):
     return np.concatenate(rows)
 
 
-def slopes(problem, knobs, values):
-    """Change of the missing acceleration per typical size of each knob."""
+def slopes(problem, parameters, values):
+    """Change of the missing acceleration per typical size of each parameter."""
     columns = []
-    for knob in knobs:
-        now, by = values.get(knob.paths[0], knob.neutral), SHARE * knob.typical
+    for parameter in parameters:
+        now, by = values.get(parameter.paths[0], parameter.neutral), SHARE * parameter.typical
         up, down = (
-            missing_acceleration(problem, values | dict.fromkeys(knob.paths, now + way * by)) for way in (1.0, -1.0)
+            missing_acceleration(problem, values | dict.fromkeys(parameter.paths, now + way * by))
+            for way in (1.0, -1.0)
         )
         columns.append((up - down) / (2.0 * SHARE))
     return np.stack(columns, axis=1)
@@ -93,9 +94,9 @@ def slopes(problem, knobs, values):
 
 @dataclass(frozen=True)
 class Regression:
-    """Causes fitted by least squares: values of the numbers they turn, standard deviations by knob, BIC."""
+    """Causes fitted by least squares: values of the numbers they turn, standard deviations by parameter, BIC."""
 
-    suspects: tuple
+    hypotheses: tuple
     values: dict
     std: dict
     bic: float
@@ -107,7 +108,7 @@ def regression(problem, chosen, values=None):
     Parameters
     ----------
     problem : Problem
-    chosen : tuple of Suspect
+    chosen : tuple of Hypothesis
     values : dict of str to float, optional
         To start from.
 
@@ -115,18 +116,27 @@ def regression(problem, chosen, values=None):
     -------
     Regression
     """
-    knobs, values, std = [knob for suspect in chosen for knob in suspect.knobs], dict(values or {}), {}
-    for _ in range(ROUNDS if knobs else 0):
-        J, missing = slopes(problem, knobs, values), missing_acceleration(problem, values)
+    parameters, values, std = (
+        [parameter for hypothesis in chosen for parameter in hypothesis.parameters],
+        dict(values or {}),
+        {},
+    )
+    for _ in range(ROUNDS if parameters else 0):
+        J, missing = slopes(problem, parameters, values), missing_acceleration(problem, values)
         step = np.linalg.lstsq(J, -missing, rcond=None)[0]
-        for knob, by in zip(knobs, step, strict=True):
-            now = values.get(knob.paths[0], knob.neutral)
-            values |= dict.fromkeys(knob.paths, float(np.clip(now + by * knob.typical, *knob.bounds)))
+        for parameter, by in zip(parameters, step, strict=True):
+            now = values.get(parameter.paths[0], parameter.neutral)
+            values |= dict.fromkeys(parameter.paths, float(np.clip(now + by * parameter.typical, *parameter.bounds)))
         deviations = np.sqrt(np.diag(np.linalg.pinv(J.T @ J)) * missing.var())
-        std = {knob.paths[0]: float(d * knob.typical) for knob, d in zip(knobs, deviations, strict=True)}
+        std = {
+            parameter.paths[0]: float(d * parameter.typical)
+            for parameter, d in zip(parameters, deviations, strict=True)
+        }
     missing = missing_acceleration(problem, values)
     n = missing.size
-    return Regression(tuple(chosen), values, std, n * math.log(float(missing @ missing) / n) + len(knobs) * math.log(n))
+    return Regression(
+        tuple(chosen), values, std, n * math.log(float(missing @ missing) / n) + len(parameters) * math.log(n)
+    )
 
 
 def inverse_dynamics(path, most=2):
@@ -146,15 +156,17 @@ def inverse_dynamics(path, most=2):
     problem = problem_of(path)
     best, rivals = regression(problem, ()), []
     for _ in range(most):
-        others = [suspect for suspect in problem.suspects if suspect not in best.suspects]
-        tried = [regression(problem, (*best.suspects, suspect), best.values) for suspect in others]
+        others = [hypothesis for hypothesis in problem.hypotheses if hypothesis not in best.hypotheses]
+        tried = [regression(problem, (*best.hypotheses, hypothesis), best.values) for hypothesis in others]
         tried.sort(key=lambda one: one.bic)
         if tried[0].bic > best.bic - STRONG:
             break
         best, rivals = tried[0], [one for one in tried if one.bic < tried[0].bic + STRONG]
-    findings = [_finding(suspect, best.values, best.std) for suspect in best.suspects]
+    findings = [_finding(hypothesis, best.values, best.std) for hypothesis in best.hypotheses]
     if len(rivals) > 1:
-        alike = tuple(Candidate(one.suspects[-1].cause, one.suspects[-1].component, 1 / len(rivals)) for one in rivals)
+        alike = tuple(
+            Candidate(one.hypotheses[-1].cause, one.hypotheses[-1].component, 1 / len(rivals)) for one in rivals
+        )
         return Diagnosis("ambiguous", (*problem.faults, *findings[:-1]), indistinguishable=alike)
     return _named(problem, findings)
 
@@ -174,16 +186,18 @@ def sparse_regression(path):
     import pysindy
 
     problem = problem_of(path)
-    library = [suspect for suspect in problem.suspects if suspect.effect.law != "turning"]  # holds the steady current
-    knobs = [knob for suspect in library for knob in suspect.knobs]
+    library = [
+        hypothesis for hypothesis in problem.hypotheses if hypothesis.effect.law != "turning"
+    ]  # holds the steady current
+    parameters = [parameter for hypothesis in library for parameter in hypothesis.parameters]
     optimizer = pysindy.STLSQ(threshold=THRESHOLD, alpha=RIDGE)
-    found = optimizer.fit(slopes(problem, knobs, {}), -missing_acceleration(problem, {})).coef_.ravel()
-    sizes = {knob.paths: size for knob, size in zip(knobs, found, strict=True)}
+    found = optimizer.fit(slopes(problem, parameters, {}), -missing_acceleration(problem, {})).coef_.ravel()
+    sizes = {parameter.paths: size for parameter, size in zip(parameters, found, strict=True)}
     findings = []
-    for suspect in library:
-        values = {k.paths[0]: k.neutral + k.typical * sizes[k.paths] for k in suspect.knobs}
-        if any(sizes[knob.paths] for knob in suspect.knobs):
-            findings.append(_finding(suspect, values, {}))
+    for hypothesis in library:
+        values = {k.paths[0]: k.neutral + k.typical * sizes[k.paths] for k in hypothesis.parameters}
+        if any(sizes[parameter.paths] for parameter in hypothesis.parameters):
+            findings.append(_finding(hypothesis, values, {}))
     return _named(problem, findings)
 
 
@@ -192,11 +206,13 @@ def _named(problem, findings):
     return Diagnosis("named" if found else "consistent", found)
 
 
-def _finding(suspect, values, std):
+def _finding(hypothesis, values, std):
     estimates = {
-        knob.name: Estimate(
-            values[knob.paths[0]] * knob.factor, std.get(knob.paths[0], 0.0) * abs(knob.factor), knob.unit
+        parameter.name: Estimate(
+            values[parameter.paths[0]] * parameter.factor,
+            std.get(parameter.paths[0], 0.0) * abs(parameter.factor),
+            parameter.unit,
         )
-        for knob in suspect.knobs
+        for parameter in hypothesis.parameters
     }
-    return Finding(suspect.cause, suspect.component, parameters=estimates)
+    return Finding(hypothesis.cause, hypothesis.component, parameters=estimates)

@@ -7,7 +7,7 @@ from pathlib import Path
 from truth import draw
 
 from shipcosim.diagnose.experiment.manoeuvres import library
-from shipcosim.diagnose.ship.model import plant_of
+from shipcosim.diagnose.ship.model import ship_model_of
 
 from .runs import TOOL, add, answered, key, pool_of, read_results
 from .tools import system
@@ -19,7 +19,7 @@ AFTER = "{} sailed"
 @cache
 def orders():
     """By the name of each manoeuvre of the library, what the truth is told."""
-    return {one.name: orders_of(one) for one in library(plant_of(system()))}
+    return {one.name: orders_of(one) for one in library(ship_model_of(system()))}
 
 
 def orders_of(manoeuvre):

@@ -78,9 +78,9 @@ def with_drift(path, nameless=None):
     table = pd.read_csv(path)
     table[table["time [s]"] <= UNTIL].to_csv(head, index=False)
     diagnosis, details = diagnose(head, system())
-    if diagnosis.verdict != "named" or not details.fit.suspects:
+    if diagnosis.verdict != "named" or not details.fit.hypotheses:
         return WithGain(diagnosis)
-    under_dp = details.case, compare(details.case, details.fit)
+    under_dp = details.problem, compare(details.problem, details.fit)
     adrift = _compared(path, details, UNTIL)
     healthy = [_compared(twin_of(path), replace(details, fit=None), until)[1] for until in (SHARE * UNTIL, UNTIL)]
     under_dp = _gain(*under_dp, healthy[0], lambda errors: errors["start_time"].values <= UNTIL - 60.0, nameless)
@@ -101,12 +101,12 @@ def _compared(path, details, until):
     from shipcosim.diagnose.log.checks.examine import examine
     from shipcosim.diagnose.log.reader import read_log
     from shipcosim.diagnose.log.repair import repaired
-    from shipcosim.diagnose.ship.model import plant_of
+    from shipcosim.diagnose.ship.model import ship_model_of
     from shipcosim.diagnose.validation.gain import compare
 
     log = read_log(path)
-    case = prepare(repaired(log, examine(log)), plant_of(system()), read_catalogue(None), details.case.noise)
-    fit = fitted(case, details.fit.suspects, details.fit.values) if details.fit else fitted(case)
+    case = prepare(repaired(log, examine(log)), ship_model_of(system()), read_catalogue(None), details.problem.noise)
+    fit = fitted(case, details.fit.hypotheses, details.fit.values) if details.fit else fitted(case)
     return case, compare(case, fit, train=case.record.time <= until)
 
 

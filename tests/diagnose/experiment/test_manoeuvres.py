@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.experiment.design import CLEAR, prescribe, separations
+from shipcosim.diagnose.experiment.design import CLEAR, design_experiment, separations
 from shipcosim.diagnose.experiment.design import testability as nats_of
 from shipcosim.diagnose.experiment.manoeuvres import (
     LONGEST,
@@ -19,14 +19,14 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     step_for,
     true_wind,
 )
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
-from shipcosim.diagnose.inference.fitting import Case, Column, prepared
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, prepared
 from shipcosim.diagnose.inference.innovations import Noise, innovations
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.search import explain
 from shipcosim.diagnose.inference.verdict import judge
 from shipcosim.diagnose.ship.inputs import Record, first_motion
-from shipcosim.diagnose.ship.model import Motion, Plant, plant_of
+from shipcosim.diagnose.ship.model import Motion, ShipModel, ship_model_of
 from shipcosim.diagnose.ship.track_keeping import Dp, sailed
 from shipcosim.models.environment.wind_loads import apparent_wind
 
@@ -35,49 +35,53 @@ KEEP = Manoeuvre("keep the place", ((240.0, 0.0, 0.0, 0.0),))
 
 
 @cache
-def case(wind=0.0):
+def problem(wind=0.0):
     """A log of five minutes at rest, from which only time, place and wind are taken."""
-    plant = replace(plant_of(twin.system()), span=(0.0, 300.0), wind_is_true=True)
+    model = replace(ship_model_of(twin.system()), span=(0.0, 300.0), wind_is_true=True)
     time = np.arange(300.0)
-    units = {name: (np.zeros(300), np.full(300, 0.7)) for name in plant.thrusters}
+    units = {name: (np.zeros(300), np.full(300, 0.7)) for name in model.thrusters}
     record = Record(time, np.zeros((300, 6)), units, (np.full(300, wind), np.full(300, 0.5)), np.ones(300, bool))
-    return Case(record, plant, tuple(suspects(read_catalogue(), plant)), NOISE, Motion(*np.zeros((6, 300))))
+    return IdentificationProblem(
+        record, model, tuple(hypotheses_of(read_catalogue(), model)), NOISE, Motion(*np.zeros((6, 300)))
+    )
 
 
 @dataclass(frozen=True)
 class Belief:
-    """What `prescribe` asks of a fit."""
+    """What `design_experiment` asks of a fit."""
 
-    suspects: tuple
+    hypotheses: tuple
     columns: list
     left: np.ndarray
     covariance: np.ndarray
-    plant: Plant
+    model: ShipModel
 
 
 def believed(values, spread=0.1, of=None):
     """Causes by label with the values of their numbers, known to a share of their typical size."""
-    of = of or case()
-    present = [suspect for suspect in of.suspects if suspect.label in values]
+    of = of or problem()
+    present = [hypothesis for hypothesis in of.hypotheses if hypothesis.label in values]
     known = of.known(present)
-    own = [Column({path: of.plant.tolerances[path]}) for suspect in present for path in suspect.effect.companions]
+    own = [
+        Regressor({path: of.model.tolerances[path]}) for hypothesis in present for path in hypothesis.effect.companions
+    ]
     turned, numbers = [], {}
-    for suspect in present:
-        for knob, value in zip(suspect.knobs, values[suspect.label], strict=True):
-            turned.append(Column(dict.fromkeys(knob.paths, knob.typical)))
-            numbers |= dict.fromkeys(knob.paths, value)
+    for hypothesis in present:
+        for parameter, value in zip(hypothesis.parameters, values[hypothesis.label], strict=True):
+            turned.append(Regressor(dict.fromkeys(parameter.paths, parameter.typical)))
+            numbers |= dict.fromkeys(parameter.paths, value)
     width = np.array([1.0] * len(known + own) + [spread] * len(turned))
-    columns, ship = [*known, *own, *turned], of.plant.with_values(numbers)
+    columns, ship = [*known, *own, *turned], of.model.with_values(numbers)
     return Belief(tuple(present), columns, 0.0 * width, np.diag(width**2), ship)
 
 
 def pick(start):
-    return next(one for one in library(case().plant) if one.name.startswith(start))
+    return next(one for one in library(problem().model) if one.name.startswith(start))
 
 
 def apart(one, other, *wanted, of=None):
     """Expected nats by manoeuvre."""
-    return separations(of or case(), [one, other], list(wanted))[0, 1]
+    return separations(of or problem(), [one, other], list(wanted))[0, 1]
 
 
 def test_reversal_separates_what_only_differs_in_reversing_and_a_circle_of_headings_does_not():
@@ -99,7 +103,7 @@ def test_current_and_wave_drift_are_separated_by_turning():
     keep, turn, circle = apart(current, drift, KEEP, pick("turn by 90"), pick("full circle"))
     assert keep < CLEAR < min(turn, circle)
     assert turn > 3.0 * keep
-    told = prescribe(case(), current, [drift], [KEEP, pick("turn by 90"), pick("full circle")])
+    told = design_experiment(problem(), current, [drift], [KEEP, pick("turn by 90"), pick("full circle")])
     assert (told.manoeuvre, told.minutes) == ("turn by 90 deg and hold", 4.0)  # the circle takes seven minutes
     assert told.separates == (("current", "wave_drift"),)
 
@@ -122,13 +126,13 @@ def test_loss_by_the_neighbours_slipstream_shows_in_the_sweep_only():
 def test_nothing_separates_a_cause_from_itself():
     one, same = (believed({"current": [0.1, 0.2]}) for _ in range(2))
     assert np.abs(apart(one, same, pick("turn by 90"), pick("reversal"), pick("free drift"))).max() < 1e-6
-    assert prescribe(case(), one, [same], [pick("turn by 90")]) is None
+    assert design_experiment(problem(), one, [same], [pick("turn by 90")]) is None
 
 
 def test_what_one_manoeuvre_cannot_separate_is_not_said_to_be():
     drag, heavy = believed({"drag": [2.5]}), believed({"mass": [1.2]})
     astern = believed({"reverse_loss": [0.4]})
-    told = prescribe(case(), drag, [heavy, astern], [pick("reversal")])
+    told = design_experiment(problem(), drag, [heavy, astern], [pick("reversal")])
     assert ("drag", "mass") not in told.separates
     assert set(told.separates) == {("drag", "reverse_loss"), ("mass", "reverse_loss")}
 
@@ -137,13 +141,13 @@ def test_noisy_logs_show_the_expected_difference_or_somewhat_more():
     """Noisy sailings of the truth, filtered by both beliefs. Not less: noise moves the thrusters more than the plan."""
     truth, rival = believed({"thrust_loss of port": [0.1]}), believed({"thrust_loss of starboard": [0.1]})
     one, count, random = pick("pulses"), 12, np.random.default_rng(3)
-    of = replace(case(), noise=replace(NOISE, walk=NOISE.walk * 1e-3))
+    of = replace(problem(), noise=replace(NOISE, walk=NOISE.walk * 1e-3))
     expected = apart(truth, rival, one, of=of)[0]
-    dp = Dp(of.plant, step_for(of.plant))
+    dp = Dp(of.model, step_for(of.model))
     track, record, _ = planned([one], dp, (300.0, 0.0, 0.0, 0.0), (0.0, 0.5))
     rows = record.time.size
     jolts = random.standard_normal((rows, 3, count)) * (NOISE.jolt * np.sqrt(dp.h))[:, None]
-    motion, units = sailed(truth.plant, count, track, record, dp, jolts=jolts)
+    motion, units = sailed(truth.model, count, track, record, dp, jolts=jolts)
     white = NOISE.white / np.sqrt(dp.h)
     measured = np.stack(motion, axis=-1) + white * random.standard_normal((count, rows, 6))
     still = tuple(np.broadcast_to(series, (count, rows)) for series in record.wind)
@@ -156,7 +160,7 @@ def test_noisy_logs_show_the_expected_difference_or_somewhat_more():
 
 
 def _log_evidence(fit, motion, record, noise):
-    found = innovations(linearise(motion, record, fit.plant, [c.turns for c in fit.columns]), noise, record)
+    found = innovations(linearise(motion, record, fit.model, [c.turns for c in fit.columns]), noise, record)
     rows = np.moveaxis(found.white, 0, 1).reshape(len(motion.x), -1, len(fit.columns) + 1)
     scores = []
     for y, logdet in zip(rows, found.log_determinant.sum(0), strict=True):
@@ -167,11 +171,11 @@ def _log_evidence(fit, motion, record, noise):
     return np.array(scores)
 
 
-def sailing(one, wind=(6.0, 0.5), plant=None):
-    plant = plant or case().plant
-    dp = Dp(plant, step_for(plant))
+def sailing(one, wind=(6.0, 0.5), model=None):
+    model = model or problem().model
+    dp = Dp(model, step_for(model))
     track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), wind)
-    motion, units = sailed(plant, 1, track, record, dp, held=held)
+    motion, units = sailed(model, 1, track, record, dp, held=held)
     return record.time, Motion(*(v[0] for v in motion)), {n: tuple(s[0] for s in pair) for n, pair in units.items()}
 
 
@@ -204,24 +208,24 @@ def test_sweep_crosses_the_neighbour_with_the_slipstream_while_both_push():
 
 @pytest.mark.parametrize("times", [0.1, 0.5, 1.0, 4.0, 20.0])
 def test_manoeuvres_keep_to_time_and_area_on_ships_of_all_sizes(times):
-    plant = case().plant
-    hull = plant.parts["hull"]
-    ship = replace(plant, parts=plant.parts | {"hull": replace(hull, length=times * hull.length)})
+    model = problem().model
+    hull = model.parts["hull"]
+    ship = replace(model, parts=model.parts | {"hull": replace(hull, length=times * hull.length)})
     found = library(ship)
     assert all(0.0 < one.minutes <= LONGEST for one in found)
     assert all(np.hypot(x, y) < 3.0 * ship.parts["hull"].length for one in found for _, x, y, _ in one.legs)
-    assert len(found) == len(library(plant)) or times > 4.0
+    assert len(found) == len(library(model)) or times > 4.0
 
 
 def test_a_ship_that_cannot_hold_her_place_is_not_sent():
     flood, other = believed({"current": [0.0, 4.0]}), believed({"current": [0.0, 0.2]})
     assert np.isnan(apart(flood, other, KEEP)).all()
-    assert prescribe(case(), flood, [other], [KEEP]) is None
+    assert design_experiment(problem(), flood, [other], [KEEP]) is None
 
 
 def test_a_ship_that_her_dp_cannot_steer_gets_lost_and_not_infinite():
-    plant = case().plant
-    light = plant.with_values({"vessel.mass": 2e3, "vessel.A11": 1e3, "vessel.A22": 1e3, "vessel.inertia_yaw": 1e4})
+    model = problem().model
+    light = model.with_values({"vessel.mass": 2e3, "vessel.A11": 1e3, "vessel.A22": 1e3, "vessel.inertia_yaw": 1e4})
     light = light.with_values({"vessel.A66": 1e4, "vessel.A26": 0.0, "vessel.A62": 0.0})
     _, motion, _ = sailing(pick("pulses"), (20.0, 0.5), light)
     assert np.isfinite(np.stack(motion)).all()
@@ -229,37 +233,37 @@ def test_a_ship_that_her_dp_cannot_steer_gets_lost_and_not_infinite():
 
 
 def test_fixed_propellers_are_not_asked_to_turn():
-    one = case()
+    one = problem()
     ahead = {name: (n, 0.0 * azimuth) for name, (n, azimuth) in one.record.units.items()}
-    fixed = cannot_turn(replace(one.record, units=ahead), one.plant)
-    assert set(fixed) == {"port", "starboard"} and cannot_turn(one.record, one.plant) == ()
-    assert not [m for m in library(one.plant, fixed) if m.name.startswith("sweep")]
-    dp = Dp(one.plant, 2.0, fixed)
-    _, record, _ = planned(library(one.plant, fixed), dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
+    fixed = cannot_turn(replace(one.record, units=ahead), one.model)
+    assert set(fixed) == {"port", "starboard"} and cannot_turn(one.record, one.model) == ()
+    assert not [m for m in library(one.model, fixed) if m.name.startswith("sweep")]
+    dp = Dp(one.model, 2.0, fixed)
+    _, record, _ = planned(library(one.model, fixed), dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
     assert all(np.ptp(record.units[name][1]) == 0.0 for name in fixed)
 
 
 def test_wind_of_a_log_is_that_over_ground_however_the_ship_moves():
-    plant = replace(case().plant, wind_is_true=False)
+    model = replace(problem().model, wind_is_true=False)
     t = np.arange(300.0)
     motion = Motion(t, t, 0.02 * t, 1.0 + np.sin(t / 20.0), 0.3 * np.cos(t / 30.0), 0.02 + 0.0 * t)
     wind = apparent_wind(motion.psi, motion.u, motion.v, -7.0 * np.cos(2.0), -7.0 * np.sin(2.0))
-    record = replace(case().record, wind=wind)
-    assert true_wind(record, motion, plant) == pytest.approx((7.0, 2.0))
-    assert true_wind(replace(record, wind=None), motion, plant) is None
+    record = replace(problem().record, wind=wind)
+    assert true_wind(record, motion, model) == pytest.approx((7.0, 2.0))
+    assert true_wind(replace(record, wind=None), motion, model) is None
 
 
 def test_one_pair_takes_less_than_five_seconds():
     current, drift = alike_on_the_beam()
     before = clock.process_time()
-    assert prescribe(case(), current, [drift]) is not None
+    assert design_experiment(problem(), current, [drift]) is not None
     assert clock.process_time() - before < 5.0
 
 
 def test_before_sailing_a_cause_shows_where_it_acts():
-    plant = case().plant
+    model = problem().model
     names = ("reversal", "sweep", "steps in surge", "full circle")
-    found = nats_of(plant, case().suspects, NOISE, [pick(name) for name in names], (6.0, 0.5))
+    found = nats_of(model, problem().hypotheses, NOISE, [pick(name) for name in names], (6.0, 0.5))
     best = {label: names[int(np.argmax(nats))] for label, nats in found.items()}
     assert best["reverse_loss"] == "reversal"
     assert best["thruster_interaction"] == "sweep"
@@ -270,21 +274,21 @@ def test_before_sailing_a_cause_shows_where_it_acts():
 
 def logged(values, manoeuvre=None, seed=1, minutes=8.0):
     """A ship with some values keeps her place, and then sails a manoeuvre; her log and what she is taken for."""
-    before, plant = 60.0 * minutes, replace(case().plant, span=(0.0, 60.0 * minutes))
+    before, model = 60.0 * minutes, replace(problem().model, span=(0.0, 60.0 * minutes))
     after = manoeuvre or Manoeuvre("nothing", ())
     pushes = tuple(replace(p, start=p.start + before, end=p.end + before) for p in after.pushes)
     free = tuple((a + before, b + before) for a, b in after.free)
     one = Manoeuvre("both", ((before, 0.0, 0.0, 0.0), *after.legs), pushes, free)
-    dp, random = Dp(plant, 1.0), np.random.default_rng(seed)
+    dp, random = Dp(model, 1.0), np.random.default_rng(seed)
     track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
     jolts = random.standard_normal((record.time.size, 3, 1)) * NOISE.jolt[:, None]
-    motion, units = sailed(plant.with_values(values), 1, track, record, dp, jolts=jolts, held=held)
+    motion, units = sailed(model.with_values(values), 1, track, record, dp, jolts=jolts, held=held)
     measured = np.stack([v[0] for v in motion], -1) + NOISE.white * random.standard_normal((record.time.size, 6))
     units = {name: tuple(series[0] for series in pair) for name, pair in units.items()}
     record = replace(record, measured=measured, units=units, wind=tuple(series[0] for series in record.wind))
     names = {"current", "wave_drift", "tow", "wind_scale", "thrust_loss of port"}
-    asked = tuple(suspect for suspect in case().suspects if suspect.label in names)
-    return prepared(Case(record, plant, asked, NOISE, first_motion(record, plant)))
+    asked = tuple(hypothesis for hypothesis in problem().hypotheses if hypothesis.label in names)
+    return prepared(IdentificationProblem(record, model, asked, NOISE, first_motion(record, model)))
 
 
 @pytest.mark.slow
@@ -294,20 +298,20 @@ def test_a_log_that_cannot_tell_drift_from_current_can_after_the_prescribed_mano
     before = judge(explain(one), lambda fit: {"": 0.0})
     assert before.verdict == "ambiguous"
     assert {"current", "wave_drift"} <= {candidate.cause for candidate in before.indistinguishable}
-    told = prescribe(one, before.fit, before.rivals)
-    sent = next(m for m in library(one.plant) if m.name == told.manoeuvre)
+    told = design_experiment(one, before.fit, before.rivals)
+    sent = next(m for m in library(one.model) if m.name == told.manoeuvre)
     after = judge(explain(logged(drift, sent)), lambda fit: {"": 0.0})
     assert after.verdict == "named"
     assert [finding.cause for finding in after.findings] == ["wave_drift"]
 
 
 def test_before_sailing_nothing_is_said_of_weather_that_the_ship_cannot_hold_against():
-    suspect = [suspect for suspect in case().suspects if suspect.label == "wind_scale"]
-    gale = nats_of(case().plant, suspect, NOISE, [pick("turn by 90")], (45.0, 1.5))
+    hypothesis = [hypothesis for hypothesis in problem().hypotheses if hypothesis.label == "wind_scale"]
+    gale = nats_of(problem().model, hypothesis, NOISE, [pick("turn by 90")], (45.0, 1.5))
     assert np.isnan(gale["wind_scale"]).all()
 
 
 def test_the_page_lists_the_library(root):
     page = (root / "docs" / "manoeuvres.md").read_text(encoding="utf-8")
-    for i, one in enumerate(library(case().plant), start=1):
+    for i, one in enumerate(library(problem().model), start=1):
         assert f"| {i} | {one.name} | {one.minutes:g} |" in page

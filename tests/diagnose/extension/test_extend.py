@@ -8,7 +8,7 @@ import pytest
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.hypotheses.catalogue import Effect, EffectParameter
+from shipcosim.diagnose.hypotheses.catalogue import Cause, CauseParameter
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
@@ -327,8 +327,8 @@ def test_a_cause_of_the_users_own_is_carried_by_what_its_file_turns(system, tmp_
         "motor": "{thruster}.power_max",
         "keel": "keel.x",
     }
-    parameters = {name: EffectParameter(of=[path], typical=1.0, bounds=(0.0, 1.0)) for name, path in numbers.items()}
-    own = Effect(cause="own", sentence="", reference="", parameters=parameters)
+    parameters = {name: CauseParameter(of=[path], typical=1.0, bounds=(0.0, 1.0)) for name, path in numbers.items()}
+    own = Cause(cause="own", sentence="", reference="", parameters=parameters)
     finding = found("own", "port", east=(3.0, "kN"), arm=(-2.0, "m"), motor=(250.0, "kW"), keel=(1.0, "m"))
     extension = extend(system, [finding], tmp_path, catalogue={"own": own})
     assert extension.values == {

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
-from shipcosim.diagnose.ship.model import plant_of
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
+from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import new
 
@@ -51,7 +51,7 @@ bounds = [-1.0, 4.0]
 
 @pytest.fixture(scope="module")
 def everyone():
-    return suspects(read_catalogue(), twin.plant())
+    return hypotheses_of(read_catalogue(), twin.model())
 
 
 def test_every_physical_cause_of_the_contract_is_there_with_its_parameters_and_units():
@@ -61,8 +61,8 @@ def test_every_physical_cause_of_the_contract_is_there_with_its_parameters_and_u
 
 def test_each_cause_sits_where_the_contract_says(everyone):
     found = {}
-    for suspect in everyone:
-        found.setdefault(suspect.cause, []).append(suspect.component)
+    for hypothesis in everyone:
+        found.setdefault(hypothesis.cause, []).append(hypothesis.component)
     assert found == {cause: WHERE.get(cause, [None]) for cause in CONTRACT}
 
 
@@ -72,45 +72,47 @@ def test_every_file_says_what_it_is_and_where_it_is_from():
 
 
 def test_bounds_hold_the_model_and_what_is_typical_is_above_what_matters_above_what_is_tolerated(everyone):
-    for suspect in everyone:
-        for knob in suspect.knobs:
-            low, high = sorted(knob.bounds)
-            assert low <= knob.neutral <= high, suspect.label
-            assert max(high - knob.neutral, knob.neutral - low) >= knob.typical, suspect.label
-            assert knob.typical > suspect.effect.least * knob.typical >= 1.5 * knob.tolerance, suspect.label
+    for hypothesis in everyone:
+        for parameter in hypothesis.parameters:
+            low, high = sorted(parameter.bounds)
+            assert low <= parameter.neutral <= high, hypothesis.label
+            assert max(high - parameter.neutral, parameter.neutral - low) >= parameter.typical, hypothesis.label
+            assert parameter.typical > hypothesis.effect.least * parameter.typical >= 1.5 * parameter.tolerance, (
+                hypothesis.label
+            )
 
 
 def test_companions_are_numbers_of_the_ship_that_are_only_known_within_a_tolerance(everyone):
-    for suspect in everyone:
-        assert all(twin.plant().tolerances[path] > 0.0 for path in suspect.effect.companions)
-        assert all(twin.plant().has(path) for path in suspect.effect.replaces)
+    for hypothesis in everyone:
+        assert all(twin.model().tolerances[path] > 0.0 for path in hypothesis.effect.companions)
+        assert all(twin.model().has(path) for path in hypothesis.effect.replaces)
 
 
 def test_units_of_a_file_are_those_of_the_report_and_the_ships_numbers_are_in_hers(everyone):
-    knobs = {suspect.label: suspect.knobs[0] for suspect in everyone}
-    offset = knobs["heading_bias"]
+    parameters = {hypothesis.label: hypothesis.parameters[0] for hypothesis in everyone}
+    offset = parameters["heading_bias"]
     assert offset.typical == pytest.approx(np.radians(3.0)) and offset.factor == pytest.approx(180.0 / np.pi)
-    assert knobs["rpm_offset of tunnel"].typical == pytest.approx(0.06 * 1780.0)
-    assert knobs["rpm_offset of tunnel"].bounds == pytest.approx((-0.3 * 1780.0, 0.3 * 1780.0))
-    assert knobs["tow"].typical == pytest.approx(0.004 * 531e3)
-    assert knobs["mass"].factor == 1.0
+    assert parameters["rpm_offset of tunnel"].typical == pytest.approx(0.06 * 1780.0)
+    assert parameters["rpm_offset of tunnel"].bounds == pytest.approx((-0.3 * 1780.0, 0.3 * 1780.0))
+    assert parameters["tow"].typical == pytest.approx(0.004 * 531e3)
+    assert parameters["mass"].factor == 1.0
 
 
 def test_tolerances_are_those_of_the_parameter_sets_where_they_say(everyone):
-    knobs = {suspect.label: suspect.knobs[0] for suspect in everyone}
-    assert knobs["thrust_loss of port"].tolerance == 0.01
-    assert knobs["heading_bias"].tolerance == pytest.approx(np.radians(0.1))
+    parameters = {hypothesis.label: hypothesis.parameters[0] for hypothesis in everyone}
+    assert parameters["thrust_loss of port"].tolerance == 0.01
+    assert parameters["heading_bias"].tolerance == pytest.approx(np.radians(0.1))
 
 
 def test_reverse_loss_turns_both_units_at_once(everyone):
-    (knob,) = next(suspect for suspect in everyone if suspect.cause == "reverse_loss").knobs
-    assert knob.paths == ("port.reverse_loss", "starboard.reverse_loss")
+    (parameter,) = next(hypothesis for hypothesis in everyone if hypothesis.cause == "reverse_loss").parameters
+    assert parameter.paths == ("port.reverse_loss", "starboard.reverse_loss")
 
 
 def test_a_ship_without_a_thruster_has_no_causes_of_one(root):
     hull = new("barge")
     hull.add_component("ship", twin.build_stale(root) / "vessel.fmu", kinds=())
-    found = {suspect.cause for suspect in suspects(read_catalogue(), plant_of(hull.checked()))}
+    found = {hypothesis.cause for hypothesis in hypotheses_of(read_catalogue(), ship_model_of(hull.checked()))}
     assert not found & {"thrust_loss", "azimuth_offset", "rpm_offset", "reverse_loss", "thruster_interaction"}
     assert {"current", "mass", "heading_bias"} <= found
 
@@ -120,10 +122,10 @@ def test_a_cause_of_ones_own_takes_one_file(tmp_path):
     (tmp_path / "notes.txt").write_text("not a cause", encoding="utf-8")
     catalogue = read_catalogue(tmp_path)
     assert set(catalogue) == {*CONTRACT, "side_force"}
-    mine = [suspect for suspect in suspects(catalogue, twin.plant()) if suspect.cause == "side_force"]
-    assert [suspect.label for suspect in mine] == ["side_force of port", "side_force of starboard"]
-    (knob,) = mine[0].knobs
-    assert (knob.neutral, knob.typical) == pytest.approx((0.8, 0.4))
+    mine = [hypothesis for hypothesis in hypotheses_of(catalogue, twin.model()) if hypothesis.cause == "side_force"]
+    assert [hypothesis.label for hypothesis in mine] == ["side_force of port", "side_force of starboard"]
+    (parameter,) = mine[0].parameters
+    assert (parameter.neutral, parameter.typical) == pytest.approx((0.8, 0.4))
 
 
 def test_a_file_with_the_name_of_a_known_cause_replaces_it(tmp_path):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from diagnose import twin
-from diagnose.twin import case, fits
+from diagnose.twin import fits, problem
 
 from shipcosim.diagnose.inference.fitting import _one_way, fitted, probes, weighed
 from shipcosim.diagnose.inference.search import _simplify, names
@@ -20,17 +20,17 @@ NAMES = {
 
 
 def score(name, labels=frozenset()):
-    return next(fit.score for fit in fits(name) if {suspect.label for suspect in fit.suspects} == set(labels))
+    return next(fit.score for fit in fits(name) if {hypothesis.label for hypothesis in fit.hypotheses} == set(labels))
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_planted_cause_explains_its_log_best_with_its_size(name):
     best = fits(name)[0]
-    assert {suspect.label for suspect in best.suspects} == NAMES[name]
+    assert {hypothesis.label for hypothesis in best.hypotheses} == NAMES[name]
     assert best.score - score(name) > 50.0
     for path, truth in twin.PLANTED[name].items():
         assert abs(best.values[path] - truth) < 3.0 * best.std[path], path
-        assert best.std[path] < 0.25 * abs(truth - twin.plant().get(path)), path
+        assert best.std[path] < 0.25 * abs(truth - twin.model().get(path)), path
 
 
 def test_each_of_two_causes_gains_beside_the_other():
@@ -46,33 +46,33 @@ def test_a_healthy_log_is_explained_by_nothing():
 def test_a_cause_that_is_fitted_gives_the_ship_that_sailed():
     """Same motion: the smoothed track of the fit is within the noise of what was planted as a line's pull."""
     best = fits("tow")[0]
-    assert best.plant.get("water.tow_north") == best.values["water.tow_north"]
+    assert best.model.get("water.tow_north") == best.values["water.tow_north"]
     north = twin.logs()["tow"]["north"].values
     assert np.std(best.motion.x - north) == pytest.approx(0.2, rel=0.2)
 
 
 def test_weighing_ranks_the_planted_cause_first_and_starts_near_its_value():
-    gain, suspect, values = weighed(case("mass"), fitted(case("mass")))[0]
-    assert suspect.cause == "mass" and gain > 50.0
+    gain, hypothesis, values = weighed(problem("mass"), fitted(problem("mass")))[0]
+    assert hypothesis.cause == "mass" and gain > 50.0
     assert values["vessel.mass_scale"] == pytest.approx(1.25, abs=0.08)
 
 
 def test_beside_the_right_cause_no_other_gains():
     best = fits("azimuth_offset")[0]
-    assert weighed(case("azimuth_offset"), best)[0][0] < 3.0
+    assert weighed(problem("azimuth_offset"), best)[0][0] < 3.0
 
 
 def test_a_wrong_cause_explains_less():
-    wrong = next(s for s in case("heading_bias").suspects if s.cause == "velocity_scale")
-    assert fitted(case("heading_bias"), (wrong,)).score < fits("heading_bias")[0].score - 100.0
+    wrong = next(s for s in problem("heading_bias").hypotheses if s.cause == "velocity_scale")
+    assert fitted(problem("heading_bias"), (wrong,)).score < fits("heading_bias")[0].score - 100.0
 
 
 def test_known_numbers_leave_out_what_a_cause_turns_or_speaks_for():
-    loss = next(s for s in case("healthy").suspects if s.label == "thrust_loss of port")
-    lag = next(s for s in case("healthy").suspects if s.cause == "navigation_lag")
+    loss = next(s for s in problem("healthy").hypotheses if s.label == "thrust_loss of port")
+    lag = next(s for s in problem("healthy").hypotheses if s.cause == "navigation_lag")
 
-    def turned(suspects):
-        return {path for column in case("healthy").known(suspects) for path in column.turns}
+    def turned(hypotheses):
+        return {path for column in problem("healthy").known(hypotheses) for path in column.turns}
 
     assert "port.thrust_loss" in turned(()) and "port.thrust_loss" not in turned((loss,))
     assert "instruments.thruster_lag" in turned(()) and "instruments.thruster_lag" not in turned((lag,))
@@ -80,7 +80,7 @@ def test_known_numbers_leave_out_what_a_cause_turns_or_speaks_for():
 
 
 def test_a_vector_is_sought_all_round_and_a_turning_current_by_its_trend():
-    groups = {s.cause: probes(s) for s in case("healthy").suspects}
+    groups = {s.cause: probes(s) for s in problem("healthy").hypotheses}
     sizes = [np.hypot(*column.turns.values()) for (column,) in groups["wave_drift"]]
     np.testing.assert_allclose(sizes, 0.005 * 531e3)
     assert len(sizes) == 12
@@ -96,8 +96,8 @@ def test_what_is_left_of_a_fit_is_known_numbers_alone():
 
 def test_a_steady_current_is_weighed_beside_the_varying_one_that_contains_it():
     """From the general cause alone the simpler one is reached, and wins: two numbers instead of four."""
-    here = case("current")
-    varying = next(s for s in here.suspects if s.cause == "current_varying")
+    here = problem("current")
+    varying = next(s for s in here.hypotheses if s.cause == "current_varying")
     found = {frozenset(): fitted(here), frozenset(["current_varying"]): fitted(here, (varying,))}
     _simplify(here, found)
     best = max(found.values(), key=lambda fit: fit.score)
@@ -122,14 +122,17 @@ def test_late_commands_are_found_beside_a_lost_thrust_though_their_lag_gains_not
     late = {role: log[role] for role in log.data_vars if role.endswith(("_rpm", "_azimuth"))}
     late = {role: series.copy(data=np.r_[[series.values[0]] * 2, series.values[:-2]]) for role, series in late.items()}
     best = twin.explained(log.assign(late))[1][0]
-    assert names(best.suspects) == {"thrust_loss of port", "thruster_lag"}
+    assert names(best.hypotheses) == {"thrust_loss of port", "thruster_lag"}
     assert best.values["instruments.thruster_lag"] == pytest.approx(2.0, abs=0.5)
 
 
 def test_a_fit_starts_within_the_bounds_of_its_numbers():
     """At first sight a number can be far beyond them, where no ship follows the log and the filter ends in NaN."""
-    (suspect,) = (one for one in case("healthy").suspects if one.cause == "reverse_loss")
-    (knob,) = suspect.knobs
-    starts = dict.fromkeys(knob.paths, knob.bounds[1]), dict.fromkeys(knob.paths, 1000.0 * knob.bounds[1])
-    bound, beyond = (fitted(case("healthy"), (suspect,), start) for start in starts)
+    (hypothesis,) = (one for one in problem("healthy").hypotheses if one.cause == "reverse_loss")
+    (parameter,) = hypothesis.parameters
+    starts = (
+        dict.fromkeys(parameter.paths, parameter.bounds[1]),
+        dict.fromkeys(parameter.paths, 1000.0 * parameter.bounds[1]),
+    )
+    bound, beyond = (fitted(problem("healthy"), (hypothesis,), start) for start in starts)
     assert (beyond.score, beyond.values) == (bound.score, bound.values)

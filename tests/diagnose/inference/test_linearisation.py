@@ -46,10 +46,10 @@ COLUMNS = [
 @cache
 def about():
     """Record, ship and motion that the ship is linearised about, and the linear problem."""
-    record = record_of(twin.logs()["healthy"], twin.plant())
-    plant = twin.plant().with_values(WRONG)
-    motion = first_motion(record, plant)
-    return record, plant, motion, linearise(motion, record, plant, COLUMNS)
+    record = record_of(twin.logs()["healthy"], twin.model())
+    model = twin.model().with_values(WRONG)
+    motion = first_motion(record, model)
+    return record, model, motion, linearise(motion, record, model, COLUMNS)
 
 
 def start_of_steps(motion):
@@ -67,9 +67,9 @@ def close(found, expected, positions, velocities):
 @pytest.mark.parametrize("state", Motion._fields)
 def test_transition_is_the_derivative_of_a_step(state):
     """Up to third order of the step: 1 s against the ship's quickest mode of about 2 s at full speed."""
-    record, plant, motion, linear = about()
+    record, model, motion, linear = about()
     start, small = start_of_steps(motion), 1e-4
-    moved = (advanced(start._replace(**{state: getattr(start, state) + s}), record, plant) for s in (small, -small))
+    moved = (advanced(start._replace(**{state: getattr(start, state) + s}), record, model) for s in (small, -small))
     up, down = (rows_first(rows) for rows in moved)
     found = linear.transition[:, :6, Motion._fields.index(state)]
     close(found, (up - down) / (2 * small), positions=0.08, velocities=0.04)
@@ -77,9 +77,9 @@ def test_transition_is_the_derivative_of_a_step(state):
 
 def test_a_slow_end_of_a_varying_current_is_not_turned_round_by_its_own_columns():
     """Both columns together, along the end itself, do what growing by a tenth does; the typical size is 15 times it."""
-    record, plant, motion, _ = about()
+    record, model, motion, _ = about()
     ends = {"water.north_start": 0.15, "water.east_start": -0.1, "water.north_end": 0.012, "water.east_end": -0.008}
-    slow = replace(plant, span=(record.time[0], record.time[-1])).with_values(ends)
+    slow = replace(model, span=(record.time[0], record.time[-1])).with_values(ends)
     linear = linearise(motion, record, slow, [{name: 0.2} for name in ends])
     ahead = (
         advanced(start_of_steps(motion), record, slow.with_values({name: by * ends[name] for name in list(ends)[2:]}))
@@ -91,56 +91,56 @@ def test_a_slow_end_of_a_varying_current_is_not_turned_round_by_its_own_columns(
 
 
 def test_unexplained_acceleration_moves_the_ship_as_a_force_that_lasts_over_the_step():
-    record, plant, motion, linear = about()
+    record, model, motion, linear = about()
     start, h, k = start_of_steps(motion), record.step, 100
     here = Motion(*(value[k] for value in start))
-    drivers = [_at(record.drivers(plant, share), k) for share in (0.0, 0.5, 1.0)]
+    inputs = [_at(record.inputs(model, share), k) for share in (0.0, 0.5, 1.0)]
     per_force = (
-        np.stack([np.array(motion_rates(here, drivers[0], plant, tuple(1e3 * row)))[3:] for row in np.eye(3)], axis=-1)
-        - np.array(motion_rates(here, drivers[0], plant))[3:, None]
+        np.stack([np.array(motion_rates(here, inputs[0], model, tuple(1e3 * row)))[3:] for row in np.eye(3)], axis=-1)
+        - np.array(motion_rates(here, inputs[0], model))[3:, None]
     )
     for axis in range(3):
         wanted = np.eye(3)[axis] * 1e-3
         force = tuple(1e3 * np.linalg.solve(per_force, wanted))
-        brute = np.array(_step(here, drivers, plant, h, force)) - np.array(_step(here, drivers, plant, h, (0, 0, 0)))
+        brute = np.array(_step(here, inputs, model, h, force)) - np.array(_step(here, inputs, model, h, (0, 0, 0)))
         np.testing.assert_allclose(linear.transition[k, :6, 6 + axis] * 1e-3, brute, atol=0.05 * np.abs(brute).max())
 
 
-def _at(drivers, k):
-    units = {name: (n[k], azimuth[k]) for name, (n, azimuth) in drivers.units.items()}
-    return drivers._replace(
-        time=drivers.time[k], units=units, wind_speed=drivers.wind_speed[k], wind_from=drivers.wind_from[k]
+def _at(inputs, k):
+    units = {name: (n[k], azimuth[k]) for name, (n, azimuth) in inputs.units.items()}
+    return inputs._replace(
+        time=inputs.time[k], units=units, wind_speed=inputs.wind_speed[k], wind_from=inputs.wind_from[k]
     )
 
 
-def _step(motion, drivers, plant, h, force):
-    """A hundred Euler steps, with the drivers of the nearest of start, middle and end."""
+def _step(motion, inputs, model, h, force):
+    """A hundred Euler steps, with the inputs of the nearest of start, middle and end."""
     for i in range(100):
-        rates = motion_rates(motion, drivers[round(i / 50)], plant, force)
+        rates = motion_rates(motion, inputs[round(i / 50)], model, force)
         motion = Motion(*(value + h / 100 * rate for value, rate in zip(motion, rates, strict=True)))
     return motion
 
 
 def test_the_first_column_is_by_how_much_the_ship_misses_the_motion():
-    record, plant, motion, linear = about()
+    record, model, motion, linear = about()
     ahead = Motion(*(value[1:] for value in motion))
     np.testing.assert_allclose(
-        linear.driven[:, :6, 0], rows_first(advanced(start_of_steps(motion), record, plant)) - rows_first(ahead)
+        linear.driven[:, :6, 0], rows_first(advanced(start_of_steps(motion), record, model)) - rows_first(ahead)
     )
-    np.testing.assert_allclose(linear.seen[..., 0], record.measured - rows_first(shown(motion, plant)))
+    np.testing.assert_allclose(linear.seen[..., 0], record.measured - rows_first(shown(motion, model)))
 
 
 @pytest.mark.parametrize("column", range(6))
 def test_what_a_number_does_over_a_step_is_the_difference_of_steps(column):
-    record, plant, motion, linear = about()
+    record, model, motion, linear = about()
     ((path, size),) = COLUMNS[column].items()
     start = start_of_steps(motion)
     up, down = (
-        rows_first(advanced(start, record, plant.with_values({path: plant.get(path) + sign * 0.05 * size})))
+        rows_first(advanced(start, record, model.with_values({path: model.get(path) + sign * 0.05 * size})))
         for sign in (1.0, -1.0)
     )
     brute = (down - up) / (0.1 * size) * size
-    # lags over rows whose drivers have corners: linear between rows, so differences see one slope or the other
+    # lags over rows whose inputs have corners: linear between rows, so differences see one slope or the other
     share = 0.15 if path.endswith("_lag") else 0.05
     close(linear.driven[:, :6, 1 + column][5:-5], brute[5:-5], positions=share, velocities=share)
     assert (linear.seen[..., 1 + column] == 0.0).all()
@@ -148,10 +148,10 @@ def test_what_a_number_does_over_a_step_is_the_difference_of_steps(column):
 
 @pytest.mark.parametrize("column", [6, 7])
 def test_what_an_instrument_shows_is_the_difference_of_what_is_shown(column):
-    record, plant, motion, linear = about()
+    record, model, motion, linear = about()
     ((path, size),) = COLUMNS[column].items()
     up, down = (
-        rows_first(shown(motion, plant.with_values({path: plant.get(path) + sign * 0.01 * size})))
+        rows_first(shown(motion, model.with_values({path: model.get(path) + sign * 0.01 * size})))
         for sign in (1.0, -1.0)
     )
     close(linear.seen[..., 1 + column], (up - down) / 0.02, positions=0.01, velocities=0.01)
@@ -160,8 +160,8 @@ def test_what_an_instrument_shows_is_the_difference_of_what_is_shown(column):
 
 @pytest.mark.parametrize("state", Motion._fields)
 def test_output_is_the_derivative_of_what_is_shown_and_of_slow_errors(state):
-    record, plant, motion, linear = about()
-    up, down = (rows_first(shown(motion._replace(**{state: getattr(motion, state) + s}), plant)) for s in (1e-5, -1e-5))
+    record, model, motion, linear = about()
+    up, down = (rows_first(shown(motion._replace(**{state: getattr(motion, state) + s}), model)) for s in (1e-5, -1e-5))
     i = Motion._fields.index(state)
     np.testing.assert_allclose(linear.output[..., i], (up - down) / 2e-5, atol=2e-3)
     np.testing.assert_array_equal(linear.output[:, :3, 9:12], np.broadcast_to(np.eye(3), (motion.x.size, 3, 3)))
@@ -170,8 +170,8 @@ def test_output_is_the_derivative_of_what_is_shown_and_of_slow_errors(state):
 
 def test_waves_move_the_ship_in_her_own_axes():
     """A place 1 m ahead is seen along the heading; their velocity as it is."""
-    _, plant, motion, linear = about()
-    psi = np.asarray(shown(motion, plant).psi)
+    _, model, motion, linear = about()
+    psi = np.asarray(shown(motion, model).psi)
     np.testing.assert_allclose(linear.output[:, :3, 12], np.stack([np.cos(psi), np.sin(psi), 0.0 * psi], axis=-1))
     np.testing.assert_allclose(linear.output[:, :3, 13], np.stack([-np.sin(psi), np.cos(psi), 0.0 * psi], axis=-1))
     np.testing.assert_array_equal(linear.output[:, 3:, 15:], np.broadcast_to(np.eye(3), (psi.size, 3, 3)))
@@ -193,10 +193,10 @@ def test_waves_are_an_oscillator_moved_by_white_noise():
 
 
 def test_steps_over_which_nothing_is_known_teach_nothing():
-    record, plant, motion, _ = about()
+    record, model, motion, _ = about()
     known = record.known.copy()
     known[50:60] = False
-    linear = linearise(motion, _with(record, known), plant, COLUMNS)
+    linear = linearise(motion, _with(record, known), model, COLUMNS)
     assert (linear.driven[50:60] == 0.0).all() and (linear.driven[49] != 0.0).any()
 
 

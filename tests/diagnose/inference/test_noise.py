@@ -18,15 +18,15 @@ NO_LIMIT = np.full(3, 1.0)
 
 @pytest.fixture(scope="module")
 def problem():
-    record = record_of(twin.logs()["healthy"], twin.plant())
-    motion = first_motion(record, twin.plant())
-    linear = linearise(motion, record, twin.plant(), [])
+    record = record_of(twin.logs()["healthy"], twin.model())
+    motion = first_motion(record, twin.model())
+    linear = linearise(motion, record, twin.model(), [])
     return record, twin.drawn(3, linear, TRUTH, record)
 
 
 def test_the_first_guess_of_the_channels_is_their_white_noise():
     """By third differences, that the motion of a ship hardly has."""
-    found = first_noise(record_of(twin.logs()["healthy"], twin.plant()), 33.9)
+    found = first_noise(record_of(twin.logs()["healthy"], twin.model()), 33.9)
     np.testing.assert_allclose(found.white, twin.WHITE, rtol=0.2)
 
 
@@ -35,7 +35,7 @@ def test_a_channel_without_data_or_noise_gets_a_level_that_hurts_nobody():
     log = log.assign(surge=0.0 * log["surge"])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = first_noise(record_of(log, twin.plant()), 33.9)
+        found = first_noise(record_of(log, twin.model()), 33.9)
     assert found.white[5] == 1.0 and found.white[3] == 3e-3
 
 
@@ -69,9 +69,9 @@ def test_an_unexplained_force_is_kept_from_swallowing_causes(problem):
 
 def test_what_is_explained_is_taken_out():
     """A problem whose log is twice its second column is left with nothing."""
-    record = record_of(twin.logs()["healthy"], twin.plant())
-    motion = first_motion(record, twin.plant())
-    linear = linearise(motion, record, twin.plant(), [{"vessel.mass_scale": 0.1}])
+    record = record_of(twin.logs()["healthy"], twin.model())
+    motion = first_motion(record, twin.model())
+    linear = linearise(motion, record, twin.model(), [{"vessel.mass_scale": 0.1}])
     doubled = linear._replace(driven=linear.driven[..., [1, 1]] * [2.0, 1.0], seen=linear.seen[..., [1, 1]])
     left = explained(doubled, np.array([2.0]))
     assert left.driven.shape[-1] == left.seen.shape[-1] == 1

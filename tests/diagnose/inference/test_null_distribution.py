@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose import twin
-from diagnose.twin import case, fits
+from diagnose.twin import fits, problem
 
 from shipcosim.diagnose.inference.null_distribution import healthy_records, null_gains
 from shipcosim.diagnose.ship.model import Motion
@@ -15,7 +15,7 @@ COUNT = 6
 
 @pytest.fixture(scope="module")
 def records():
-    return healthy_records(case("mass"), fits("mass")[0].motion, COUNT, np.random.default_rng(0))
+    return healthy_records(problem("mass"), fits("mass")[0].motion, COUNT, np.random.default_rng(0))
 
 
 def spread(values):
@@ -35,24 +35,24 @@ def test_healthy_ships_keep_the_track(records):
 def test_healthy_ships_are_noisy_as_the_log(records):
     """By third differences, in which motion is lost: each channel to 15 %."""
     third = np.diff(records.measured, 3, axis=1) / np.sqrt(20.0)
-    np.testing.assert_allclose(third.std(axis=(0, 1)), case("mass").noise.white, rtol=0.15)
+    np.testing.assert_allclose(third.std(axis=(0, 1)), problem("mass").noise.white, rtol=0.15)
 
 
 def test_thrusters_of_healthy_ships_stay_near_the_logged_ones_and_within_limits(records):
     for name, (n, _) in records.units.items():
-        most, logged = case("mass").plant.get(f"{name}.rpm_max") / 60.0, case("mass").record.units[name][0]
+        most, logged = problem("mass").model.get(f"{name}.rpm_max") / 60.0, problem("mass").record.units[name][0]
         assert np.abs(n).max() <= most * (1.0 + 1e-9)
         assert spread(n - logged) < 0.3 * most
         assert np.std(n, axis=0).max() > 0.0  # feedback is at work, and differs from ship to ship
 
 
 def test_the_same_seed_gives_the_same_ships(records):
-    again = healthy_records(case("mass"), fits("mass")[0].motion, COUNT, np.random.default_rng(0))
+    again = healthy_records(problem("mass"), fits("mass")[0].motion, COUNT, np.random.default_rng(0))
     np.testing.assert_array_equal(again.measured, records.measured)
 
 
 def test_gaps_of_the_log_are_in_the_healthy_logs():
-    here = case("mass")
+    here = problem("mass")
     measured = here.record.measured.copy()
     measured[100:120, 2] = np.nan
     holed = replace(here, record=replace(here.record, measured=measured))
@@ -61,8 +61,8 @@ def test_gaps_of_the_log_are_in_the_healthy_logs():
 
 
 def test_no_cause_gains_by_chance_on_a_log_that_moves():
-    gains = null_gains(case("mass"), fits("mass")[0].motion, case("mass").suspects, count=COUNT, batch=3)
-    assert set(gains) == {suspect.label for suspect in case("mass").suspects}
+    gains = null_gains(problem("mass"), fits("mass")[0].motion, problem("mass").hypotheses, count=COUNT, batch=3)
+    assert set(gains) == {hypothesis.label for hypothesis in problem("mass").hypotheses}
     assert all(values.shape == (COUNT,) for values in gains.values())
     assert max(values.max() for values in gains.values()) < 5.0
     assert np.mean([values.mean() for values in gains.values()]) < 0.0
@@ -70,26 +70,26 @@ def test_no_cause_gains_by_chance_on_a_log_that_moves():
 
 def test_stationkeeping_does_not_blame_the_damping():
     """A ship that lies still at constant thrust, with noise: the trap of regressors that are noise."""
-    here = case("healthy")
+    here = problem("healthy")
     n = here.record.time.size
-    still = {name: (np.full(n, 1.0), np.full(n, 0.2)) for name in here.plant.thrusters}
+    still = {name: (np.full(n, 1.0), np.full(n, 0.2)) for name in here.model.thrusters}
     wind = tuple(np.full(n, value) for value in (8.0, 0.5))
     calm = replace(here, record=replace(here.record, units=still, wind=wind))
     track = Motion(*np.zeros((6, n)))
-    damping = [suspect for suspect in here.suspects if suspect.cause in ("crossflow", "drag")]
+    damping = [hypothesis for hypothesis in here.hypotheses if hypothesis.cause in ("crossflow", "drag")]
     gains = null_gains(calm, track, damping, count=10)
     assert max(values.max() for values in gains.values()) < 3.0
 
 
 def test_a_tolerance_that_is_wider_makes_healthy_ships_differ_more():
-    here = case("mass")
-    tolerances = here.plant.tolerances
+    here = problem("mass")
+    tolerances = here.model.tolerances
     off = []
     for factor in (0.0, 3.0):
-        plant = replace(here.plant, tolerances={path: factor * value for path, value in tolerances.items()})
+        model = replace(here.model, tolerances={path: factor * value for path, value in tolerances.items()})
         found = healthy_records(
-            replace(here, plant=plant), fits("mass")[0].motion, COUNT, np.random.default_rng(0)
+            replace(here, model=model), fits("mass")[0].motion, COUNT, np.random.default_rng(0)
         ).units["port"][0]
         off.append(np.std(found, axis=0).mean())
     assert off[1] > 1.2 * off[0]
-    assert twin.plant().tolerances == tolerances
+    assert twin.model().tolerances == tolerances

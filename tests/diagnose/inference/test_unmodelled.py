@@ -5,12 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from diagnose import twin
-from diagnose.twin import case, fits
+from diagnose.twin import fits, problem
 from scipy.stats import chi2
 
 from shipcosim.diagnose.inference import unmodelled as nameless
 from shipcosim.diagnose.inference.unmodelled import unexplained
-from shipcosim.diagnose.inference.verdict import STRANGE
+from shipcosim.diagnose.inference.verdict import UNMODELLED
 
 
 def beside_the_best(log):
@@ -20,40 +20,40 @@ def beside_the_best(log):
 
 @pytest.mark.parametrize("name", ["healthy", "mass", "tow", "two", "heading_bias"])
 def test_beside_the_right_cause_nothing_is_left(name):
-    assert max(unexplained(case(name), fits(name)[0]).values()) < 1.0 < STRANGE
+    assert max(unexplained(problem(name), fits(name)[0]).values()) < 1.0 < UNMODELLED
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_healthy_logs_stay_below_the_threshold(seed):
     log = twin.sailed({"healthy": {}}, seed=seed)["healthy"]
-    assert max(beside_the_best(log).values()) < STRANGE
+    assert max(beside_the_best(log).values()) < UNMODELLED
 
 
 def test_a_force_that_swings_is_found_as_periodic():
     log = twin.sailed({"": {}}, push=lambda t: (0.0, 3000.0 * np.sin(2.0 * np.pi * t / 70.0), 0.0))[""]
     found = beside_the_best(log)
-    assert max(found, key=found.get) == "periodic" and found["periodic"] > 2.0 * STRANGE
+    assert max(found, key=found.get) == "periodic" and found["periodic"] > 2.0 * UNMODELLED
 
 
 def test_a_force_that_comes_and_goes_slowly_is_found_as_slow():
     log = twin.sailed({"": {}}, push=lambda t: (0.0, 0.0, 120e3 * np.exp(-(((t - 200.0) / 60.0) ** 2))))[""]
     found = beside_the_best(log)
-    assert found["slow"] > STRANGE
+    assert found["slow"] > UNMODELLED
 
 
 def test_a_scale_of_the_yaw_rate_is_found_in_its_channel():
     log = twin.logs()["healthy"]
     found = beside_the_best(log.assign(yaw_rate=1.15 * log["yaw_rate"]))
-    assert max(found, key=found.get) == "in a channel" and found["in a channel"] > 10.0 * STRANGE
+    assert max(found, key=found.get) == "in a channel" and found["in a channel"] > 10.0 * UNMODELLED
 
 
 def test_the_search_over_periods_is_paid_for(monkeypatch):
     """The same sinusoid sought four times scores ln 4 less than once."""
-    once = nameless._bases(case("healthy"), fits("healthy")[0])["periodic"][:1]
+    once = nameless._bases(problem("healthy"), fits("healthy")[0])["periodic"][:1]
     scores = []
     for times in (1, 4):
         monkeypatch.setattr(nameless, "_bases", lambda *_, times=times: {"periodic": times * once})
-        scores.append(unexplained(case("healthy"), fits("healthy")[0])["periodic"])
+        scores.append(unexplained(problem("healthy"), fits("healthy")[0])["periodic"])
     assert scores[0] - scores[1] == pytest.approx(np.log(4.0))
 
 
@@ -63,9 +63,9 @@ def fit_of_parts(sizes, known=400.0):
     products = np.zeros((len(sizes), 2, 2))
     products[:, 1, 1], products[:, 0, 1], products[:, 1, 0] = known, known * sizes, known * sizes
     theta = np.array([sizes.mean()])
-    suspect = SimpleNamespace(knobs=(None,))
+    hypothesis = SimpleNamespace(parameters=(None,))
     rest = {"products": SimpleNamespace(blocks=products), "theta": theta, "left": theta}
-    return SimpleNamespace(suspects=(suspect,), columns=[None], **rest)
+    return SimpleNamespace(hypotheses=(hypothesis,), columns=[None], **rest)
 
 
 def test_a_cause_that_is_as_large_in_each_part_is_steady():
@@ -74,7 +74,7 @@ def test_a_cause_that_is_as_large_in_each_part_is_steady():
 
 
 def test_a_cause_that_comes_and_goes_from_part_to_part_is_not():
-    assert nameless._unsteady(fit_of_parts([0.8, 0.2] * 4)) > STRANGE
+    assert nameless._unsteady(fit_of_parts([0.8, 0.2] * 4)) > UNMODELLED
 
 
 def test_what_a_p_value_can_say_at_most_is_bounded():
@@ -85,7 +85,7 @@ def test_what_a_p_value_can_say_at_most_is_bounded():
 
 def fit_of_numbers(theta, covariance):
     """A fit without a cause whose known numbers are off by `theta` tolerances."""
-    return SimpleNamespace(suspects=(), columns=[None] * len(theta), theta=np.array(theta), covariance=covariance)
+    return SimpleNamespace(hypotheses=(), columns=[None] * len(theta), theta=np.array(theta), covariance=covariance)
 
 
 def test_numbers_off_as_their_tolerances_say_are_no_surprise():
@@ -94,17 +94,17 @@ def test_numbers_off_as_their_tolerances_say_are_no_surprise():
     seen, turned = random.standard_normal((60, 20)), np.diag(np.geomspace(1e-2, 3.0, 20))
     precision = turned @ seen.T @ seen @ turned / 30.0
     covariance = np.linalg.inv(np.eye(20) + precision)
-    strange = 0
+    unmodelled = 0
     for _ in range(2000):
         pull = precision @ random.standard_normal(20) + np.linalg.cholesky(precision) @ random.standard_normal(20)
-        strange += nameless._beyond(fit_of_numbers(covariance @ pull, covariance)) > STRANGE
-    assert strange <= 2
+        unmodelled += nameless._beyond(fit_of_numbers(covariance @ pull, covariance)) > UNMODELLED
+    assert unmodelled <= 2
 
 
 def test_numbers_far_beyond_their_tolerances_are_strange():
-    assert nameless._beyond(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20))) > STRANGE
+    assert nameless._beyond(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20))) > UNMODELLED
     assert nameless._beyond(fit_of_numbers([2.0, -2.0, *[0.5] * 18], 0.1 * np.eye(20))) < 1.0
 
 
 def test_what_is_beyond_all_chance_is_strange_by_a_number():
-    assert STRANGE < nameless._beyond(fit_of_numbers([300.0] * 20, 0.1 * np.eye(20))) < 700.0
+    assert UNMODELLED < nameless._beyond(fit_of_numbers([300.0] * 20, 0.1 * np.eye(20))) < 700.0

@@ -7,27 +7,27 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
-from shipcosim.diagnose.inference.fitting import Column
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
+from shipcosim.diagnose.inference.fitting import Regressor
 from shipcosim.diagnose.inference.verdict import (
     APART,
     ENOUGH,
-    STRANGE,
     TESTABLE,
+    UNMODELLED,
     admissible,
     gained,
     judge,
     not_testable,
 )
 
-EVERYONE = {suspect.label: suspect for suspect in suspects(read_catalogue(), twin.plant())}
+EVERYONE = {hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), twin.model())}
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
     """What the verdict reads of a `Fit`."""
 
-    suspects: tuple
+    hypotheses: tuple
     score: float
     values: Any
     std: Any
@@ -38,20 +38,22 @@ class Fitted:
 def fit(score, *labels, size=1.0, std=0.05, **values):
     """Causes of `size` typical sizes, known to a twentieth of it; values of single numbers by their last name."""
     named = tuple(EVERYONE[label] for label in labels)
-    knobs = [knob for suspect in named for knob in suspect.knobs]
+    parameters = [parameter for hypothesis in named for parameter in hypothesis.parameters]
     found = {
-        knob.paths[0]: values.get(knob.paths[0].rpartition(".")[2], knob.neutral + size * knob.typical)
-        for knob in knobs
+        parameter.paths[0]: values.get(
+            parameter.paths[0].rpartition(".")[2], parameter.neutral + size * parameter.typical
+        )
+        for parameter in parameters
     }
-    return Fitted(named, score, found, {knob.paths[0]: std * knob.typical for knob in knobs})
+    return Fitted(named, score, found, {parameter.paths[0]: std * parameter.typical for parameter in parameters})
 
 
 def quiet(_):
     return {"slow": -5.0, "periodic": 1.0}
 
 
-def verdict(*fits, strange=quiet, chance=None):
-    return judge([fit(0.0), *fits], strange, chance)
+def verdict(*fits, unmodelled=quiet, chance=None):
+    return judge([fit(0.0), *fits], unmodelled, chance)
 
 
 def named(judgement):
@@ -69,7 +71,7 @@ def test_a_cause_far_above_the_rest_is_named():
 def test_a_cause_of_another_shape_is_another_cause(off, says):
     """In units of the tolerances; the second would be exceeded by one right drift in six hundred."""
     drift = fit(40.0, "wave_drift")
-    columns = tuple(Column({path: 1.0}) for path in drift.suspects[0].effect.shape)
+    columns = tuple(Regressor({path: 1.0}) for path in drift.hypotheses[0].effect.shape)
     assert verdict(replace(drift, theta=off, columns=columns)).verdict == says
 
 
@@ -132,17 +134,17 @@ def test_what_healthy_logs_gain_too_is_not_named():
 
 
 def test_an_error_without_a_name_makes_it_unknown_and_the_causes_candidates():
-    found = verdict(fit(40.0, "mass"), strange=lambda _: {"slow": -3.0, "periodic": STRANGE + 0.5})
+    found = verdict(fit(40.0, "mass"), unmodelled=lambda _: {"slow": -3.0, "periodic": UNMODELLED + 0.5})
     assert found.verdict == "unknown" and found.findings == ()
     assert [c.cause for c in found.candidates] == ["mass"]
-    assert verdict(strange=lambda _: {"slow": STRANGE + 0.5}).verdict == "unknown"
-    assert verdict(strange=lambda _: {"slow": STRANGE - 0.5}).verdict == "consistent"
+    assert verdict(unmodelled=lambda _: {"slow": UNMODELLED + 0.5}).verdict == "unknown"
+    assert verdict(unmodelled=lambda _: {"slow": UNMODELLED - 0.5}).verdict == "consistent"
 
 
 def test_what_a_large_cause_leaves_is_measured_by_its_gain():
     """A law is never exact: of 2000 nats a hundredth may be left without a name."""
-    assert verdict(fit(2000.0, "tow"), strange=lambda _: {"slow": 20.0}).verdict == "named"
-    assert verdict(fit(2000.0, "tow"), strange=lambda _: {"slow": 60.0}).verdict == "unknown"
+    assert verdict(fit(2000.0, "tow"), unmodelled=lambda _: {"slow": 20.0}).verdict == "named"
+    assert verdict(fit(2000.0, "tow"), unmodelled=lambda _: {"slow": 60.0}).verdict == "unknown"
 
 
 def test_a_vectors_size_counts_not_each_of_its_components():
@@ -164,7 +166,7 @@ def test_gain_of_a_cause_is_over_the_best_set_without_it():
 def test_a_cause_is_testable_if_its_typical_size_would_have_gained_enough():
     """One column of information g: a size of one typical size gains g/2 less Occam's share."""
     places = {"mass": 1, "drag": 2}
-    columns = [Column({f"vessel.{path}": 1.0}) for path in ("lift", "mass_scale", "drag_scale")]
+    columns = [Regressor({f"vessel.{path}": 1.0}) for path in ("lift", "mass_scale", "drag_scale")]
     products = np.diag([1.0, 5.0, 40.0, 4.0])
     groups = [(EVERYONE[label], [at]) for label, at in places.items()]
     assert 0.5 * 40.0 - 0.5 * np.log(41.0) > TESTABLE > 2.0
@@ -172,7 +174,7 @@ def test_a_cause_is_testable_if_its_typical_size_would_have_gained_enough():
 
 
 def test_a_cause_that_looks_like_a_known_number_is_not_testable():
-    columns = [Column({"vessel.lift": 1.0}), Column({"vessel.mass_scale": 1.0})]
+    columns = [Regressor({"vessel.lift": 1.0}), Regressor({"vessel.mass_scale": 1.0})]
     products = np.diag([1.0, 40.0, 40.0])
     assert not_testable(None, products, columns, [(EVERYONE["mass"], [1])]) == ()
     products[1, 2] = products[2, 1] = 39.9
@@ -180,18 +182,18 @@ def test_a_cause_that_looks_like_a_known_number_is_not_testable():
 
 
 def test_a_cause_that_differs_from_part_to_part_gives_way_if_it_gains_little_and_is_unknown_if_much():
-    def strange(of):
-        return {"slow": -5.0, "from part to part": 2.0 * STRANGE if of.suspects else 0.0}
+    def unmodelled(of):
+        return {"slow": -5.0, "from part to part": 2.0 * UNMODELLED if of.hypotheses else 0.0}
 
-    assert verdict(fit(10.0, "mass"), strange=strange).verdict == "consistent"
-    assert verdict(fit(40.0, "mass"), strange=strange).verdict == "unknown"
+    assert verdict(fit(10.0, "mass"), unmodelled=unmodelled).verdict == "consistent"
+    assert verdict(fit(40.0, "mass"), unmodelled=unmodelled).verdict == "unknown"
 
 
 def test_what_a_cause_too_small_to_matter_explains_is_no_error_without_a_name():
-    def strange(of):
-        return {"slow": 20.0 if not of.suspects else -5.0}
+    def unmodelled(of):
+        return {"slow": 20.0 if not of.hypotheses else -5.0}
 
     trifle = fit(40.0, "mass", size=0.9 * EVERYONE["mass"].effect.least)
-    assert verdict(trifle, strange=strange).verdict == "consistent"
-    assert verdict(fit(40.0, "mass", mass_scale=2.5), strange=strange).verdict == "unknown"
-    assert verdict(trifle, strange=lambda _: {"slow": 20.0}).verdict == "unknown"
+    assert verdict(trifle, unmodelled=unmodelled).verdict == "consistent"
+    assert verdict(fit(40.0, "mass", mass_scale=2.5), unmodelled=unmodelled).verdict == "unknown"
+    assert verdict(trifle, unmodelled=lambda _: {"slow": 20.0}).verdict == "unknown"

@@ -43,13 +43,13 @@ def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
 
 
 def test_a_clock_is_testable_where_the_ship_moves_and_not_where_nothing_happens():
-    case = twin.ready(twin.logs()["healthy"])
-    assert is_testable(case)
-    motion = case.motion
+    problem = twin.ready(twin.logs()["healthy"])
+    assert is_testable(problem)
+    motion = problem.motion
     still = motion._replace(**{name: 0.0 * getattr(motion, name) for name in ("u", "v", "r")})
-    units = {name: (0.0 * speed, angle) for name, (speed, angle) in case.record.units.items()}
-    calm = replace(case.record, units=units, wind=tuple(0.0 * series for series in case.record.wind))
-    assert not is_testable(replace(case, motion=still, record=calm))
+    units = {name: (0.0 * speed, angle) for name, (speed, angle) in problem.record.units.items()}
+    calm = replace(problem.record, units=units, wind=tuple(0.0 * series for series in problem.record.wind))
+    assert not is_testable(replace(problem, motion=still, record=calm))
 
 
 def test_a_compass_that_deviates_with_the_heading_is_no_clock():
@@ -57,10 +57,10 @@ def test_a_compass_that_deviates_with_the_heading_is_no_clock():
     log = twin.logs()["healthy"]
     heading = log["heading"].values
     deviated = np.mod(heading + 15.0 * np.sin(np.radians(heading) + 4.5), 360.0)
-    case = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
-    gain, finding = timing._most_likely(timing._blocks(case, timing._edges(case), case.known(())))
+    problem = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
+    gain, finding = timing._most_likely(timing._blocks(problem, timing._edges(problem), problem.known(())))
     assert gain > 30.0 and finding.cause == "clock"
-    assert not timing._is_said_by_all(case, finding, case.known(())) and clock_by_answer(case) is None
+    assert not timing._is_said_by_all(problem, finding, problem.known(())) and clock_by_answer(problem) is None
 
 
 def test_thrusters_that_push_less_for_a_while_are_no_clock():
@@ -69,7 +69,7 @@ def test_thrusters_that_push_less_for_a_while_are_no_clock():
     here = (log["time"].values > FIRST) & (log["time"].values < LAST)
     told = {role: ("time", np.where(here, 1.25, 1.0) * log[role].values) for role in log.data_vars if "_rpm" in role}
     clock = Finding("clock", None, "data", 0.98, {"rate": Estimate(0.8, 0.02, "1")}, ((FIRST, LAST),), ("time",))
-    case = twin.ready(log.assign(told))
-    assert not timing._is_said_by_all(case, clock, case.known(()))
+    problem = twin.ready(log.assign(told))
+    assert not timing._is_said_by_all(problem, clock, problem.known(()))
     slow, told = twin.ready(hurried(log)), {"rate": Estimate(RATE, 0.02, "1")}
     assert timing._is_said_by_all(slow, replace(clock, parameters=told), slow.known(()))

@@ -36,8 +36,8 @@ def test_a_wind_told_to_be_counted_from_north_is_over_ground_too_where_the_ship_
     log = hidden(twin.logs()["healthy"])
     told = finding_of(FROM_NORTH, 0.99)
     clean = with_label(log, FROM_NORTH)
-    case = twin.ready(clean)
-    (found,), clean, case = with_right_wind(log, [told], clean, case, twin.plant(), read_catalogue())
+    problem = twin.ready(clean)
+    (found,), clean, problem = with_right_wind(log, [told], clean, problem, twin.model(), read_catalogue())
     assert (found.note, found.channels, found.segments) == (label.sentence, label.channels, ())
     right = twin.logs()["healthy"]
     np.testing.assert_allclose(clean["wind_speed"], right["wind_speed"], atol=1e-9)

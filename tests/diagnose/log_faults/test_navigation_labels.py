@@ -33,8 +33,8 @@ def test_units_stretch_the_density_of_their_channels():
     healthy = twin.logs()["healthy"]
     knots = {role: 3600.0 / 1852.0 for role in ("surge", "sway")}
     log = healthy.assign({r: ("time", k * healthy[r].values, healthy[r].attrs) for r, k in knots.items()})
-    case = twin.ready(healthy)
-    loud = replace(case, noise=replace(case.noise, white=case.noise.white * [1, 1, 1, 1.944, 1.944, 1]))
+    problem = twin.ready(healthy)
+    loud = replace(problem, noise=replace(problem.noise, white=problem.noise.white * [1, 1, 1, 1.944, 1.944, 1]))
     swap = said(next(label for label in POSITION_LABELS if label.cause == "channel_swap"))
     better, *_ = relabelled(log, [swap], loud)
     assert better.faults[0].note == "surge and sway are in kn, not m/s"

@@ -41,7 +41,7 @@ def holed(role, first, last):
 
 
 def test_channels_are_in_si_and_angles_do_not_jump():
-    record = record_of(log(), twin.plant())
+    record = record_of(log(), twin.model())
     np.testing.assert_allclose(record.measured[:, 2], np.radians(350.0 + 0.1 * TIME), atol=1e-12)
     np.testing.assert_allclose(record.measured[:, 5], np.radians(0.1), rtol=1e-12)
     n, azimuth = record.units["port"]
@@ -54,20 +54,20 @@ def test_channels_are_in_si_and_angles_do_not_jump():
 @pytest.mark.parametrize("role", ["port_rpm", "starboard_azimuth", "tunnel_rpm", "wind_from"])
 def test_steps_next_to_a_gap_in_what_drives_the_ship_are_not_known(role):
     """Over rows 100 to 110 nothing is known: not what happens from row 99 on, but from row 111 on."""
-    record = record_of(log(**holed(role, 100, 110)), twin.plant())
+    record = record_of(log(**holed(role, 100, 110)), twin.model())
     assert np.flatnonzero(~record.known).tolist() == list(range(99, 111))
     for series in (*record.units["port"], *record.units["starboard"], *record.wind):
         assert np.isfinite(series).all()
 
 
 def test_a_gap_in_a_measurement_stays_one_and_the_ship_is_driven_on():
-    record = record_of(log(**holed("north", 100, 110)), twin.plant())
+    record = record_of(log(**holed("north", 100, 110)), twin.model())
     assert np.flatnonzero(np.isnan(record.measured[:, 0])).tolist() == list(range(100, 111))
     assert record.known.all()
 
 
 def test_heading_does_not_jump_across_a_gap_through_north():
-    record = record_of(log(**holed("heading", 90, 110)), twin.plant())
+    record = record_of(log(**holed("heading", 90, 110)), twin.model())
     np.testing.assert_allclose(record.measured[111:, 2], np.radians(350.0 + 0.1 * TIME[111:]), atol=1e-12)
 
 
@@ -84,28 +84,28 @@ def test_heading_does_not_jump_across_a_gap_through_north():
 @pytest.mark.parametrize("share", [0.0, 0.5])
 def test_late_channels_are_taken_where_they_belong(lag, thrusters, wind, share):
     none = {"instruments.wind_lag": 0.0}
-    plant = twin.plant().with_values(none | {f"instruments.{lag}": 3.0})
-    drivers = record_of(log(), plant).drivers(plant, share)
+    model = twin.model().with_values(none | {f"instruments.{lag}": 3.0})
+    inputs = record_of(log(), model).inputs(model, share)
     at = TIME[:-1] + share
-    np.testing.assert_allclose(drivers.time, at)
-    np.testing.assert_allclose(drivers.units["tunnel"][0][INNER], (10.0 - 0.01 * (at + thrusters))[INNER], rtol=1e-9)
-    np.testing.assert_allclose(drivers.wind_speed[INNER], (5.0 + 0.01 * (at + wind))[INNER], rtol=1e-9)
+    np.testing.assert_allclose(inputs.time, at)
+    np.testing.assert_allclose(inputs.units["tunnel"][0][INNER], (10.0 - 0.01 * (at + thrusters))[INNER], rtol=1e-9)
+    np.testing.assert_allclose(inputs.wind_speed[INNER], (5.0 + 0.01 * (at + wind))[INNER], rtol=1e-9)
 
 
 def test_a_sensor_that_averages_over_the_last_seconds_is_read_half_of_them_later():
     """The mean over 2.5 s of a ramp is its value 1.25 s before: the default of the wind's lag."""
     averaged = 5.0 + 0.01 * (TIME - 1.25)
-    drivers = record_of(log(wind_speed=averaged), twin.plant()).drivers(twin.plant())
-    np.testing.assert_allclose(drivers.wind_speed[INNER], 5.0 + 0.01 * TIME[:-1][INNER], rtol=1e-9)
+    inputs = record_of(log(wind_speed=averaged), twin.model()).inputs(twin.model())
+    np.testing.assert_allclose(inputs.wind_speed[INNER], 5.0 + 0.01 * TIME[:-1][INNER], rtol=1e-9)
 
 
 def test_what_is_not_in_the_log_is_said():
     absent = ("tunnel_rpm", "port_azimuth", "wind_speed")
-    record = record_of(log(absent), twin.plant())
+    record = record_of(log(absent), twin.model())
     tunnel, port = record.remarks[1], record.remarks[0]
     assert "'tunnel'" in tunnel and "stand still" in tunnel and "'port'" in port and "point ahead" in port
     assert "No wind" in record.remarks[2] and record.wind is None and len(record.remarks) == 3
-    assert record.drivers(twin.plant()).wind_speed is None
+    assert record.inputs(twin.model()).wind_speed is None
     assert (record.units["tunnel"][0] == 0.0).all() and record.known.all()
 
 
@@ -113,7 +113,7 @@ def test_wind_over_ground_serves_where_there_is_no_apparent_wind():
     table = log(("wind_speed", "wind_from")).assign(
         true_wind_speed=("time", 7.0 + 0.0 * TIME), true_wind_from=("time", 20.0 + 0.0 * TIME)
     )
-    record = record_of(table, twin.plant())
+    record = record_of(table, twin.model())
     np.testing.assert_allclose(record.wind, (np.full(400, 7.0), np.full(400, np.radians(20.0))))
 
 
@@ -123,12 +123,12 @@ def test_wind_over_ground_serves_where_there_is_no_apparent_wind():
 def test_too_little_is_refused_with_what_is_needed(table, said):
     table = log().isel(time=slice(100)) if table is None else table
     with pytest.raises(ShipcosimError, match=f"{said}.*north, east and heading over at least two minutes"):
-        record_of(table, twin.plant())
+        record_of(table, twin.model())
 
 
 def test_first_motion_has_rates_of_positions_where_none_are_measured():
-    given = first_motion(record_of(log(), twin.plant()), twin.plant())
-    made = first_motion(record_of(log(("surge", "sway", "yaw_rate")), twin.plant()), twin.plant())
+    given = first_motion(record_of(log(), twin.model()), twin.model())
+    made = first_motion(record_of(log(("surge", "sway", "yaw_rate")), twin.model()), twin.model())
     psi = np.radians(350.0 + 0.1 * TIME)
     np.testing.assert_allclose(made.psi[INNER], psi[INNER], atol=1e-9)
     np.testing.assert_allclose(made.r[INNER], np.radians(0.1), rtol=1e-6)
@@ -138,8 +138,8 @@ def test_first_motion_has_rates_of_positions_where_none_are_measured():
 
 
 def test_several_logs_are_driven_as_each_alone():
-    plant, record = twin.plant(), record_of(log(), twin.plant())
+    model, record = twin.model(), record_of(log(), twin.model())
     both = {name: tuple(np.stack([series, 2.0 * series]) for series in pair) for name, pair in record.units.items()}
-    drivers = replace(record, units=both).drivers(plant, 0.5)
-    alone = record.drivers(plant, 0.5)
-    np.testing.assert_allclose(drivers.units["port"][0], np.stack([alone.units["port"][0], 2 * alone.units["port"][0]]))
+    inputs = replace(record, units=both).inputs(model, 0.5)
+    alone = record.inputs(model, 0.5)
+    np.testing.assert_allclose(inputs.units["port"][0], np.stack([alone.units["port"][0], 2 * alone.units["port"][0]]))

@@ -10,14 +10,14 @@ from diagnose import boat, twin
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.problem import prepare
 from shipcosim.diagnose.pipeline import diagnose
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship import model as plant_module
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Motion, loads, plant_of
-from shipcosim.diagnose.ship.surrogate import bollard_of, lawful
+from shipcosim.diagnose.ship.model import Motion, loads, ship_model_of
+from shipcosim.diagnose.ship.surrogate import bollard_of, with_surrogates
 from shipcosim.diagnose.ship.thrusters import pusher_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import write_table
@@ -30,20 +30,20 @@ def logged(minutes=6.0, seed=0, **factors):
 
 @cache
 def along(minutes=6.0):
-    """The boat with the laws of her propellers along a log: plant, record, motion."""
-    plant = plant_of(boat.structure().checked())
-    return with_laws(plant, logged(minutes))
+    """The boat with the laws of her propellers along a log: ship model, record, motion."""
+    model = ship_model_of(boat.structure().checked())
+    return with_laws(model, logged(minutes))
 
 
-def with_laws(plant, log):
-    record = record_of(log, plant)
-    motion = first_motion(record, plant)
-    return lawful(plant, record, motion), record, motion
+def with_laws(model, log):
+    record = record_of(log, model)
+    motion = first_motion(record, model)
+    return with_surrogates(model, record, motion), record, motion
 
 
-def at_rows(plant, record, motion):
+def at_rows(model, record, motion):
     """Loads at each row but the last."""
-    return loads(Motion(*(value[:-1] for value in motion)), record.drivers(plant), plant)
+    return loads(Motion(*(value[:-1] for value in motion)), record.inputs(model), model)
 
 
 def closed_form(side, n, u, r, gain=boat.GAIN):
@@ -61,8 +61,8 @@ def pushes(motion, record, side, off=0.0, **changed):
 
 @pytest.mark.parametrize("side", boat.SIDES)
 def test_along_the_log_the_load_is_that_of_the_fmu(side):
-    plant, record, motion = along()
-    X, Y, N = at_rows(plant, record, motion)[side]
+    model, record, motion = along()
+    X, Y, N = at_rows(model, record, motion)[side]
     push, moment = pushes(motion, record, side)
     np.testing.assert_allclose(X, push, atol=1e-6 * np.abs(push).max())
     np.testing.assert_allclose(N, moment, atol=1e-6 * np.abs(moment).max())
@@ -70,19 +70,19 @@ def test_along_the_log_the_load_is_that_of_the_fmu(side):
 
 
 def test_beside_the_log_the_load_changes_as_that_of_the_fmu():
-    plant, record, motion = along()
+    model, record, motion = along()
     moved = motion._replace(u=motion.u + 0.2, r=motion.r - 0.05)
-    change = at_rows(plant, record, moved)["left"][0] - at_rows(plant, record, motion)["left"][0]
+    change = at_rows(model, record, moved)["left"][0] - at_rows(model, record, motion)["left"][0]
     right = pushes(moved, record, "left")[0] - pushes(motion, record, "left")[0]
     np.testing.assert_allclose(change, right, atol=1e-3 * np.abs(right).max())
 
 
 def test_its_numbers_change_the_load_as_they_say():
-    plant, record, motion = along()
+    model, record, motion = along()
     push, _ = pushes(motion, record, "left")
 
     def found(**values):
-        return at_rows(plant.with_values({f"left.{k}": v for k, v in values.items()}), record, motion)["left"][0]
+        return at_rows(model.with_values({f"left.{k}": v for k, v in values.items()}), record, motion)["left"][0]
 
     np.testing.assert_allclose(found(thrust_loss=0.3), 0.7 * push, atol=1e-3)
     np.testing.assert_allclose(found(gain=7.0), pushes(motion, record, "left", gain=7.0)[0], atol=1e-3)
@@ -92,10 +92,10 @@ def test_its_numbers_change_the_load_as_they_say():
 
 def test_a_speed_of_the_other_sign_gets_about_the_load_of_the_fmu():
     """Far from what it was linearised about, the bollard law holds."""
-    plant, record, motion = along()
+    model, record, motion = along()
     n, azimuth = record.units["left"]
-    drivers = record.drivers(plant)._replace(units=record.drivers(plant).units | {"left": (-n[:-1], azimuth[:-1])})
-    X, _, _ = loads(Motion(*(value[:-1] for value in motion)), drivers, plant)["left"]
+    inputs = record.inputs(model)._replace(units=record.inputs(model).units | {"left": (-n[:-1], azimuth[:-1])})
+    X, _, _ = loads(Motion(*(value[:-1] for value in motion)), inputs, model)["left"]
     right, _ = closed_form("left", -n[:-1], motion.u[:-1], motion.r[:-1])
     assert np.sqrt(np.mean((X - right) ** 2)) < 0.3 * np.sqrt(np.mean(right**2))
 
@@ -113,57 +113,57 @@ def test_bollard_law_of_a_unit_that_turns_is_found_with_its_place():
 
 
 def test_a_dp_knows_where_it_pushes_and_leaves_alone_what_does_not():
-    plant, record, motion = along()
-    left = pusher_of(plant, "left")
+    model, record, motion = along()
+    left = pusher_of(model, "left")
     assert (left.x, left.y, left.axis) == pytest.approx((0.0, -0.9, 0.0), abs=1e-9)
     assert left.ahead == pytest.approx(boat.GAIN, rel=0.2)
-    still, *_ = with_laws(plant_of(boat.structure().checked()), logged().assign(left_rpm=0.0 * logged().left_rpm))
+    still, *_ = with_laws(ship_model_of(boat.structure().checked()), logged().assign(left_rpm=0.0 * logged().left_rpm))
     assert pusher_of(still, "left").ahead == 0.0 and pusher_of(still, "right").ahead > 0.0
 
 
 def test_suspects_and_tolerances_are_those_that_it_has():
-    plant, *_ = along()
-    found = {suspect.label: suspect for suspect in suspects(read_catalogue(), plant)}
+    model, *_ = along()
+    found = {hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), model)}
     assert {"thrust_loss of left", "rpm_offset of right", "mass"} <= set(found)
     assert not {"azimuth_offset of left", "reverse_loss"} & set(found)
     fastest = np.abs(logged().left_rpm.values).max()
-    assert found["rpm_offset of left"].knobs[0].typical == pytest.approx(0.06 * fastest, rel=0.02)
-    assert plant.tolerances["left.gain"] == pytest.approx(boat.TOLERANCE)
+    assert found["rpm_offset of left"].parameters[0].typical == pytest.approx(0.06 * fastest, rel=0.02)
+    assert model.tolerances["left.gain"] == pytest.approx(boat.TOLERANCE)
 
 
 def test_a_law_is_kept_for_a_part_of_its_log_and_made_anew_for_other_drivers():
-    plant, *_ = along()
+    model, *_ = along()
     part = logged().isel(time=slice(100, 300))
-    assert with_laws(plant, part)[0].strangers["left"].law is plant.strangers["left"].law
+    assert with_laws(model, part)[0].third_party["left"].law is model.third_party["left"].law
     other = part.assign(left_rpm=part.left_rpm.copy(data=-part.left_rpm.values))
-    again = with_laws(plant, other)[0].strangers
-    assert again["left"].law is not plant.strangers["left"].law
-    assert again["right"].law is plant.strangers["right"].law
+    again = with_laws(model, other)[0].third_party
+    assert again["left"].law is not model.third_party["left"].law
+    assert again["right"].law is model.third_party["right"].law
 
 
 @pytest.fixture
 def strange_azimuths(monkeypatch):
     """Our azimuth thrusters are taken for somebody else's, once the logs of our ship are made."""
-    twin.plant(), twin.logs()
+    twin.model(), twin.logs()
     known = plant_module._holds
-    strange = lambda c, kind: "azimuth_in" not in c.fmu.variables and known(c, kind)  # noqa: E731
-    monkeypatch.setattr(plant_module, "_holds", strange)
+    unmodelled = lambda c, kind: "azimuth_in" not in c.fmu.variables and known(c, kind)  # noqa: E731
+    monkeypatch.setattr(plant_module, "_holds", unmodelled)
 
 
 def test_our_azimuth_as_a_black_box_has_the_loads_of_the_array_form(strange_azimuths):
-    plant, record, motion = with_laws(plant_of(twin.system()), twin.logs()["healthy"])
-    assert list(plant.strangers) == ["port", "starboard"]
-    for name in plant.strangers:
-        most = np.abs(at_rows(twin.plant(), record, motion)[name]).max(axis=1)
-        assert (missed(plant, record, motion, name, 0.0) < 1e-9 * most).all()
-        near, far = (missed(plant, record, motion, name, by) for by in (0.05, 0.2))
+    model, record, motion = with_laws(ship_model_of(twin.system()), twin.logs()["healthy"])
+    assert list(model.third_party) == ["port", "starboard"]
+    for name in model.third_party:
+        most = np.abs(at_rows(twin.model(), record, motion)[name]).max(axis=1)
+        assert (missed(model, record, motion, name, 0.0) < 1e-9 * most).all()
+        near, far = (missed(model, record, motion, name, by) for by in (0.05, 0.2))
         assert (far < 0.03 * most).all() and (near < far / 8.0).all()  # of second order: a sixteenth
 
 
-def missed(plant, record, motion, name, by):
+def missed(model, record, motion, name, by):
     """How far off the loads of a black box are where the ship is so much faster, root mean square by axis."""
     moved = motion._replace(u=motion.u + by, v=motion.v - 0.5 * by)
-    found, right = (np.stack(at_rows(ship, record, moved)[name]) for ship in (plant, twin.plant()))
+    found, right = (np.stack(at_rows(ship, record, moved)[name]) for ship in (model, twin.model()))
     return np.sqrt(np.mean((found - right) ** 2, axis=1))
 
 
@@ -172,7 +172,7 @@ def missed(plant, record, motion, name, by):
 def test_our_azimuth_as_a_black_box_gets_the_same_diagnosis(name, strange_azimuths, tmp_path):
     write_table(twin.logs()[name], tmp_path / "log.csv")
     diagnosis, details = diagnose(tmp_path / "log.csv", twin.system())
-    assert details.case.plant.strangers
+    assert details.problem.model.third_party
     (finding,) = diagnosis.findings
     (path, truth), *_ = twin.PLANTED[name].items()
     assert f"{finding.component}.{finding.cause}" == path
@@ -220,7 +220,7 @@ def test_the_extended_boat_replays_with_less_error(tmp_path):
     diagnosis, details = diagnosed(left=0.75)
     extension = extend(boat.structure(), diagnosis.findings, tmp_path)
     extended = Replayed(sc.read(extension.ssp).checked(), extension.signals)
-    errors = simulated(compare(details.case, details.fit), Replayed(boat.structure().checked()), extended)
+    errors = simulated(compare(details.problem, details.fit), Replayed(boat.structure().checked()), extended)
     rms = np.sqrt((errors["position"].sel(horizon=60.0) ** 2).mean("segment"))
     assert rms.sel(model="extended") < 0.25 * rms.sel(model="plain")
     assert errors["difference"].sel(replayed="plain", horizon=60.0).mean() < 0.2
@@ -256,9 +256,9 @@ def test_a_line_that_only_the_motion_of_the_ship_drives_is_a_load_and_no_thruste
         ship.connect(f"vessel.{name}", f"line.{name}")
     for axis in "XYN":
         ship.connect(f"line.tau_{axis}", f"vessel.tau_{axis}_4")
-    plant, record, motion = with_laws(plant_of(ship.checked()), twin.logs()["healthy"])
-    assert plant.thrusters == ["port", "starboard", "tunnel"]
-    X, Y, N = at_rows(plant, record, motion)["line"]
+    model, record, motion = with_laws(ship_model_of(ship.checked()), twin.logs()["healthy"])
+    assert model.thrusters == ["port", "starboard", "tunnel"]
+    X, Y, N = at_rows(model, record, motion)["line"]
     north = -117.0 - motion.x + 17.0 * np.cos(motion.psi)
     east = -motion.y + 17.0 * np.sin(motion.psi)
     tension = 5000.0 * np.maximum(np.hypot(north, east) - 99.0, 0.0)
@@ -271,26 +271,26 @@ def test_a_stranger_that_nothing_of_a_log_feeds_is_refused_with_what_would_be_ri
     for target in ("left.shaft", "left.way", "left.swing"):
         ship.disconnect(target)
     with pytest.raises(ShipcosimError, match=r"'left' \(screw\) puts a load on 'boat'.*named 'left_rpm'"):
-        plant_of(ship.checked())
+        ship_model_of(ship.checked())
 
 
 def test_a_log_without_its_speed_is_refused_and_one_with_it_is_said_what_it_rests_on():
-    plant, record, _ = along()
+    model, record, _ = along()
     assert any("'left' is somebody else's FMU (screw)" in remark for remark in record.remarks)
     with pytest.raises(ShipcosimError, match="no channel left_rpm, which drives 'left'"):
-        record_of(logged().drop_vars("left_rpm"), plant)
+        record_of(logged().drop_vars("left_rpm"), model)
 
 
 def test_what_nobody_logs_keeps_its_start_value_and_that_is_said(strange_azimuths):
-    plant = plant_of(twin.system())
-    assert set(plant.strangers["port"].idle) == {"neighbour_rpm", "neighbour_azimuth"}
-    assert any("neighbour_rpm" in remark for remark in record_of(twin.logs()["healthy"], plant).remarks)
+    model = ship_model_of(twin.system())
+    assert set(model.third_party["port"].idle) == {"neighbour_rpm", "neighbour_azimuth"}
+    assert any("neighbour_rpm" in remark for remark in record_of(twin.logs()["healthy"], model).remarks)
 
 
 def test_a_case_of_the_boat_is_prepared_with_her_laws():
-    case = prepare(logged(), plant_of(boat.structure().checked()), read_catalogue())
-    assert all(one.law for one in case.plant.strangers.values())
-    assert {"left.gain", "left.rpm_offset", "left.thrust_loss"} <= set(case.plant.tolerances)
+    problem = prepare(logged(), ship_model_of(boat.structure().checked()), read_catalogue())
+    assert all(one.law for one in problem.model.third_party.values())
+    assert {"left.gain", "left.rpm_offset", "left.thrust_loss"} <= set(problem.model.tolerances)
 
 
 def with_input(ship, name, unit, target="left.shaft"):
@@ -304,18 +304,18 @@ def with_input(ship, name, unit, target="left.shaft"):
 
 def test_an_input_of_another_name_is_known_by_its_unit_and_its_factor_followed():
     ship = with_input(boat.structure(), "throttle", "rad/s")
-    (link,) = [link for link in plant_of(ship.checked()).strangers["left"].links if link.quantity == "rpm"]
+    (link,) = [link for link in ship_model_of(ship.checked()).third_party["left"].links if link.quantity == "rpm"]
     assert (link.variable, link.factor) == ("shaft", pytest.approx(2.0 * np.pi / 60.0))
     ship.disconnect("throttle", "left.shaft")
     ship.connect("throttle", "left.shaft", factor=0.5, offset=3.0)
-    (link,) = [link for link in plant_of(ship.checked()).strangers["left"].links if link.quantity == "rpm"]
+    (link,) = [link for link in ship_model_of(ship.checked()).third_party["left"].links if link.quantity == "rpm"]
     assert (link.factor, link.offset) == (pytest.approx(np.pi / 60.0), 3.0)
 
 
 def test_two_inputs_that_could_be_the_speed_are_refused_by_name():
     ship = with_input(with_input(boat.structure(), "engine", "rpm"), "rate", "rad/s", "left.swing")
     with pytest.raises(ShipcosimError, match="'left' .*any of shaft, swing could be what drives it"):
-        plant_of(ship.checked())
+        ship_model_of(ship.checked())
 
 
 POD = """
@@ -357,16 +357,16 @@ def podded(tmp_path):
 
 
 def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(podded):
-    plant = plant_of(podded.checked())
-    assert plant.drives("pod") == ("thrust", "azimuth") and not plant.has("pod.rpm_offset")
+    model = ship_model_of(podded.checked())
+    assert model.drives("pod") == ("thrust", "azimuth") and not model.has("pod.rpm_offset")
     log = logged().assign(pod_thrust=200.0 + logged().left_rpm, pod_azimuth=0.2 * logged().right_rpm)
-    plant, record, motion = with_laws(plant, log)
+    model, record, motion = with_laws(model, log)
     wanted, azimuth = (series[:-1] for series in record.units["pod"])
-    X, Y, N = at_rows(plant.with_values({"pod.thrust_loss": 0.5}), record, motion)["pod"]
+    X, Y, N = at_rows(model.with_values({"pod.thrust_loss": 0.5}), record, motion)["pod"]
     np.testing.assert_allclose(X, 0.45 * wanted * np.cos(azimuth), atol=1e-6 * wanted.max())
     np.testing.assert_allclose(Y, 0.45 * wanted * np.sin(azimuth), atol=1e-6 * wanted.max())
     assert wanted.max() > 500.0 and np.ptp(azimuth) > 2.0 and not N.any()
-    assert pusher_of(plant, "pod").ahead == 0.0
+    assert pusher_of(model, "pod").ahead == 0.0
 
 
 def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(podded, tmp_path):
@@ -396,7 +396,9 @@ bounds = [0.3, 1.2]
 
 def test_a_cause_of_ones_own_can_turn_a_parameter_that_has_a_tolerance(tmp_path):
     (tmp_path / "worn_blades.toml").write_text(MINE, encoding="utf-8")
-    found = suspects(read_catalogue(tmp_path), along()[0])
-    knobs = {suspect.component: suspect.knobs[0] for suspect in found if suspect.cause == "worn_blades"}
-    assert set(knobs) == set(boat.SIDES)
-    assert (knobs["left"].neutral, knobs["left"].tolerance) == (boat.GAIN, pytest.approx(boat.TOLERANCE))
+    found = hypotheses_of(read_catalogue(tmp_path), along()[0])
+    parameters = {
+        hypothesis.component: hypothesis.parameters[0] for hypothesis in found if hypothesis.cause == "worn_blades"
+    }
+    assert set(parameters) == set(boat.SIDES)
+    assert (parameters["left"].neutral, parameters["left"].tolerance) == (boat.GAIN, pytest.approx(boat.TOLERANCE))

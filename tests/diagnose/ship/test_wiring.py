@@ -6,7 +6,7 @@ import pytest
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.result import Finding
-from shipcosim.diagnose.ship.model import Drivers, Motion, loads, plant_of
+from shipcosim.diagnose.ship.model import Inputs, Motion, loads, ship_model_of
 from shipcosim.diagnose.ship.wiring import put_right
 
 
@@ -27,32 +27,32 @@ def crossed(structure):
     return structure
 
 
-def about(plant):
+def about(model):
     """Loads of a ship at rest with both azimuths at work."""
     units = {"port": (2.0, 0.5), "starboard": (1.0, -0.2), "tunnel": (8.0, 0.0)}
-    return loads(Motion(*np.zeros(6)), Drivers(0.0, units, None, None), plant)
+    return loads(Motion(*np.zeros(6)), Inputs(0.0, units, None, None), model)
 
 
 def test_a_system_wired_as_named_has_no_wiring_of_its_own(structure):
-    assert plant_of(structure.checked()).wiring is None
+    assert ship_model_of(structure.checked()).wiring is None
 
 
 def test_loads_and_speeds_go_where_the_system_sends_them(structure):
-    plain = about(plant_of(structure.checked()))
-    plant = plant_of(crossed(structure).checked())
-    found = about(plant)
+    plain = about(ship_model_of(structure.checked()))
+    model = ship_model_of(crossed(structure).checked())
+    found = about(model)
     X, Y, N = plain["port"]
     np.testing.assert_allclose(found["port"], (Y, -X, N), rtol=1e-12)
     assert found["starboard"][0] < 0.0 < plain["starboard"][0]
     assert found["tunnel"] == plain["tunnel"]
-    assert plant.wiring.odd == {
+    assert model.wiring.odd == {
         "port": "its load reaches vessel as X: Y, Y: -1 X, N: N",
         "starboard": "its rpm comes from -1 times port_rpm",
     }
 
 
 def test_one_thruster_after_the_other_is_put_right(structure):
-    wiring = plant_of(crossed(structure).checked()).wiring
+    wiring = ship_model_of(crossed(structure).checked()).wiring
     assert set(put_right(wiring, "port").odd) == {"starboard"}
     assert put_right(put_right(wiring, "port"), "starboard") is None
 
@@ -60,4 +60,4 @@ def test_one_thruster_after_the_other_is_put_right(structure):
 def test_the_extended_system_is_wired_as_named(structure, tmp_path):
     findings = [Finding("connection", name, "physics", 0.99, {}) for name in ("port", "starboard")]
     extension = extend(crossed(structure), findings, tmp_path)
-    assert plant_of(sc.read(extension.ssp).checked()).wiring is None
+    assert ship_model_of(sc.read(extension.ssp).checked()).wiring is None

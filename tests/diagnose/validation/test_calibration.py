@@ -5,7 +5,7 @@ import pytest
 from diagnose import twin
 from diagnose.twin import fits
 
-from shipcosim.diagnose.ship.model import plant_of
+from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.validation.calibration import calibrate
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.ssp import read_system
@@ -20,13 +20,13 @@ def written(tmp_path_factory):
     return (
         fit,
         values,
-        plant_of(read_system(twin.system().file, fmus=[twin.ROOT / "build" / "fmus"], parameters=[path])),
+        ship_model_of(read_system(twin.system().file, fmus=[twin.ROOT / "build" / "fmus"], parameters=[path])),
     )
 
 
 def test_a_system_with_the_set_is_the_ship_that_the_log_would_have(written):
     fit, values, ship = written
-    moved, nominal = calibrated(fit), twin.plant()
+    moved, nominal = calibrated(fit), twin.model()
     assert "vessel.mass" in values and "starboard.thrust_scale" in values
     for path, value in values.items():
         assert ship.get(path) == pytest.approx(moved.get(path), rel=1e-12) and value == moved.get(path)
@@ -39,4 +39,4 @@ def test_no_number_of_a_cause_and_none_far_beyond_its_tolerance_is_in_it(written
     fit, values, ship = written
     assert "port.thrust_loss" not in values and ship.get("port.thrust_loss") == 0.0
     sizes = {path: size for column in fit.columns for path, size in column.turns.items()}
-    assert np.max([abs(value - fit.plant.get(path)) / sizes[path] for path, value in values.items()]) < 4.0
+    assert np.max([abs(value - fit.model.get(path)) / sizes[path] for path, value in values.items()]) < 4.0

@@ -9,7 +9,7 @@ from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.model import Motion, plant_of
+from shipcosim.diagnose.ship.model import Motion, ship_model_of
 from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table, in_array_form, replayed
 from shipcosim.diagnose.validation.gain import Predictor
 from shipcosim.diagnose.validation.predictions import replayable, true_motion
@@ -28,8 +28,8 @@ def system(root):
 
 
 @pytest.fixture(scope="module")
-def plant(system):
-    return replace(plant_of(system), span=SPAN)
+def ship_model(system):
+    return replace(ship_model_of(system), span=SPAN)
 
 
 @pytest.fixture(scope="module")
@@ -45,12 +45,12 @@ def log():
     return Record(TIME, np.zeros((TIME.size, 6)), units, wind, np.ones(TIME.size, bool))
 
 
-def predictor(log, plant):
+def predictor(log, ship_model):
     """A model that starts from what the log shows: ahead at 1 m/s, turning."""
     t = TIME - TIME[0]
     psi = 0.3 + 0.005 * t
     seen = Motion(3.0 + 0.9 * t, 0.3 * t, psi, 1.0 + 0.0 * t, 0.1 + 0.0 * t, 0.005 + 0.0 * t)
-    return Predictor(*replayable(log, plant, seen), plant, true_motion(seen, plant))
+    return Predictor(*replayable(log, ship_model, seen), ship_model, true_motion(seen, ship_model))
 
 
 def found(cause, component=None, **parameters):
@@ -116,9 +116,9 @@ def extended(root, folder, findings):
 
 
 @pytest.mark.parametrize("name", CAUSES)
-def test_a_minute_of_the_extended_system_is_that_of_the_array_form(root, tmp_path, plant, log, name):
+def test_a_minute_of_the_extended_system_is_that_of_the_array_form(root, tmp_path, ship_model, log, name):
     findings, values = CAUSES[name]
-    model = predictor(log, plant.with_values(values))
+    model = predictor(log, ship_model.with_values(values))
     array, one = in_array_form(model, ROWS), extended(root, tmp_path, findings)
     coarse, fine = (replayed(one, model, ROWS, step_size=h) for h in (0.1, 0.05))
     assert np.hypot(coarse.x - array.x, coarse.y - array.y).max() < 0.1
@@ -127,45 +127,45 @@ def test_a_minute_of_the_extended_system_is_that_of_the_array_form(root, tmp_pat
     assert np.abs(np.angle(np.exp(1j * (limit.psi - array.psi)))).max() < np.radians(0.02)
 
 
-def test_without_the_cause_a_minute_ends_elsewhere(plant, log):
+def test_without_the_cause_a_minute_ends_elsewhere(ship_model, log):
     with_it, without = (
-        in_array_form(predictor(log, plant.with_values(values)), ROWS) for values in (CAUSES["aboard"][1], {})
+        in_array_form(predictor(log, ship_model.with_values(values)), ROWS) for values in (CAUSES["aboard"][1], {})
     )
     assert np.hypot(with_it.x - without.x, with_it.y - without.y)[-1].min() > 0.3
 
 
-def test_parameters_by_a_set_of_values_do_as_an_extension(plant, log, system):
+def test_parameters_by_a_set_of_values_do_as_an_extension(ship_model, log, system):
     values = {"starboard.thrust_loss": 0.4}
-    model = predictor(log, plant.with_values(values))
+    model = predictor(log, ship_model.with_values(values))
     found = replayed(Replayed(with_values(system, values)), model, ROWS, step_size=0.05)
     array = in_array_form(model, ROWS)
     assert np.hypot(found.x - array.x, found.y - array.y).max() < 0.05
 
 
-def test_wind_over_ground_meets_the_moving_ship_as_logged(plant, log):
-    model = predictor(log, plant)
-    drivers = model.record.drivers(model.plant)
-    north, east = (-drivers.wind_speed * part(drivers.wind_from) for part in (np.cos, np.sin))
+def test_wind_over_ground_meets_the_moving_ship_as_logged(ship_model, log):
+    model = predictor(log, ship_model)
+    inputs = model.record.inputs(model.ship_model)
+    north, east = (-inputs.wind_speed * part(inputs.wind_from) for part in (np.cos, np.sin))
     ship = Motion(*(value[:-1] for value in model.motion))
     speed, direction = apparent_wind(ship.psi, ship.u, ship.v, north, east)
-    later = log.drivers(plant)  # the sensor's average is of some time ago
+    later = log.inputs(ship_model)  # the sensor's average is of some time ago
     assert np.allclose(speed, later.wind_speed)
     assert np.allclose(direction, later.wind_from)
 
 
-def test_a_thruster_that_no_input_feeds_is_named(system, plant, log):
+def test_a_thruster_that_no_input_feeds_is_named(system, ship_model, log):
     fewer = replace(
         system,
         connections=tuple(c for c in system.connections if c.target != ("tunnel", "rpm_in")),
     )
     with pytest.raises(ShipcosimError, match="tunnel"):
-        driving_table(fewer, predictor(log, plant), 0.1)
+        driving_table(fewer, predictor(log, ship_model), 0.1)
 
 
-def test_a_propeller_that_cannot_turn_needs_no_input_for_its_direction(system, plant, log):
+def test_a_propeller_that_cannot_turn_needs_no_input_for_its_direction(system, ship_model, log):
     fixed = replace(log, units=log.units | {"port": (log.units["port"][0], np.full(TIME.size, 0.1))})
     without = replace(system, connections=tuple(c for c in system.connections if c.target != ("port", "azimuth_in")))
-    model = predictor(fixed, plant)
+    model = predictor(fixed, ship_model)
     table, states = driving_table(without, model, 0.1)
     assert "port_azimuth" not in table and states["port.azimuth_in"] == 0.1
     found, array = replayed(Replayed(without), model, ROWS[:1]), in_array_form(model, ROWS[:1])

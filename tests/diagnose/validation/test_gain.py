@@ -8,14 +8,14 @@ import pytest
 from truth import draw
 
 from shipcosim.cli.project import build_stale
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, suspects
-from shipcosim.diagnose.inference.fitting import Case, fitted, prepared, weighed
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared, weighed
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Motion, plant_of
+from shipcosim.diagnose.ship.model import Motion, ship_model_of
 from shipcosim.diagnose.validation.conditions import compare_unseen, unseen
 from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
 from shipcosim.diagnose.validation.gain import (
@@ -50,13 +50,13 @@ def system(root):
 
 
 @pytest.fixture(scope="module")
-def plant(system):
-    return plant_of(system)
+def model(system):
+    return ship_model_of(system)
 
 
 @pytest.fixture(scope="module")
-def diagnosed(plant, tmp_path_factory):
-    """Function from a hidden cause to the case with only that suspect, its fit, and the truth's parameters."""
+def diagnosed(model, tmp_path_factory):
+    """Function from a hidden cause to the case with only that hypothesis, its fit, and the truth's parameters."""
 
     @cache
     def of(cause, healthy=False, kind="trial", seed=2003, minutes=16):
@@ -64,12 +64,12 @@ def diagnosed(plant, tmp_path_factory):
         path = tmp_path_factory.mktemp("log") / "log.csv"
         (hidden.twin() if healthy else hidden).save(path)
         log = repaired(read_log(path))
-        ship = replace(plant, span=(float(log.time[0]), float(log.time[-1])))
+        ship = replace(model, span=(float(log.time[0]), float(log.time[-1])))
         record, answer = record_of(log, ship), hidden.answer[0]
         here = (answer.cause, answer.component)
-        only = tuple(s for s in suspects(read_catalogue(), ship) if (s.cause, s.component) == here)
+        only = tuple(s for s in hypotheses_of(read_catalogue(), ship) if (s.cause, s.component) == here)
         noise = first_noise(record, ship.parts["hull"].length)
-        case = prepared(Case(record, ship, only, noise, first_motion(record, ship)))
+        case = prepared(IdentificationProblem(record, ship, only, noise, first_motion(record, ship)))
         fit = fitted(case)
         if not healthy:
             fit = fitted(case, only, weighed(case, fit)[0][2])
@@ -178,7 +178,7 @@ def test_held_out_rows_have_no_say_in_the_parameters(diagnosed):
     lied[~train] += 1000.0
     base = case.base._replace(seen=np.where(train[:, None, None], case.base.seen, 1000.0))
     other = replace(case, record=replace(case.record, measured=lied), base=base)
-    honest, untouched = (fitted(trained(one, train), fit.suspects, fit.values, rounds=1) for one in (case, other))
+    honest, untouched = (fitted(trained(one, train), fit.hypotheses, fit.values, rounds=1) for one in (case, other))
     assert honest.score == untouched.score and np.array_equal(honest.theta, untouched.theta)
     assert honest.std != fit.std
 
@@ -186,9 +186,9 @@ def test_held_out_rows_have_no_say_in_the_parameters(diagnosed):
 def test_the_reference_favours_no_model(diagnosed):
     case, fit, _ = diagnosed("tow")
     found = []
-    for plant, motion in ((case.plant, case.motion), (fit.plant, fit.motion)):
-        linear = linearise(motion, case.record, plant, [])
-        found.append(reference(linear, motion, case.noise, case.record, plant))
+    for model, motion in ((case.model, case.motion), (fit.model, fit.motion)):
+        linear = linearise(motion, case.record, model, [])
+        found.append(reference(linear, motion, case.noise, case.record, model))
     one, other = found
     assert np.sqrt(np.mean((one.x - other.x) ** 2 + (one.y - other.y) ** 2)) < 0.05
     assert np.hypot(case.motion.x - fit.motion.x, case.motion.y - fit.motion.y).max() > 0.3  # what it must not inherit
@@ -196,8 +196,8 @@ def test_the_reference_favours_no_model(diagnosed):
 
 def test_a_problem_restarted_for_another_ship_is_hers(diagnosed):
     case, _, _ = diagnosed("thrust_loss")
-    other = case.plant.with_values({"vessel.mass_scale": 1.02, "instruments.lever_x": 0.5, "port.thrust_loss": 0.05})
-    own, theirs = (linearise(case.motion, case.record, plant, []) for plant in (other, case.plant))
+    other = case.model.with_values({"vessel.mass_scale": 1.02, "instruments.lever_x": 0.5, "port.thrust_loss": 0.05})
+    own, theirs = (linearise(case.motion, case.record, model, []) for model in (other, case.model))
     found = restarted(theirs, case.motion, case.record, other)
     assert np.allclose(found.driven, own.driven, atol=1e-12) and np.allclose(found.seen, own.seen, atol=1e-12)
     assert not np.allclose(found.driven, theirs.driven) and not np.allclose(found.seen, theirs.seen)
@@ -205,11 +205,11 @@ def test_a_problem_restarted_for_another_ship_is_hers(diagnosed):
 
 def test_observers_know_nothing_of_later_rows(diagnosed):
     case, _, _ = diagnosed("thrust_loss")
-    linear = linearise(case.motion, case.record, case.plant, [])
+    linear = linearise(case.motion, case.record, case.model, [])
     later = linear.seen.copy()
     later[400:] += 5.0
     noise = replace(case.noise, **{n: np.stack([getattr(case.noise, n)] * 2) for n in ("white", "jolt", "walk")})
-    known = observed([linear, linear._replace(seen=later)], noise, case.record, [case.motion] * 2, [case.plant] * 2)
+    known = observed([linear, linear._replace(seen=later)], noise, case.record, [case.motion] * 2, [case.model] * 2)
     for value in (*known.motion, known.force):
         assert np.array_equal(value[0, :400], value[1, :400])
     assert not np.allclose(known.motion.x[0, 400], known.motion.x[1, 400])
@@ -278,7 +278,7 @@ def test_no_gain_is_claimed_from_a_handful_of_rows(diagnosed):
     assert compare(case, fit, train=first_rows(case.record, 0.97)) is None
 
 
-def test_a_force_held_in_the_earth_undoes_a_line_and_one_held_aboard_does_not(plant, diagnosed):
+def test_a_force_held_in_the_earth_undoes_a_line_and_one_held_aboard_does_not(model, diagnosed):
     record = diagnosed("thrust_loss")[0].record
     start = Motion(*(np.array([value]) for value in (0.0, 0.0, 0.4, 0.5, 0.0, 0.06)))
     rows, pull = np.array([300]), np.array([3000.0, -2000.0])
@@ -287,8 +287,8 @@ def test_a_force_held_in_the_earth_undoes_a_line_and_one_held_aboard_does_not(pl
     )
     c, s = np.cos(0.4), np.sin(0.4)
     force = -np.array([[c * pull[0] + s * pull[1], c * pull[1] - s * pull[0], 0.0]])
-    towed = plant.with_values({"water.tow_north": pull[0], "water.tow_east": pull[1], "water.tow_x": 0.0})
-    free = predicted(start, rows, still, plant, [60])
+    towed = model.with_values({"water.tow_north": pull[0], "water.tow_east": pull[1], "water.tow_x": 0.0})
+    free = predicted(start, rows, still, model, [60])
     held = predicted(start, rows, still, towed, [60], force)
     aboard = predicted(start, rows, still, towed, [60], force, earth=False)
     assert np.ptp(free.psi - 0.4) == 0.0 and abs(free.psi[0, 0] - 0.4) > 0.3
@@ -296,9 +296,9 @@ def test_a_force_held_in_the_earth_undoes_a_line_and_one_held_aboard_does_not(pl
     assert np.hypot(aboard.x - free.x, aboard.y - free.y).min() > 1.0
 
 
-def test_a_replayable_log_has_no_late_channel(plant, diagnosed):
+def test_a_replayable_log_has_no_late_channel(model, diagnosed):
     record = diagnosed("thrust_loss")[0].record
-    late = plant.with_values({"instruments.thruster_lag": 2.0, "instruments.wind_lag": 0.0})
+    late = model.with_values({"instruments.thruster_lag": 2.0, "instruments.wind_lag": 0.0})
     seen = Motion(*record.measured.T)
     ready, _ = replayable(record, late, seen)
     assert np.allclose(ready.units["port"][0][:-3], record.units["port"][0][2:-1])
@@ -306,11 +306,11 @@ def test_a_replayable_log_has_no_late_channel(plant, diagnosed):
 
 def test_the_missing_force_of_a_line_points_where_it_pulls(diagnosed):
     case, fit, truth = diagnosed("tow")
-    found = missing_force(case, case.plant, case.motion)
+    found = missing_force(case, case.model, case.motion)
     size = np.hypot(truth["north"], truth["east"])
     for name in ("north", "east"):
         assert float(found[name].median()) == pytest.approx(truth[name], abs=0.25 * size)
-    rest = missing_force(case, fit.plant, fit.motion)
+    rest = missing_force(case, fit.model, fit.motion)
     assert float((rest["north"] ** 2 + rest["east"] ** 2).mean()) < 0.1 * size**2
     sizes = (np.hypot(found[a], found[b]) for a, b in (("port_along", "port_across"), ("north", "east")))
     assert np.allclose(*sizes, equal_nan=True)
@@ -321,7 +321,7 @@ def test_a_ship_without_thrust_drifts(diagnosed):
     record, rows = case.record, np.array([200, 500])
     dead = {name: (np.where(np.arange(n.size) < 300, 0.0, n), a) for name, (n, a) in record.units.items()}
     seen, train = case.motion, first_rows(record)
-    found = conditions(replace(record, units=dead), seen, rows, train, case.plant)["regime"][1]
+    found = conditions(replace(record, units=dead), seen, rows, train, case.model)["regime"][1]
     assert found[0] == "drifting" and found[1] != "drifting"
 
 

@@ -12,7 +12,7 @@ from truth import draw
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre, library
 from shipcosim.diagnose.pipeline import diagnose
-from shipcosim.diagnose.result import Candidate, Diagnosis, Finding, Prescription
+from shipcosim.diagnose.result import Candidate, Diagnosis, ExperimentDesign, Finding
 from shipcosim.diagnose.validation.gain import baseline, compare, gain, rms
 from shipcosim.diagnose.validation.missing_force import missing_force
 from shipcosim.report.diagnosis.causes import manoeuvre_rows, not_testable_rows, whiteness
@@ -32,10 +32,10 @@ def story(root, tmp_path_factory):
     draw("trial", 3000, among=["thrust_loss"], minutes=12).save(path)
     system = read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)])
     diagnosis, details = diagnose(path, system)
-    case, fit = details.case, details.fit
+    case, fit = details.problem, details.fit
     comparison = compare(case, fit)
     diagnosis = replace(diagnosis, baseline=baseline(comparison.errors), gain=gain(comparison.errors))
-    forces = missing_force(case, case.plant, case.motion), missing_force(case, fit.plant, fit.motion)
+    forces = missing_force(case, case.model, case.motion), missing_force(case, fit.model, fit.motion)
     return Story(diagnosis, details, path.name, system, None, None, comparison, None, *forces)
 
 
@@ -133,24 +133,24 @@ def test_missing_force_against_the_wind_is_its_mean_in_sectors():
 
 
 def test_innovations_are_whiter_with_the_cause_than_without(story):
-    nothing = next(fit for fit in story.details.fits if not fit.suspects)
-    before = whiteness(story.details.case, nothing, as_it_is=True)
-    after = whiteness(story.details.case, story.details.fit)
-    band = 2.0 / np.sqrt(story.details.case.record.time.size)
+    nothing = next(fit for fit in story.details.fits if not fit.hypotheses)
+    before = whiteness(story.details.problem, nothing, as_it_is=True)
+    after = whiteness(story.details.problem, story.details.fit)
+    band = 2.0 / np.sqrt(story.details.problem.record.time.size)
     assert np.mean(np.abs(after) < band) > np.mean(np.abs(before) < band)
     assert np.mean(np.abs(after) < band) > 0.85
 
 
 def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(story):
-    case = story.details.case
+    case = story.details.problem
     ((name, sentence, why),) = not_testable_rows(case, ["reverse_loss"])
-    astern = max(np.mean(case.record.units[unit][0] < 0.0) for unit in case.plant.azimuths)
+    astern = max(np.mean(case.record.units[unit][0] < 0.0) for unit in case.model.azimuths)
     assert name == "Reverse loss" and "astern" in sentence and f"{100 * astern:.0f} %" in why
 
 
 def test_manoeuvre_is_told_step_by_step_from_start_to_end(story):
-    plant = story.details.case.plant
-    for manoeuvre in library(plant):
+    model = story.details.problem.model
+    for manoeuvre in library(model):
         rows = manoeuvre_rows(manoeuvre)
         assert rows[0][0].startswith("0–") and all(doing for _, doing in rows)
         assert max(int(re.search(r"–(\d+) s", when).group(1)) for when, _ in rows) == round(60 * manoeuvre.minutes)
@@ -168,8 +168,8 @@ def test_box_is_told_with_its_corners():
 
 def test_ambiguous_log_shows_what_to_sail(story):
     alike = Candidate("mass", None, 0.6), Candidate("drag", None, 0.4)
-    manoeuvre = library(story.details.case.plant)[0]
-    sail = Prescription(manoeuvre.name, manoeuvre.minutes, (("mass", "drag"),))
+    manoeuvre = library(story.details.problem.model)[0]
+    sail = ExperimentDesign(manoeuvre.name, manoeuvre.minutes, (("mass", "drag"),))
     ambiguous = Diagnosis("ambiguous", candidates=alike, indistinguishable=alike, prescription=sail)
     text = render(replace(story, diagnosis=ambiguous))
     assert f"To sail and log: {manoeuvre.name}" in text and "It tells mass from drag." in text

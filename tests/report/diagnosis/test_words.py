@@ -3,7 +3,7 @@
 import pytest
 
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding, Prescription
+from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
 from shipcosim.report.diagnosis.numbers import plain, plus_minus, vector
 from shipcosim.report.diagnosis.words import ADVICE, estimate_rows, next_steps, outcome, title, told, where
 
@@ -121,7 +121,7 @@ def test_next_steps_name_what_to_inspect_what_to_run_and_what_stays_open():
 
 
 def test_ambiguous_log_asks_for_the_prescribed_manoeuvre():
-    manoeuvre = Prescription("heading_turn", 8.0, (("wind_scale", "current"),))
+    manoeuvre = ExperimentDesign("heading_turn", 8.0, (("wind_scale", "current"),))
     (step, *_) = next_steps(Diagnosis("ambiguous", prescription=manoeuvre))
     assert "heading turn, 8 minutes" in step and "wind scale from current" in step
 

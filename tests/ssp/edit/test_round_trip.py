@@ -9,7 +9,8 @@ from lxml import etree
 
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.ssp import new, pack, parameter, read, read_system, write_ssv
-from shipcosim.ssp.xml.document import Findings, validate
+from shipcosim.ssp.xml.document import Findings
+from shipcosim.ssp.xml.validation import validate
 
 RICH = """<?xml version="1.0" encoding="UTF-8"?>
 <!-- Copyright of somebody -->

@@ -8,10 +8,10 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.experiment.manoeuvres import cannot_turn, library, planned, rows_of, sized, step_for, true_wind
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.fitting import Case, probes
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, probes
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import beside, linearise, rows_first
-from shipcosim.diagnose.result import Prescription
+from shipcosim.diagnose.result import ExperimentDesign
 from shipcosim.diagnose.ship.model import Motion, current_at, shown
 from shipcosim.diagnose.ship.track_keeping import Dp, sailed
 
@@ -27,7 +27,7 @@ _ASTRAY = 0.5  # lengths that a ship may be off her track
 _ROOM = 3.0  # lengths that a ship may get away from where she started
 
 
-def prescribe(case, fit, rivals, manoeuvres=None):
+def design_experiment(problem, fit, rivals, manoeuvres=None):
     """A manoeuvre that is expected to tell a fit and its rivals apart.
 
     Of those that separate all pairs, one of the shortest; among manoeuvres about as short the one with most nats per
@@ -35,7 +35,7 @@ def prescribe(case, fit, rivals, manoeuvres=None):
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
         Of the log.
     fit : Fit
         The best.
@@ -46,14 +46,14 @@ def prescribe(case, fit, rivals, manoeuvres=None):
 
     Returns
     -------
-    Prescription or None
+    ExperimentDesign or None
         It names the pairs that it separates. Where no manoeuvre separates all pairs, the one that separates most; None
         where none separates any.
     """
     fits = [fit, *rivals][:_MOST]
-    manoeuvres = list(manoeuvres or library(case.plant, cannot_turn(case.record, case.plant)))
+    manoeuvres = list(manoeuvres or library(problem.model, cannot_turn(problem.record, problem.model)))
     with threadpool_limits(1):
-        apart = separations(case, fits, manoeuvres)
+        apart = separations(problem, fits, manoeuvres)
     pairs = list(combinations(range(len(fits)), 2))
     told = np.array([[apart[min(a, b), max(a, b)][i] for a, b in pairs] for i in range(len(manoeuvres))])
     count, least = (told >= CLEAR).sum(1), np.nan_to_num(told, nan=-np.inf).min(1, initial=np.inf)
@@ -65,18 +65,18 @@ def prescribe(case, fit, rivals, manoeuvres=None):
     best = max(short, key=lambda i: least[i] / minutes[i])
     names = [_differing(fits[a], fits[b]) for a, b in pairs]
     separates = tuple(name for name, value in zip(names, told[best], strict=True) if value >= CLEAR)
-    return Prescription(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
+    return ExperimentDesign(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
 
 
 def _differing(one, other):
     """What two sets of causes do not share."""
-    a, b = ([suspect.label for suspect in fit.suspects] for fit in (one, other))
+    a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
     return tuple(
         " + ".join(label for label in mine if label not in yours) or "nothing more" for mine, yours in ((a, b), (b, a))
     )
 
 
-def separations(case, fits, manoeuvres):
+def separations(problem, fits, manoeuvres):
     """How far apart manoeuvres would bring the log-evidence of fits.
 
     Each fit in turn is the truth; the others may take whatever values their posterior from the log allows, as may all
@@ -84,7 +84,7 @@ def separations(case, fits, manoeuvres):
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     fits : sequence of Fit
     manoeuvres : sequence of Manoeuvre
 
@@ -94,19 +94,19 @@ def separations(case, fits, manoeuvres):
         By places of two fits, lower first: the expected difference by manoeuvre, the smaller of both being true;
         NaN where the ship does not get through. [nats]
     """
-    plants = [_whole(fit) for fit in fits]
-    motions, records, through = _sailings(case, plants, manoeuvres)
-    noise = sized(case.noise, step_for(case.plant) / case.record.step)
+    models = [_whole(fit) for fit in fits]
+    motions, records, through = _sailings(problem, models, manoeuvres)
+    noise = sized(problem.noise, step_for(problem.model) / problem.record.step)
     known = _shared_columns(fits)
     ends = [rows_of(one, records[0].step) for one in manoeuvres]
     found = {pair: np.full(len(manoeuvres), np.inf) for pair in combinations(range(len(fits)), 2)}
     for a, (motion, record) in enumerate(zip(motions, records, strict=True)):
-        record = replace(record, measured=_shown(motion, plants[a]))
-        right = linearise(motion, record, plants[a], [])
-        tolerated = linearise(motion, record, _in_true_wind(case.plant), [column.turns for column in known])
+        record = replace(record, measured=_shown(motion, models[a]))
+        right = linearise(motion, record, models[a], [])
+        tolerated = linearise(motion, record, _in_true_wind(problem.model), [column.turns for column in known])
         for b in range(len(fits)):
             if b != a:
-                there = _beside(fits[b], plants[b], motion, record, right, tolerated, known)
+                there = _beside(fits[b], models[b], motion, record, right, tolerated, known)
                 white = innovations(there, noise, record).white
                 pair = min(a, b), max(a, b)
                 gains = [_missed(white[:end, i], fits[b].covariance) for i, end in enumerate(ends)]
@@ -114,13 +114,13 @@ def separations(case, fits, manoeuvres):
     return found
 
 
-def _shown(motion, plant):
-    return np.moveaxis(rows_first(shown(motion, plant)), 0, -2)
+def _shown(motion, model):
+    return np.moveaxis(rows_first(shown(motion, model)), 0, -2)
 
 
-def _in_true_wind(plant):
+def _in_true_wind(model):
     """The ship in a wind that is given over ground."""
-    return replace(plant, wind_is_true=True)
+    return replace(model, wind_is_true=True)
 
 
 def _whole(fit):
@@ -128,8 +128,8 @@ def _whole(fit):
     values = {}
     for column, share in zip(fit.columns, fit.left, strict=True):
         for path, size in column.turns.items():
-            values[path] = values.get(path, fit.plant.get(path)) + float(share) * size
-    return _in_true_wind(fit.plant.with_values(values))
+            values[path] = values.get(path, fit.model.get(path)) + float(share) * size
+    return _in_true_wind(fit.model.with_values(values))
 
 
 def _shared_columns(fits):
@@ -143,8 +143,8 @@ def _shared_columns(fits):
 
 
 def _own(fit):
-    turned = {path for s in fit.suspects for knob in s.knobs for path in knob.paths}
-    turned |= {path for s in fit.suspects for path in s.effect.companions}
+    turned = {path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths}
+    turned |= {path for s in fit.hypotheses for path in s.effect.companions}
     return [column for column in fit.columns if turned & set(column.turns)]
 
 
@@ -152,11 +152,11 @@ def _key(column):
     return tuple(sorted(column.turns.items()))
 
 
-def _beside(fit, plant, motion, record, right, tolerated, known):
+def _beside(fit, model, motion, record, right, tolerated, known):
     """The problem of a fit on a motion by another truth: what it misses more than the truth, and all its columns."""
     shared = [_key(column) for column in known]
     own = [column for column in fit.columns if _key(column) not in shared]
-    mine = linearise(motion, record, plant, [column.turns for column in own])
+    mine = linearise(motion, record, model, [column.turns for column in own])
     mine.driven[..., 0] -= right.driven[..., 0]
     mine.seen[..., 0] -= right.seen[..., 0]
     both = beside(mine, tolerated)  # missed, own, all known
@@ -178,15 +178,15 @@ def _products(white):
     return rows.T @ rows
 
 
-def _sailings(case, plants, manoeuvres):
+def _sailings(problem, models, manoeuvres):
     """Motions and records of every manoeuvre by every ship, and whether she gets through; lists by ship."""
-    start = float(case.record.time[-1]), *(float(value[-1]) for value in case.motion[:3])
-    wind = true_wind(case.record, case.motion, case.plant)
-    dp = Dp(_in_true_wind(case.plant), step_for(case.plant), cannot_turn(case.record, case.plant))
+    start = float(problem.record.time[-1]), *(float(value[-1]) for value in problem.motion[:3])
+    wind = true_wind(problem.record, problem.motion, problem.model)
+    dp = Dp(_in_true_wind(problem.model), step_for(problem.model), cannot_turn(problem.record, problem.model))
     track, record, held = planned(manoeuvres, dp, start, wind)
     motions, records, through = [], [], []
-    many, ships = len(manoeuvres), _abreast(plants, start[0], len(manoeuvres))
-    times = (len(plants), 1)
+    many, ships = len(manoeuvres), _abreast(models, start[0], len(manoeuvres))
+    times = (len(models), 1)
     side_by_side = replace(
         record,
         units={name: tuple(np.tile(series, times) for series in pair) for name, pair in record.units.items()},
@@ -194,8 +194,8 @@ def _sailings(case, plants, manoeuvres):
     )
     held = {name: np.tile(where, times) for name, where in held.items()}
     tracks = Motion(*(np.tile(value, times) for value in track))
-    sailing, units = sailed(ships, many * len(plants), tracks, side_by_side, dp, held=held)
-    for i in range(len(plants)):
+    sailing, units = sailed(ships, many * len(models), tracks, side_by_side, dp, held=held)
+    for i in range(len(models)):
         part = slice(i * many, (i + 1) * many)
         motions.append(Motion(*(value[part] for value in sailing)))
         here = {name: tuple(series[part] for series in pair) for name, pair in units.items()}
@@ -204,30 +204,30 @@ def _sailings(case, plants, manoeuvres):
     return motions, records, through
 
 
-def _abreast(plants, time, many):
-    """One plant with the numbers of several as arrays, each repeated: ships that sail side by side."""
-    plants = [_with_steady_current(plant, time) for plant in plants]
+def _abreast(models, time, many):
+    """One ship model with the numbers of several as arrays, each repeated: ships that sail side by side."""
+    models = [_with_steady_current(model, time) for model in models]
     values = {}
-    for name, part in plants[0].parts.items():
-        place = plants[0].vessel if name in ("hull", "wind") else name
+    for name, part in models[0].parts.items():
+        place = models[0].vessel if name in ("hull", "wind") else name
         for item in fields(part) if name != "instruments" else ():
-            each = [getattr(plant.parts[name], item.name) for plant in plants]
+            each = [getattr(model.parts[name], item.name) for model in models]
             if len(set(each)) > 1:
                 values[f"{place}.{item.name}"] = np.repeat(each, many)
-    return plants[0].with_values(values)
+    return models[0].with_values(values)
 
 
-def _with_steady_current(plant, time):
+def _with_steady_current(model, time):
     """The ship in the current of a time, as one that does not vary."""
-    north, east = (float(value) for value in current_at(np.array(time), plant))
-    zero = {item.name: 0.0 for item in fields(plant.parts["water"]) if item.name.endswith(("_start", "_end"))}
+    north, east = (float(value) for value in current_at(np.array(time), model))
+    zero = {item.name: 0.0 for item in fields(model.parts["water"]) if item.name.endswith(("_start", "_end"))}
     zero |= {"trend_north": 0.0, "trend_east": 0.0, "current_north": north, "current_east": east}
-    return plant.with_values({f"water.{name}": value for name, value in zero.items()})
+    return model.with_values({f"water.{name}": value for name, value in zero.items()})
 
 
 def _through(motion, track, manoeuvres, dp):
     """Whether the ship keeps near her track, and in the area where she drifts or is pushed. (c,)"""
-    length, found = dp.plant.parts["hull"].length, []
+    length, found = dp.model.parts["hull"].length, []
     off = np.hypot(motion.x - track.x, motion.y - track.y) / length
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
     for i, one in enumerate(manoeuvres):
@@ -237,13 +237,13 @@ def _through(motion, track, manoeuvres, dp):
     return np.array(found)
 
 
-def testability(plant, suspects, noise, manoeuvres, wind=None):
+def testability(model, hypotheses, noise, manoeuvres, wind=None):
     """What each cause of typical size would gain in manoeuvres of a healthy ship.
 
     Parameters
     ----------
-    plant : Plant
-    suspects : sequence of Suspect
+    model : ShipModel
+    hypotheses : sequence of Hypothesis
     noise : Noise
         Of a log with a row a second.
     manoeuvres : sequence of Manoeuvre
@@ -253,26 +253,26 @@ def testability(plant, suspects, noise, manoeuvres, wind=None):
     Returns
     -------
     dict of str to (c,) array
-        By the suspect's label, in the direction that shows least; NaN where the ship does not get through. [nats]
+        By the hypothesis's label, in the direction that shows least; NaN where the ship does not get through. [nats]
     """
     longest = 60.0 * max(one.minutes for one in manoeuvres)
-    plant, noise = replace(_in_true_wind(plant), span=(0.0, longest)), sized(noise, step_for(plant))
-    dp = Dp(plant, step_for(plant))
+    model, noise = replace(_in_true_wind(model), span=(0.0, longest)), sized(noise, step_for(model))
+    dp = Dp(model, step_for(model))
     track, record, held = planned(manoeuvres, dp, (0.0, 0.0, 0.0, 0.0), wind)
-    motion, units = sailed(plant, len(manoeuvres), track, record, dp, held=held)
-    record = replace(record, units=units, measured=_shown(motion, plant))
-    known = Case(record, plant, tuple(suspects), noise, motion).known(())
-    groups = [(suspect, group) for suspect in suspects for group in probes(suspect)]
+    motion, units = sailed(model, len(manoeuvres), track, record, dp, held=held)
+    record = replace(record, units=units, measured=_shown(motion, model))
+    known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).known(())
+    groups = [(hypothesis, group) for hypothesis in hypotheses for group in probes(hypothesis)]
     columns = known + [column for _, group in groups for column in group]
     with threadpool_limits(1):
-        white = innovations(linearise(motion, record, plant, [c.turns for c in columns]), noise, record).white
-    found = {suspect.label: np.full(len(manoeuvres), np.inf) for suspect in suspects}
+        white = innovations(linearise(motion, record, model, [c.turns for c in columns]), noise, record).white
+    found = {hypothesis.label: np.full(len(manoeuvres), np.inf) for hypothesis in hypotheses}
     through = _through(motion, track, manoeuvres, dp)
     for i, one in enumerate(manoeuvres):
         products, place = _products(white[: rows_of(one, record.step), i]), len(known)
-        for suspect, group in groups:
+        for hypothesis, group in groups:
             seen = _shows(products, columns, range(place, place + len(group)), len(known))
-            found[suspect.label][i] = np.minimum(found[suspect.label][i], seen if through[i] else np.nan)
+            found[hypothesis.label][i] = np.minimum(found[hypothesis.label][i], seen if through[i] else np.nan)
             place += len(group)
     return found
 

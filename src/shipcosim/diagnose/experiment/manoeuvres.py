@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.model import Drivers, Motion, motion_rates
+from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates
 from shipcosim.diagnose.ship.thrusters import pusher_of
 
 LONGEST = 15.0
@@ -70,12 +70,12 @@ class Manoeuvre:
         return sum(leg[0] for leg in self.legs) / 60.0
 
 
-def library(plant, fixed=()):
+def library(model, fixed=()):
     """All manoeuvres for a ship, none longer than `LONGEST`.
 
     Parameters
     ----------
-    plant : Plant
+    model : ShipModel
     fixed : collection of str
         Azimuth thrusters that cannot turn.
 
@@ -83,8 +83,8 @@ def library(plant, fixed=()):
     -------
     list of Manoeuvre
     """
-    share = plant.parts["hull"].length / _LENGTH
-    T, side, mass = 60.0 * np.sqrt(share), 30.0 * share, plant.parts["hull"].mass
+    share = model.parts["hull"].length / _LENGTH
+    T, side, mass = 60.0 * np.sqrt(share), 30.0 * share, model.parts["hull"].mass
     turn = 0.5 * np.pi
     corners = [(1.5, side, 0.0), (1.5, side, side), (1.5, 0.0, side), (1.5, 0.0, 0.0)]
     found = [
@@ -99,11 +99,11 @@ def library(plant, fixed=()):
         _steps("surge", T, (side, 2.5 * side), 0),
         _steps("sway", T, (0.3 * side, 0.75 * side), 1),
         Manoeuvre("free drift with idle thrusters", _legs(T, (0.5, 0, 0, 0), (3, 0, 0, 0)), free=((0.5 * T, 4.0 * T),)),
-        _pulses("pulses of one thruster after the other", T, {name: mass * _PUSH for name in plant.thrusters}),
+        _pulses("pulses of one thruster after the other", T, {name: mass * _PUSH for name in model.thrusters}),
     ]
-    if plant.azimuths:
-        found.append(_pulses("reversal of each azimuth thruster", T, {name: -mass * _PUSH for name in plant.azimuths}))
-    sweeps = _sweeps(plant, T, [name for name in plant.azimuths if name not in fixed], mass * _PUSH)
+    if model.azimuths:
+        found.append(_pulses("reversal of each azimuth thruster", T, {name: -mass * _PUSH for name in model.azimuths}))
+    sweeps = _sweeps(model, T, [name for name in model.azimuths if name not in fixed], mass * _PUSH)
     return [one for one in (*found, *sweeps) if one.minutes <= LONGEST]
 
 
@@ -127,15 +127,15 @@ def _pulses(name, T, forces):
     return Manoeuvre(name, _legs(T, (0.5 + 1.5 * len(forces), 0, 0, 0)), pushes)
 
 
-def _sweeps(plant, T, azimuths, force):
+def _sweeps(model, T, azimuths, force):
     """Each azimuth thruster turns its slipstream across its nearest neighbour, which pushes ahead or astern.
 
     A neighbour that held the ship against it would have its own slipstream in the first: equal losses, no net load.
     """
     pushes, start = [], 0.5 * T
     for name in azimuths:
-        here = plant.parts[name]
-        near = next((o for o in azimuths if _is_at(plant.parts[o], here.neighbour_x, here.neighbour_y)), None)
+        here = model.parts[name]
+        near = next((o for o in azimuths if _is_at(model.parts[o], here.neighbour_x, here.neighbour_y)), None)
         if near not in (None, name):
             at = np.arctan2(here.y - here.neighbour_y, here.x - here.neighbour_x)  # away from the neighbour
             ahead = 0.0 if len(pushes) % 4 == 0 else np.pi  # and astern the next time: the ship comes to rest
@@ -153,9 +153,9 @@ def _is_at(unit, x, y):
     return np.hypot(unit.x - x, unit.y - y) < 1e-6
 
 
-def step_for(plant):
+def step_for(model):
     """From row to row of a manoeuvre. [s]"""
-    return _STEP * float(np.sqrt(plant.parts["hull"].length / _LENGTH))
+    return _STEP * float(np.sqrt(model.parts["hull"].length / _LENGTH))
 
 
 def planned(manoeuvres, dp, start, wind):
@@ -220,7 +220,7 @@ def _inside(spans, time):
 
 def _thrusters(manoeuvre, time, track, start, wind, dp):
     """Speed and direction of each thruster by the plan. [rev/s, rad]"""
-    plant, free, alone = dp.plant, _inside(manoeuvre.free, time), {}
+    model, free, alone = dp.model, _inside(manoeuvre.free, time), {}
     for push in manoeuvre.pushes:
         inside = _inside(((push.start, push.end),), time)
         share = np.clip((time - push.start) / (push.end - push.start), 0.0, 1.0)
@@ -228,16 +228,16 @@ def _thrusters(manoeuvre, time, track, start, wind, dp):
         alone.setdefault(push.thruster, []).append((inside, push.force, azimuth))
     load = _needed(track, time, start, wind, dp)
     apart = _pushing_apart(dp)
-    wishes = {name: np.zeros((2, time.size)) for name in plant.thrusters}
+    wishes = {name: np.zeros((2, time.size)) for name in model.thrusters}
     for rows, left in _stretches(alone, time.size):
         rest = load[:, rows]
         for name in left:
             inside, force, azimuth = next(push for push in alone[name] if push[0][rows].all())
-            rest = rest - _load_of(name, force, azimuth[rows], plant)
-        axes_here = {name: np.zeros(rows.size) for name in plant.thrusters}
+            rest = rest - _load_of(name, force, azimuth[rows], model)
+        axes_here = {name: np.zeros(rows.size) for name in model.thrusters}
         for name, forces in dp.shared(rest, axes_here, dict.fromkeys(left, True)).items():
             wishes[name][:, rows] = np.where(free[rows], 0.0, forces + (0.0 if left else apart[name][:, None]))
-    return {name: _setting(name, wishes[name], alone.get(name, ()), time, dp) for name in plant.thrusters}
+    return {name: _setting(name, wishes[name], alone.get(name, ()), time, dp) for name in model.thrusters}
 
 
 def _stretches(alone, rows):
@@ -249,63 +249,63 @@ def _stretches(alone, rows):
 
 def _needed(track, time, start, wind, dp):
     """Load of the thrusters by which the ship would follow the track. (3, n)"""
-    still = {name: (np.zeros(time.size), np.zeros(time.size)) for name in dp.plant.thrusters}
+    still = {name: (np.zeros(time.size), np.zeros(time.size)) for name in dp.model.thrusters}
     air = (None, None) if wind is None else tuple(np.full(time.size, value) for value in wind)
-    drift = motion_rates(track, Drivers(start[0] + time, still, *air), dp.plant)
+    drift = motion_rates(track, Inputs(start[0] + time, still, *air), dp.model)
     wanted = [np.gradient(value, time) for value in (track.u, track.v, track.r)]
     return dp.mass[:, None] * (np.stack(wanted) - np.stack([drift.u, drift.v, drift.r]))
 
 
-def _load_of(name, force, azimuth, plant):
-    unit = plant.parts[name]
-    if name not in plant.azimuths:
-        azimuth = np.full_like(azimuth, pusher_of(plant, name).axis)
+def _load_of(name, force, azimuth, model):
+    unit = model.parts[name]
+    if name not in model.azimuths:
+        azimuth = np.full_like(azimuth, pusher_of(model, name).axis)
     X, Y = force * np.cos(azimuth), force * np.sin(azimuth)
     return np.stack([X, Y, unit.x * Y - getattr(unit, "y", 0.0) * X])
 
 
 def _pushing_apart(dp):
     """Forces of the azimuth thrusters against each other, slipstreams outwards, that leave no load on the ship."""
-    plant, found = dp.plant, {name: np.zeros(2) for name in dp.plant.thrusters}
-    able = [name for name in plant.azimuths if name not in dp.fixed]
+    model, found = dp.model, {name: np.zeros(2) for name in dp.model.thrusters}
+    able = [name for name in model.azimuths if name not in dp.fixed]
     if len(able) < 2:
         return found
-    places = np.array([[plant.parts[name].x, plant.parts[name].y] for name in able])
+    places = np.array([[model.parts[name].x, model.parts[name].y] for name in able])
     inwards = places.mean(0) - places
     inwards /= np.maximum(np.linalg.norm(inwards, axis=1), 1e-9)[:, None]
     B = np.hstack([[[1.0, 0.0], [0.0, 1.0], [-y, x]] for x, y in places])
     wish = inwards.ravel() - np.linalg.pinv(B) @ (B @ inwards.ravel())
-    size = _APART * plant.parts["hull"].mass
+    size = _APART * model.parts["hull"].mass
     return found | {name: size * force for name, force in zip(able, wish.reshape(-1, 2), strict=True)}
 
 
 def _setting(name, wish, pushes, time, dp):
     """Speed and direction for forces along x and y of the ship, and for pushes; as smooth as thrusters are."""
-    turns = name in dp.plant.azimuths and name not in dp.fixed
-    force, azimuth = wish[0], np.full(time.size, dp.plant.fixed.get(name, 0.0))
+    turns = name in dp.model.azimuths and name not in dp.fixed
+    force, azimuth = wish[0], np.full(time.size, dp.model.fixed.get(name, 0.0))
     if turns:
         force, azimuth = np.hypot(*wish), np.arctan2(wish[1], wish[0])
     for inside, push, direction in pushes:
         force = np.where(inside, push, force)
         azimuth = np.where(inside, direction, azimuth) if turns else azimuth
     azimuth = np.interp(time, time[force != 0.0], np.unwrap(azimuth[force != 0.0])) if np.any(force) else azimuth
-    most = 0.8 * dp.plant.parts[name].rpm_max / 60.0
+    most = 0.8 * dp.model.parts[name].rpm_max / 60.0
     speed = np.clip(dp.speed(name, force), -most, most)
     return tuple(gaussian_filter1d(series, _STEADY, mode="nearest") for series in (speed, azimuth))
 
 
-def cannot_turn(record, plant):
+def cannot_turn(record, model):
     """Azimuth thrusters without a rate of turning, or that point straight ahead or astern throughout a log."""
-    across = {name: np.abs(np.sin(record.units[name][1])).max() for name in plant.azimuths}
-    return tuple(n for n in plant.azimuths if plant.parts[n].azimuth_rate == 0.0 or across[n] < _STRAIGHT)
+    across = {name: np.abs(np.sin(record.units[name][1])).max() for name in model.azimuths}
+    return tuple(n for n in model.azimuths if model.parts[n].azimuth_rate == 0.0 or across[n] < _STRAIGHT)
 
 
-def true_wind(record, motion, plant):
+def true_wind(record, motion, model):
     """Mean wind over ground of a log: speed, and where it comes from. [m/s, rad]; None where it has no wind."""
     if record.wind is None:
         return None
     speed, direction = record.wind
-    if plant.wind_is_true:
+    if model.wind_is_true:
         north, east = -speed * np.cos(direction), -speed * np.sin(direction)
     else:
         u, v = motion.u - speed * np.cos(direction), motion.v - speed * np.sin(direction)

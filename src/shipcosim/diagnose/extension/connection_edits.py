@@ -1,6 +1,6 @@
 """What an FMU of somebody else has no parameter for is carried by its connections: a factor, or an offset."""
 
-from shipcosim.diagnose.ship.third_party_fmu import DRIVES, stranger_of
+from shipcosim.diagnose.ship.third_party_fmu import DRIVES, third_party_fmu_of
 from shipcosim.series import conversion
 
 __all__ = ["put_on_connections"]
@@ -8,12 +8,12 @@ __all__ = ["put_on_connections"]
 _OFFSETS = {"rpm_offset": ("rpm", -1.0), "azimuth_offset": ("azimuth", 1.0)}
 
 
-def put_on_connections(graft, finding, place, number, estimate):
+def put_on_connections(edits, finding, place, number, estimate):
     """Put a thruster's loss on its loads, or an offset on what drives it, where its FMU knows neither.
 
     Parameters
     ----------
-    graft : Graft
+    edits : StructureEdits
         Changed; a remark says what its connections have.
     finding : Finding
     place, number : str
@@ -25,14 +25,14 @@ def put_on_connections(graft, finding, place, number, estimate):
     bool
         Whether that was so.
     """
-    system = graft.structure.checked()
+    system = edits.structure.checked()
     known = place in system.components and number in ("thrust_loss", *_OFFSETS)
     if not known or number in system.components[place].fmu.variables:
         return False
-    one = stranger_of(system, place, graft.ship)
+    one = third_party_fmu_of(system, place, edits.ship)
     if number == "thrust_loss":
         kept = 1.0 - _in(estimate, "1")
-        wanted = [c for c in system.connections if c.source[0] == place and c.target[0] == graft.ship]
+        wanted = [c for c in system.connections if c.source[0] == place and c.target[0] == edits.ship]
         new = [(c, kept * c.factor, kept * c.offset) for c in wanted]
         told = f"factor {kept:.3f} on the connections of its loads"
     else:
@@ -42,13 +42,13 @@ def put_on_connections(graft, finding, place, number, estimate):
         wanted = [c for c in system.connections if c.target[0] == place and c.target[1] in links]
         new = [(c, c.factor, c.offset + links[c.target[1]].factor * off) for c in wanted]
         told = f"offset of {off:.4g} {DRIVES[kind]} on the connection of its {kind}"
-    pairs = set(graft.structure.connections)
+    pairs = set(edits.structure.connections)
     if not new or any(_ends(c) not in pairs for c, *_ in new):
-        graft.remark(finding, f"the connections of '{place}' are not in one system, so it is not carried")
+        edits.remark(finding, f"the connections of '{place}' are not in one system, so it is not carried")
         return True
     for one in new:
-        _rejoin(graft.structure, system, *one)
-    graft.remark(finding, f"carried as {told}")
+        _rejoin(edits.structure, system, *one)
+    edits.remark(finding, f"carried as {told}")
     return True
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from shipcosim.diagnose.extension.connection_edits import put_on_connections
 from shipcosim.diagnose.extension.structure_edits import (
     Estimated,
-    Graft,
+    StructureEdits,
     add_current,
     add_force,
     add_instruments,
@@ -69,7 +69,7 @@ def extend(system, findings, folder, *, log_attributes=None, catalogue=None):
     log_attributes : mapping, optional
         Of the log: ``source`` and ``sha256`` go into the descriptions, ``span`` (first and last time, in s) is that
         of a varying current.
-    catalogue : dict of str to Effect, optional
+    catalogue : dict of str to Cause, optional
         The causes; our own if not given.
 
     Returns
@@ -82,25 +82,25 @@ def extend(system, findings, folder, *, log_attributes=None, catalogue=None):
         If the system has errors or no ship, an FMU to insert is not there, or something cannot be written.
     """
     structure = system.copy() if isinstance(system, SystemStructure) else read(system)
-    graft = Graft(structure, _ship(structure), log_attributes or {})
+    edits = StructureEdits(structure, _ship(structure), log_attributes or {})
     catalogue = catalogue or read_catalogue()
     findings = [finding for finding in findings if finding.kind == "physics"]
     with structure.changes():
         for finding in findings:
-            _carry(graft, finding, catalogue)
+            _carry(edits, finding, catalogue)
     ssp, ssv = Path(folder) / "extended.ssp", Path(folder) / "extended.ssv"
-    write_ssv(ssv, "extended", graft.values.values())
+    write_ssv(ssv, "extended", edits.values.values())
     structure.bind(ssv)
     structure.write(ssp)
     return Extension(
         ssp,
         ssv,
-        {name: value.value for name, value in graft.values.items()},
-        tuple(graft.inserted),
-        {role: f"{graft.shows}.{name}" + graft.suffix for role, name in _SHOWN.items()},
-        graft.errors,
-        graft.lag,
-        tuple(graft.remarks),
+        {name: value.value for name, value in edits.values.items()},
+        tuple(edits.inserted),
+        {role: f"{edits.shows}.{name}" + edits.suffix for role, name in _SHOWN.items()},
+        edits.errors,
+        edits.lag,
+        tuple(edits.remarks),
     )
 
 
@@ -115,50 +115,50 @@ def _ship(structure):
     return ships[0]
 
 
-def _carry(graft, finding, catalogue):
+def _carry(edits, finding, catalogue):
     """Put one finding into the system."""
     if finding.cause == "connection":
-        rewire(graft, finding.component)
+        rewire(edits, finding.component)
         return
     if finding.cause not in catalogue:
-        graft.remark(finding, "it is not in the catalogue")
+        edits.remark(finding, "it is not in the catalogue")
         return
     known = catalogue[finding.cause].parameters
     numbers = {}
     for name, estimate in finding.parameters.items():
         patterns = known[name].of if name in known else ()
-        for path in (path for pattern in patterns for path in _paths(graft, pattern, finding)):
+        for path in (path for pattern in patterns for path in _paths(edits, pattern, finding)):
             place, _, number = path.rpartition(".")
             numbers.setdefault(place, {})[number] = estimate
     around = {place: numbers.pop(place, {}) for place in ("water", "instruments")}
-    with_onset = _surround(graft, finding, around["water"])
+    with_onset = _surround(edits, finding, around["water"])
     add_instruments(
-        graft, finding, {name: _in(e, graft.unit_of_error(name)) for name, e in around["instruments"].items()}
+        edits, finding, {name: _in(e, edits.unit_of_error(name)) for name, e in around["instruments"].items()}
     )
     for place, values in numbers.items():
         for number, estimate in values.items():
-            if not put_on_connections(graft, finding, place, number, estimate):
-                graft.put_parameter(finding, place, number, estimate)
+            if not put_on_connections(edits, finding, place, number, estimate):
+                edits.put_parameter(finding, place, number, estimate)
     if finding.cause == "thruster_interaction":
-        add_slipstreams(graft, finding, [place for place, values in numbers.items() if "interaction_loss" in values])
+        add_slipstreams(edits, finding, [place for place, values in numbers.items() if "interaction_loss" in values])
     if finding.onset is not None and not with_onset:
-        graft.remark(finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start")
+        edits.remark(finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start")
 
 
-def _surround(graft, finding, water):
+def _surround(edits, finding, water):
     """Put currents and forces into the system; whether their onset went along."""
     if {"current_north", "current_east"} & set(water):
         ends = _pair(water, "current_north", "current_east", "m/s")
-        add_current(graft, finding, *(((None, None), ends) if finding.onset is not None else (ends, None)))
+        add_current(edits, finding, *(((None, None), ends) if finding.onset is not None else (ends, None)))
     if any(name.endswith(("_start", "_end")) for name in water):
         ends = [_pair(water, f"north_{end}", f"east_{end}", "m/s") for end in ("start", "end")]
-        add_current(graft, finding, *ends)
+        add_current(edits, finding, *ends)
     for prefix, fmu in _FORCES.items():
         own = {name.removeprefix(f"{prefix}_"): e for name, e in water.items() if name.startswith(f"{prefix}_")}
         if own:
             vector = _pair(own, "north", "east", "N")
             others = {name: e for name, e in own.items() if name not in ("north", "east")}
-            add_force(graft, finding, fmu, *vector, others)
+            add_force(edits, finding, fmu, *vector, others)
     return bool(water)
 
 
@@ -172,10 +172,10 @@ def _in(estimate, unit):
     return Estimated(factor * estimate.estimate + offset, abs(factor) * estimate.std)
 
 
-def _paths(graft, pattern, finding):
+def _paths(edits, pattern, finding):
     """Numbers of the ship that a pattern of the catalogue means."""
     if pattern.startswith("vessel."):
-        return [f"{graft.ship}.{pattern.removeprefix('vessel.')}"]
+        return [f"{edits.ship}.{pattern.removeprefix('vessel.')}"]
     if "{azimuths}" in pattern:
-        return [pattern.replace("{azimuths}", name) for name in graft.thrusters("azimuth_in")]
+        return [pattern.replace("{azimuths}", name) for name in edits.thrusters("azimuth_in")]
     return [pattern.replace("{thruster}", finding.component or "")]

@@ -31,7 +31,7 @@ class Estimated(NamedTuple):
 
 
 @dataclass
-class Graft:
+class StructureEdits:
     """A system structure that is being extended, and what went into it so far.
 
     Attributes
@@ -150,12 +150,12 @@ class Graft:
         return known.get(name, "s" if name.endswith("lag") else "1")
 
 
-def add_force(graft, finding, fmu, north, east, others):
+def add_force(edits, finding, fmu, north, east, others):
     """Insert a force of the earth's direction that acts on the ship.
 
     Parameters
     ----------
-    graft : Graft
+    edits : StructureEdits
         Changed.
     finding : Finding
     fmu : str
@@ -165,31 +165,31 @@ def add_force(graft, finding, fmu, north, east, others):
     others : dict of str to Estimate
         Further parameters of the FMU: where it attacks, which is the stern otherwise.
     """
-    name = graft.insert(fmu, finding.cause)
-    if not graft.load(name):
-        graft.drop(name)
-        graft.remark(finding, f"'{graft.ship}' has no free load input, so it is not carried")
+    name = edits.insert(fmu, finding.cause)
+    if not edits.load(name):
+        edits.drop(name)
+        edits.remark(finding, f"'{edits.ship}' has no free load input, so it is not carried")
         return
-    graft.structure.connect(f"{graft.ship}.psi", f"{name}.psi")
-    graft.put(finding, f"{name}.north", north, "N")
-    graft.put(finding, f"{name}.east", east, "N")
+    edits.structure.connect(f"{edits.ship}.psi", f"{name}.psi")
+    edits.put(finding, f"{name}.north", north, "N")
+    edits.put(finding, f"{name}.east", east, "N")
     for number, estimate in others.items():
-        graft.put_parameter(finding, name, number, estimate)
+        edits.put_parameter(finding, name, number, estimate)
     number, of_length, note = _BY_LENGTH[fmu]
     if number not in others:
-        given = Estimated(of_length(graft.structure.parameters[f"{graft.ship}.length"]), None)
-        graft.put(finding, f"{name}.{number}", given, "m", note=note)
+        given = Estimated(of_length(edits.structure.parameters[f"{edits.ship}.length"]), None)
+        edits.put(finding, f"{name}.{number}", given, "m", note=note)
     if finding.onset is not None:
-        graft.put(finding, f"{name}.onset_time", Estimated(finding.onset, None), "s")
-        graft.put(finding, f"{name}.ramp_time", Estimated(RAMP, None), "s", note="assumed")
+        edits.put(finding, f"{name}.onset_time", Estimated(finding.onset, None), "s")
+        edits.put(finding, f"{name}.ramp_time", Estimated(RAMP, None), "s", note="assumed")
 
 
-def add_current(graft, finding, start, end=None):
+def add_current(edits, finding, start, end=None):
     """Make the water move.
 
     Parameters
     ----------
-    graft : Graft
+    edits : StructureEdits
         Changed.
     finding : Finding
         One with an onset gets a current that grows from then on.
@@ -198,39 +198,39 @@ def add_current(graft, finding, start, end=None):
     end : tuple of two Estimated, optional
         At the log's last row, or after the onset. [m/s]
     """
-    source = _water(graft)
-    if graft.moved:
-        graft.remark(finding, "the water moves already by another finding, so it is not carried")
+    source = _water(edits)
+    if edits.moved:
+        edits.remark(finding, "the water moves already by another finding, so it is not carried")
         return
-    graft.moved = True
+    edits.moved = True
     if end is None:
-        _steady(graft, finding, source, *start)
+        _steady(edits, finding, source, *start)
         return
     if source is None:
-        source = _environment(graft)
+        source = _environment(edits)
     onset = start == (None, None)
-    span = (finding.onset, finding.onset + RAMP) if onset else graft.log.get("span")
+    span = (finding.onset, finding.onset + RAMP) if onset else edits.log.get("span")
     if span is None:
-        span = graft.structure.start_time, graft.structure.stop_time or 600.0
-        graft.remark(finding, f"the log's span is not known; it varies from {span[0]:g} to {span[1]:g} s")
-    name = graft.insert("varying_current", "varying_current")
+        span = edits.structure.start_time, edits.structure.stop_time or 600.0
+        edits.remark(finding, f"the log's span is not known; it varies from {span[0]:g} to {span[1]:g} s")
+    name = edits.insert("varying_current", "varying_current")
     for output in ("current_speed", "current_to"):
-        _release(graft, f"{source}.{output}")
-        graft.structure.connect(f"{name}.{output}", f"{source}.{output}")
+        _release(edits, f"{source}.{output}")
+        edits.structure.connect(f"{name}.{output}", f"{source}.{output}")
     for label, ends in (("start", start), ("end", end)):
         for axis, given in zip(("north", "east"), ends, strict=True):
             if given is not None:
-                graft.put(finding, f"{name}.{axis}_{label}", given, "m/s")
+                edits.put(finding, f"{name}.{axis}_{label}", given, "m/s")
     for label, time in zip(("start", "end"), span, strict=True):
-        graft.put(finding, f"{name}.time_{label}", Estimated(time, None), "s", note="of the log")
+        edits.put(finding, f"{name}.time_{label}", Estimated(time, None), "s", note="of the log")
 
 
-def add_instruments(graft, finding, errors):
+def add_instruments(edits, finding, errors):
     """Put instruments with these errors between the ship and her log.
 
     Parameters
     ----------
-    graft : Graft
+    edits : StructureEdits
         Changed.
     finding : Finding
     errors : dict of str to Estimated
@@ -238,26 +238,26 @@ def add_instruments(graft, finding, errors):
     """
     for name in [name for name in errors if name not in _ERRORS]:
         del errors[name]
-        graft.remark(finding, "it is one of the log, not of the ship: shift the channels")
-    if errors and not graft.suffix:
-        graft.shows, graft.suffix = graft.insert("instruments", "instruments"), "_meas"
+        edits.remark(finding, "it is one of the log, not of the ship: shift the channels")
+    if errors and not edits.suffix:
+        edits.shows, edits.suffix = edits.insert("instruments", "instruments"), "_meas"
         for name in Shown._fields:
-            graft.structure.connect(f"{graft.ship}.{name}", f"{graft.shows}.{name}")
+            edits.structure.connect(f"{edits.ship}.{name}", f"{edits.shows}.{name}")
     for name, given in errors.items():
         field_name = _ERRORS[name]
-        graft.put(finding, f"{graft.shows}.{field_name}", given, graft.unit_of_error(field_name))
+        edits.put(finding, f"{edits.shows}.{field_name}", given, edits.unit_of_error(field_name))
         if field_name == "lag":
-            graft.lag = given.value
+            edits.lag = given.value
         else:
-            graft.errors[field_name] = given.value
+            edits.errors[field_name] = given.value
 
 
 _ERRORS = {name: name for name in ("heading_bias", "lever_x", "lever_y", "velocity_scale")} | {"navigation_lag": "lag"}
 
 
-def add_slipstreams(graft, finding, units):
+def add_slipstreams(edits, finding, units):
     """Tell each unit where its neighbour is, and how that runs: the one that is wired to it, else the nearest."""
-    values, wired = graft.structure.parameters, set(graft.structure.connections)
+    values, wired = edits.structure.parameters, set(edits.structure.connections)
     feeds = {target for _, target in wired}
     place = {unit: (values[f"{unit}.x"], values[f"{unit}.y"]) for unit in units}
     for unit in units:
@@ -265,69 +265,69 @@ def add_slipstreams(graft, finding, units):
         fed = {source.rpartition(".")[0] for source, target in wired if target == f"{unit}.neighbour_azimuth"}
         others = sorted((o for o in units if o != unit), key=lambda o: (o not in fed, _distance(place[o], here)))
         if not others:
-            graft.remark(finding, f"'{unit}' has no neighbour")
+            edits.remark(finding, f"'{unit}' has no neighbour")
             continue
         for name in ("azimuth", "rpm"):
             if f"{unit}.neighbour_{name}" not in feeds:
-                graft.structure.connect(f"{others[0]}.{name}", f"{unit}.neighbour_{name}")
+                edits.structure.connect(f"{others[0]}.{name}", f"{unit}.neighbour_{name}")
         for name, there in zip(("neighbour_x", "neighbour_y"), place[others[0]], strict=True):
             if values[f"{unit}.{name}"] != there:
-                graft.put(finding, f"{unit}.{name}", Estimated(there, None), "m", note=f"where {others[0]} is")
+                edits.put(finding, f"{unit}.{name}", Estimated(there, None), "m", note=f"where {others[0]} is")
 
 
 def _distance(a, b):
     return hypot(a[0] - b[0], a[1] - b[1])
 
 
-def _water(graft):
+def _water(edits):
     """Component that moves the ship's water and takes its speed and direction; None where there is none such."""
-    feeding = {connection.target: connection.source for connection in graft.structure.checked().connections}
-    source, _ = feeding.get((graft.ship, "current_north"), (None, ""))
-    variables = graft.structure.components[source].fmu.variables if source else {}
+    feeding = {connection.target: connection.source for connection in edits.structure.checked().connections}
+    source, _ = feeding.get((edits.ship, "current_north"), (None, ""))
+    variables = edits.structure.components[source].fmu.variables if source else {}
     return source if {"current_speed", "current_to"} <= set(variables) else None
 
 
-def _environment(graft):
+def _environment(edits):
     """Insert an environment that only moves the water."""
-    name = graft.insert("environment", "water")
+    name = edits.insert("environment", "water")
     for axis in ("north", "east"):
-        _release(graft, f"{graft.ship}.current_{axis}")
-        graft.structure.connect(f"{name}.current_{axis}", f"{graft.ship}.current_{axis}")
+        _release(edits, f"{edits.ship}.current_{axis}")
+        edits.structure.connect(f"{name}.current_{axis}", f"{edits.ship}.current_{axis}")
     return name
 
 
-def _steady(graft, finding, source, north, east):
+def _steady(edits, finding, source, north, east):
     """Give the water one velocity, where the system takes it."""
     if source is None:
         for axis, given in (("north", north), ("east", east)):
-            _start(graft, finding, graft.ship, f"current_{axis}", given, "m/s")
+            _start(edits, finding, edits.ship, f"current_{axis}", given, "m/s")
         return
     speed = hypot(north.value, east.value)
     along = hypot(north.value * north.std, east.value * east.std) / (speed or 1.0)
     across = hypot(east.value * north.std, north.value * east.std) / (speed * speed or 1.0)
-    _start(graft, finding, source, "current_speed", Estimated(speed, along), "m/s")
-    _start(graft, finding, source, "current_to", Estimated(atan2(east.value, north.value), across), "rad")
+    _start(edits, finding, source, "current_speed", Estimated(speed, along), "m/s")
+    _start(edits, finding, source, "current_to", Estimated(atan2(east.value, north.value), across), "rad")
 
 
-def _start(graft, finding, component, name, given, unit):
+def _start(edits, finding, component, name, given, unit):
     """Start value of an input: at the system's own input where that feeds it, else at the component."""
-    system, target = graft.structure.checked(), (component, name)
+    system, target = edits.structure.checked(), (component, name)
     feeding = next((c for c in system.connections if c.target == target), None)
     outer = feeding is not None and feeding.source[0] is None and feeding.mapping is None and feeding.factor != 0.0
     if not outer:
-        _release(graft, f"{component}.{name}")
-        graft.put(finding, f"{component}.{name}", given, unit)
+        _release(edits, f"{component}.{name}")
+        edits.put(finding, f"{component}.{name}", given, unit)
         return
     signal = system.inputs[feeding.source[1]]
     value = (given.value - feeding.offset) / feeding.factor
-    graft.put(finding, signal.name, Estimated(value, given.std / abs(feeding.factor)), signal.unit)
-    graft.remark(finding, f"a table that feeds the input '{signal.name}' overrides it")
+    edits.put(finding, signal.name, Estimated(value, given.std / abs(feeding.factor)), signal.unit)
+    edits.remark(finding, f"a table that feeds the input '{signal.name}' overrides it")
 
 
-def _release(graft, input_name):
+def _release(edits, input_name):
     """Disconnect an input from whatever feeds it."""
-    if any(input_name in pair for pair in graft.structure.connections):
-        graft.structure.disconnect(input_name)
+    if any(input_name in pair for pair in edits.structure.connections):
+        edits.structure.disconnect(input_name)
 
 
 def _origin(finding, log):
@@ -338,15 +338,15 @@ def _origin(finding, log):
     return f"{finding.label}, named with probability {finding.probability:.2f}: {sizes}; from {source}{digest}"
 
 
-def rewire(graft, name):
+def rewire(edits, name):
     """Connect a thruster's loads to the ship, and its inputs to the system's, as their names say."""
-    structure, loads = graft.structure, {f"{name}.tau_{axis}" for axis in _AXES}
-    wrong = [pair for pair in structure.connections if pair[0] in loads and pair[1].startswith(f"{graft.ship}.tau_")]
+    structure, loads = edits.structure, {f"{name}.tau_{axis}" for axis in _AXES}
+    wrong = [pair for pair in structure.connections if pair[0] in loads and pair[1].startswith(f"{edits.ship}.tau_")]
     slots = [target.rpartition("_")[2] for _, target in wrong]
     for pair in wrong:
         structure.disconnect(*pair)
     for axis in _AXES if wrong else ():
-        structure.connect(f"{name}.tau_{axis}", f"{graft.ship}.tau_{axis}_{max(slots, key=slots.count)}")
+        structure.connect(f"{name}.tau_{axis}", f"{edits.ship}.tau_{axis}_{max(slots, key=slots.count)}")
     for source, target in structure.connections:
         kind = target.removeprefix(f"{name}.").removesuffix("_in")
         if target == f"{name}.{kind}_in" and source.endswith(f"_{kind}") and "." not in source:

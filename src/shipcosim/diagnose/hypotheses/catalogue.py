@@ -12,14 +12,14 @@ from shipcosim.diagnose.result import label_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 
-__all__ = ["Effect", "EffectParameter", "Knob", "Suspect", "read_catalogue", "suspects"]
+__all__ = ["Cause", "CauseParameter", "HypothesisParameter", "Hypothesis", "read_catalogue", "hypotheses_of"]
 
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class EffectParameter(_Strict):
+class CauseParameter(_Strict):
     """A parameter of a cause.
 
     Attributes
@@ -47,7 +47,7 @@ class EffectParameter(_Strict):
     relative_to: str | None = None
 
 
-class Effect(_Strict):
+class Cause(_Strict):
     """A cause as its file has it.
 
     Attributes
@@ -68,7 +68,7 @@ class Effect(_Strict):
         Numbers that this cause speaks for: their tolerance is left out where it acts.
     special : str, optional
         A simpler cause that this one contains, its parameters several times in the same order.
-    parameters : dict of str to EffectParameter
+    parameters : dict of str to CauseParameter
     """
 
     cause: str
@@ -81,11 +81,11 @@ class Effect(_Strict):
     shape: list[str] = []
     replaces: list[str] = []
     special: str | None = None
-    parameters: dict[str, EffectParameter]
+    parameters: dict[str, CauseParameter]
 
 
 @dataclass(frozen=True)
-class Knob:
+class HypothesisParameter:
     """A parameter of a cause on one ship; all in the unit of the ship's numbers, except `unit` and `factor`.
 
     Attributes
@@ -111,12 +111,12 @@ class Knob:
 
 
 @dataclass(frozen=True)
-class Suspect:
+class Hypothesis:
     """A cause at one place of one ship."""
 
-    effect: Effect
+    effect: Cause
     component: str | None
-    knobs: tuple[Knob, ...]
+    parameters: tuple[HypothesisParameter, ...]
 
     @property
     def cause(self):
@@ -150,7 +150,7 @@ def read_catalogue(folder=None):
     for path in (*ours, *(sorted(Path(folder).iterdir()) if folder else ())):
         if path.name.endswith(".toml"):
             try:
-                effect = Effect.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+                effect = Cause.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
                 found[effect.cause] = effect
             except (tomllib.TOMLDecodeError, ValidationError) as error:
                 problems.append(
@@ -161,53 +161,53 @@ def read_catalogue(folder=None):
     return found
 
 
-def suspects(catalogue, plant):
+def hypotheses_of(catalogue, model):
     """Every cause at every place of a ship where it can be.
 
     Parameters
     ----------
-    catalogue : dict of str to Effect
-    plant : Plant
+    catalogue : dict of str to Cause
+    model : ShipModel
 
     Returns
     -------
-    list of Suspect
+    list of Hypothesis
         Without causes whose numbers the ship does not have.
     """
-    places = {"ship": [None], "thruster": plant.thrusters, "azimuth": plant.azimuths}
-    found = [_on(effect, place, plant) for effect in catalogue.values() for place in places[effect.for_each]]
-    return [suspect for suspect in found if suspect]
+    places = {"ship": [None], "thruster": model.thrusters, "azimuth": model.azimuths}
+    found = [_on(effect, place, model) for effect in catalogue.values() for place in places[effect.for_each]]
+    return [hypothesis for hypothesis in found if hypothesis]
 
 
-def _on(effect, component, plant):
-    knobs = []
+def _on(effect, component, model):
+    parameters = []
     for name, parameter in effect.parameters.items():
-        paths = [path for pattern in parameter.of for path in _paths(pattern, component, plant)]
-        if not paths or not all(plant.has(path) for path in paths):
+        paths = [path for pattern in parameter.of for path in _paths(pattern, component, model)]
+        if not paths or not all(model.has(path) for path in paths):
             return None
-        knobs.append(_knob(name, parameter, tuple(paths), component, plant))
-    return Suspect(effect, component, tuple(knobs))
+        parameters.append(_parameter(name, parameter, tuple(paths), component, model))
+    return Hypothesis(effect, component, tuple(parameters))
 
 
-def _paths(pattern, component, plant):
-    pattern = pattern.replace("vessel.", f"{plant.vessel}.", 1) if pattern.startswith("vessel.") else pattern
+def _paths(pattern, component, model):
+    pattern = pattern.replace("vessel.", f"{model.vessel}.", 1) if pattern.startswith("vessel.") else pattern
     if "{azimuths}" in pattern:
-        found = (pattern.replace("{azimuths}", name) for name in plant.thrusters)
-        return [path for path in found if plant.has(path)]
+        found = (pattern.replace("{azimuths}", name) for name in model.thrusters)
+        return [path for path in found if model.has(path)]
     return [pattern.replace("{thruster}", component or "")]
 
 
-def _knob(name, parameter, paths, component, plant):
-    per_model, _ = conversion(parameter.unit, plant.about(paths[0])["unit"])
+def _parameter(name, parameter, paths, component, model):
+    per_model, _ = conversion(parameter.unit, model.about(paths[0])["unit"])
     size = per_model
     if parameter.relative_to:
-        size *= plant.get(_paths(parameter.relative_to, component, plant)[0])
-    tolerance = plant.tolerances.get(paths[0], parameter.tolerance * size)
-    return Knob(
+        size *= model.get(_paths(parameter.relative_to, component, model)[0])
+    tolerance = model.tolerances.get(paths[0], parameter.tolerance * size)
+    return HypothesisParameter(
         name,
         parameter.unit,
         paths,
-        plant.get(paths[0]),
+        model.get(paths[0]),
         parameter.typical * size,
         tolerance,
         tuple(bound * size for bound in parameter.bounds),

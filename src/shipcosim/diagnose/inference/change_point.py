@@ -13,12 +13,12 @@ _BLIND = 2  # blocks after an onset, in which the filter still answers to it
 _WORTH = 6.0  # nats, for a second look; twice that to be believed
 
 
-def begun(case, fits):
+def begun(problem, fits):
     """When the likeliest cause would have begun: where the log splits best into rows without and with it.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     fits : list of Fit
         Of `explain`.
 
@@ -28,11 +28,11 @@ def begun(case, fits):
         Time [s]; None where nothing is gained by an onset.
     """
     nothing = without_causes(fits)
-    suspects = [suspect for suspect in case.suspects if suspect.effect.law != "turning"]
-    groups = [group for suspect in suspects for group in probes(suspect)]
-    linear = beside(nothing.linear, case.base_of([column for group in groups for column in group]))
-    parts = max(int(case.record.time.size * case.record.step / _BLOCK), 8)
-    blocks = gram(innovations(linear, case.noise, case.record), parts).blocks
+    hypotheses = [hypothesis for hypothesis in problem.hypotheses if hypothesis.effect.law != "turning"]
+    groups = [group for hypothesis in hypotheses for group in probes(hypothesis)]
+    linear = beside(nothing.linear, problem.base_of([column for group in groups for column in group]))
+    parts = max(int(problem.record.time.size * problem.record.step / _BLOCK), 8)
+    blocks = gram(innovations(linear, problem.noise, problem.record), parts).blocks
     known, place, gains = len(nothing.columns), len(nothing.columns), []
     priors = []
     for group in groups:
@@ -49,18 +49,18 @@ def begun(case, fits):
     if not gains:  # too short to be parted
         return None
     best = int(np.argmax(gains))
-    row = round((3 + best) / parts * case.record.time.size)
-    return float(case.record.time[row]) if gains[best] > _WORTH else None
+    row = round((3 + best) / parts * problem.record.time.size)
+    return float(problem.record.time[row]) if gains[best] > _WORTH else None
 
 
-def from_onset(clean, case, fits, prepare):
+def from_change_point(clean, problem, fits, prepare):
     """The diagnosis of the rows after an onset, where that explains the whole log better.
 
     Parameters
     ----------
     clean : xarray.Dataset
         Repaired log.
-    case : Case
+    problem : IdentificationProblem
     fits : list of Fit
         Of the whole log.
     prepare : callable
@@ -71,7 +71,7 @@ def from_onset(clean, case, fits, prepare):
     tuple of float, xarray.Dataset, Case, list of Fit, or None
         Time of the onset [s], and the later rows with their case and fits.
     """
-    time = begun(case, fits)
+    time = begun(problem, fits)
     if time is None:
         return None
     row = int(np.searchsorted(clean["time"].values, time))

@@ -18,7 +18,7 @@ _SLOW, _STILL = 0.35, 0.05  # of the faster end: a current this slow at first si
 
 
 @dataclass(frozen=True)
-class Column:
+class Regressor:
     """One θ.
 
     Attributes
@@ -34,26 +34,26 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Case:
+class IdentificationProblem:
     """A log with the ship that is to explain it, and where to start.
 
     Attributes
     ----------
     record : Record
-    plant : Plant
+    model : ShipModel
         With all causes neutral.
-    suspects : tuple of Suspect
+    hypotheses : tuple of Hypothesis
     noise : Noise
     motion : Motion
     base : Linear, optional
         About the ship without a cause, with the columns of `basis`.
-    known_of : tuple of Suspect, optional
-        Suspects whose numbers are known within a tolerance, where those are more than `suspects`.
+    known_of : tuple of Hypothesis, optional
+        Suspects whose numbers are known within a tolerance, where those are more than `hypotheses`.
     """
 
     record: Any
-    plant: Any
-    suspects: tuple
+    model: Any
+    hypotheses: tuple
     noise: Any
     motion: Any
     base: Any = None
@@ -61,8 +61,8 @@ class Case:
 
     @property
     def basis(self):
-        """All known numbers, and what every suspect is first sought by."""
-        return self.known(()) + [column for s in self.suspects for group in probes(s) for column in group]
+        """All known numbers, and what every hypothesis is first sought by."""
+        return self.known(()) + [column for s in self.hypotheses for group in probes(s) for column in group]
 
     def base_of(self, columns):
         """The problem about the ship without a cause, with these columns of the basis."""
@@ -70,18 +70,18 @@ class Case:
         wanted = [0, *(places[_key(column)] for column in columns)]
         return self.base._replace(driven=self.base.driven[..., wanted], seen=self.base.seen[..., wanted])
 
-    def known(self, suspects):
-        """Columns of the numbers that are known within a tolerance, except those that these suspects turn."""
-        taken = {path for suspect in suspects for knob in suspect.knobs for path in knob.paths}
-        taken |= {path for suspect in suspects for path in suspect.effect.replaces}
-        everyone = self.known_of or self.suspects
-        taken |= {path for suspect in everyone for path in suspect.effect.companions}
-        found = [Column({path: size}) for path, size in self.plant.tolerances.items() if path not in taken]
-        for suspect in everyone:
-            for knob in suspect.knobs if suspect.effect.law == "linear" else ():
-                listed = all(path in self.plant.tolerances for path in knob.paths)
-                if knob.tolerance > 0.0 and not listed and not taken & set(knob.paths):
-                    found.append(Column(dict.fromkeys(knob.paths, knob.tolerance)))
+    def known(self, hypotheses):
+        """Columns of the numbers that are known within a tolerance, except those that these hypotheses turn."""
+        taken = {path for hypothesis in hypotheses for parameter in hypothesis.parameters for path in parameter.paths}
+        taken |= {path for hypothesis in hypotheses for path in hypothesis.effect.replaces}
+        everyone = self.known_of or self.hypotheses
+        taken |= {path for hypothesis in everyone for path in hypothesis.effect.companions}
+        found = [Regressor({path: size}) for path, size in self.model.tolerances.items() if path not in taken]
+        for hypothesis in everyone:
+            for parameter in hypothesis.parameters if hypothesis.effect.law == "linear" else ():
+                listed = all(path in self.model.tolerances for path in parameter.paths)
+                if parameter.tolerance > 0.0 and not listed and not taken & set(parameter.paths):
+                    found.append(Regressor(dict.fromkeys(parameter.paths, parameter.tolerance)))
         return found
 
 
@@ -91,12 +91,12 @@ class Fit:
 
     Attributes
     ----------
-    suspects : tuple of Suspect
+    hypotheses : tuple of Hypothesis
     values, std : dict of str to float
         Of each number that they turn.
     score : float
         Log-evidence of the log with these causes, up to a constant of the log.
-    columns : list of Column
+    columns : list of Regressor
         Of known numbers, then of the causes.
     linear : Linear
     products : Gram
@@ -104,11 +104,11 @@ class Fit:
         Posterior of the columns, causes about neutral.
     centre : array
         θ that they were linearised about.
-    plant : Plant
+    model : ShipModel
     motion : Motion
     """
 
-    suspects: tuple
+    hypotheses: tuple
     values: dict
     std: dict
     score: float
@@ -118,12 +118,12 @@ class Fit:
     theta: Any
     covariance: Any
     centre: Any
-    plant: Any
+    model: Any
     motion: Any
 
     @property
     def label(self):
-        return " + ".join(suspect.label for suspect in self.suspects) or "nothing"
+        return " + ".join(hypothesis.label for hypothesis in self.hypotheses) or "nothing"
 
     @property
     def left(self):
@@ -131,39 +131,39 @@ class Fit:
         return self.theta - self.centre
 
 
-def prepared(case, rounds=3):
+def prepared(problem, rounds=3):
     """The case with its base: every column of the basis, about the motion smoothed without a cause."""
-    motion = case.motion
+    motion = problem.motion
     for _ in range(rounds):
-        alone = linearise(motion, case.record, case.plant, [])
-        motion = _smoothed(alone, innovations(alone, case.noise, case.record).white[..., 0], case, motion)
-    base = linearise(motion, case.record, case.plant, [column.turns for column in case.basis])
-    return replace(case, motion=motion, base=base)
+        alone = linearise(motion, problem.record, problem.model, [])
+        motion = _smoothed(alone, innovations(alone, problem.noise, problem.record).white[..., 0], problem, motion)
+    base = linearise(motion, problem.record, problem.model, [column.turns for column in problem.basis])
+    return replace(problem, motion=motion, base=base)
 
 
-def _smoothed(linear, white, case, motion):
+def _smoothed(linear, white, problem, motion):
     """The motion to linearise about next: that of the ship as the problem has her, as far as she can follow the log.
 
     Where she cannot, the measurements rule: jolts are as much larger as the innovations' mean square is. Otherwise a
     boat whose propeller has lost a third of its thrust is smoothed far off her track, and nothing is found about that.
     """
     misfit = (white**2).sum((0, -1)) / linear.whole.sum((0, -1))
-    jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(case.noise.jolt)
-    noise = replace(case.noise, jolt=jolt, walk=np.broadcast_to(case.noise.walk, jolt.shape))
-    return innovations(linear, noise, case.record, motion).motion
+    jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
+    noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
+    return innovations(linear, noise, problem.record, motion).motion
 
 
 def _key(column):
     return tuple(sorted(column.turns.items()))
 
 
-def fitted(case, suspects=(), values=None, rounds=ROUNDS):
+def fitted(problem, hypotheses=(), values=None, rounds=ROUNDS):
     """Fit the parameters of some causes, with all known numbers within their tolerances.
 
     Parameters
     ----------
-    case : Case
-    suspects : tuple of Suspect
+    problem : IdentificationProblem
+    hypotheses : tuple of Hypothesis
     values : dict of str to float, optional
         To start from, brought within bounds.
     rounds : int
@@ -173,139 +173,150 @@ def fitted(case, suspects=(), values=None, rounds=ROUNDS):
     -------
     Fit
     """
-    values, about, motion, fit = _bounded(suspects, values or {}), {}, case.motion, None
-    columns = case.known(suspects) + _own(case, suspects)
+    values, about, motion, fit = _bounded(hypotheses, values or {}), {}, problem.motion, None
+    columns = problem.known(hypotheses) + _own(problem, hypotheses)
     for _ in range(rounds):
-        plant = case.plant.with_values(values | about)
-        linear = linearise(motion, case.record, plant, [column.turns for column in columns])
-        last, fit = fit, _posterior(case, suspects, values, columns, linear, plant, motion)
+        model = problem.model.with_values(values | about)
+        linear = linearise(motion, problem.record, model, [column.turns for column in columns])
+        last, fit = fit, _posterior(problem, hypotheses, values, columns, linear, model, motion)
         motion, values, about = fit.motion, _next(fit), _about(fit)
-        moved = [abs(values[k.paths[0]] - fit.plant.get(k.paths[0])) / k.typical for s in suspects for k in s.knobs]
+        moved = [
+            abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for s in hypotheses for k in s.parameters
+        ]
         if max(moved, default=0.0) < 0.02 and last and abs(fit.score - last.score) < 1.0:
             break
     return fit
 
 
-def _own(case, suspects):
-    """Columns of suspects, what is only known within a tolerance about them first."""
-    about = [path for suspect in suspects for path in suspect.effect.companions]
-    found = [Column({path: case.plant.tolerances[path]}) for path in about]
-    return found + [Column(dict.fromkeys(knob.paths, knob.typical)) for s in suspects for knob in s.knobs]
+def _own(problem, hypotheses):
+    """Columns of hypotheses, what is only known within a tolerance about them first."""
+    about = [path for hypothesis in hypotheses for path in hypothesis.effect.companions]
+    found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
+    return found + [
+        Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for s in hypotheses for parameter in s.parameters
+    ]
 
 
-def _posterior(case, suspects, values, columns, linear, plant, motion):
+def _posterior(problem, hypotheses, values, columns, linear, model, motion):
     """The fit about some values."""
-    filtered = innovations(linear, case.noise, case.record)
-    products, centre = gram(filtered), _centre(columns, plant, case.plant)
+    filtered = innovations(linear, problem.noise, problem.record)
+    products, centre = gram(filtered), _centre(columns, model, problem.model)
     prior = np.array([column.prior for column in columns])
     score, theta, covariance = evidence(products.products, prior, centre)
     score += float(products.free)
-    values, knobs = dict(values), [knob for suspect in suspects for knob in suspect.knobs]
-    deviations = np.sqrt(np.diag(covariance))[theta.size - len(knobs) :]
-    std = {knob.paths[0]: float(d * knob.typical) for knob, d in zip(knobs, deviations, strict=True)}
+    values, parameters = dict(values), [parameter for hypothesis in hypotheses for parameter in hypothesis.parameters]
+    deviations = np.sqrt(np.diag(covariance))[theta.size - len(parameters) :]
+    std = {
+        parameter.paths[0]: float(d * parameter.typical) for parameter, d in zip(parameters, deviations, strict=True)
+    }
     left = theta - centre
     white = filtered.white[..., 0] - filtered.white[..., 1:] @ left
-    motion = _smoothed(explained(linear, left), white, case, motion)
-    rest = (columns, linear, products, theta, covariance, centre, plant, motion)
-    return Fit(tuple(suspects), values, std, score, *rest)
+    motion = _smoothed(explained(linear, left), white, problem, motion)
+    rest = (columns, linear, products, theta, covariance, centre, model, motion)
+    return Fit(tuple(hypotheses), values, std, score, *rest)
 
 
 def _next(fit):
     """Values of the numbers at the posterior's mean, within their bounds."""
-    knobs = [knob for suspect in fit.suspects for knob in suspect.knobs]
+    parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
     found = dict(fit.values)
-    for knob, theta in zip(knobs, fit.theta[fit.theta.size - len(knobs) :], strict=True):
-        found.update(dict.fromkeys(knob.paths, float(knob.neutral + theta * knob.typical)))
-    return _bounded(fit.suspects, found)
+    for parameter, theta in zip(parameters, fit.theta[fit.theta.size - len(parameters) :], strict=True):
+        found.update(dict.fromkeys(parameter.paths, float(parameter.neutral + theta * parameter.typical)))
+    return _bounded(fit.hypotheses, found)
 
 
-def _bounded(suspects, values):
-    """Values with the numbers that some suspects turn within their bounds."""
-    bounds = {path: knob.bounds for suspect in suspects for knob in suspect.knobs for path in knob.paths}
+def _bounded(hypotheses, values):
+    """Values with the numbers that some hypotheses turn within their bounds."""
+    bounds = {
+        path: parameter.bounds
+        for hypothesis in hypotheses
+        for parameter in hypothesis.parameters
+        for path in parameter.paths
+    }
     return {path: float(np.clip(v, *bounds[path])) if path in bounds else v for path, v in values.items()}
 
 
 def _about(fit):
     """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
-    wanted = _BENT | {path for suspect in fit.suspects for path in suspect.effect.companions}
+    wanted = _BENT | {path for hypothesis in fit.hypotheses for path in hypothesis.effect.companions}
     found = {}
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
         for path, size in column.turns.items() if wanted & set(column.turns) else ():
-            found[path] = fit.plant.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
+            found[path] = fit.model.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
     return found
 
 
-def weighed(case, fit):
-    """Gain in log-evidence of each suspect beside a fit, linearised once.
+def weighed(problem, fit):
+    """Gain in log-evidence of each hypothesis beside a fit, linearised once.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     fit : Fit
 
     Returns
     -------
-    list of (float, Suspect, dict of str to float)
-        Gain, suspect, first values of the numbers that it turns; best first.
+    list of (float, Hypothesis, dict of str to float)
+        Gain, hypothesis, first values of the numbers that it turns; best first.
     """
-    wanted = [s for s in case.suspects if s not in fit.suspects]
-    added = [column for suspect in wanted for group in probes(suspect) for column in group]
-    linear = beside(fit.linear, case.base_of(added))
-    products = gram(innovations(linear, case.noise, case.record)).products
-    return gains(products, fit.columns, fit.centre, wanted, fit.plant)
+    wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
+    added = [column for hypothesis in wanted for group in probes(hypothesis) for column in group]
+    linear = beside(fit.linear, problem.base_of(added))
+    products = gram(innovations(linear, problem.noise, problem.record)).products
+    return gains(products, fit.columns, fit.centre, wanted, fit.model)
 
 
-def gains(products, columns, centre, wanted, plant):
-    """Gain in log-evidence of suspects, from the inner products of the log with some columns and with their probes.
+def gains(products, columns, centre, wanted, model):
+    """Gain in log-evidence of hypotheses, from the inner products of the log with some columns and with their probes.
 
     Parameters
     ----------
     products : (1 + p, 1 + p) array
-        The log, then `columns`, then the probes of each wanted suspect in turn.
-    columns : list of Column
+        The log, then `columns`, then the probes of each wanted hypothesis in turn.
+    columns : list of Regressor
     centre : array
         θ of these columns that they were linearised about.
-    wanted : sequence of Suspect
-    plant : Plant
+    wanted : sequence of Hypothesis
+    model : ShipModel
         That they were linearised about.
 
     Returns
     -------
-    list of (float, Suspect, dict of str to float)
+    list of (float, Hypothesis, dict of str to float)
         As `weighed`.
     """
     base = len(columns)
     prior = np.concatenate([[column.prior for column in columns], np.zeros(len(products) - 1 - base)])
     centre = np.concatenate([centre, np.zeros(prior.size - base)])
     nothing, place, found = evidence(products, prior, centre)[0], base, []
-    for suspect in wanted:
+    for hypothesis in wanted:
         tries = []
-        for group in probes(suspect):
+        for group in probes(hypothesis):
             here = prior.copy()
             here[place : place + len(group)] = 1.0
-            taken = {path for column in group for path in column.turns} | set(suspect.effect.replaces)
+            taken = {path for column in group for path in column.turns} | set(hypothesis.effect.replaces)
             here[[i for i, column in enumerate(columns) if taken & set(column.turns)]] = 0.0
             score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
             values = {}
             for column, share in zip(group, theta[place : place + len(group)], strict=True):
                 for path, size in column.turns.items():
-                    values[path] = values.get(path, plant.get(path)) + share * size
+                    values[path] = values.get(path, model.get(path)) + share * size
             tries.append((score - nothing, values))
             place += len(group)
-        gain, values = _together(tries, suspect)
-        found.append((gain, suspect, values))
+        gain, values = _together(tries, hypothesis)
+        found.append((gain, hypothesis, values))
     return sorted(found, key=lambda entry: -entry[0])
 
 
-def _together(tries, suspect):
-    """Evidence of a suspect over all its directions, and the values of the best."""
+def _together(tries, hypothesis):
+    """Evidence of a hypothesis over all its directions, and the values of the best."""
     scores = np.array([score for score, _ in tries])
     best = int(scores.argmax())
     values = tries[best][1]
-    if suspect.effect.law == "turning":
+    if hypothesis.effect.law == "turning":
         north, east = values.pop("water.current_north"), values.pop("water.current_east")
         grown = values.pop("water.trend_north"), values.pop("water.trend_east")
-        names = [knob.paths[0] for knob in suspect.knobs]
+        names = [parameter.paths[0] for parameter in hypothesis.parameters]
         ends = _one_way(np.array([north, east]), np.array([north + grown[0], east + grown[1]]))
         values = dict(zip(names, map(float, np.concatenate(ends)), strict=True))
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
@@ -321,23 +332,23 @@ def _one_way(first, last):
     return first, last
 
 
-def probes(suspect):
-    """Groups of columns by which a suspect is first sought."""
-    knobs = suspect.knobs
-    if suspect.effect.law == "linear":
-        return [[Column(dict.fromkeys(knob.paths, knob.typical)) for knob in knobs]]
-    if suspect.effect.law == "turning":
+def probes(hypothesis):
+    """Groups of columns by which a hypothesis is first sought."""
+    parameters = hypothesis.parameters
+    if hypothesis.effect.law == "linear":
+        return [[Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for parameter in parameters]]
+    if hypothesis.effect.law == "turning":
         names = ("current_north", "current_east", "trend_north", "trend_east")
-        return [[Column({f"water.{name}": knobs[0].typical}) for name in names]]
-    pair, size = (knobs[0].paths[0], knobs[1].paths[0]), knobs[0].typical
+        return [[Regressor({f"water.{name}": parameters[0].typical}) for name in names]]
+    pair, size = (parameters[0].paths[0], parameters[1].paths[0]), parameters[0].typical
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    return [[Column(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]
+    return [[Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]
 
 
-def _centre(columns, plant, neutral):
-    """θ of the plant that the columns were linearised about; 0 for known numbers."""
+def _centre(columns, model, neutral):
+    """θ of the ship model that the columns were linearised about; 0 for known numbers."""
     found = np.zeros(len(columns))
     for i, column in enumerate(columns):
         path, size = next(iter(column.turns.items()))
-        found[i] = (plant.get(path) - neutral.get(path)) / size
+        found[i] = (model.get(path) - neutral.get(path)) / size
     return found

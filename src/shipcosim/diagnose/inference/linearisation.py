@@ -70,7 +70,7 @@ def beside(linear, extra):
 _FASTEST = {"u": 100.0, "v": 100.0, "r": 10.0}  # m/s, rad/s: what runs away under a wrong label stays a number
 
 
-def advanced(motion, record, plant):
+def advanced(motion, record, model):
     """The motion one row later, from each row but the last, by a Runge-Kutta step or, for a small ship, several.
 
     Parameters
@@ -78,22 +78,22 @@ def advanced(motion, record, plant):
     motion : Motion
         (..., n-1) arrays.
     record : Record
-    plant : Plant
+    model : ShipModel
 
     Returns
     -------
     Motion
     """
-    parts = record.substeps(plant)
+    parts = record.substeps(model)
     for i in range(parts):
-        drivers = [record.drivers(plant, (i + share) / parts) for share in (0.0, 0.5, 1.0)]
-        motion = runge_kutta(motion, record.step / parts, drivers, plant)
+        inputs = [record.inputs(model, (i + share) / parts) for share in (0.0, 0.5, 1.0)]
+        motion = runge_kutta(motion, record.step / parts, inputs, model)
         fast = {name: np.clip(getattr(motion, name), -most, most) for name, most in _FASTEST.items()}
         motion = motion._replace(**fast)
     return motion
 
 
-def runge_kutta(motion, h, drivers, plant, load=lambda psi: (0.0, 0.0, 0.0)):
+def runge_kutta(motion, h, inputs, model, load=lambda psi: (0.0, 0.0, 0.0)):
     """The motion a step of h later.
 
     Parameters
@@ -101,9 +101,9 @@ def runge_kutta(motion, h, drivers, plant, load=lambda psi: (0.0, 0.0, 0.0)):
     motion : Motion
     h : float
         [s]
-    drivers : sequence of three Drivers
+    inputs : sequence of three Inputs
         At the beginning, the middle and the end.
-    plant : Plant
+    model : ShipModel
     load : callable or sequence of three callables, optional
         Further load by the heading. [N, N, N.m]
 
@@ -117,7 +117,7 @@ def runge_kutta(motion, h, drivers, plant, load=lambda psi: (0.0, 0.0, 0.0)):
         return Motion(*(value + by * rate for value, rate in zip(motion, rates, strict=True)))
 
     def rates(where, i):
-        return motion_rates(where, drivers[i], plant, loads_at[i](where.psi))
+        return motion_rates(where, inputs[i], model, loads_at[i](where.psi))
 
     k1 = rates(motion, 0)
     k2 = rates(moved(k1, 0.5 * h), 1)
@@ -127,7 +127,7 @@ def runge_kutta(motion, h, drivers, plant, load=lambda psi: (0.0, 0.0, 0.0)):
     return Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
 
 
-def linearise(motion, record, plant, columns):
+def linearise(motion, record, model, columns):
     """The linear problem about a motion.
 
     Parameters
@@ -135,7 +135,7 @@ def linearise(motion, record, plant, columns):
     motion : Motion
         (..., n) arrays near what was measured.
     record : Record
-    plant : Plant
+    model : ShipModel
     columns : sequence of dict of str to float
         What each θ turns: by how much each number is changed at θ = 1.
 
@@ -146,44 +146,44 @@ def linearise(motion, record, plant, columns):
     lead = record.measured.shape[:-2]
     n, p = record.time.size, len(columns)
     start = Motion(*(value[..., :-1] for value in motion))
-    base, seen = advanced(start, record, plant), shown(motion, plant)
+    base, seen = advanced(start, record, model), shown(motion, model)
     driven, out = np.empty((n - 1, *lead, 6, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
     driven[..., 0] = rows_first(base) - rows_first(Motion(*(value[..., 1:] for value in motion)))
     missed = np.moveaxis(record.measured, -2, 0) - rows_first(seen)
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
     middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
-    drivers = record.drivers(plant, 0.5)
-    like = plant, loads(middle, drivers, plant)
-    transition = _transition(middle, drivers, like, record)
+    inputs = record.inputs(model, 0.5)
+    like = model, loads(middle, inputs, model)
+    transition = _transition(middle, inputs, like, record)
     slopes = np.zeros((p, 3, *lead, n - 1))
-    shares = np.array([_small(turns, plant) for turns in columns]).reshape(p)
+    shares = np.array([_small(turns, model) for turns in columns]).reshape(p)
     for j, turns in enumerate(columns):
         up, down = (
-            plant.with_values({path: plant.get(path) + share * size for path, size in turns.items()})
+            model.with_values({path: model.get(path) + share * size for path, size in turns.items()})
             for share in (shares[j], -shares[j])
         )
         if any(path.endswith("_lag") for path in turns):
-            late = (motion_rates(middle, record.drivers(ship, 0.5), ship) for ship in (down, up))
+            late = (motion_rates(middle, record.inputs(ship, 0.5), ship) for ship in (down, up))
             slopes[j] = _apart(*late)[3:]
         elif any(not path.startswith("instruments.") for path in turns):
-            for slope, apart in zip(slopes[j], rates_apart(down, up, middle, drivers, like), strict=True):
+            for slope, apart in zip(slopes[j], rates_apart(down, up, middle, inputs, like), strict=True):
                 slope[...] = apart
         else:
             out[..., 1 + j] = rows_first(_apart(shown(motion, up), shown(motion, down))) / (2.0 * shares[j])
     driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
     driven[~record.known[:-1]] = 0.0
     out *= whole[..., None]
-    return Linear(transition, driven, _output(motion, seen, plant), out, whole)
+    return Linear(transition, driven, _output(motion, seen, model), out, whole)
 
 
-def _small(turns, plant):
+def _small(turns, model):
     """Share of a column's size for differences; a slow end of a varying current must not be turned round by it."""
     found = _SHARE
     for path, size in turns.items():
         _, _, end = path.rpartition("_")
         if path in (f"water.north_{end}", f"water.east_{end}"):
-            speed = np.hypot(plant.get(f"water.north_{end}"), plant.get(f"water.east_{end}"))
+            speed = np.hypot(model.get(f"water.north_{end}"), model.get(f"water.east_{end}"))
             found = min(found, max(_SHARE * speed / abs(size), 1e-4)) if speed else found
     return found
 
@@ -203,18 +203,18 @@ def rows_first(motion):
 _SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
 
 
-def _transition(middle, drivers, like, record):
+def _transition(middle, inputs, like, record):
     """Transition over a step, of second order about its middle, where `like` has the ship and her loads.
 
     For a small ship that of a part of the step, doubled until it is whole.
     """
-    plant, _ = like
-    here = rows_first(motion_rates(middle, drivers, plant, like=like))
+    model, _ = like
+    here = rows_first(motion_rates(middle, inputs, model, like=like))
     J = np.zeros((*here.shape[:-1], 6, 6))
     for name, small in _SMALL.items():
         moved = middle._replace(**{name: getattr(middle, name) + small})
-        J[..., Motion._fields.index(name)] = (rows_first(motion_rates(moved, drivers, plant)) - here) / small
-    parts = record.substeps(plant)
+        J[..., Motion._fields.index(name)] = (rows_first(motion_rates(moved, inputs, model)) - here) / small
+    parts = record.substeps(model)
     h = record.step / parts
     moves = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
     pushed = 0.5 * h * (moves + np.eye(6))
@@ -227,13 +227,13 @@ def _transition(middle, drivers, like, record):
     return A
 
 
-def _output(motion, seen, plant):
+def _output(motion, seen, model):
     rows = rows_first(seen)
     H = np.zeros((*rows.shape, STATES))
     H[..., 0, 0] = H[..., 1, 1] = 1.0
     for name, small in _SMALL.items():
         i = Motion._fields.index(name)
-        other = shown(motion._replace(**{name: getattr(motion, name) + small}), plant)
+        other = shown(motion._replace(**{name: getattr(motion, name) + small}), model)
         H[..., i] = (rows_first(other) - rows) / small
     H[..., range(3), range(9, 12)] = 1.0
     c, s = np.cos(rows[..., 2]), np.sin(rows[..., 2])

@@ -23,15 +23,15 @@ __all__ = ["healthy_records", "null_gains"]
 _ASTRAY = 10.0  # times the usual squared innovations: of a small craft that spun away, as one in fifty did
 
 
-def null_gains(case, motion, wanted, *, count=50, seed=0, batch=5):
-    """Gain of suspects on healthy logs like this one.
+def null_gains(problem, motion, wanted, *, count=50, seed=0, batch=5):
+    """Gain of hypotheses on healthy logs like this one.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     motion : Motion
         The log's track.
-    wanted : sequence of Suspect
+    wanted : sequence of Hypothesis
         Those that are asked for.
     count : int
         Number of healthy ships.
@@ -42,19 +42,19 @@ def null_gains(case, motion, wanted, *, count=50, seed=0, batch=5):
     Returns
     -------
     dict of str to (m,) array
-        By the suspect's label. [nats] Ships that the linear problem loses tell nothing and are left out.
+        By the hypothesis's label. [nats] Ships that the linear problem loses tell nothing and are left out.
     """
-    records = healthy_records(case, motion, count, np.random.default_rng(seed))
-    case = replace(case, suspects=tuple(wanted), known_of=case.suspects)
-    missed, found = [], {suspect.label: [] for suspect in wanted}
+    records = healthy_records(problem, motion, count, np.random.default_rng(seed))
+    problem = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses)
+    missed, found = [], {hypothesis.label: [] for hypothesis in wanted}
     for first in range(0, count, batch):
         record = _some(records, slice(first, first + batch))
-        here = prepared(replace(case, record=record, motion=first_motion(record, case.plant)), rounds=1)
-        columns = case.known(())
-        for products in gram(innovations(here.base, case.noise, record)).products:
+        here = prepared(replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1)
+        columns = problem.known(())
+        for products in gram(innovations(here.base, problem.noise, record)).products:
             missed.append(products[0, 0])
-            for gain, suspect, _ in gains(products, columns, np.zeros(len(columns)), wanted, case.plant):
-                found[suspect.label].append(gain)
+            for gain, hypothesis, _ in gains(products, columns, np.zeros(len(columns)), wanted, problem.model):
+                found[hypothesis.label].append(gain)
     told = np.array(missed) < _ASTRAY * np.median(missed)
     return {label: np.array(values)[told] for label, values in found.items()}
 
@@ -65,12 +65,12 @@ def _some(records, which):
     return replace(records, measured=records.measured[which], units=units)
 
 
-def healthy_records(case, motion, count, rng):
+def healthy_records(problem, motion, count, rng):
     """Logs of healthy ships that keep to a track in the log's weather.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     motion : Motion
         The track, (n,) arrays.
     count : int
@@ -82,28 +82,28 @@ def healthy_records(case, motion, count, rng):
     Record
         With the ships on the first axis.
     """
-    plant, record, noise = _drawn(case.plant, count, rng), case.record, case.noise
+    model, record, noise = _drawn(problem.model, count, rng), problem.record, problem.noise
     jolts = rng.standard_normal((record.time.size, 3, count)) * (np.asarray(noise.jolt) * np.sqrt(record.step))[:, None]
-    ships, units = sailed(plant, count, motion, record, Dp(case.plant, record.step), jolts=jolts)
-    return _logged(ships, units, plant, case, rng)
+    ships, units = sailed(model, count, motion, record, Dp(problem.model, record.step), jolts=jolts)
+    return _logged(ships, units, model, problem, rng)
 
 
-def _drawn(plant, count, rng):
-    """Ships within the tolerances of a plant."""
+def _drawn(model, count, rng):
+    """Ships within the tolerances of a ship model."""
     values = {
-        path: plant.get(path) + tolerance * rng.standard_normal(count)
-        for path, tolerance in plant.tolerances.items()
+        path: model.get(path) + tolerance * rng.standard_normal(count)
+        for path, tolerance in model.tolerances.items()
         if not path.startswith(("instruments.", "water."))
     }
-    return plant.with_values(values)
+    return model.with_values(values)
 
 
-def _logged(motion, units, plant, case, rng):
+def _logged(motion, units, model, problem, rng):
     """The log of the ships' motion, with the noise of the case: white, of waves, and slow in position and heading."""
-    record, (count, n) = case.record, motion.x.shape
-    measured = np.stack([value.T for value in shown(motion, case.plant)], axis=-1)  # (n, m, 6)
-    measured += rng.standard_normal(measured.shape) * np.asarray(case.noise.white)
-    measured += _shown_waves(waves_of(case.noise, record.step, (n, count), rng), motion.psi.T)
+    record, (count, n) = problem.record, motion.x.shape
+    measured = np.stack([value.T for value in shown(motion, problem.model)], axis=-1)  # (n, m, 6)
+    measured += rng.standard_normal(measured.shape) * np.asarray(problem.noise.white)
+    measured += _shown_waves(waves_of(problem.noise, record.step, (n, count), rng), motion.psi.T)
     keep = np.exp(-record.step / SLOW_TIME)
     slow = SLOW_STD * rng.standard_normal((count, 3))
     for k in range(n):

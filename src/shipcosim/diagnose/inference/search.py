@@ -9,12 +9,12 @@ __all__ = ["at_first_sight", "explain", "names", "without_causes"]
 STRAIN = 2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
 
 
-def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
+def explain(problem, *, most=3, likely=6, near=12.0, enough=5.0):
     """The sets of causes that explain a log best.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     most : int
         Causes at once.
     likely : int
@@ -30,29 +30,31 @@ def explain(case, *, most=3, likely=6, near=12.0, enough=5.0):
     list of Fit
         All sets that were fitted, best first; the one without a cause among them.
     """
-    nothing = fitted(case)
+    nothing = fitted(problem)
     fits, front = {frozenset(): nothing}, [nothing]
     for stage in range(most):
         best = max(fit.score for fit in fits.values())
         tried = {}
         for fit in front:
-            gains = weighed(case, fit)
+            gains = weighed(problem, fit)
             most_gain = gains[0][0]
             least = max(most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0)
             first, strained = likely if stage == 0 else likely // 2, _strained(fit)
-            for place, (gain, suspect, values) in enumerate(gains):
-                if (place >= first or gain < least) and not any(strained & set(knob.paths) for knob in suspect.knobs):
+            for place, (gain, hypothesis, values) in enumerate(gains):
+                if (place >= first or gain < least) and not any(
+                    strained & set(parameter.paths) for parameter in hypothesis.parameters
+                ):
                     continue
-                suspects = (*fit.suspects, suspect)
-                key = names(suspects)
+                hypotheses = (*fit.hypotheses, hypothesis)
+                key = names(hypotheses)
                 if key not in fits and key not in tried:
-                    tried[key] = fitted(case, suspects, fit.values | values)
+                    tried[key] = fitted(problem, hypotheses, fit.values | values)
         fits |= tried
         ranked = sorted(tried.values(), key=lambda fit: -fit.score)
         front = [fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)]
         if not front:
             break
-    _simplify(case, fits)
+    _simplify(problem, fits)
     return sorted(fits.values(), key=lambda fit: -fit.score)
 
 
@@ -62,53 +64,57 @@ def _strained(fit):
     return {path for column, theta in known if abs(theta) > STRAIN for path in column.turns}
 
 
-def at_first_sight(case):
+def at_first_sight(problem):
     """Evidence of a log with its likeliest cause, linearised once."""
-    nothing = fitted(case)
-    return nothing.score + max(weighed(case, nothing)[0][0], 0.0)
+    nothing = fitted(problem)
+    return nothing.score + max(weighed(problem, nothing)[0][0], 0.0)
 
 
 def without_causes(fits):
     """The fit without a cause among others."""
-    return next(fit for fit in fits if not fit.suspects)
+    return next(fit for fit in fits if not fit.hypotheses)
 
 
-def names(suspects):
-    """Labels of suspects, in no order."""
-    return frozenset(suspect.label for suspect in suspects)
+def names(hypotheses):
+    """Labels of hypotheses, in no order."""
+    return frozenset(hypothesis.label for hypothesis in hypotheses)
 
 
-def _simplify(case, fits):
+def _simplify(problem, fits):
     """Fit the best set again without each of its causes, and with simpler ones instead, from the values that it has."""
     while True:
         best = max(fits.values(), key=lambda fit: fit.score)
         new = False
-        for suspects in _simpler(case, best.suspects):
-            knobs = [(knob, suspect) for suspect in suspects for knob in suspect.knobs]
-            values = {path: _value(knob, suspect, best) for knob, suspect in knobs for path in knob.paths}
-            again = fitted(case, suspects, values)
-            known = fits.get(names(suspects))
+        for hypotheses in _simpler(problem, best.hypotheses):
+            parameters = [(parameter, hypothesis) for hypothesis in hypotheses for parameter in hypothesis.parameters]
+            values = {
+                path: _value(parameter, hypothesis, best)
+                for parameter, hypothesis in parameters
+                for path in parameter.paths
+            }
+            again = fitted(problem, hypotheses, values)
+            known = fits.get(names(hypotheses))
             if known is None or again.score > known.score + 0.1:
-                fits[names(suspects)], new = again, True
+                fits[names(hypotheses)], new = again, True
         if not new:
             return
 
 
-def _simpler(case, suspects):
+def _simpler(problem, hypotheses):
     """Sets without one of the causes, and with the special case of one instead."""
     found = []
-    for left in suspects:
-        rest = tuple(suspect for suspect in suspects if suspect is not left)
-        special = [s for s in case.suspects if s.cause == left.effect.special and s.component == left.component]
+    for left in hypotheses:
+        rest = tuple(hypothesis for hypothesis in hypotheses if hypothesis is not left)
+        special = [s for s in problem.hypotheses if s.cause == left.effect.special and s.component == left.component]
         found += [rest] if rest else []
         found += [(*rest, one) for one in special if one not in rest]
     return found
 
 
-def _value(knob, suspect, fit):
+def _value(parameter, hypothesis, fit):
     """What a fit says of a number: its own value, or the mean of those of the more general cause."""
-    if knob.paths[0] in fit.values:
-        return fit.values[knob.paths[0]]
-    general = next(s for s in fit.suspects if s.effect.special == suspect.cause)
-    place = suspect.knobs.index(knob)
-    return float(np.mean([fit.values[k.paths[0]] for k in general.knobs[place :: len(suspect.knobs)]]))
+    if parameter.paths[0] in fit.values:
+        return fit.values[parameter.paths[0]]
+    general = next(s for s in fit.hypotheses if s.effect.special == hypothesis.cause)
+    place = hypothesis.parameters.index(parameter)
+    return float(np.mean([fit.values[k.paths[0]] for k in general.parameters[place :: len(hypothesis.parameters)]]))

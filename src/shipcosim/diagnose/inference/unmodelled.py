@@ -6,7 +6,7 @@ from scipy.stats import chi2
 from shipcosim.diagnose.inference.evidence import evidence, gram
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import with_columns
-from shipcosim.diagnose.ship.environment import hats
+from shipcosim.diagnose.ship.environment import hat_functions
 from shipcosim.diagnose.ship.model import shown
 
 __all__ = ["FORCES", "HATS", "PERIODS", "unexplained"]
@@ -23,17 +23,17 @@ _LEAST_LOG = -700.0  # of a p-value; smaller ones are 0 to the machine
 _LEVER = 4.0  # lengths of a ship over its radius of gyration, to turn that into a rate of yaw
 
 
-def unexplained(case, fit):
+def unexplained(problem, fit):
     """Gain in log-evidence of errors without a name beside a fit.
 
-    Forces of three kinds: slow ones in the body frame (a few hats over time), ones that go with the heading, and single
-    sinusoids of any period, for which the search over periods is paid. Channels that are off by a constant, by a
-    factor, or drift. Whether the causes of the fit are as large in each part of the log. And whether the numbers of the
-    ship lie, taken together, within their tolerances.
+    Forces of three kinds: slow ones in the body frame (a few hat functions over time), ones that go with the heading,
+    and single sinusoids of any period, for which the search over periods is paid. Channels that are off by a
+    constant, by a factor, or drift. Whether the causes of the fit are as large in each part of the log. And whether
+    the numbers of the ship lie, taken together, within their tolerances.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     fit : Fit
 
     Returns
@@ -41,10 +41,12 @@ def unexplained(case, fit):
     dict of str to float
         By kind. [nats]
     """
-    forces, channels = _bases(case, fit), _channels(case, fit)
-    linear = _with(fit.linear, np.concatenate([b for group in forces.values() for b in group], axis=-1), channels, case)
+    forces, channels = _bases(problem, fit), _channels(problem, fit)
+    linear = _with(
+        fit.linear, np.concatenate([b for group in forces.values() for b in group], axis=-1), channels, problem
+    )
     kinds = forces | {"in a channel": [channels[..., i] for i in np.split(np.arange(channels.shape[-1]), 6)]}
-    products = gram(innovations(linear, case.noise, case.record)).products
+    products = gram(innovations(linear, problem.noise, problem.record)).products
     base = len(fit.columns)
     prior = np.concatenate([[column.prior for column in fit.columns], np.zeros(linear.driven.shape[-1] - 1 - base)])
     centre = np.zeros(prior.size)
@@ -67,9 +69,9 @@ def _unsteady(fit):
     Each part pulls at the estimate; what it would pull by chance is known, and the least likely pull counts.
     """
     blocks, place, unlikely = fit.products.blocks, len(fit.columns), []
-    for suspect in reversed(fit.suspects):
-        place -= len(suspect.knobs)
-        own = range(place, place + len(suspect.knobs))
+    for hypothesis in reversed(fit.hypotheses):
+        place -= len(hypothesis.parameters)
+        own = range(place, place + len(hypothesis.parameters))
         size = np.linalg.norm([fit.theta[i] for i in own])
         for i in own:
             known = blocks[:, 1 + i, 1 + i]
@@ -85,7 +87,7 @@ def _beyond(fit):
     In units of the tolerances the posterior mean has, in each direction, the variance that the log took from that of
     the prior; the sum of its squares is taken as a scaled chi-square of the same mean and variance.
     """
-    known = len(fit.columns) - sum(len(suspect.knobs) for suspect in fit.suspects)
+    known = len(fit.columns) - sum(len(hypothesis.parameters) for hypothesis in fit.hypotheses)
     told = np.clip(1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known]), 1e-9, None)
     mean, half_variance = told.sum(), (told**2).sum()
     squares = (fit.theta[:known] ** 2).sum()
@@ -98,11 +100,11 @@ def _most_evidence(log_p):
     return float(-1.0 - log_p - np.log(-log_p)) if log_p < -1.0 else 0.0
 
 
-def _bases(case, fit):
+def _bases(problem, fit):
     """Accelerations in the body frame over the rows: by kind a list of (n, 3, p) arrays."""
-    time, psi = case.record.time, fit.motion.psi
+    time, psi = problem.record.time, fit.motion.psi
     n = time.size
-    slow = hats(np.linspace(0.0, 1.0, n), HATS).T
+    slow = hat_functions(np.linspace(0.0, 1.0, n), HATS).T
     c, s = np.cos(psi), np.sin(psi)
     heading = np.stack([c, s, np.cos(2 * psi), np.sin(2 * psi), c**3, s**3], axis=-1)
     span = time[-1] - time[0]
@@ -124,9 +126,9 @@ def _each_axis(shapes):
     return found
 
 
-def _channels(case, fit):
+def _channels(problem, fit):
     """What a channel shows too much: (n, 6, p), as many columns for each channel in turn."""
-    time, motion = case.record.time, np.stack(shown(fit.motion, fit.plant), axis=-1)
+    time, motion = problem.record.time, np.stack(shown(fit.motion, fit.model), axis=-1)
     share = (time - time[0]) / (time[-1] - time[0])
     found = np.zeros((time.size, 6, 6, 3))
     for i, size in enumerate(_OFF):
@@ -138,10 +140,10 @@ def _channels(case, fit):
     return found.reshape(time.size, 6, 18) * fit.linear.whole[..., None]
 
 
-def _with(linear, accelerations, channels, case):
+def _with(linear, accelerations, channels, problem):
     """The problem with a column for each acceleration, and for each error of a channel."""
-    h, n = case.record.step, case.record.time.size
-    size = _SIZE * np.array([1.0, 1.0, _LEVER / case.plant.parts["hull"].length])
+    h, n = problem.record.step, problem.record.time.size
+    size = _SIZE * np.array([1.0, 1.0, _LEVER / problem.model.parts["hull"].length])
     driven = np.zeros((n - 1, 6, accelerations.shape[-1]))
     driven[:, 3:6] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
     driven = np.concatenate([driven, np.zeros((n - 1, 6, channels.shape[-1]))], axis=-1)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from shipcosim.diagnose.inference.evidence import gram
-from shipcosim.diagnose.inference.fitting import Column, fitted, prepared, weighed
+from shipcosim.diagnose.inference.fitting import Regressor, fitted, prepared, weighed
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import rows_first, with_columns
 from shipcosim.diagnose.log.rows import inside
@@ -54,43 +54,43 @@ class _Blocks:
         return sums[None, :] - sums[:, None]
 
 
-def clock_by_answer(case):
+def clock_by_answer(problem):
     """A clock that runs wrong at one rate in a segment or two, if nothing else explains as much.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
 
     Returns
     -------
     Finding or None
     """
-    known, edges = case.known(()), _edges(case)
-    gain, finding = _most_likely(_blocks(case, edges, known))
+    known, edges = problem.known(()), _edges(problem)
+    gain, finding = _most_likely(_blocks(problem, edges, known))
     if finding is None:
         return None
-    rival, suspect, values = weighed(case, fitted(case))[0]
-    if gain < rival + RIVAL or not _is_said_by_all(case, finding, known):
+    rival, hypothesis, values = weighed(problem, fitted(problem))[0]
+    if gain < rival + RIVAL or not _is_said_by_all(problem, finding, known):
         return None
     if rival > 0.0:
-        fit = fitted(case, (suspect,), values)
-        beside = prepared(replace(case, plant=fit.plant, motion=fit.motion))
+        fit = fitted(problem, (hypothesis,), values)
+        beside = prepared(replace(problem, model=fit.model, motion=fit.motion))
         if _most_likely(_blocks(beside, edges, known))[1] is None:
             return None
     return finding
 
 
-def _is_said_by_all(case, finding, known):
+def _is_said_by_all(problem, finding, known):
     """Whether way, speed, heading and turning tell of one rate.
 
     A compass can be wrong alone, and so can a force: it changes the speed, but how far the ship comes at her speed
     tells of the clock.
     """
-    here = inside(0.5 * (case.record.time[:-1] + case.record.time[1:]), finding.segments)
-    moved, driven = _moved(case), np.zeros((len(here), 6, len(ASPECTS)))
+    here = inside(0.5 * (problem.record.time[:-1] + problem.record.time[1:]), finding.segments)
+    moved, driven = _moved(problem), np.zeros((len(here), 6, len(ASPECTS)))
     for aspect, states in enumerate(ASPECTS):
         driven[:, states, aspect] = -moved[:, states] * here[:, None]
-    match, inner = _left(case, known, driven)
+    match, inner = _left(problem, known, driven)
     covariance = np.linalg.pinv(inner)
     told, apart = covariance @ match, APART * (finding.parameters["rate"].estimate - 1.0)
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
@@ -98,38 +98,38 @@ def _is_said_by_all(case, finding, known):
     return bool(rest @ weight @ rest < chi2.isf(CHANCE, len(ASPECTS) - 1))
 
 
-def with_rate(case, finding, logged):
+def with_rate(problem, finding, logged):
     """A finding on the clock with its rate settled: the first is about a motion that the wrong clock has bent.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
         Of the log with the finding repaired.
     finding : Finding
     logged : (n,) array
         Time as logged of each row. [s]
     """
-    time = case.record.time
+    time = problem.record.time
     inner = np.interp(np.ravel(finding.segments), logged, np.linspace(time[0], time[-1], len(logged)))
-    blocks = _blocks(case, np.r_[time[0], inner, time[-1]], case.known(()))
+    blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.known(()))
     own = np.arange(1, len(inner), 2)
     more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + SLAB**-2)
     rate = finding.parameters["rate"]
     return replace(finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))})
 
 
-def is_testable(case):
+def is_testable(problem):
     """Whether a typical wrong clock, at any time of the log with even odds, would have gained enough to be seen."""
-    blocks = _blocks(case, _edges(case), case.known(()))
+    blocks = _blocks(problem, _edges(problem), problem.known(()))
     count = len(blocks.edges) - 1
     span = max(int(LASTS / (blocks.edges[1] - blocks.edges[0])), 1)
     energy = np.median(np.diagonal(blocks.of_runs()[1], offset=span))
     return bool(_nats(TYPICAL * energy, energy) - 2.0 * np.log(count) > LEAST_GAIN)
 
 
-def _edges(case):
+def _edges(problem):
     """Even edges of blocks."""
-    time = case.record.time
+    time = problem.record.time
     return np.linspace(time[0], time[-1], max(int(np.ptp(time) / BLOCK), 4) + 1)
 
 
@@ -170,27 +170,27 @@ def _best(match, energy, allowed):
     return np.unravel_index(np.argmax(nats), nats.shape)
 
 
-def _blocks(case, edges, columns: list[Column]):
+def _blocks(problem, edges, columns: list[Regressor]):
     """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
-    count, moved = len(edges) - 1, _moved(case)
-    place = np.clip(np.searchsorted(edges, case.record.time[:-1], side="right") - 1, 0, count - 1)
+    count, moved = len(edges) - 1, _moved(problem)
+    place = np.clip(np.searchsorted(edges, problem.record.time[:-1], side="right") - 1, 0, count - 1)
     driven = np.zeros((len(moved), 6, count))
     driven[np.arange(len(moved)), :, place] = -moved
-    return _Blocks(edges, *_left(case, columns, driven))
+    return _Blocks(edges, *_left(problem, columns, driven))
 
 
-def _moved(case):
+def _moved(problem):
     """What each step moves the ship, (n-1, 6) array."""
-    record, middle = case.record, Motion(*(0.5 * (value[:-1] + value[1:]) for value in case.motion))
-    moved = record.step * rows_first(motion_rates(middle, record.drivers(case.plant, 0.5), case.plant))
+    record, middle = problem.record, Motion(*(0.5 * (value[:-1] + value[1:]) for value in problem.motion))
+    moved = record.step * rows_first(motion_rates(middle, record.inputs(problem.model, 0.5), problem.model))
     return np.where(record.known[:-1, None], moved, 0.0)
 
 
-def _left(case, columns, driven):
+def _left(problem, columns, driven):
     """Match with the log of further columns, (n-1, 6, k), and their Gram matrix, less what other columns explain."""
-    base, others = case.base_of(columns), len(columns)
+    base, others = problem.base_of(columns), len(columns)
     linear = with_columns(base, driven, np.zeros((*base.seen.shape[:2], driven.shape[-1])))
-    products = gram(innovations(linear, case.noise, case.record)).products
+    products = gram(innovations(linear, problem.noise, problem.record)).products
     theirs, own = slice(1, 1 + others), slice(1 + others, None)
     inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
     left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])

@@ -27,14 +27,14 @@ _WORTH = 5.0  # nats that another segment has to gain
 _PART = 15.0  # nats that a segment has to gain over the whole log
 
 
-def suspected(clean, case):
-    """Drivers that could be wrong, likeliest first.
+def suspected(clean, problem):
+    """Inputs that could be wrong, likeliest first.
 
     Parameters
     ----------
     clean : xarray.Dataset
         Repaired log.
-    case : Case
+    problem : IdentificationProblem
         Of it.
 
     Returns
@@ -42,16 +42,16 @@ def suspected(clean, case):
     list of (float, Mislabel, Finding)
         Gain in log-likelihood [nats], what would be wrong, and about where.
     """
-    base, found = _by_row(case, case.record), []
-    for mislabel in _mislabels(clean, case.plant):
-        gain = _by_row(case, record_of(with_label(clean, mislabel), case.plant)) - base
-        total, finding = where_best(gain, mislabel, case.record)
+    base, found = _by_row(problem, problem.record), []
+    for mislabel in _mislabels(clean, problem.model):
+        gain = _by_row(problem, record_of(with_label(clean, mislabel), problem.model)) - base
+        total, finding = where_best(gain, mislabel, problem.record)
         if total > 10.0:
             found.append((total, mislabel, finding))
     return sorted(found, key=lambda entry: -entry[0])
 
 
-def settled(clean, mislabel, finding, case):
+def settled(clean, mislabel, finding, problem):
     """A finding with the ends of its segment where the log is likeliest.
 
     Parameters
@@ -61,7 +61,7 @@ def settled(clean, mislabel, finding, case):
     mislabel : Mislabel
     finding : Finding
         With one segment, or throughout.
-    case : Case
+    problem : IdentificationProblem
         Of the log with the finding put right.
 
     Returns
@@ -69,8 +69,8 @@ def settled(clean, mislabel, finding, case):
     Finding
         The same one if no other segment is worth it.
     """
-    time, seen = case.record.time, {}
-    least, last = round(_SHORTEST / case.record.step), time.size - 1
+    time, seen = problem.record.time, {}
+    least, last = round(_SHORTEST / problem.record.step), time.size - 1
 
     def segment(ends):
         return ((float(time[ends[0]]), float(time[ends[1]])),)
@@ -79,12 +79,12 @@ def settled(clean, mislabel, finding, case):
         if not 0 <= ends[0] <= ends[1] - least <= last - least:
             return -np.inf
         if ends not in seen:
-            seen[ends] = likelihood(case, record_of(with_label(clean, mislabel, segment(ends)), case.plant))
+            seen[ends] = likelihood(problem, record_of(with_label(clean, mislabel, segment(ends)), problem.model))
         return seen[ends]
 
     whole = (0, last)
     first = ends = tuple(int(i) for i in np.searchsorted(time, finding.segments[0])) if finding.segments else whole
-    places = [*range(0, last, round(_EVERY / case.record.step)), last]
+    places = [*range(0, last, round(_EVERY / problem.record.step)), last]
     for _ in range(2):
         for i in (0, 1):
             ends = max([ends, *(_moved(ends, i, place) for place in places)], key=worth)
@@ -101,21 +101,21 @@ def _moved(ends, i, place):
     return (place, ends[1]) if i == 0 else (ends[0], place)
 
 
-def likelihood(case, record):
+def likelihood(problem, record):
     """Log-likelihood of a record about the motion of a case, up to a constant. [nats]"""
-    found = innovations(linearise(case.motion, record, case.plant, []), case.noise, record)
+    found = innovations(linearise(problem.motion, record, problem.model, []), problem.noise, record)
     return float(gram(found).free)
 
 
-def _mislabels(clean, plant):
+def _mislabels(clean, model):
     """Every way in which channels of thrusters and wind could be wrong."""
     found = []
-    for one, other in combinations(plant.thrusters, 2):
+    for one, other in combinations(model.thrusters, 2):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in clean and pair[1] in clean]
-        if _make(plant, one) == _make(plant, other):
+        if _make(model, one) == _make(model, other):
             found += [_swapped(group) for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]]) if group]
-    for name in plant.thrusters:
+    for name in model.thrusters:
         found += [negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in clean]
     if "wind_from" in clean:
         motion = all(role in clean for role in ("heading", "surge", "sway"))
@@ -124,10 +124,10 @@ def _mislabels(clean, plant):
     return found
 
 
-def _make(plant, name):
+def _make(model, name):
     """What kind of thruster it is."""
-    stranger = plant.strangers.get(name)
-    return stranger.component.fmu.model_name if stranger else type(plant.parts[name])
+    third_party = model.third_party.get(name)
+    return third_party.component.fmu.model_name if third_party else type(model.parts[name])
 
 
 def _swapped(pairs):
@@ -145,11 +145,11 @@ def with_label(clean, mislabel, segments=()):
     return clean.assign({role: clean[role].copy(data=fixed[role]) for role in mislabel.channels})
 
 
-def _by_row(case, record):
+def _by_row(problem, record):
     """Log-likelihood of each row, known numbers fitted within their tolerances; what that costs is shared by all."""
-    columns = case.known(())
-    linear = linearise(case.motion, record, case.plant, [column.turns for column in columns])
-    found = innovations(linear, case.noise, record)
+    columns = problem.known(())
+    linear = linearise(problem.motion, record, problem.model, [column.turns for column in columns])
+    found = innovations(linear, problem.noise, record)
     theta = evidence(gram(found).products, np.ones(len(columns)))[1]
     left = found.white[..., 0] - found.white[..., 1:] @ theta
     return -0.5 * ((left**2).sum(-1) + found.log_determinant + (theta**2).sum() / len(left))

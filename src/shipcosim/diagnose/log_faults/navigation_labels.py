@@ -44,7 +44,7 @@ class Relabelled:
     stretch: float
 
 
-def relabelled(log, faults, case):
+def relabelled(log, faults, problem):
     """The likeliest labels of the navigation, where they are not those that the faults say.
 
     Each in its likeliest stretch, and but for units throughout: row by row it is told with the noise of the log as it
@@ -56,7 +56,7 @@ def relabelled(log, faults, case):
         As read.
     faults : list of Finding
         As from `examine`.
-    case : Case
+    problem : IdentificationProblem
         Of the log with these faults repaired.
 
     Returns
@@ -69,18 +69,18 @@ def relabelled(log, faults, case):
     if len(told) > 1 or (not told and _is_clear(plain)):
         return []
     if told:
-        calm = CALM * first_noise(case.record, case.plant.parts["hull"].length).jolt
-        case = replace(case, noise=replace(case.noise, jolt=np.minimum(case.noise.jolt, calm)))
-    base = _by_row(case, record_of(plain, case.plant))
+        calm = CALM * first_noise(problem.record, problem.model.parts["hull"].length).jolt
+        problem = replace(problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm)))
+    base = _by_row(problem, record_of(plain, problem.model))
     known = [mislabel_of(one) for one in told]
     labels = [label for label in possible(LABELS, plain) if label in known or _matters(plain, label)]
-    gains = {label: _gain(plain, label, case) - base for label in labels}
-    found = [where_best(gain, label, case.record, SHORTEST) for label, gain in gains.items()]
-    so_far = sum(float(gains[mislabel_of(one)][inside(case.record.time, one.segments)].sum()) for one in told)
+    gains = {label: _gain(plain, label, problem) - base for label in labels}
+    found = [where_best(gain, label, problem.record, SHORTEST) for label, gain in gains.items()]
+    so_far = sum(float(gains[mislabel_of(one)][inside(problem.record.time, one.segments)].sum()) for one in told)
     likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > max(LEAST_GAIN, so_far + BETTER)]
     tried = {(one.note, one.segments): one for part in likely[:LIKELY] for one in _stretches(part)}
-    less = sum(_stretch(one, case) for one in told)
-    return [Relabelled([*others, one], _stretch(one, case) - less) for one in tried.values()]
+    less = sum(_stretch(one, problem) for one in told)
+    return [Relabelled([*others, one], _stretch(one, problem) - less) for one in tried.values()]
 
 
 def _stretches(found):
@@ -103,32 +103,32 @@ def _is_clear(plain):
     return motion is not None and is_clear(motion, filter_for(motion)[0])
 
 
-def _gain(plain, label, case):
+def _gain(plain, label, problem):
     """Log-likelihood of each row with a label put right, as a density of what was logged."""
-    places, noise = [CHANNELS.index(role) for role in label.channels], case.noise
+    places, noise = [CHANNELS.index(role) for role in label.channels], problem.noise
     white, wave, scale = np.array(noise.white), np.array(noise.wave), np.ones(len(CHANNELS))
     if label.scale is not None:
         scale[places] = label.scale
     if label.cause == "channel_swap":
         white[places] = white[places[::-1]]
     noise = replace(noise, white=white * scale, wave=wave * scale[3:])
-    whole = np.isfinite(case.record.measured)
-    record = record_of(with_label(plain, label), case.plant)
-    return _by_row(replace(case, noise=noise), record) + whole @ np.log(scale)
+    whole = np.isfinite(problem.record.measured)
+    record = record_of(with_label(plain, label), problem.model)
+    return _by_row(replace(problem, noise=noise), record) + whole @ np.log(scale)
 
 
-def _by_row(case, record):
+def _by_row(problem, record):
     """Log-likelihood of each row, about the motion that the record itself tells of."""
-    motion = first_motion(record, case.plant)
+    motion = first_motion(record, problem.model)
     for _ in range(2):
-        motion = innovations(linearise(motion, record, case.plant, []), case.noise, record, motion).motion
-    found = innovations(linearise(motion, record, case.plant, []), case.noise, record)
+        motion = innovations(linearise(motion, record, problem.model, []), problem.noise, record, motion).motion
+    found = innovations(linearise(motion, record, problem.model, []), problem.noise, record)
     return -0.5 * ((found.white[..., 0] ** 2).sum(-1) + found.log_determinant)
 
 
-def _stretch(finding, case):
+def _stretch(finding, problem):
     """Logarithm of the factors by which a finding changes the values of its channels."""
     scale = mislabel_of(finding).scale or 1.0
     places = [CHANNELS.index(role) for role in finding.channels]
-    here = np.isfinite(case.record.measured[:, places]) & inside(case.record.time, finding.segments)[:, None]
+    here = np.isfinite(problem.record.measured[:, places]) & inside(problem.record.time, finding.segments)[:, None]
     return float(np.log(scale) * here.sum())

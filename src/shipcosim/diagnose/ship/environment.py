@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.hull import HullParameters
 
-__all__ = ["Instruments", "Water", "drift_arm_of", "hats", "share_of", "stern_of", "swell_of"]
+__all__ = ["Instruments", "Water", "drift_arm_of", "hat_functions", "share_of", "stern_of", "swell_of"]
 
 _NEUTRAL = "neutral"
 _SWELLS = 8
@@ -92,7 +92,7 @@ def share_of(time, span):
     return np.clip((time - first) / (last - first), 0.0, 1.0)
 
 
-def hats(share, count):
+def hat_functions(share, count):
     """Hat functions over shares of a log, of which each is 1 at its own of evenly spaced places: (count, ...) array."""
     places = np.arange(count).reshape(-1, *[1] * np.ndim(share))
     return np.clip(1.0 - np.abs(np.asarray(share) * (count - 1) - places), 0.0, None)
@@ -117,4 +117,6 @@ def swell_of(time, span, water):
     swells = [getattr(water, f"drift_swell_{k}") for k in range(1, _SWELLS + 1)]
     if not np.any(swells):
         return 1.0
-    return 1.0 + sum(swell * hat for swell, hat in zip(swells, hats(share_of(time, span), _SWELLS), strict=True))
+    return 1.0 + sum(
+        swell * hat for swell, hat in zip(swells, hat_functions(share_of(time, span), _SWELLS), strict=True)
+    )

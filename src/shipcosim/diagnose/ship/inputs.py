@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.ship.model import Drivers, Motion
+from shipcosim.diagnose.ship.model import Inputs, Motion
 from shipcosim.errors import Problem, ShipcosimError
 
 __all__ = ["CHANNELS", "Record", "first_motion", "record_of"]
@@ -18,7 +18,7 @@ _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
 @dataclass(frozen=True)
 class Record:
-    """Measurements and drivers of one log, or of several of the same length with them on the first axis.
+    """Measurements and inputs of one log, or of several of the same length with them on the first axis.
 
     Attributes
     ----------
@@ -46,24 +46,24 @@ class Record:
         """Time from row to row. [s]"""
         return float(self.time[1] - self.time[0])
 
-    def substeps(self, plant):
+    def substeps(self, model):
         """Into how many equal steps a row is parted to move a ship, so that one small or stiff does not run away."""
-        rows = self.step / (_ONE_STEP * np.sqrt(plant.parts["hull"].length))
+        rows = self.step / (_ONE_STEP * np.sqrt(model.parts["hull"].length))
         return 2 ** int(np.ceil(np.log2(max(rows, 1.0)) - 1e-9))
 
-    def drivers(self, plant, share=0.0):
+    def inputs(self, model, share=0.0):
         """What drives the ship at each row but the last, or a share of a step after it.
 
         Late channels are taken that much later; where the navigation is late, all others are taken earlier.
         """
-        lags = plant.parts["instruments"]
+        lags = model.parts["instruments"]
         late = share * self.step - lags.navigation_lag
         units = {
             name: tuple(self._shifted(series, late + lags.thruster_lag) for series in pair)
             for name, pair in self.units.items()
         }
         wind = (None, None) if self.wind is None else (self._shifted(s, late + lags.wind_lag) for s in self.wind)
-        return Drivers(self.time[:-1] + share * self.step, units, *wind)
+        return Inputs(self.time[:-1] + share * self.step, units, *wind)
 
     def _shifted(self, series, seconds):
         """A series that much later, linear between rows."""
@@ -74,14 +74,14 @@ class Record:
         return series[..., low] * (1.0 - share) + series[..., low + 1] * share
 
 
-def record_of(log, plant):
+def record_of(log, model):
     """Arrays of a repaired log.
 
     Parameters
     ----------
     log : xarray.Dataset
         Evenly spaced, roles in the contract's units, NaN where there is no data.
-    plant : Plant
+    model : ShipModel
 
     Returns
     -------
@@ -102,16 +102,16 @@ def record_of(log, plant):
     measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
     measured[:, 2] = _unwrapped(measured[:, 2])
     remarks, known, units = [], np.ones(rows, bool), {}
-    _check_strangers(log, plant)
-    for name in plant.thrusters:
-        units[name], whole = _unit(log, name, plant, rows, remarks)
+    _check_third_party(log, model)
+    for name in model.thrusters:
+        units[name], whole = _unit(log, name, model, rows, remarks)
         known &= whole
     wind, whole = _wind(log, rows, remarks)
     known &= whole
-    remarks += [_about_stranger(name, one) for name, one in plant.strangers.items()]
+    remarks += [_about_third_party(name, one) for name, one in model.third_party.items()]
     known[:-1] &= known[1:]
     record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
-    slow = _SLOW_ENOUGH * np.sqrt(plant.parts["hull"].length)
+    slow = _SLOW_ENOUGH * np.sqrt(model.parts["hull"].length)
     return _thinned(record, max(int(slow / record.step + 1e-6), 1))
 
 
@@ -135,28 +135,28 @@ def _column(log, role, rows):
     return log[role].values.astype(float) if role in log else np.full(rows, np.nan)
 
 
-def _unit(log, name, plant, rows, remarks):
+def _unit(log, name, model, rows, remarks):
     """Speed or thrust of a thruster and its direction, and where they are known."""
     speed, direction = _column(log, f"{name}_rpm", rows) / 60.0, _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
-    if "thrust" in plant.drives(name):
+    if "thrust" in model.drives(name):
         speed = _column(log, f"{name}_thrust", rows)
     elif f"{name}_rpm" not in log:
-        if "rpm" in plant.drives(name):
+        if "rpm" in model.drives(name):
             remarks.append(
                 f"No speed of '{name}' in the log: taken to stand still; nothing about it can be identified."
             )
         speed = np.zeros(rows)
-    if name in plant.azimuths and f"{name}_azimuth" not in log:
+    if name in model.azimuths and f"{name}_azimuth" not in log:
         remarks.append(f"No direction of '{name}' in the log: taken to point ahead.")
-    if name not in plant.azimuths or f"{name}_azimuth" not in log:
-        direction = np.full(rows, plant.fixed.get(name, 0.0))
+    if name not in model.azimuths or f"{name}_azimuth" not in log:
+        direction = np.full(rows, model.fixed.get(name, 0.0))
     whole = np.isfinite(speed) & np.isfinite(direction)
     return (_calmed(speed), _calmed(_unwrapped(direction))), whole
 
 
-def _check_strangers(log, plant):
+def _check_third_party(log, model):
     """Raise ShipcosimError where the log lacks what drives an FMU of somebody else: nobody knows its load then."""
-    drives = [(name, f"{name}_{kind}") for name, one in plant.strangers.items() for kind in one.drives]
+    drives = [(name, f"{name}_{kind}") for name, one in model.third_party.items() for kind in one.drives]
     where, remedy = str(log.attrs.get("source", "log")), "Log it under this name, or name its column in a channel file."
     lacking = [
         Problem(where, f"no channel {role}, which drives '{name}'.", remedy) for name, role in drives if role not in log
@@ -165,7 +165,7 @@ def _check_strangers(log, plant):
         raise ShipcosimError(lacking)
 
 
-def _about_stranger(name, one):
+def _about_third_party(name, one):
     """What to know of a part that somebody else's FMU moves."""
     idle = f" What the log does not tell keeps its start value: {', '.join(one.idle)}." if one.idle else ""
     law = f"'{name}' is somebody else's FMU ({one.component.fmu.model_name}), known by its co-simulation along the log."
@@ -209,7 +209,7 @@ def _unwrapped(angle):
     return found
 
 
-def first_motion(record, plant, smooth=4.0):
+def first_motion(record, model, smooth=4.0):
     """A motion near the measured one, to start from: smoothed measurements, rates from positions where not measured.
 
     Returns

@@ -1,6 +1,6 @@
 """The ship of a system in array form: what moves her, what her instruments show, and every number that may be wrong.
 
-All suspects are numbers of one flat mapping, named ``place.name``: parameters of components (``vessel.mass``,
+All hypotheses are numbers of one flat mapping, named ``place.name``: parameters of components (``vessel.mass``,
 ``port.thrust_loss``), of the surroundings (``water.current_north``) and of the instruments (``instruments.lever_x``).
 """
 
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.ship.environment import Instruments, Water, drift_arm_of, share_of, stern_of, swell_of
-from shipcosim.diagnose.ship.third_party_fmu import drives_of, part_of, problem_of, stranger_of
+from shipcosim.diagnose.ship.third_party_fmu import drives_of, part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed, thruster_loads
 from shipcosim.diagnose.ship.tolerances import tolerances_of
 from shipcosim.diagnose.ship.wiring import wiring_of
@@ -28,15 +28,15 @@ from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
 
 __all__ = [
-    "Drivers",
+    "Inputs",
     "Instruments",
     "Motion",
-    "Plant",
+    "ShipModel",
     "Water",
     "current_at",
     "loads",
     "motion_rates",
-    "plant_of",
+    "ship_model_of",
     "rates_apart",
     "shown",
 ]
@@ -57,7 +57,7 @@ class Motion(NamedTuple):
     r: Any
 
 
-class Drivers(NamedTuple):
+class Inputs(NamedTuple):
     """What acts on the ship at some times, arrays of one shape.
 
     Attributes
@@ -67,7 +67,7 @@ class Drivers(NamedTuple):
     units : dict of str to tuple of two arrays
         By thruster: speed, or thrust where that drives it, and direction as logged. [rev/s or N, rad]
     wind_speed, wind_from : array or None
-        Wind at the mast, apparent or true as `Plant.wind_is_true` says. [m/s, rad]
+        Wind at the mast, apparent or true as `ShipModel.wind_is_true` says. [m/s, rad]
     """
 
     time: Any
@@ -77,7 +77,7 @@ class Drivers(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Plant:
+class ShipModel:
     """A ship with her thrusters, as the diagnosis moves her.
 
     Attributes
@@ -95,7 +95,7 @@ class Plant:
         The log has the wind over ground instead of the apparent one.
     wiring : Wiring or None
         Where the system wires thrusters otherwise than named.
-    strangers : dict of str to Stranger
+    third_party : dict of str to ThirdPartyFmu
         FMUs of somebody else that load the ship, with their laws once there is a log.
     fixed : dict of str to float
         Direction of azimuth thrusters of ours that neither the system nor the log turns. [rad]
@@ -109,7 +109,7 @@ class Plant:
     span: tuple = (0.0, 1.0)
     wind_is_true: bool = False
     wiring: Any = None
-    strangers: dict = field(default_factory=dict)
+    third_party: dict = field(default_factory=dict)
     fixed: dict = field(default_factory=dict)
     neighbours: dict = field(default_factory=dict)
 
@@ -125,8 +125,8 @@ class Plant:
 
     def drives(self, name):
         """What a log should have of a part: ``"rpm"``, ``"azimuth"``; nothing where it is no thruster."""
-        if name in self.strangers:
-            return self.strangers[name].drives
+        if name in self.third_party:
+            return self.third_party[name].drives
         if isinstance(self.parts[name], AzimuthParameters) and name not in self.fixed:
             return "rpm", "azimuth"
         return ("rpm",) if isinstance(self.parts[name], _OURS) else ()
@@ -158,7 +158,7 @@ class Plant:
 
         Returns
         -------
-        Plant
+        ShipModel
         """
         changes = {}
         for path, value in values.items():
@@ -176,7 +176,7 @@ class Plant:
         raise KeyError(path)
 
 
-def plant_of(system):
+def ship_model_of(system):
     """The ship of a system with our vessel.fmu; what loads her may be anybody's.
 
     Parameters
@@ -186,7 +186,7 @@ def plant_of(system):
 
     Returns
     -------
-    Plant
+    ShipModel
 
     Raises
     ------
@@ -206,22 +206,22 @@ def plant_of(system):
     ship = vessels[0]
     parts = {"hull": _values(ship, HullParameters), "wind": _values(ship, WindParameters)}
     sources = {c.source[0] for c in system.connections if c.target[0] == ship.name and c.target[1].startswith("tau_")}
-    strangers = {}
+    third_party = {}
     for name in [name for name in system.components if name in sources]:
         kind = next((kind for kind in _OURS if _holds(system.components[name], kind)), None)
         if kind is None:
-            strangers[name] = stranger_of(system, name, ship.name)
-        parts[name] = _values(system.components[name], kind) if kind else part_of(strangers[name])
-    if problems := list(filter(None, (problem_of(system, name, ship.name, one) for name, one in strangers.items()))):
+            third_party[name] = third_party_fmu_of(system, name, ship.name)
+        parts[name] = _values(system.components[name], kind) if kind else part_of(third_party[name])
+    if problems := list(filter(None, (problem_of(system, name, ship.name, one) for name, one in third_party.items()))):
         raise ShipcosimError(problems)
     ours = [name for name in parts if isinstance(parts[name], _OURS)]
     length = parts["hull"].length
     water = Water(tow_x=stern_of(length), drift_yaw_arm=drift_arm_of(length))
     neighbours = neighbours_of(system, parts)
     parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
-    found = {"wiring": wiring_of(system, ship.name, ours), "strangers": strangers}
+    found = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
     found |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
-    return Plant(parts, ship.name, tolerances_of(system, parts, ship.name), **found)
+    return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **found)
 
 
 def _holds(component, kind):
@@ -235,10 +235,10 @@ def _values(component, kind):
     return kind(**{name: component.start_value(name) for name in names})
 
 
-def current_at(time, plant):
+def current_at(time, model):
     """Velocity of the water towards north and east. [m/s]"""
-    water, (first, last) = plant.parts["water"], plant.span
-    share = share_of(time, plant.span)
+    water, (first, last) = model.parts["water"], model.span
+    share = share_of(time, model.span)
     north = water.current_north + water.trend_north * share
     east = water.current_east + water.trend_east * share
     ends = (water.north_start, water.east_start, water.north_end, water.east_end)
@@ -248,72 +248,72 @@ def current_at(time, plant):
     return north, east
 
 
-def _current_along(psi, time, plant):
+def _current_along(psi, time, model):
     """Velocity of the water in the ship's axes. [m/s]"""
-    if not any(acts(getattr(plant.parts["water"], name)) for name in _CURRENT):
+    if not any(acts(getattr(model.parts["water"], name)) for name in _CURRENT):
         return 0.0, 0.0
-    return to_body(psi, *current_at(time, plant))
+    return to_body(psi, *current_at(time, model))
 
 
-def loads(motion, drivers, plant, like=None):
+def loads(motion, inputs, model, like=None):
     """Loads on the ship by name: each thruster, wind, drift, tow.
 
     Parameters
     ----------
     motion : Motion
-    drivers : Drivers
+    inputs : Inputs
         At the same times.
-    plant : Plant
-    like : tuple of Plant, dict, optional
-        Another ship in the same motion with the same drivers, and her loads: what is alike is not computed again.
+    model : ShipModel
+    like : tuple of ShipModel, dict, optional
+        Another ship in the same motion with the same inputs, and her loads: what is alike is not computed again.
 
     Returns
     -------
     dict of str to tuple of three arrays
         X, Y, N. [N, N, N.m]
     """
-    parts, found = plant.parts, {}
-    u_c, v_c = _current_along(motion.psi, drivers.time, plant)
+    parts, found = model.parts, {}
+    u_c, v_c = _current_along(motion.psi, inputs.time, model)
     u_r, v_r, r = motion.u - u_c, motion.v - v_c, motion.r
-    same = _alike(plant, *like) if like else {}
+    same = _alike(model, *like) if like else {}
     for name in [name for name in parts if isinstance(parts[name], _OURS)]:
-        found[name] = same.get(name) or thruster_loads(name, drivers, u_r, v_r, r, plant)
-    for name in plant.strangers:
-        found[name] = same.get(name) or _stranger_loads(name, motion, drivers, (u_r, v_r), plant)
-    if drivers.wind_speed is not None:
-        found["wind"] = same.get("wind") or _wind_loads(motion, drivers, plant)
+        found[name] = same.get(name) or thruster_loads(name, inputs, u_r, v_r, r, model)
+    for name in model.third_party:
+        found[name] = same.get(name) or _third_party_loads(name, motion, inputs, (u_r, v_r), model)
+    if inputs.wind_speed is not None:
+        found["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
     water = parts["water"]
     if np.any(water.drift_north) or np.any(water.drift_east):
         law = {name: getattr(water, f"drift_{name}") for name in ("surge_share", "sway_power", "yaw_arm")}
-        swell = swell_of(drivers.time, plant.span, water)
+        swell = swell_of(inputs.time, model.span, water)
         found["drift"] = drift_force(motion.psi, swell * water.drift_north, swell * water.drift_east, **law)
     if np.any(water.tow_north) or np.any(water.tow_east):
         found["tow"] = earth_force(motion.psi, water.tow_north, water.tow_east, x=water.tow_x)
     return found
 
 
-def _alike(plant, other, found):
+def _alike(model, other, found):
     """Those of another ship's loads that this one has too."""
-    if not _same_current(plant, other):
-        return {"wind": found["wind"]} if "wind" in found and plant.parts["wind"] is other.parts["wind"] else {}
-    return {name: load for name, load in found.items() if plant.parts.get(name) is other.parts.get(name, 0)}
+    if not _same_current(model, other):
+        return {"wind": found["wind"]} if "wind" in found and model.parts["wind"] is other.parts["wind"] else {}
+    return {name: load for name, load in found.items() if model.parts.get(name) is other.parts.get(name, 0)}
 
 
-def _same_current(plant, other):
-    one, two = plant.parts["water"], other.parts["water"]
+def _same_current(model, other):
+    one, two = model.parts["water"], other.parts["water"]
     return one is two or all(getattr(one, name) == getattr(two, name) for name in _CURRENT)
 
 
-def _stranger_loads(name, motion, drivers, through, plant):
+def _third_party_loads(name, motion, inputs, through, model):
     given = motion._asdict() | dict(zip(("u_r", "v_r"), through, strict=True))
-    given |= drives_of(*drivers.units.get(name, (0.0, 0.0)))
-    return plant.strangers[name].law.loads(drivers.time, given, plant.parts[name])
+    given |= drives_of(*inputs.units.get(name, (0.0, 0.0)))
+    return model.third_party[name].law.loads(inputs.time, given, model.parts[name])
 
 
-def _wind_loads(motion, drivers, plant):
-    parameters = plant.parts["wind"]
-    speed, direction = drivers.wind_speed, drivers.wind_from
-    if plant.wind_is_true:
+def _wind_loads(motion, inputs, model):
+    parameters = model.parts["wind"]
+    speed, direction = inputs.wind_speed, inputs.wind_from
+    if model.wind_is_true:
         north, east = -speed * cos(direction), -speed * sin(direction)
         speed, direction = wind.apparent_wind(motion.psi, motion.u, motion.v, north, east)
     return wind.wind_loads(
@@ -321,17 +321,17 @@ def _wind_loads(motion, drivers, plant):
     )
 
 
-def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0), like=None):
+def motion_rates(motion, inputs, model, extra=(0.0, 0.0, 0.0), like=None):
     """Rates of position, heading and velocity over ground.
 
     Parameters
     ----------
     motion : Motion
-    drivers : Drivers
-    plant : Plant
+    inputs : Inputs
+    model : ShipModel
     extra : tuple of three
         Further loads. [N, N, N.m]
-    like : tuple of Plant, dict, optional
+    like : tuple of ShipModel, dict, optional
         As for `loads`.
 
     Returns
@@ -340,26 +340,26 @@ def motion_rates(motion, drivers, plant, extra=(0.0, 0.0, 0.0), like=None):
         Rates.
     """
     north, east = to_ned(motion.psi, motion.u, motion.v)
-    return Motion(north, east, motion.r, *_accelerations(motion, drivers, plant, extra, like))
+    return Motion(north, east, motion.r, *_accelerations(motion, inputs, model, extra, like))
 
 
-def _accelerations(motion, drivers, plant, extra, like):
+def _accelerations(motion, inputs, model, extra, like):
     """Rates of the velocity over ground."""
-    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, drivers, plant, like).values(), strict=True))
-    u_c, v_c = _current_along(motion.psi, drivers.time, plant)
-    u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=plant.parts["hull"])
+    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, inputs, model, like).values(), strict=True))
+    u_c, v_c = _current_along(motion.psi, inputs.time, model)
+    u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=model.parts["hull"])
     return u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot
 
 
-def rates_apart(one, other, motion, drivers, like):
+def rates_apart(one, other, motion, inputs, like):
     """Rates of the velocity of one ship minus those of another in the same motion.
 
     Parameters
     ----------
-    one, other : Plant
+    one, other : ShipModel
     motion : Motion
-    drivers : Drivers
-    like : tuple of Plant, dict
+    inputs : Inputs
+    like : tuple of ShipModel, dict
         As for `loads`.
 
     Returns
@@ -369,16 +369,16 @@ def rates_apart(one, other, motion, drivers, like):
     """
     hull = one.parts["hull"]
     if hull is not other.parts["hull"] or not _same_current(one, other):
-        rates = (_accelerations(motion, drivers, plant, (0.0, 0.0, 0.0), like) for plant in (one, other))
+        rates = (_accelerations(motion, inputs, model, (0.0, 0.0, 0.0), like) for model in (one, other))
         return tuple(a - b for a, b in zip(*rates, strict=True))
-    mine, theirs = (loads(motion, drivers, plant, like) for plant in (one, other))
+    mine, theirs = (loads(motion, inputs, model, like) for model in (one, other))
     pairs = [(mine[name], theirs[name]) for name in mine if mine[name] is not theirs[name]]
     X, Y, N = (sum(a[axis] - b[axis] for a, b in pairs) for axis in range(3))
     i11, i22, i26, i62, i66 = hull.inverse_mass
     return i11 * X, i22 * Y + i26 * N, i62 * Y + i66 * N
 
 
-def shown(motion, plant):
+def shown(motion, model):
     """What the instruments show of a motion, without noise, heading not wrapped.
 
     Position and velocity are the antenna's; surge and sway are its velocity over ground resolved with the measured
@@ -387,12 +387,12 @@ def shown(motion, plant):
     Parameters
     ----------
     motion : Motion
-    plant : Plant
+    model : ShipModel
 
     Returns
     -------
     Motion
     """
-    i = plant.parts["instruments"]
+    i = model.parts["instruments"]
     errors = {name: getattr(i, name) for name in ("heading_bias", "lever_x", "lever_y", "velocity_scale")}
     return Motion(*instruments.shown(*motion, **errors))._replace(psi=motion.psi + i.heading_bias)

@@ -15,7 +15,7 @@ from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import Connection, Signal, System
 
-__all__ = ["Bollard", "Law", "lawful", "laws_of"]
+__all__ = ["Bollard", "Surrogate", "with_surrogates", "surrogates_of"]
 
 _AXES = ("X", "Y", "N")
 _OFF = {"x": 0.1, "y": 0.1, "psi": 2e-3, "azimuth": 2e-3, "r": 1e-3}  # m, rad, rad/s: connector offsets
@@ -24,7 +24,7 @@ _OFF_DRIVE = 2e-3  # of the largest speed or thrust
 _OFF_PARAMETER = 0.1  # of a tolerance
 _LEAD = 30.0  # s, in which an FMU settles at what the log begins with
 _MOST_STEPS = 250_000  # of all FMUs together
-_NEAR = 0.05  # of the largest speed, and in rad: other drivers than these have a law of their own
+_NEAR = 0.05  # of the largest speed, and in rad: other inputs than these have a law of their own
 
 
 class Bollard(NamedTuple):
@@ -58,7 +58,7 @@ class Bollard(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Law:
+class Surrogate:
     """Loads over a log: the bollard law, and linear in all that deviates what the FMU does otherwise.
 
     Attributes
@@ -116,7 +116,7 @@ class Law:
         return tuple(kept * load for load in found)
 
     def fits(self, record, units):
-        """Whether it is that of these times and drivers."""
+        """Whether it is that of these times and inputs."""
         inside = self.time[0] <= record.time[0] and record.time[-1] <= self.time[-1] + 1e-6
         near = {kind: _NEAR * max(np.abs(self.about.get(kind, 0.0)).max(), 1.0) for kind in ("rpm", "thrust")}
         near["azimuth"] = _NEAR
@@ -128,17 +128,17 @@ class Law:
 
 
 def _wrong(given, part):
-    """What of the drivers may be wrong: quantity, number, sign."""
+    """What of the inputs may be wrong: quantity, number, sign."""
     wrong = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
     return [one for one in wrong if one[0] in given and hasattr(part, one[1])]
 
 
-def lawful(plant, record, motion):
+def with_surrogates(model, record, motion):
     """The ship with the law of each of her black boxes over a log.
 
     Parameters
     ----------
-    plant : Plant
+    model : ShipModel
     record : Record
         Of one log.
     motion : Motion
@@ -146,37 +146,37 @@ def lawful(plant, record, motion):
 
     Returns
     -------
-    Plant
+    ShipModel
         Itself where all is known.
     """
-    if not plant.strangers:
-        return plant
+    if not model.third_party:
+        return model
     units = {name: drives_of(*pair) for name, pair in record.units.items()}
     new = {
         name: one
-        for name, one in plant.strangers.items()
+        for name, one in model.third_party.items()
         if one.law is None or not one.law.fits(record, units.get(name, {}))
     }
-    laws = laws_of(new, record.time, units, motion) if new else {}
-    strangers = plant.strangers | {name: replace(new[name], law=law) for name, law in laws.items()}
-    parts, tolerances = dict(plant.parts), dict(plant.tolerances)
-    for name, one in strangers.items():
+    laws = surrogates_of(new, record.time, units, motion) if new else {}
+    third_party = model.third_party | {name: replace(new[name], law=law) for name, law in laws.items()}
+    parts, tolerances = dict(model.parts), dict(model.tolerances)
+    for name, one in third_party.items():
         if "rpm" in one.drives:
             parts[name] = replace(parts[name], rpm_max=one.law.rpm_max)
             tolerances[f"{name}.rpm_offset"] = 5e-4 * one.law.rpm_max
-    return replace(plant, parts=parts, tolerances=tolerances, strangers=strangers)
+    return replace(model, parts=parts, tolerances=tolerances, third_party=third_party)
 
 
-def laws_of(strangers, time, units, motion):
+def surrogates_of(third_party, time, units, motion):
     """Laws of several FMUs, from one co-simulation.
 
     Parameters
     ----------
-    strangers : dict of str to Stranger
+    third_party : dict of str to ThirdPartyFmu
     time : (n,) array
         Even. [s]
     units : dict of str to dict of str to (n,) array
-        By stranger: what drives it, as `drives_of` gives it.
+        By third-party FMU: what drives it, as `drives_of` gives it.
     motion : Motion
         (n,) arrays, through still water.
 
@@ -185,14 +185,14 @@ def laws_of(strangers, time, units, motion):
     dict of str to Law
     """
     moved = dict(zip(MOTION, (*motion, motion.u, motion.v), strict=True))
-    given = {name: moved | units.get(name, {}) for name in strangers}
-    runs = [run for name, one in strangers.items() for run in _runs(name, one, given[name])]
-    fine = _fine(time, len(runs), max((one.step or 0.0 for one in strangers.values()), default=0.0))
+    given = {name: moved | units.get(name, {}) for name in third_party}
+    runs = [run for name, one in third_party.items() for run in _runs(name, one, given[name])]
+    fine = _fine(time, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0))
     fed = {name: {q: np.interp(fine, time, values) for q, values in each.items()} for name, each in given.items()}
-    table = _simulated(runs, strangers, fed, fine)
+    table = _simulated(runs, third_party, fed, fine)
     return {
-        name: _law(one, [run for run in runs if run.of == name], table, fine, fed[name])
-        for name, one in strangers.items()
+        name: _surrogate(one, [run for run in runs if run.of == name], table, fine, fed[name])
+        for name, one in third_party.items()
     }
 
 
@@ -225,12 +225,12 @@ def _fine(time, runs, step):
     return time[0] + h * np.arange(int(np.ceil(span / h - 1e-6)) + 1)
 
 
-def _simulated(runs, strangers, fed, fine):
+def _simulated(runs, third_party, fed, fine):
     """Table of a co-simulation of all copies, settled beforehand; rows are those of the times and one more."""
     h = fine[1] - fine[0]
     lead, components, connections, inputs, columns = int(np.ceil(_LEAD / h)), {}, [], {}, {}
     for run in runs:
-        one = strangers[run.of]
+        one = third_party[run.of]
         start = dict(one.component.start)
         if run.number:
             variable = one.parameters[run.number]
@@ -249,8 +249,8 @@ def _simulated(runs, strangers, fed, fine):
     return found.isel(time=slice(lead + 1, None))  # what a step makes of a row is there at its end
 
 
-def _law(one, runs, table, fine, fed):
-    """The law of a stranger from the runs of its copies."""
+def _surrogate(one, runs, table, fine, fed):
+    """The law of a third-party FMU from the runs of its copies."""
     base, *others = (_on_ship(one, run.name, table) for run in runs)
     quantities = [run.quantity for run in runs if run.quantity]
     nominal = {n: one.component.start_value(v) for n, v in one.parameters.items()}
@@ -267,7 +267,7 @@ def _law(one, runs, table, fine, fed):
         for quantity, slopes in zip(("rpm", "azimuth"), ideal[1:], strict=True):
             if quantity in about:
                 rest[1 + quantities.index(quantity)] -= slopes
-    return Law(fine, about, nominal, rest, bollard, most)
+    return Surrogate(fine, about, nominal, rest, bollard, most)
 
 
 def _on_ship(one, name, table):

@@ -9,7 +9,7 @@ from shipcosim.errors import Problem
 from shipcosim.models.core.parameters import quantity
 from shipcosim.series import conversion
 
-__all__ = ["DRIVES", "BlackBox", "Link", "Stranger", "drives_of", "part_of", "problem_of", "stranger_of"]
+__all__ = ["DRIVES", "BlackBox", "Link", "ThirdPartyFmu", "drives_of", "part_of", "problem_of", "third_party_fmu_of"]
 
 DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
 """What a log says of a thruster, and in which unit it is handed on."""
@@ -34,7 +34,7 @@ class Link(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Stranger:
+class ThirdPartyFmu:
     """An FMU of somebody else that puts a load on the ship.
 
     Attributes
@@ -52,7 +52,7 @@ class Stranger:
         Inputs of which more than one could be its speed, or its direction.
     step : float or None
         Of the system. [s]
-    law : Law or None
+    law : Surrogate or None
         Its loads over a log.
     """
 
@@ -72,11 +72,11 @@ class Stranger:
 
 
 def drives_of(first, azimuth):
-    """What drives a stranger, by quantity: of a record's pair the first is its speed [rev/s], or its thrust [N]."""
+    """Inputs of a third-party FMU by quantity; `first` is its speed [rev/s] or its thrust [N]."""
     return {"rpm": 60.0 * first, "thrust": first, "azimuth": azimuth}
 
 
-def stranger_of(system, name, ship):
+def third_party_fmu_of(system, name, ship):
     """A component as a black box.
 
     Parameters
@@ -87,7 +87,7 @@ def stranger_of(system, name, ship):
 
     Returns
     -------
-    Stranger
+    ThirdPartyFmu
         Without links where nothing that a log has feeds it; `problem_of` says so.
     """
     component, into = system.components[name], {}
@@ -116,7 +116,7 @@ def stranger_of(system, name, ship):
         if c.source[0] == name and c.target[0] == ship and c.target[1].startswith("tau_")
     )
     step = max(filter(None, (system.experiment.step_size, component.step_size)), default=None)
-    return Stranger(component, tuple(links), loads, _parameters(component), tuple(idle), tuple(unclear), step)
+    return ThirdPartyFmu(component, tuple(links), loads, _parameters(component), tuple(idle), tuple(unclear), step)
 
 
 def _kind(system, connection):
@@ -170,19 +170,19 @@ def _numbers(drives):
     return found | ({"azimuth_offset": turned} if "azimuth" in drives else {})
 
 
-def part_of(stranger):
-    """Numbers of a stranger: neutral ones, and its parameters that are known within a tolerance.
+def part_of(third_party):
+    """Numbers of a third-party FMU: neutral ones, and its parameters that are known within a tolerance.
 
     Parameters
     ----------
-    stranger : Stranger
+    third_party : ThirdPartyFmu
 
     Returns
     -------
     BlackBox
     """
-    component, numbers = stranger.component, _numbers(stranger.drives)
-    for name, variable in stranger.parameters.items():
+    component, numbers = third_party.component, _numbers(third_party.drives)
+    for name, variable in third_party.parameters.items():
         about, tolerance = component.fmu.variables[variable], component.tolerances[variable]
         text = about.description or variable
         value = component.start_value(variable)
@@ -192,7 +192,7 @@ def part_of(stranger):
 
 
 def problem_of(system, name, ship, one):
-    """What to say of a stranger whose load no log tells; None where it does."""
+    """What to say of a third-party FMU whose load no log tells; None where it does."""
     if one.links and not one.unclear:
         return None
     why = f"any of {', '.join(one.unclear)} could be what drives it" if one.unclear else "nothing of a log feeds it"

@@ -38,59 +38,59 @@ class Pusher(NamedTuple):
     most: float
 
 
-def pusher_of(plant, name):
+def pusher_of(model, name):
     """A thruster of a ship as her DP knows it.
 
     Parameters
     ----------
-    plant : Plant
+    model : ShipModel
     name : str
 
     Returns
     -------
     Pusher
     """
-    unit = plant.parts[name]
-    if name in plant.strangers:
-        law, pointed = plant.strangers[name].law, "azimuth" in plant.drives(name)
+    unit = model.parts[name]
+    if name in model.third_party:
+        law, pointed = model.third_party[name].law, "azimuth" in model.drives(name)
         b = law.bollard
         return Pusher(b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, law.rpm_max / 60.0)
     if isinstance(unit, AzimuthParameters):
-        turns = name not in plant.fixed
-        axis, rates = plant.fixed.get(name, 0.0), (*unit.bollard[:2], unit.rpm_max / 60.0)
+        turns = name not in model.fixed
+        axis, rates = model.fixed.get(name, 0.0), (*unit.bollard[:2], unit.rpm_max / 60.0)
         return Pusher(unit.x, unit.y, axis, turns, turns, *rates)
     thrust = 3600.0 * unit.thrust_coefficient
     return Pusher(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
 
 
-def thruster_loads(name, drivers, u_r, v_r, r, plant):
+def thruster_loads(name, inputs, u_r, v_r, r, model):
     """Load of a thruster, as the system wires it.
 
     Parameters
     ----------
     name : str
-    drivers : Drivers
+    inputs : Inputs
     u_r, v_r, r : array
         Velocity of the ship through the water. [m/s, m/s, rad/s]
-    plant : Plant
+    model : ShipModel
 
     Returns
     -------
     tuple of three arrays
         X, Y, N. [N, N, N.m]
     """
-    if plant.wiring is None:
-        return _loads_of(name, drivers.units, u_r, v_r, r, plant)
-    units = drivers.units | {other: plant.wiring.driven(other, drivers.units) for other in plant.wiring.drives}
-    return plant.wiring.loaded(name, _loads_of(name, units, u_r, v_r, r, plant))
+    if model.wiring is None:
+        return _loads_of(name, inputs.units, u_r, v_r, r, model)
+    units = inputs.units | {other: model.wiring.driven(other, inputs.units) for other in model.wiring.drives}
+    return model.wiring.loaded(name, _loads_of(name, units, u_r, v_r, r, model))
 
 
-def _loads_of(name, units, u_r, v_r, r, plant):
-    unit, (n, azimuth) = plant.parts[name], units[name]
+def _loads_of(name, units, u_r, v_r, r, model):
+    unit, (n, azimuth) = model.parts[name], units[name]
     if isinstance(unit, TunnelParameters):
         return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
     state = thruster.azimuth_given(n, azimuth, unit=unit)
-    neighbour = plant.neighbours.get(name)
+    neighbour = model.neighbours.get(name)
     extra = {}
     if neighbour:
         n_other, azimuth_other = units[neighbour]

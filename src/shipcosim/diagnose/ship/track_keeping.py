@@ -6,7 +6,7 @@ those of a planned manoeuvre.
 
 import numpy as np
 
-from shipcosim.diagnose.ship.model import Drivers, Motion, motion_rates
+from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates
 from shipcosim.diagnose.ship.thrusters import pusher_of
 
 _FREQUENCY = 0.5  # rad/s times the square root of the length in m over gravity, of the DP: 0.09 rad/s on Gunnerus
@@ -21,7 +21,7 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
 
     Parameters
     ----------
-    ships : Plant
+    ships : ShipModel
         The real ships; its numbers may be (m,) arrays.
     count : int
         Number of ships m.
@@ -42,7 +42,7 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
     """
     h, n = record.step, record.time.size
     parts = record.substeps(ships)
-    drivers = [record.drivers(ships, (i + 0.5) / parts) for i in range(parts)]
+    inputs = [record.inputs(ships, (i + 0.5) / parts) for i in range(parts)]
     ship = Motion(*(np.zeros(count) + value[..., 0] for value in track))
     shares = dp.shares({name: azimuth for name, (_, azimuth) in record.units.items()}, held or {})
     shares = np.moveaxis(shares, -3, 0)
@@ -56,7 +56,7 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
         for name, pair in speeds.items():
             units[name].append(pair)
         if k < n - 1:
-            for i, part in enumerate(drivers):
+            for i, part in enumerate(inputs):
                 # a small ship answers within a row, through which a log's thrusters go on evenly
                 now = dp.speeds(told, record, k + (i + 0.5) / parts) if parts > 1 else speeds
                 ship, rates = _moved(ship, rates, _at(part, k, now), ships, h / parts, dp)
@@ -78,16 +78,16 @@ def _between(series, row):
     )
 
 
-def _at(drivers, k, units):
+def _at(inputs, k, units):
     """What drives the ships over a step: the wind of the record, and thrusters as they are told."""
-    wind = (None, None) if drivers.wind_speed is None else (drivers.wind_speed[..., k], drivers.wind_from[..., k])
-    return Drivers(drivers.time[k], units, *wind)
+    wind = (None, None) if inputs.wind_speed is None else (inputs.wind_speed[..., k], inputs.wind_from[..., k])
+    return Inputs(inputs.time[k], units, *wind)
 
 
-def _moved(ship, last, drivers, plant, h, dp):
+def _moved(ship, last, inputs, model, h, dp):
     """The ships a step later by the rates in its middle, where those of the last step lead; and the rates."""
     middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(ship, last, strict=True)))
-    rates = motion_rates(dp.bounded(middle), drivers, plant)
+    rates = motion_rates(dp.bounded(middle), inputs, model)
     return Motion(*(value + h * rate for value, rate in zip(ship, rates, strict=True))), rates
 
 
@@ -96,7 +96,7 @@ class Dp:
 
     Parameters
     ----------
-    plant : Plant
+    model : ShipModel
         The ship as the DP knows her.
     h : float
         Step. [s]
@@ -104,10 +104,10 @@ class Dp:
         Azimuth thrusters that cannot turn.
     """
 
-    def __init__(self, plant, h, fixed=()):
-        hull = plant.parts["hull"]
-        self.pushers = {name: pusher_of(plant, name) for name in plant.thrusters}
-        self.h, self.plant, self.fixed = h, plant, fixed
+    def __init__(self, model, h, fixed=()):
+        hull = model.parts["hull"]
+        self.pushers = {name: pusher_of(model, name) for name in model.thrusters}
+        self.h, self.model, self.fixed = h, model, fixed
         self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
         self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
         self.mass = np.array([hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66])
@@ -115,9 +115,9 @@ class Dp:
 
     def bounded(self, ship):
         """The ships no faster than any ship is: one that a DP of this kind cannot steer gets lost, not infinite."""
-        most = np.sqrt(9.81 * self.plant.parts["hull"].length)
-        u, v, r = (np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.plant.parts["hull"].length))
-        return ship._replace(u=u, v=v, r=r / self.plant.parts["hull"].length)
+        most = np.sqrt(9.81 * self.model.parts["hull"].length)
+        u, v, r = (np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.model.parts["hull"].length))
+        return ship._replace(u=u, v=v, r=r / self.model.parts["hull"].length)
 
     def load(self, ship, want, integral):
         """Load that brings the ships back to the track, in their body frames; and the integral action."""
@@ -157,7 +157,7 @@ class Dp:
                 c, s = np.cos(angle + 0.5 * np.pi * i), np.sin(angle + 0.5 * np.pi * i)
                 columns.append(np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
                 eases.append(np.where(alone, 0.0, _ACROSS if i else 1.0)[..., None] + np.zeros(3))
-        scale = np.array([1.0, 1.0, 4.0 / self.plant.parts["hull"].length])
+        scale = np.array([1.0, 1.0, 4.0 / self.model.parts["hull"].length])
         ease = np.stack(np.broadcast_arrays(*eases), axis=-2)
         Bt = ease * scale * np.stack(np.broadcast_arrays(*columns), axis=-2)
         return ease * scale * (Bt @ np.linalg.inv(np.swapaxes(Bt, -1, -2) @ Bt + 1e-2 * np.eye(3)))

@@ -1,4 +1,4 @@
-"""How a system wires her thrusters, where that is not what their connectors' names say: a suspect like any other."""
+"""How a system wires her thrusters, where that is not what their connectors' names say: a hypothesis like any other."""
 
 from dataclasses import dataclass, replace
 

@@ -31,9 +31,9 @@ def calibrate(system, fit, path):
     ShipcosimError
         If it cannot be written.
     """
-    moved, before, values = calibrated(fit), fit.plant, {}
+    moved, before, values = calibrated(fit), fit.model, {}
     deviations = np.sqrt(np.diag(fit.covariance))
-    causes = {place for suspect in fit.suspects for knob in suspect.knobs for place in knob.paths}
+    causes = {place for hypothesis in fit.hypotheses for of in hypothesis.parameters for place in of.paths}
     for column, deviation in zip(fit.columns, deviations, strict=True):
         for place, size in column.turns.items():
             variable = _same(system, place, before.get(place))

@@ -36,12 +36,12 @@ def unseen(record):
     return found
 
 
-def compare_unseen(case, fit):
+def compare_unseen(problem, fit):
     """Comparisons on conditions that nothing was fitted on, wherever in the log they are.
 
     Parameters
     ----------
-    case, fit : Case and Fit
+    problem, fit : IdentificationProblem and Fit
         As for `compare`.
 
     Returns
@@ -51,8 +51,8 @@ def compare_unseen(case, fit):
         that the log has enough of.
     """
     found = {}
-    for name, train in unseen(case.record).items():
-        comparison = compare(case, fit, train=train)
+    for name, train in unseen(problem.record).items():
+        comparison = compare(problem, fit, train=train)
         if comparison is not None and name == "other headings":
             comparison = _only(comparison, ~comparison.errors["heading_known"].values)
         if comparison is not None and comparison.rows.size >= _FEWEST:

@@ -32,7 +32,7 @@ class Replayed:
     system : System
     signals : dict of str to str, optional
         By role, what it shows as the log does, as `Extension.signals`; without them its ship is looked at through the
-        instruments of the plant.
+        instruments of the ship model.
     """
 
     system: object
@@ -63,7 +63,7 @@ def simulated(comparison, plain, extended, *, most=MOST, progress=None):
     some = np.linspace(0, comparison.rows.size - 1, count).round().astype(int)
     rows, errors = comparison.rows[some], comparison.errors.isel(segment=some).copy(deep=True)
     replays, done, apart = {"plain": plain}, 0, np.zeros((2, len(HORIZONS), count))
-    if comparison.fit.suspects:
+    if comparison.fit.hypotheses:
         replays["extended"] = extended
     for number, (model, one) in enumerate(replays.items()):
         predictor = comparison.predictors[model]
@@ -85,8 +85,8 @@ def simulated(comparison, plain, extended, *, most=MOST, progress=None):
 def in_array_form(predictor, rows):
     """What a model predicts the log to show after the horizons, (horizons, s) arrays."""
     motion = Motion(*(value[rows] for value in predictor.motion))
-    found = predicted(motion, rows, predictor.record, predictor.plant, in_rows(predictor.record))
-    return shown(found, predictor.plant)
+    found = predicted(motion, rows, predictor.record, predictor.model, in_rows(predictor.record))
+    return shown(found, predictor.model)
 
 
 def replayed(one, predictor, rows, *, step_size=STEP, progress=None):
@@ -114,7 +114,7 @@ def replayed(one, predictor, rows, *, step_size=STEP, progress=None):
     ShipcosimError
         If the system has no inputs for what the log says of its thrusters.
     """
-    ship, record = predictor.plant.vessel, predictor.record
+    ship, record = predictor.model.vessel, predictor.record
     lag = predictor.original.parts["instruments"].navigation_lag
     table, states = driving_table(one.system, predictor, step_size, lag)
     states |= {f"{ship}.{name}_start": value[rows] for name, value in zip(_STATE, predictor.motion, strict=True)}
@@ -134,7 +134,7 @@ def replayed(one, predictor, rows, *, step_size=STEP, progress=None):
     time, channels = found["time"].values, [found[name].values for name in signals]
     channels[2] = np.unwrap(channels[2], axis=1)
     motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
-    return motion if one.signals else shown(motion, predictor.plant)
+    return motion if one.signals else shown(motion, predictor.model)
 
 
 _STATE = ("x", "y", "psi", "u", "v", "r")
@@ -170,12 +170,12 @@ def driving_table(system, predictor, step_size, lag=0.0):
     ShipcosimError
         With every variable of a thruster that no input feeds, although the log changes it.
     """
-    record, plant = predictor.record, predictor.plant
+    record, model = predictor.record, predictor.model
     columns, states, problems = [], {}, []
     for name, (speed, direction) in record.units.items():
-        states |= {} if name in plant.strangers else {f"{name}.replay": True}
+        states |= {} if name in model.third_party else {f"{name}.replay": True}
         series = {kind: (values, DRIVES[kind]) for kind, values in drives_of(speed, direction).items()}
-        for variable, kind in _driven(plant, name):
+        for variable, kind in _driven(model, name):
             values, unit = series[kind]
             fed = _input(system, name, variable)
             if fed:
@@ -187,7 +187,7 @@ def driving_table(system, predictor, step_size, lag=0.0):
                 problems.append(Problem(system.file, found, "Connect an input of the system to it."))
     if problems:
         raise ShipcosimError(problems)
-    weather, calm = _weather(system, plant.vessel, record)
+    weather, calm = _weather(system, model.vessel, record)
     columns, last = columns + weather, record.time[-1] + record.step
     time = np.append(record.time, last) - lag - _LATE * step_size
     table = make_table(time, [(name, np.append(values, values[-1]), *more) for name, values, *more in columns])
@@ -196,12 +196,12 @@ def driving_table(system, predictor, step_size, lag=0.0):
     return table, states | calm
 
 
-def _driven(plant, name):
+def _driven(model, name):
     """Variables of a thruster that the log drives, and by what."""
-    if name not in plant.strangers:
-        return [(f"{kind}_in", kind) for kind in plant.drives(name)]
+    if name not in model.third_party:
+        return [(f"{kind}_in", kind) for kind in model.drives(name)]
     return [
-        (link.variable, link.quantity) for link in plant.strangers[name].links if link.quantity in plant.drives(name)
+        (link.variable, link.quantity) for link in model.third_party[name].links if link.quantity in model.drives(name)
     ]
 
 

@@ -36,16 +36,16 @@ class Predictor:
 
     Attributes
     ----------
-    record, plant : Record and Plant
+    record, model : Record and ShipModel
         As from `replayable`.
-    original : Plant
+    original : ShipModel
         As it was before.
     motion : Motion
         By the rows until each row, (n,) arrays.
     """
 
     record: Any
-    plant: Any
+    model: Any
     original: Any
     motion: Any
 
@@ -83,12 +83,12 @@ class Comparison:
     predictors: dict
 
 
-def compare(case, fit, *, train=None):
+def compare(problem, fit, *, train=None):
     """Predict with the plain model, a bias observer, the causes of a fit, and see how far each is off.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
         Prepared, of one log.
     fit : Fit
         To the whole log. Its causes are fitted again on the training rows; near its motion is the reference.
@@ -100,31 +100,36 @@ def compare(case, fit, *, train=None):
     Comparison or None
         None where the other rows are too few or have too many gaps.
     """
-    record = case.record
+    record = problem.record
     train = first_rows(record) if train is None else train
     inside, rows = sorted_by(train, starts(record), record)
     if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < _BLOCK:
         return None
-    part = fitted(trained(case, train), fit.suspects, fit.values, rounds=3 if fit.suspects else 1)
-    linear = linearise(fit.motion, record, fit.plant, [])
-    seen = reference(linear, fit.motion, case.noise, record, fit.plant)
-    extended = case.plant.with_values(part.values)
-    plants = {"plain": case.plant, "extended": extended, "calibrated": calibrated(part), "floor": calibrated(fit)}
-    models = _observed(case, linear, fit.motion, seen, plants)
-    if not fit.suspects:
+    part = fitted(trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1)
+    linear = linearise(fit.motion, record, fit.model, [])
+    seen = reference(linear, fit.motion, problem.noise, record, fit.model)
+    extended = problem.model.with_values(part.values)
+    ship_models = {
+        "plain": problem.model,
+        "extended": extended,
+        "calibrated": calibrated(part),
+        "floor": calibrated(fit),
+    }
+    models = _observed(problem, linear, fit.motion, seen, ship_models)
+    if not fit.hypotheses:
         models["extended"] = models["plain"]
     found, observers, predictors = {}, {}, {}
     for name, held in _HELD.items():
         judged = _judged(models[name], inside[::2], rows, seen, held is not None)
         for label, (errors, observer, _) in zip((name, held), judged, strict=False):
             found[label], observers[label] = errors, observer
-        predictors[name] = models[name].predictor(judged[0][-1], plants[name])
+        predictors[name] = models[name].predictor(judged[0][-1], ship_models[name])
     variables = {
         channel: (("model", "horizon", "segment"), np.stack([found[one][channel] for one in MODELS]), {"units": unit})
         for channel, unit in CHANNELS.items()
     }
     coordinates = {"model": list(MODELS), "horizon": list(HORIZONS)}
-    coordinates |= conditions(record, seen, rows, train, case.plant)
+    coordinates |= conditions(record, seen, rows, train, problem.model)
     return Comparison(xarray.Dataset(variables, coordinates), part, train, rows, seen, observers, predictors)
 
 
@@ -146,10 +151,10 @@ def _judged(model, inside, rows, seen, holds):
 
 
 def calibrated(fit):
-    """The plant of a fit with every known number where the log would have it, within its tolerance."""
+    """The ship model of a fit with every known number where the log would have it, within its tolerance."""
     changes = zip(fit.columns, fit.left, strict=True)
     moved = [(path, size * share) for column, share in changes for path, size in column.turns.items()]
-    return fit.plant.with_values({path: fit.plant.get(path) + by for path, by in moved})
+    return fit.model.with_values({path: fit.model.get(path) + by for path, by in moved})
 
 
 @dataclass(frozen=True)
@@ -157,13 +162,13 @@ class _Model:
     """A model, ready to predict, with what several observers knew about it."""
 
     record: Any
-    plant: Any
+    model: Any
     choices: tuple
     known: Any
 
     def predictor(self, number, original):
         """The model with what one of its observers knew."""
-        return Predictor(self.record, self.plant, original, Motion(*(value[number] for value in self.known.motion)))
+        return Predictor(self.record, self.model, original, Motion(*(value[number] for value in self.known.motion)))
 
     def missed(self, rows, seen, holds):
         """Errors of predictions from some rows, without a force and where it `holds` one by each of `_FADES`.
@@ -176,29 +181,29 @@ class _Model:
         force = shares[..., None] * self.known.force[:, rows] if holds else None
         earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
         horizons = in_rows(self.record)
-        found = predicted(motion, rows, self.record, self.plant, horizons, force, earth=earth, fades=fades)
-        return missing(shown(found, self.plant), seen, (rows + np.array(horizons)[:, None])[:, None, None])
+        found = predicted(motion, rows, self.record, self.model, horizons, force, earth=earth, fades=fades)
+        return missing(shown(found, self.model), seen, (rows + np.array(horizons)[:, None])[:, None, None])
 
 
-def _observed(case, about_fit, motion, seen, plants):
-    """Each plant with its observers, all run over the log at once."""
-    record = case.record
-    about = {name: case.motion if name == "plain" else motion for name in plants}
-    linear = {name: restarted(about_fit, motion, record, plant) for name, plant in plants.items()}
-    linear["plain"] = case.base_of([])
+def _observed(problem, about_fit, motion, seen, ship_models):
+    """Each ship model with its observers, all run over the log at once."""
+    record = problem.record
+    about = {name: problem.motion if name == "plain" else motion for name in ship_models}
+    linear = {name: restarted(about_fit, motion, record, model) for name, model in ship_models.items()}
+    linear["plain"] = problem.base_of([])
     choices = {"plain": _BOTH, "extended": _BOTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
-    each = [(name, frame, time) for name in plants for frame, time in choices[name]]
+    each = [(name, frame, time) for name in ship_models for frame, time in choices[name]]
     problems = [
-        earth_fixed(linear[name], about[name], plants[name]) if frame == "earth" else linear[name]
+        earth_fixed(linear[name], about[name], ship_models[name]) if frame == "earth" else linear[name]
         for name, frame, _ in each
     ]
-    walks = np.stack([case.noise.jolt / time for _, _, time in each])
-    noise = replace(case.noise, jolt=np.broadcast_to(case.noise.jolt, walks.shape), walk=walks)
-    known = observed(problems, noise, record, [about[n] for n, _, _ in each], [plants[n] for n, _, _ in each])
+    walks = np.stack([problem.noise.jolt / time for _, _, time in each])
+    noise = replace(problem.noise, jolt=np.broadcast_to(problem.noise.jolt, walks.shape), walk=walks)
+    known = observed(problems, noise, record, [about[n] for n, _, _ in each], [ship_models[n] for n, _, _ in each])
     found = {}
-    for name, plant in plants.items():
+    for name, model in ship_models.items():
         mine = [i for i, (owner, _, _) in enumerate(each) if owner == name]
-        found[name] = _Model(*replayable(record, plant, seen), choices[name], known.of(mine))
+        found[name] = _Model(*replayable(record, model, seen), choices[name], known.of(mine))
     return found
 
 

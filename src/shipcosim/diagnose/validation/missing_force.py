@@ -14,17 +14,17 @@ from shipcosim.models.core.kinematics import to_body, to_ned
 _LEARNING = 10.0  # s, how fast the force may change; faster, noise is taken for force
 
 
-def missing_force(case, plant, motion, *, learning=_LEARNING):
-    """Reconstruct what a plant lacks: the smoothed acceleration that nothing explains, times mass and added mass.
+def missing_force(problem, model, motion, *, learning=_LEARNING):
+    """Reconstruct what a ship model lacks: the smoothed acceleration that nothing explains, times mass and added mass.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
         Of one log.
-    plant : Plant
-        ``case.plant`` for all that the plain model lacks, ``fit.plant`` for what a fit leaves.
+    model : ShipModel
+        ``problem.model`` for all that the plain model lacks, ``fit.model`` for what a fit leaves.
     motion : Motion
-        Near the measured one; ``case.motion``, ``fit.motion``.
+        Near the measured one; ``problem.motion``, ``fit.motion``.
     learning : float
         Time within which the force may change. [s]
 
@@ -36,14 +36,14 @@ def missing_force(case, plant, motion, *, learning=_LEARNING):
         clockwise of it [N]. For plots against them: ``heading``, ``wind_from`` relative to the bow [deg],
         ``speed`` over ground [m/s].
     """
-    record = case.record
-    noise = replace(case.noise, walk=case.noise.jolt / learning)
-    found = innovations(linearise(motion, record, plant, []), noise, record, motion)
-    force = np.where(record.known[:, None], found.slow[:, :3] @ mass_matrix(plant).T, np.nan)
-    return _in_frames(*force.T, found.motion, record, plant)
+    record = problem.record
+    noise = replace(problem.noise, walk=problem.noise.jolt / learning)
+    found = innovations(linearise(motion, record, model, []), noise, record, motion)
+    force = np.where(record.known[:, None], found.slow[:, :3] @ mass_matrix(model).T, np.nan)
+    return _in_frames(*force.T, found.motion, record, model)
 
 
-def _in_frames(surge, sway, yaw, motion, record, plant):
+def _in_frames(surge, sway, yaw, motion, record, model):
     north, east = to_ned(motion.psi, surge, sway)
     columns = {
         "surge": (surge, "N", "missing force forward"),
@@ -52,8 +52,8 @@ def _in_frames(surge, sway, yaw, motion, record, plant):
         "north": (north, "N", "missing force towards north"),
         "east": (east, "N", "missing force towards east"),
     }
-    for name in plant.thrusters:
-        unit = pusher_of(plant, name)
+    for name in model.thrusters:
+        unit = pusher_of(model, name)
         direction = unit.axis + (record.units[name][1] if unit.pointed else np.zeros(surge.size))
         along, across = to_body(direction, surge, sway)
         columns[f"{name}_along"] = along, "N", f"missing force in the direction of positive thrust of {name}"
@@ -61,7 +61,7 @@ def _in_frames(surge, sway, yaw, motion, record, plant):
     columns["heading"] = np.degrees(motion.psi) % 360.0, "deg", "heading"
     columns["speed"] = np.hypot(motion.u, motion.v), "m/s", "speed over ground"
     if record.wind is not None:
-        bow = motion.psi if plant.wind_is_true else 0.0
+        bow = motion.psi if model.wind_is_true else 0.0
         columns["wind_from"] = np.degrees(record.wind[1] - bow) % 360.0, "deg", "direction of the wind from the bow"
     about = {"units": "s", "long_name": "time"}
     variables = {n: ("time", v, {"units": u, "long_name": text}) for n, (v, u, text) in columns.items()}

@@ -37,40 +37,40 @@ class Known:
         return Known(Motion(*(value[which] for value in self.motion)), self.force[which])
 
 
-def mass_matrix(plant):
+def mass_matrix(model):
     """Mass and added mass of the ship, (3, 3) array in surge, sway and yaw."""
-    i11, i22, i26, i62, i66 = plant.parts["hull"].inverse_mass
+    i11, i22, i26, i62, i66 = model.parts["hull"].inverse_mass
     return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
 
 
-def replayable(record, plant, seen):
-    """A log as replays need it: no channel late, and the wind over ground, as one plant understands the log.
+def replayable(record, model, seen):
+    """A log as replays need it: no channel late, and the wind over ground, as one ship model understands the log.
 
     Parameters
     ----------
     record : Record
-    plant : Plant
+    model : ShipModel
     seen : Motion
         What the instruments show, without their noise, (n,) arrays.
 
     Returns
     -------
-    tuple of Record and Plant
+    tuple of Record and ShipModel
         Times are those of the navigation's channels.
     """
-    drivers = record.drivers(plant)
-    units = {name: tuple(map(_one_more, pair)) for name, pair in drivers.units.items()}
+    inputs = record.inputs(model)
+    units = {name: tuple(map(_one_more, pair)) for name, pair in inputs.units.items()}
     wind = None
     if record.wind is not None:
-        wind = _one_more(drivers.wind_speed), _one_more(drivers.wind_from)
-        wind = wind if plant.wind_is_true else _true_wind(*wind, true_motion(seen, plant))
-    plant = replace(plant.with_values(dict.fromkeys(_LAGS, 0.0)), wind_is_true=wind is not None)
-    return replace(record, units=units, wind=wind), plant
+        wind = _one_more(inputs.wind_speed), _one_more(inputs.wind_from)
+        wind = wind if model.wind_is_true else _true_wind(*wind, true_motion(seen, model))
+    model = replace(model.with_values(dict.fromkeys(_LAGS, 0.0)), wind_is_true=wind is not None)
+    return replace(record, units=units, wind=wind), model
 
 
-def true_motion(seen, plant):
-    """The motion of which a plant's instruments show this; headings unwrapped as they were."""
-    i = plant.parts["instruments"]
+def true_motion(seen, model):
+    """The motion of which a ship model's instruments show this; headings unwrapped as they were."""
+    i = model.parts["instruments"]
     errors = {name: getattr(i, name) for name in ("heading_bias", "lever_x", "lever_y", "velocity_scale")}
     return Motion(*motion_of(*seen, **errors))._replace(psi=seen.psi - i.heading_bias)
 
@@ -86,7 +86,7 @@ def _true_wind(speed, direction, motion):
     return np.hypot(north, east), np.unwrap(np.arctan2(-east, -north))
 
 
-def earth_fixed(linear, motion, plant):
+def earth_fixed(linear, motion, model):
     """The problem with an unexplained load that walks in the earth's frame, as the bias of a DP observer does.
 
     Parameters
@@ -95,7 +95,7 @@ def earth_fixed(linear, motion, plant):
         Of one log.
     motion : Motion
         That it was linearised about.
-    plant : Plant
+    model : ShipModel
 
     Returns
     -------
@@ -105,23 +105,23 @@ def earth_fixed(linear, motion, plant):
     back = np.zeros((turn.size, 3, 3))
     back[:, 0, 0] = back[:, 1, 1] = np.cos(turn)
     back[:, 0, 1], back[:, 1, 0], back[:, 2, 2] = np.sin(turn), -np.sin(turn), 1.0
-    mass = mass_matrix(plant)
+    mass = mass_matrix(model)
     transition = linear.transition.copy()
     transition[:, _FORCE, _FORCE] = np.linalg.inv(mass) @ back @ mass
     return linear._replace(transition=transition)
 
 
-def restarted(linear, motion, record, plant):
-    """The problem of a plant that differs little from the one that was linearised, about the same motion."""
-    ahead = advanced(Motion(*(value[:-1] for value in motion)), record, plant)
+def restarted(linear, motion, record, model):
+    """The problem of a ship model that differs little from the one that was linearised, about the same motion."""
+    ahead = advanced(Motion(*(value[:-1] for value in motion)), record, model)
     driven = np.zeros((*linear.driven.shape[:-1], 1))
     driven[:, :6, 0] = rows_first(ahead) - rows_first(Motion(*(value[1:] for value in motion)))
     driven *= record.known[:-1, None, None]
-    seen = np.where(linear.whole, record.measured - rows_first(shown(motion, plant)), 0.0)
+    seen = np.where(linear.whole, record.measured - rows_first(shown(motion, model)), 0.0)
     return linear._replace(driven=driven, seen=seen[..., None])
 
 
-def reference(linear, motion, noise, record, plant):
+def reference(linear, motion, noise, record, model):
     """What the instruments show without their noise, whatever the model: smoothed with a force that is free to change.
 
     Parameters
@@ -132,7 +132,7 @@ def reference(linear, motion, noise, record, plant):
         That it was linearised about.
     noise : Noise
     record : Record
-    plant : Plant
+    model : ShipModel
 
     Returns
     -------
@@ -140,7 +140,7 @@ def reference(linear, motion, noise, record, plant):
         (n,) arrays.
     """
     jolt = _FREE * noise.jolt
-    return shown(innovations(linear, replace(noise, jolt=jolt, walk=jolt / _FREE), record, motion).motion, plant)
+    return shown(innovations(linear, replace(noise, jolt=jolt, walk=jolt / _FREE), record, motion).motion, model)
 
 
 def stacked(problems):
@@ -154,7 +154,7 @@ def stacked(problems):
     )
 
 
-def observed(problems, noise, record, motions, plants):
+def observed(problems, noise, record, motions, models):
     """What observers knew, one for each problem.
 
     Parameters
@@ -165,7 +165,7 @@ def observed(problems, noise, record, motions, plants):
     record : Record
     motions : list of k Motion
         That the problems were linearised about.
-    plants : list of k Plant
+    models : list of k ShipModel
 
     Returns
     -------
@@ -174,11 +174,11 @@ def observed(problems, noise, record, motions, plants):
     """
     found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
     about = np.stack([np.stack(motion, axis=-1) for motion in motions])
-    force = np.stack([one[:, _FORCE] @ mass_matrix(plant).T for one, plant in zip(found, plants, strict=True)])
+    force = np.stack([one[:, _FORCE] @ mass_matrix(model).T for one, model in zip(found, models, strict=True)])
     return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
 
 
-def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True, fades=0.0):
+def predicted(motion, rows, record, model, horizons, force=None, *, earth=True, fades=0.0):
     """Where the ship is taken to be, from some rows on, by what drove her.
 
     Parameters
@@ -189,7 +189,7 @@ def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True, 
         Where the predictions start.
     record : Record
         As from `replayable`.
-    plant : Plant
+    model : ShipModel
     horizons : sequence of int
         After how many rows, increasing.
     force : (..., s, 3) array, optional
@@ -204,14 +204,14 @@ def predicted(motion, rows, record, plant, horizons, force=None, *, earth=True, 
     Motion
         Of (len(horizons), ..., s) arrays.
     """
-    parts = record.substeps(plant)
-    drivers = [record.drivers(plant, 0.5 * i / parts) for i in range(2 * parts + 1)]
+    parts = record.substeps(model)
+    inputs = [record.inputs(model, 0.5 * i / parts) for i in range(2 * parts + 1)]
     load, h, kept = _held(motion, force, earth, fades), record.step / parts, []
     for k in range(horizons[-1]):
         for i in range(parts):
-            during = [_at(one, rows + k) for one in drivers[2 * i : 2 * i + 3]]
+            during = [_at(one, rows + k) for one in inputs[2 * i : 2 * i + 3]]
             loads = [load(k * record.step + (i + share) * h) for share in (0.0, 0.5, 1.0)]
-            motion = _bounded(runge_kutta(motion, h, during, plant, loads))
+            motion = _bounded(runge_kutta(motion, h, during, model, loads))
         if k + 1 in horizons:
             kept.append(motion)
     return Motion(*(np.stack(channel) for channel in zip(*kept, strict=True)))
@@ -236,11 +236,11 @@ def _bounded(motion):
     return motion._replace(u=u, v=v, r=np.clip(motion.r, -_FASTEST_TURN, _FASTEST_TURN))
 
 
-def _at(drivers, rows):
-    """Drivers at some rows."""
-    units = {name: tuple(series[rows] for series in pair) for name, pair in drivers.units.items()}
-    wind = (None if series is None else series[rows] for series in (drivers.wind_speed, drivers.wind_from))
-    return type(drivers)(drivers.time[rows], units, *wind)
+def _at(inputs, rows):
+    """Inputs at some rows."""
+    units = {name: tuple(series[rows] for series in pair) for name, pair in inputs.units.items()}
+    wind = (None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from))
+    return type(inputs)(inputs.time[rows], units, *wind)
 
 
 def missing(found, seen, rows):

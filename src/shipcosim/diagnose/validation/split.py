@@ -93,21 +93,21 @@ def sorted_by(train, rows, record):
     return rows[used == last + 1], rows[used == 0]
 
 
-def trained(case, train):
+def trained(problem, train):
     """The case without the rows that are not to be trained on, up to the last one that is.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
         Prepared, of one log.
     train : (n,) bool array
 
     Returns
     -------
-    Case
+    IdentificationProblem
     """
     n = np.flatnonzero(train)[-1] + 1
-    train, record, base = train[:n], case.record, case.base
+    train, record, base = train[:n], problem.record, problem.base
     steps = train[:-1] & train[1:]
     cut = replace(
         record,
@@ -125,10 +125,10 @@ def trained(case, train):
         base.seen[:n] * whole[..., None],
         whole,
     )
-    return replace(case, record=cut, motion=Motion(*(value[:n] for value in case.motion)), base=linear)
+    return replace(problem, record=cut, motion=Motion(*(value[:n] for value in problem.motion)), base=linear)
 
 
-def conditions(record, seen, rows, train, plant):
+def conditions(record, seen, rows, train, model):
     """What the ship did in each prediction, as coordinates of its segment.
 
     Parameters
@@ -139,7 +139,7 @@ def conditions(record, seen, rows, train, plant):
     rows : (s,) array of int
         Starts.
     train : (n,) bool array
-    plant : Plant
+    model : ShipModel
         Says which wind the log has.
 
     Returns
@@ -166,6 +166,6 @@ def conditions(record, seen, rows, train, plant):
         "heading_known": ("segment", near[heading.astype(int) % 360]),
     }
     if record.wind is not None:
-        bow = seen.psi[rows] if plant.wind_is_true else 0.0
+        bow = seen.psi[rows] if model.wind_is_true else 0.0
         found["wind_from"] = ("segment", np.degrees(record.wind[1][rows] - bow) % 360.0, {"units": "deg"})
     return found

@@ -5,7 +5,7 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.noise import explained
 from shipcosim.diagnose.inference.search import without_causes
-from shipcosim.diagnose.inference.verdict import ENOUGH, STRANGE
+from shipcosim.diagnose.inference.verdict import ENOUGH, UNMODELLED
 from shipcosim.report.diagnosis.data import TIME, line, panel, rounded
 from shipcosim.report.diagnosis.numbers import plain, span
 from shipcosim.report.diagnosis.words import title
@@ -25,7 +25,7 @@ STRANGE_KINDS = {
 
 def label_of(fit):
     """A set of causes as people write it."""
-    return "<br>+ ".join(title(s.cause, s.component) for s in fit.suspects) or "Nothing"
+    return "<br>+ ".join(title(s.cause, s.component) for s in fit.hypotheses) or "Nothing"
 
 
 def evidence_panel(fits, chosen):
@@ -39,7 +39,7 @@ def evidence_panel(fits, chosen):
         That the verdict rests on.
     """
     nothing = without_causes(fits).score
-    sets = [fit for fit in fits if fit.suspects][:MOST_SETS][::-1]
+    sets = [fit for fit in fits if fit.hypotheses][:MOST_SETS][::-1]
     gains = [max(fit.score - nothing, 0.0) for fit in sets]
     bars = {
         **{"type": "bar", "orientation": "h", "y": [label_of(fit) for fit in sets], "x": rounded(gains, 4)},
@@ -53,17 +53,17 @@ def evidence_panel(fits, chosen):
         f"Log-evidence over the ship without a cause, in nats: {ENOUGH:g} more (dotted) mean {np.exp(ENOUGH):.0f} "
         "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
     )
-    height = 90 + (12 + 16 * max([1, *(len(fit.suspects) for fit in sets)])) * max(len(sets), 2)
+    height = 90 + (12 + 16 * max([1, *(len(fit.hypotheses) for fit in sets)])) * max(len(sets), 2)
     axes = {"xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"}, "yaxis": {"automargin": True}}
     return panel("Evidence of the best sets of causes", "nats", [bars], note, shapes=[shape], height=height, **axes)
 
 
 def estimate_panel(fit):
     """Estimates of a set's parameters, in units of the size that matters, with two standard deviations."""
-    knobs = [(s, k) for s in fit.suspects for k in s.knobs][::-1]
-    names = [f"{title(s.cause, s.component)}:<br>{k.name.replace('_', ' ')}" for s, k in knobs]
-    size = [(fit.values[k.paths[0]] - k.neutral) / k.typical for _, k in knobs]
-    wide = [2.0 * fit.std[k.paths[0]] / k.typical for _, k in knobs]
+    parameters = [(s, k) for s in fit.hypotheses for k in s.parameters][::-1]
+    names = [f"{title(s.cause, s.component)}:<br>{k.name.replace('_', ' ')}" for s, k in parameters]
+    size = [(fit.values[k.paths[0]] - k.neutral) / k.typical for _, k in parameters]
+    wide = [2.0 * fit.std[k.paths[0]] / k.typical for _, k in parameters]
     marks = {
         **{"type": "scatter", "mode": "markers", "x": rounded(size, 4), "y": names, "showlegend": False},
         "error_x": {"type": "data", "array": rounded(wide, 3), "color": "@blue", "thickness": 2},
@@ -71,29 +71,29 @@ def estimate_panel(fit):
     }
     axes = {
         "xaxis": {"title": {"text": "typical sizes"}, "zeroline": True, "rangemode": "tozero"},
-        "yaxis": {"range": [-0.6, len(knobs) - 0.4]},
+        "yaxis": {"range": [-0.6, len(parameters) - 0.4]},
     }
     note = "From what the model has, at 0; 1 is a size that matters. Bars are two standard deviations."
-    return panel("How large, and how sure", "", [marks], note, height=110 + 40 * len(knobs), **axes)
+    return panel("How large, and how sure", "", [marks], note, height=110 + 40 * len(parameters), **axes)
 
 
-def strange_panel(strange):
+def strange_panel(unmodelled):
     """What errors without a name would gain beside the chosen causes."""
-    names = [STRANGE_KINDS.get(kind, kind) for kind in strange]
+    names = [STRANGE_KINDS.get(kind, kind) for kind in unmodelled]
     bars = {
         **{
             "type": "bar",
             "orientation": "h",
             "y": names,
-            "x": rounded([max(gain, 0.0) for gain in strange.values()], 4),
+            "x": rounded([max(gain, 0.0) for gain in unmodelled.values()], 4),
         },
-        "marker": {"color": ["@vermillion" if gain > STRANGE else "@faint" for gain in strange.values()]},
+        "marker": {"color": ["@vermillion" if gain > UNMODELLED else "@faint" for gain in unmodelled.values()]},
         **{"showlegend": False, "hovertemplate": "%{x:.1f} nats<extra></extra>"},
-        **{"text": ["none" if g <= 0.0 else f"{g:.1f}" for g in strange.values()], "textposition": "outside"},
+        **{"text": ["none" if g <= 0.0 else f"{g:.1f}" for g in unmodelled.values()], "textposition": "outside"},
     }
-    limit = {"type": "line", "x0": STRANGE, "x1": STRANGE, "y0": 0, "y1": 1, "yref": "paper"}
+    limit = {"type": "line", "x0": UNMODELLED, "x1": UNMODELLED, "y0": 0, "y1": 1, "yref": "paper"}
     shape = {**limit, "line": {"color": "@vermillion", "dash": "dot", "width": 1.5}}
-    axes = {"xaxis": {"title": {"text": "nats"}, "range": [0.0, 1.15 * max(STRANGE, *strange.values())]}}
+    axes = {"xaxis": {"title": {"text": "nats"}, "range": [0.0, 1.15 * max(UNMODELLED, *unmodelled.values())]}}
     note = "Beyond the dotted line something acts that no known cause explains: the verdict is then unknown."
     height = 90 + 34 * len(names)
     return panel(
@@ -101,12 +101,12 @@ def strange_panel(strange):
     )
 
 
-def whiteness(case, fit, as_it_is=False):
+def whiteness(problem, fit, as_it_is=False):
     """Autocorrelation of the whitened innovations that a fit leaves.
 
     Parameters
     ----------
-    case : Case
+    problem : IdentificationProblem
     fit : Fit
     as_it_is : bool
         Without moving known numbers within their tolerances.
@@ -117,7 +117,7 @@ def whiteness(case, fit, as_it_is=False):
         From a lag of one row on; NaN for a channel that was not measured.
     """
     theta = 0.0 * fit.left if as_it_is else fit.left
-    white = innovations(explained(fit.linear, theta), case.noise, case.record).white[..., 0]
+    white = innovations(explained(fit.linear, theta), problem.noise, problem.record).white[..., 0]
     white = np.where(fit.linear.whole, white, np.nan)
     found = np.full((LAGS, white.shape[1]), np.nan)
     for channel, values in enumerate(white.T):
@@ -184,17 +184,17 @@ def _leg(there, before):
     return text
 
 
-def not_testable_rows(case, names):
+def not_testable_rows(problem, names):
     """Why this log could not have shown some causes: the cause, and what the log has of what would show it."""
-    sentences = {s.cause: s.effect.sentence for s in case.suspects}
-    return [(title(name), sentences.get(name, ""), _reason(name, case)) for name in names]
+    sentences = {s.cause: s.effect.sentence for s in problem.hypotheses}
+    return [(title(name), sentences.get(name, ""), _reason(name, problem)) for name in names]
 
 
-def _reason(cause, case):
-    record, motion = case.record, case.motion
+def _reason(cause, problem):
+    record, motion = problem.record, problem.motion
     speed = np.hypot(motion.u, motion.v)
     facts = {
-        "reverse_loss": lambda: f"units ran astern in {_reverse(case):.0f} % of the log",
+        "reverse_loss": lambda: f"units ran astern in {_reverse(problem):.0f} % of the log",
         "thruster_interaction": lambda: "units hardly pointed at each other while they thrust",
         "drag": lambda: f"the ship moved ahead or astern at {_rms(motion.u)} m/s (rms)",
         "crossflow": lambda: f"she moved sideways at {_rms(motion.v)} m/s (rms)",
@@ -214,8 +214,8 @@ def _rms(values):
     return plain(float(np.sqrt(np.nanmean(np.asarray(values) ** 2))), 2)
 
 
-def _reverse(case):
-    shares = [np.mean(case.record.units[name][0] < 0.0) for name in case.plant.azimuths]
+def _reverse(problem):
+    shares = [np.mean(problem.record.units[name][0] < 0.0) for name in problem.model.azimuths]
     return 100.0 * max(shares, default=0.0)
 
 

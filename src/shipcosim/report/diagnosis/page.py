@@ -71,12 +71,12 @@ class Story:
     @property
     def effects(self):
         """The causes by name."""
-        return {suspect.cause: suspect.effect for suspect in self.details.case.suspects}
+        return {hypothesis.cause: hypothesis.effect for hypothesis in self.details.problem.hypotheses}
 
     @property
     def notes(self):
         """What could not be known from this log, and what did not work."""
-        return [*self.details.case.record.remarks, *self.remarks]
+        return [*self.details.problem.record.remarks, *self.remarks]
 
     @property
     def handled(self):
@@ -184,7 +184,7 @@ def _facts(story):
     log = story.details.log
     time = log["time"].values
     span = f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"
-    step = f"{story.details.case.record.step:g} s"
+    step = f"{story.details.problem.record.step:g} s"
     return [("System", getattr(story.system, "name", "")), ("Log", span), ("Step", step)]
 
 

@@ -59,7 +59,7 @@ def error_section(story, figures):
         content.append(parts.subheading("Errors after 60 s" + ": simulation / noise floor" * (len(models) > 1)))
         content.append(parts.table(head, rows, tight=range(2, 9)))
     if story.force is not None:
-        thrusters = story.details.case.plant.azimuths
+        thrusters = story.details.problem.model.azimuths
         content.append(parts.lead("What else must have pushed the ship for her to move as she did:"))
         content.append(figures.grid(error.force_panels(story.force, story.force_left, thrusters)))
     return parts.section("error", "2 What does the simulation get wrong?", *content)
@@ -73,7 +73,7 @@ def _judged(story, models):
 def causes_section(story, figures):
     """Which cause?"""
     diagnosis, details = story.diagnosis, story.details
-    fit, case = details.fit, details.case
+    fit, problem = details.fit, details.problem
     nothing = without_causes(details.fits)
     text = (
         "Every cause of the catalogue, alone and with others, was fitted to the whole log, while every coefficient of "
@@ -84,23 +84,23 @@ def causes_section(story, figures):
         text += f" What is wrong began at {began[0]:.0f} s: rows before are healthy, what follows is of those after."
     content = [parts.lead(text), _estimates(story), _stands_out(story)]
     panels = [causes.evidence_panel(details.fits, fit)] if len(details.fits) > 1 else []
-    panels += [causes.estimate_panel(fit)] if fit.suspects else []
+    panels += [causes.estimate_panel(fit)] if fit.hypotheses else []
     content.append(figures.grid(panels))
-    if details.strange:
-        content.append(figures.grid([causes.strange_panel(details.strange)]))
-    shown = {"Before: the plain model": causes.whiteness(case, nothing, as_it_is=True)}
-    if fit.suspects:
-        shown["After: with the causes"] = causes.whiteness(case, fit)
+    if details.unmodelled:
+        content.append(figures.grid([causes.strange_panel(details.unmodelled)]))
+    shown = {"Before: the plain model": causes.whiteness(problem, nothing, as_it_is=True)}
+    if fit.hypotheses:
+        shown["After: with the causes"] = causes.whiteness(problem, fit)
     low, high = (pick(list(shown.values())) for pick in (np.nanmin, np.nanmax))
     between = [min(-0.2, 1.05 * float(low)), max(0.2, 1.05 * float(high))]
-    step, rows = case.record.step, case.record.time.size
+    step, rows = problem.record.step, problem.record.time.size
     panels = [causes.whiteness_panel(name, found, step, rows, between) for name, found in shown.items()]
     content.append(figures.grid(panels))
     content.append(_alike(diagnosis))
-    content.append(_to_sail(diagnosis.prescription, case))
+    content.append(_to_sail(diagnosis.prescription, problem))
     if diagnosis.not_testable:
         content.append(parts.subheading("What this log could not have shown"))
-        rows = causes.not_testable_rows(case, diagnosis.not_testable)
+        rows = causes.not_testable_rows(problem, diagnosis.not_testable)
         content.append(parts.table(["Cause", "What it would be", "Why not"], rows))
     return parts.section("causes", "3 Which cause?", *content)
 
@@ -119,19 +119,23 @@ def _stands_out(story):
     """What each cause gains, beside what it gains by chance on healthy ships."""
     details = story.details
     rows = []
-    for suspect in details.fit.suspects:
-        chance = details.chance.get(suspect.label)
+    for hypothesis in details.fit.hypotheses:
+        chance = details.chance.get(hypothesis.label)
         by_chance = "far above what healthy ships show" if chance is None else f"up to {plain(chance, 2)} nats"
         rows.append(
-            (title(suspect.cause, suspect.component), plain(gained(suspect, details.fit, details.fits)), by_chance)
+            (
+                title(hypothesis.cause, hypothesis.component),
+                plain(gained(hypothesis, details.fit, details.fits)),
+                by_chance,
+            )
         )
     head = ["Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track"]
     return parts.table(head, rows, tight=(1,))
 
 
-def _to_sail(prescription, case):
+def _to_sail(prescription, problem):
     """The prescribed manoeuvre step by step."""
-    known = library(case.plant, cannot_turn(case.record, case.plant)) if prescription else ()
+    known = library(problem.model, cannot_turn(problem.record, problem.model)) if prescription else ()
     manoeuvre = next((one for one in known if one.name == prescription.manoeuvre), None)
     if manoeuvre is None:
         return ""

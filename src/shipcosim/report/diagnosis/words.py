@@ -59,7 +59,7 @@ def told(finding, effects=None):
     Parameters
     ----------
     finding : Finding
-    effects : dict of str to Effect, optional
+    effects : dict of str to Cause, optional
         The causes by name: a cause of the user's own speaks by its own sentence.
 
     Returns
@@ -159,7 +159,7 @@ def outcome(diagnosis, effects=None):
     Parameters
     ----------
     diagnosis : Diagnosis
-    effects : dict of str to Effect, optional
+    effects : dict of str to Cause, optional
 
     Returns
     -------

@@ -7,7 +7,7 @@ from functools import cache
 
 from lxml import etree
 
-from shipcosim.ssp.xml.document import report_schema
+from shipcosim.ssp.xml.schemas import report_schema
 
 NAMESPACE = "http://opensimulationplatform.com/MSMI/OSPSystemStructure"
 

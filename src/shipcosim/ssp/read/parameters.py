@@ -6,8 +6,9 @@ Reference: System Structure and Parameterization 1.0, sections 4.5, 6, 7 and 8.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from shipcosim.ssp.xml.document import NAMESPACES, children, is_true, local, qualified, reporting, validate
+from shipcosim.ssp.xml.document import NAMESPACES, children, is_true, local, qualified, reporting
 from shipcosim.ssp.xml.units import Unit, find_unit, read_units
+from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS, read_value
 
 TOLERANCE = "shipcosim.tolerance"

@@ -13,8 +13,9 @@ from shipcosim.ssp.read.parameters import (
     read_transformation,
 )
 from shipcosim.ssp.xml.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored, stated
-from shipcosim.ssp.xml.document import Document, child, children, is_true, local, reporting, validate
+from shipcosim.ssp.xml.document import Document, child, children, is_true, local, reporting
 from shipcosim.ssp.xml.units import Unit, find_unit, read_units
+from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS, read_value
 
 FMU = "application/x-fmu-sharedlibrary"

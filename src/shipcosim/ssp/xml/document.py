@@ -3,9 +3,6 @@
 import re
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 
 from lxml import etree
@@ -22,16 +19,6 @@ NAMESPACES = {
         "ssb": "SignalDictionary",
     }.items()
 }
-SCHEMAS = {
-    "ssd": "ssp/schema/SystemStructureDescription.xsd",
-    "ssv": "ssp/schema/SystemStructureParameterValues.xsd",
-    "ssm": "ssp/schema/SystemStructureParameterMapping.xsd",
-    "ssb": "ssp/schema/SystemStructureSignalDictionary.xsd",
-    "fmi1": "schema/fmi1/fmiModelDescription.xsd",
-    "fmi2": "schema/fmi2/fmi2ModelDescription.xsd",
-    "fmi3": "schema/fmi3/fmi3ModelDescription.xsd",
-}
-WORDS = {"double": "a number", "int": "a whole number", "boolean": "a Boolean (true, false, 1, 0)"}
 REMEDIES = {
     "is not a Boolean": "Write true or false.",
     "is not a whole number": "Write a whole number, e.g. 3.",
@@ -210,48 +197,3 @@ def _is_utf8(data):
     except UnicodeDecodeError:
         return False
     return not re.match(rb"""<\?xml[^>]*encoding\s*=\s*["'](?!utf-?8)""", data, re.IGNORECASE)
-
-
-def validate(root, schema, file, findings):
-    """Check an element against a schema that FMPy brings; SSP 2.0 has none there, see `shipcosim.ssp.xml.version_2`.
-
-    Parameters
-    ----------
-    root : lxml element
-        Outermost element, also one inside another file.
-    schema : str
-        A key of SCHEMAS.
-    file : str
-        Name for messages.
-    findings : Findings
-        Takes what is wrong.
-    """
-    if schema.startswith("ss") and root.get("version", "").startswith("2."):
-        import_module("shipcosim.ssp.xml.version_2").validate_2(root, schema, file, findings)
-    else:
-        report_schema(schema_of(schema), root, file, findings)
-
-
-def report_schema(checker, root, file, findings):
-    """Note where an element breaks a schema of lxml's, in our words."""
-    if checker.validate(root):
-        return
-    for entry in checker.error_log:
-        text = re.sub(r"\{(http|urn)[^}]*\}", "", entry.message)
-        for kind, word in WORDS.items():
-            text = text.replace(f"a valid value of the atomic type 'xs:{kind}'", word)
-        text, _, choice = re.sub(r"\[facet '[^']*'\] ", "", text).partition(" is not an element of the set ")
-        found, _, expected = (f"{text} does not exist." if choice else text).partition(" Expected is ")
-        where = f"{file}, line {entry.line}" if entry.line else file
-        findings.refused_lines.add(where)
-        if choice:
-            expected = f"one of: {choice.strip('{}.')}."
-        findings.error(where, found, f"Expected is {expected}" if expected else remedy_for(found))
-
-
-@cache
-def schema_of(name):
-    """Schema by its name in SCHEMAS."""
-    folder = Path(find_spec("fmpy").submodule_search_locations[0])  # finds FMPy without running its slow import
-    parser = etree.XMLParser(no_network=True)
-    return etree.XMLSchema(etree.parse(str(folder / SCHEMAS[name]), parser))

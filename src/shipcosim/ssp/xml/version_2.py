@@ -8,7 +8,8 @@ Reference: System Structure and Parameterization 2.0, sections 4 to 8.
 
 from copy import deepcopy
 
-from shipcosim.ssp.xml.document import NAMESPACES, Findings, local, report_schema, schema_of
+from shipcosim.ssp.xml.document import NAMESPACES, Findings, local
+from shipcosim.ssp.xml.schemas import report_schema, schema_of
 from shipcosim.ssp.xml.values import KINDS, read_value
 
 RANGES = {f"Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)}
@@ -19,7 +20,7 @@ UNKNOWN = ("is not expected", "is not allowed")
 
 
 def validate_2(root, schema, file, findings):
-    """Check an element of SSP 2.0; see `shipcosim.ssp.xml.document.validate`."""
+    """Check an element of SSP 2.0; see `shipcosim.ssp.xml.validation.validate`."""
     reduced = deepcopy(root)
     for element in list(reduced.iter("{*}*")):
         if element.tag.startswith(tuple(f"{{{uri}}}" for uri in NAMESPACES.values())):

@@ -1,7 +1,7 @@
 """Navigation channels that are not what they are labelled: other sign, swapped, in another frame or unit.
 
-Each suspect is a change of channels that would undo it. The innovations of position against velocity, or of heading
-against rate, say for every row how much likelier the changed log is. A suspect is accepted only if it explains the
+Each hypothesis is a change of channels that would undo it. The innovations of position against velocity, or of heading
+against rate, say for every row how much likelier the changed log is. A hypothesis is accepted only if it explains the
 data: where it is said to be, the way seen must be about the way told under it, and clearly not as labelled.
 """
 
@@ -44,7 +44,7 @@ REACH = 25  # rows on both sides in which an end of a segment is sought; and whe
 
 
 @dataclass(frozen=True)
-class _Suspect:
+class _LabelHypothesis:
     """A mislabel, the evidence for it, where it is, and by how much its innovations hang together."""
 
     mislabel: Mislabel
@@ -82,28 +82,28 @@ def _best(log, motion_of, labels):
     levels = np.stack([plain.level, *(other.level for other in others)], axis=2)
     filters = filter_for(plain, levels)
     likely = np.stack([_log_likelihood(f, levels[:, :, k]) for k, f in enumerate(filters)], axis=1)
-    suspects = []
+    hypotheses = []
     for number, label in enumerate(labels, start=1):
         gain, segment = best_segment(plain.time, likely[:, number] - likely[:, 0])
         rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, segment))
-        suspect = _Suspect(label, gain, segment, rough)
-        if gain / rough > LEAST_GAIN and _explains(plain, others[number - 1], filters[number], suspect):
-            suspects.append(suspect)
-    if not suspects:
+        hypothesis = _LabelHypothesis(label, gain, segment, rough)
+        if gain / rough > LEAST_GAIN and _explains(plain, others[number - 1], filters[number], hypothesis):
+            hypotheses.append(hypothesis)
+    if not hypotheses:
         return None
-    best = max(suspects, key=lambda suspect: suspect.gain)
+    best = max(hypotheses, key=lambda hypothesis: hypothesis.gain)
     whitener = filters[1 + labels.index(best.mislabel)]
     if best.mislabel.scale is not None and _is_alike(log, best):
         best = replace(best, segment=None)
-    return _finding(_refined(log, motion_of, whitener, best), best, suspects)
+    return _finding(_refined(log, motion_of, whitener, best), best, hypotheses)
 
 
-def _is_alike(log, suspect):
+def _is_alike(log, hypothesis):
     """Whether the channels are as noisy outside a segment as inside, so that their unit is the same there."""
-    if suspect.segment is None:
+    if hypothesis.segment is None:
         return False
-    here = inside(log["time"][2:], [suspect.segment])
-    bends = np.mean([np.abs(np.diff(log[role], n=2)) for role in suspect.mislabel.channels], axis=0)
+    here = inside(log["time"][2:], [hypothesis.segment])
+    bends = np.mean([np.abs(np.diff(log[role], n=2)) for role in hypothesis.mislabel.channels], axis=0)
     if (~here).sum() < 10:
         return True
     return bool(0.7 < np.nanmean(bends[~here]) / (np.nanmean(bends[here]) + 1e-12) < 1.4)
@@ -138,17 +138,17 @@ def in_segment(values: np.ndarray, time: np.ndarray, segment: tuple[float, float
     return values if segment is None else values[(time >= segment[0]) & (time <= segment[1])]
 
 
-def _explains(plain: Motion, other: Motion, whitener: Filter, suspect) -> bool:
-    """Whether the way seen is the way told under the suspect, and is not as labelled.
+def _explains(plain: Motion, other: Motion, whitener: Filter, hypothesis) -> bool:
+    """Whether the way seen is the way told under the hypothesis, and is not as labelled.
 
     Noise in the velocity makes slopes too small, for a ship that hardly moves by half. That leaves signs and swapped
     channels clear, but not units.
     """
-    channels, is_unit = suspect.mislabel.channels, suspect.mislabel.scale is not None
-    under = _slopes(other, channels, whitener, suspect.segment)
-    given = _slopes(plain, channels, whitener, suspect.segment)
+    channels, is_unit = hypothesis.mislabel.channels, hypothesis.mislabel.scale is not None
+    under = _slopes(other, channels, whitener, hypothesis.segment)
+    given = _slopes(plain, channels, whitener, hypothesis.segment)
     lowest, highest = (1.0 - NEAR, 1.0 + NEAR) if is_unit else (0.3, 1.7)
-    if is_unit and not is_clear(other, whitener, suspect.segment):
+    if is_unit and not is_clear(other, whitener, hypothesis.segment):
         return False
     near = [lowest < slope < highest or abs(slope - 1.0) < 2.0 * std for slope, std in under]
     sure = [std < SURE for _, std in under]
@@ -156,7 +156,7 @@ def _explains(plain: Motion, other: Motion, whitener: Filter, suspect) -> bool:
         abs(was - now) > max(FAR, 4.0 * std) and abs(was - 1.0) > abs(now - 1.0)
         for (was, std), (now, _) in zip(given, under, strict=True)
     ]
-    clear = suspect.gain > CLEAR_GAIN and suspect.rough < 1.5 and all(sure)
+    clear = hypothesis.gain > CLEAR_GAIN and hypothesis.rough < 1.5 and all(sure)
     return all(near) and (clear or any(a and s for a, s in zip(apart, sure, strict=True)))
 
 
@@ -189,8 +189,8 @@ def _refined(log, motion_of, whitener, best):
     return tuple(float(t) for t in log["time"][ends])
 
 
-def _finding(segment, best, suspects):
-    rough = max(s.rough for s in suspects)
-    others = [(s.gain - best.gain) / rough for s in suspects if s is not best]
+def _finding(segment, best, hypotheses):
+    rough = max(s.rough for s in hypotheses)
+    others = [(s.gain - best.gain) / rough for s in hypotheses if s is not best]
     probability = float(1.0 / (1.0 + np.exp(LEAST_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others))))
     return finding_of(best.mislabel, probability, segment)

@@ -1,0 +1,24 @@
+"""Elements held against their schema, whatever version of SSP or FMI they are of."""
+
+from shipcosim.ssp.xml.schemas import report_schema, schema_of
+from shipcosim.ssp.xml.version_2 import validate_2
+
+
+def validate(root, schema, file, findings):
+    """Check an element against a schema of FMPy, or SSP 2.0 as `shipcosim.ssp.xml.version_2` does.
+
+    Parameters
+    ----------
+    root : lxml element
+        Outermost element, also one inside another file.
+    schema : str
+        A key of SCHEMAS.
+    file : str
+        Name for messages.
+    findings : Findings
+        Takes what is wrong.
+    """
+    if schema.startswith("ss") and root.get("version", "").startswith("2."):
+        validate_2(root, schema, file, findings)
+    else:
+        report_schema(schema_of(schema), root, file, findings)
