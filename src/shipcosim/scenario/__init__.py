@@ -1,18 +1,13 @@
-"""Scenario files: what happens in a run, and what must hold."""
+"""Scenario files: what happens in a run, and what must hold.
 
-from shipcosim.scenario.model import (
-    Event,
-    Expectation,
-    Scenario,
-    Verdict,
-    check_files,
-    check_scenario,
-    check_times,
-    judge,
-    read_scenario,
-    toml_of,
-    whole_steps,
-)
+A scenario is data. `read_scenario` reads and checks a file, `check_scenario` checks a scenario against a system,
+`judge` compares a run's table with the expectations.
+"""
+
+from shipcosim.scenario.check import check_files, check_scenario, check_times, whole_steps
+from shipcosim.scenario.judge import Verdict, judge
+from shipcosim.scenario.model import Event, Expectation, Scenario
+from shipcosim.scenario.reader import read_scenario, toml_of
 
 __all__ = [
     "Event",

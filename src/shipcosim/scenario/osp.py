@@ -8,14 +8,15 @@ source again.
 import json
 import math
 import os
+from collections.abc import Iterable, Iterator
 from itertools import accumulate
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import yaml
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario import Event
+from shipcosim.scenario.model import Event, Value
 from shipcosim.series import write_file
 
 KEYS = ("description", "defaults", "events", "end")
@@ -24,9 +25,10 @@ DEFAULTS = ("model", "variable", "action")
 ACTIONS = ("override", "bias", "reset")
 LARGEST, LARGEST_YAML = 16 << 20, 1 << 20  # bytes; YAML is read slowly
 DEEPEST = 100  # brackets in brackets
-FAST = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
+FAST: Any = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 LARGEST_NUMBER = 1e300
 BOOLEANS = {"true": True, "false": False}
+Change = tuple[int, str, str, Value | None]  # step, action, signal, value
 
 
 class OspScenario(NamedTuple):
@@ -64,27 +66,13 @@ def read_osp_scenario(
     ShipcosimError
         With every problem of the file.
     """
-    path, problems = Path(path), []
+    path = Path(path)
     content = _content(path)
     if not isinstance(content, dict):
         remedy = "Right would be an object with a list 'events'."
         raise ShipcosimError(Problem(str(path), "It holds no object at its top.", remedy))
-    remarks = list(_unknown(path, content, KEYS))
-    defaults = content.get("defaults") or {}
-    listed = content.get("events") or []
-    if not isinstance(defaults, dict) or not isinstance(listed, list):
-        raise ShipcosimError(Problem(str(path), "'defaults' has to be an object, 'events' a list."))
-    due = []
-    for number, given in enumerate(listed, start=1):
-        place = f"{path}, event {number}"
-        if not isinstance(given, dict):
-            problems.append(Problem(place, "An event has to be an object.", f"Its keys: {', '.join(EVENT_KEYS)}."))
-            continue
-        remarks += _unknown(place, given, EVENT_KEYS)
-        try:
-            due.append(_change(given, {name: v for name, v in defaults.items() if name in DEFAULTS}, step_size))
-        except ValueError as error:
-            problems.append(Problem(place, *error.args))
+    due, remarks, problems = _changes(path, content, step_size)
+    end = None
     try:
         end = None if content.get("end") is None else _seconds(content["end"], "end")
     except ValueError as error:
@@ -93,8 +81,31 @@ def read_osp_scenario(
         raise ShipcosimError(problems)
     remarks += _doubts(path, due, end, step_size)
     due += _taken_back(due, end, step_size, stop_time - start_time)
-    events = [_event(start_time + count * step_size, *change) for count, *change in due]
+    events = [_event(start_time + count * step_size, action, signal, value) for count, action, signal, value in due]
     return OspScenario(str(content.get("description") or ""), events, remarks)
+
+
+def _changes(
+    path: Path, content: dict[str, Any], step_size: float
+) -> tuple[list[Change], list[Problem], list[Problem]]:
+    """Changes of all events in the order of the file, remarks, and problems of single events."""
+    remarks, problems = list(_unknown(str(path), content, KEYS)), []
+    defaults, listed = content.get("defaults") or {}, content.get("events") or []
+    if not isinstance(defaults, dict) or not isinstance(listed, list):
+        raise ShipcosimError(Problem(str(path), "'defaults' has to be an object, 'events' a list."))
+    defaults = {name: value for name, value in defaults.items() if name in DEFAULTS}
+    due = []
+    for number, given in enumerate(listed, start=1):
+        place = f"{path}, event {number}"
+        if not isinstance(given, dict):
+            problems.append(Problem(place, "An event has to be an object.", f"Its keys: {', '.join(EVENT_KEYS)}."))
+            continue
+        remarks += _unknown(place, given, EVENT_KEYS)
+        try:
+            due.append(_change(given, defaults, step_size))
+        except ValueError as error:
+            problems.append(Problem(place, *error.args))
+    return due, remarks, problems
 
 
 def scenario_text(description: str, events: list[dict], end: float, suffix: str = ".json") -> str:
@@ -122,7 +133,7 @@ def write_osp_scenario(path: str | os.PathLike, description: str, events: list[d
     write_file(path, scenario_text(description, events, end, Path(path).suffix.lower()).encode())
 
 
-def _content(path):
+def _content(path: Path) -> Any:
     """What is in the file, as dicts and lists; every scalar of YAML is a text."""
     try:
         data = path.read_bytes()
@@ -148,7 +159,8 @@ def _content(path):
         raise ShipcosimError(Problem(str(path), found, "Correct it there.")) from None
 
 
-def _once(pairs):
+def _once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
+    """A mapping of these pairs; raises ValueError where a name comes twice."""
     content = dict(pairs)
     if len(content) < len(pairs):
         names = [name for name, _ in pairs]
@@ -157,20 +169,20 @@ def _once(pairs):
 
 
 class _Loader(FAST):
-    def construct_mapping(self, node, deep=False):
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
         return _once(
             [(self.construct_object(k, deep=True), self.construct_object(v, deep=True)) for k, v in node.value]
         )
 
 
-def _unknown(place, given, known):
+def _unknown(place: str, given: Iterable[str], known: Iterable[str]) -> Iterator[Problem]:
     for name in given:
         if name not in known:
             found = f"'{name}' is not used."
-            yield Problem(str(place), found, f"Known: {', '.join(known)}.", "remark")
+            yield Problem(place, found, f"Known: {', '.join(known)}.", "remark")
 
 
-def _change(given, defaults, step_size):
+def _change(given: dict[str, Any], defaults: dict[str, Any], step_size: float) -> Change:
     """(step, action, signal, value) of an event; raises ValueError with what was found and what would be right."""
     if "time" not in given:
         raise ValueError("It has no time.", "Give it in seconds from the start of the run.")
@@ -187,14 +199,14 @@ def _change(given, defaults, step_size):
     return count, action, f"{model}.{variable}", value
 
 
-def _seconds(given, name):
+def _seconds(given: Any, name: str) -> float:
     value = _value(given)
     if isinstance(value, (bool, str)):
         raise ValueError(f"{name} is {value!r}.", "Give it in seconds.")
     return float(value)
 
 
-def _value(given):
+def _value(given: Any) -> Value:
     """A scalar by its text, as libcosim's reader takes it, which does not look at quotes."""
     if given is None or isinstance(given, (list, dict)):
         raise ValueError("It has no value.", "A value is a number, true or false.")
@@ -204,7 +216,7 @@ def _value(given):
     return value
 
 
-def _typed(text):
+def _typed(text: str) -> Value:
     if text.lower() in BOOLEANS:
         return BOOLEANS[text.lower()]
     for convert in (int, float):
@@ -215,12 +227,12 @@ def _typed(text):
     return text
 
 
-def _event(time, action, signal, value):
+def _event(time: float, action: str, signal: str, value: Value | None) -> Event:
     return Event.model_validate({"time": time, action: [signal] if action == "reset" else {signal: value}})
 
 
-def _doubts(path, due, end, step_size):
-    """Remarks on what libcosim does in its own way."""
+def _doubts(path: Path, due: list[Change], end: float | None, step_size: float) -> Iterator[Problem]:
+    """Remarks on what libcosim does differently from what a reader would expect."""
     seen = set()
     for count, _, signal, _ in due:
         if (count, signal) in seen:
@@ -233,7 +245,7 @@ def _doubts(path, due, end, step_size):
         yield Problem(str(path), found, 'Give "end", in seconds.', "remark")
 
 
-def _taken_back(due, end, step_size, duration):
+def _taken_back(due: list[Change], end: float | None, step_size: float, duration: float) -> Iterator[Change]:
     """Changes at the end, of everything that was changed; none where the run is over by then."""
     if not due:
         return

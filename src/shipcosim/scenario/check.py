@@ -1,0 +1,167 @@
+"""Checks of a scenario: in itself, and against the system that it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario.locations import problem_at
+from shipcosim.scenario.model import Scenario, Value
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
+    from shipcosim.ssp.fmu.description import Variable
+
+MOST_STEPS = 1e8
+"""Steps of a run; the times of more than these would hardly fit into memory."""
+
+
+def check_files(scenario: Scenario) -> list[Problem]:
+    """What a scenario names and what is not there: its system, its parameter sets."""
+    if not scenario.system:
+        return [problem_at(scenario, ("system",), "the scenario names no system.", suggestion("", _systems(scenario)))]
+    system, problems = scenario.system_path, []
+    if not system.exists() and "#" not in scenario.system:
+        known = _systems(scenario)
+        found = f"there is no system '{scenario.system}', in {scenario.project / 'ssp'} or beside the scenario."
+        return [problem_at(scenario, ("system",), found, suggestion(scenario.system, known))]
+    for name, path in zip(scenario.parameters, scenario.parameter_paths, strict=True):
+        if not path.exists():
+            known = [file.stem for file in (system / "resources").glob("*.ssv")]
+            found = f"there is no parameter set '{name}', in {system / 'resources'} or beside the scenario."
+            problems.append(problem_at(scenario, ("parameters",), found, suggestion(name, known)))
+    return problems
+
+
+def _systems(scenario: Scenario) -> list[str]:
+    return [ssd.parent.name for ssd in scenario.project.joinpath("ssp").glob("*/SystemStructure.ssd")]
+
+
+def whole_steps(duration: float, step_size: float) -> int | None:
+    """How many steps make up a duration; None if it is no whole number, to a millionth of a step.
+
+    Examples
+    --------
+    >>> whole_steps(1100.0, 0.05)
+    22000
+    >>> whole_steps(0.12, 0.05) is None
+    True
+    """
+    count = round(duration / step_size)
+    return count if abs(duration / step_size - count) <= 1e-6 else None
+
+
+def check_times(scenario: Scenario) -> Iterator[Problem]:
+    """Times of a scenario that do not fall on its steps, or lie after its end."""
+    step, stop = scenario.step_size, scenario.stop_time
+    if stop / step > MOST_STEPS:
+        found = f"stop_time = {stop:g} s takes {stop / step:.3g} steps of {step:g} s."
+        remedy = f"At most {MOST_STEPS:,.0f} are done: take larger steps or stop earlier."
+        yield problem_at(scenario, ("stop_time",), found, remedy)
+        return
+    times = [(("stop_time",), stop), (("output_interval",), scenario.output_interval or step)]
+    times += [(("events", number, "time"), event.time) for number, event in enumerate(scenario.events)]
+    for keys, time in times:
+        count = whole_steps(time, step)
+        if count is None or (count == 0 and keys[0] != "events"):
+            found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
+            nearest = max(1, round(time / step)) * step
+            yield problem_at(scenario, keys, found, f"The nearest would be {nearest:g} s.")
+        elif keys[0] == "events" and time >= stop:
+            found = f"the event at {time:g} s never acts: the run ends at {stop:g} s."
+            yield problem_at(scenario, keys, found, severity="remark")
+    for number, expect in enumerate(scenario.expect):
+        if expect.during and expect.during[1] > stop:
+            found = f"during = {expect.during} reaches beyond the end of the run at {stop:g} s."
+            yield problem_at(scenario, ("expect", number, "during"), found, severity="remark")
+
+
+def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
+    """Problems of the events and expectations of a scenario with a system.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Checked in itself.
+    system : System
+        That it runs. Start values are checked by `shipcosim.ssp.with_values`.
+    """
+    problems = list(check_times(scenario))
+    for number, event in enumerate(scenario.events):
+        for verb, signal, value in event.changes:
+            if complaint := _event_complaint(system, verb, signal, value):
+                problems.append(problem_at(scenario, ("events", number, verb, signal), *complaint))
+    changed = {signal for event in scenario.events for _, signal, _ in event.changes}
+    for number, expect in enumerate(scenario.expect):
+        for signal in expect.signals:
+            if complaint := _expect_complaint(system, signal, changed):
+                problems.append(problem_at(scenario, ("expect", number, "signal"), *complaint))
+    return problems
+
+
+def _event_complaint(system: System, verb: str, signal: str, value: Value | None) -> tuple[str, str] | None:
+    """What is wrong with a change of a signal, as (found, remedy), or None."""
+    try:
+        component, name = system.split(signal)
+    except ShipcosimError as error:
+        return error.problems[0].found, error.problems[0].remedy
+    if component is None and name not in system.inputs:
+        return f"'{signal}' is no input of the system.", f"Inputs: {', '.join(system.inputs) or 'none'}."
+    variable = system.inputs[name] if component is None else system.components[component].fmu.variables[name]
+    kind = variable.type if component is None else variable.kind
+    if component is not None and not _may_change(variable):
+        remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
+        return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
+    if verb != "reset" and not _fits(value, kind, variable.items, verb):
+        items = f" Its items are {', '.join(variable.items)}." if variable.items else ""
+        return (
+            f"{verb} of '{signal}' with {value!r}: the signal is {kind}.",
+            f"{_WANTED.get(kind, 'It cannot be changed.')}{items}",
+        )
+    return None
+
+
+def _may_change(variable: Variable) -> bool:
+    return variable.causality in ("input", "output") or (variable.causality, variable.variability) == (
+        "parameter",
+        "tunable",
+    )
+
+
+_WANTED = {
+    "Real": "A number is needed.",
+    "Integer": "A whole number is needed.",
+    "Boolean": "Override it with true or false.",
+    "Enumeration": "Override it with the name or number of an item.",
+}
+
+
+def _fits(value: Value | None, kind: str, items: Mapping[str, int], verb: str) -> bool:
+    if kind == "Boolean":
+        return isinstance(value, bool) and verb == "override"
+    if kind == "Enumeration":
+        return verb == "override" and (value in items or value in items.values())
+    if isinstance(value, bool):
+        return False
+    if kind == "Integer":
+        return isinstance(value, (int, float)) and value == int(value)
+    return kind == "Real" and isinstance(value, (int, float))
+
+
+def _expect_complaint(system: System, signal: str, changed: Collection[str]) -> tuple[str, str] | None:
+    """Why a signal will not be in the table, as (found, remedy), or None."""
+    try:
+        component, name = system.split(signal)
+    except ShipcosimError as error:
+        return error.problems[0].found, error.problems[0].remedy
+    if component is None or signal in changed:
+        return None
+    variable = system.components[component].fmu.variables[name]
+    feeding = next((c.source for c in system.connections if c.target == (component, name)), None)
+    if variable.causality == "input" and feeding is not None:
+        source = ".".join(filter(None, feeding))
+        return f"'{signal}' is not recorded: it is what {source} puts out.", f"Expect something of {source}."
+    if variable.causality not in ("input", "output") or variable.kind == "String":
+        return f"'{signal}' is not recorded: it is a {variable.kind} {variable.causality}.", "Outputs and inputs are."
+    return None

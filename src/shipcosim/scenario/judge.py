@@ -1,0 +1,110 @@
+"""Verdicts: whether a run's table meets the expectations of a scenario."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario.model import Expectation, Scenario
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether an expectation holds.
+
+    Parameters
+    ----------
+    expect : Expectation
+        What was expected.
+    passed : bool
+        Whether it holds.
+    worst : float
+        Value farthest on the wrong side: a distance where `near` was given, else the signal. NaN without a row.
+    time : float
+        When. [s]
+    """
+
+    expect: Expectation
+    passed: bool
+    worst: float
+    time: float
+
+    def __str__(self) -> str:
+        measure = "distance" if self.expect.near is not None else "value"
+        found = f"worst {measure} {self.worst:.4g} at {self.time:g} s" if np.isfinite(self.time) else "no row to judge"
+        return f"{'holds' if self.passed else 'FAILS'}: {self.expect} ({found})"
+
+
+def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
+    """Verdict on each expectation of a scenario, in its order.
+
+    A window without a row, or a signal that is not finite, fails.
+
+    Raises
+    ------
+    ShipcosimError
+        If a signal is not in the table.
+    """
+    missing = [
+        Problem(scenario.name, f"the table has no signal '{signal}'.", suggestion(signal, map(str, table.data_vars)))
+        for expect in scenario.expect
+        for signal in expect.signals
+        if signal not in table
+    ]
+    if missing:
+        raise ShipcosimError(missing)
+    return [_verdict(table, expect) for expect in scenario.expect]
+
+
+def _verdict(table: xarray.Dataset, expect: Expectation) -> Verdict:
+    times = table["time"].values
+    start, end = expect.during or (-np.inf, np.inf)
+    tolerance = 1e-9 * max(1.0, abs(times[-1])) if len(times) else 0.0
+    rows = np.flatnonzero((times >= start - tolerance) & (times <= end + tolerance))
+    if len(rows) == 0:
+        return Verdict(expect, False, np.nan, np.nan)
+    rows, values = _reduced(rows, _values(table, expect, rows), expect.statistic)
+    excess = _excess(values, expect)
+    worst = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
+    measure = values[worst, 0] if expect.near is None else np.linalg.norm(values[worst])
+    return Verdict(expect, bool(excess[worst] <= 0.0), float(measure), float(times[rows[worst]]))
+
+
+def _values(table: xarray.Dataset, expect: Expectation, rows: np.ndarray) -> np.ndarray:
+    """The signals, or their differences from `near`; (n, signals)."""
+    values = np.column_stack([table[s].values[rows].astype(float) for s in expect.signal])
+    if expect.near is None:
+        return values
+    targets = [table[v].values[rows].astype(float) if isinstance(v, str) else v for v in expect.near]
+    for i, (signal, target) in enumerate(zip(expect.signal, targets, strict=True)):
+        values[:, i] -= target
+        if table[signal].attrs.get("units") == "rad":
+            values[:, i] = (values[:, i] + np.pi) % (2.0 * np.pi) - np.pi
+    return values
+
+
+def _reduced(rows: np.ndarray, values: np.ndarray, statistic: str | None) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and values that remain after the statistic: one, or all."""
+    if statistic == "mean":
+        return rows[-1:], values.mean(axis=0, keepdims=True)
+    if statistic == "final":
+        return rows[-1:], values[-1:]
+    if statistic in ("max", "min"):
+        extreme = getattr(np, statistic)(values, axis=0, keepdims=True)
+        return rows[np.argmax(values[:, 0] == extreme[0, 0])][None], extreme
+    return rows, values
+
+
+def _excess(values: np.ndarray, expect: Expectation) -> np.ndarray:
+    """By how much each row misses the expectation; negative where it holds."""
+    if expect.near is not None:
+        return np.linalg.norm(values, axis=1) - expect.within
+    below = -np.inf if expect.at_least is None else expect.at_least - values[:, 0]
+    above = -np.inf if expect.at_most is None else values[:, 0] - expect.at_most
+    return np.maximum(below, above)

@@ -1,0 +1,57 @@
+"""Where a key stands in the text of a TOML file, for the messages about it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from shipcosim.errors import Problem
+from shipcosim.scenario.model import Scenario
+
+
+def problem_at(
+    scenario: Scenario, keys: Sequence[str | int], found: str, remedy: str = "", severity: str = "error"
+) -> Problem:
+    """Problem at a key of a scenario, with its line where the scenario was read from a file.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With the key.
+    keys : sequence of str and int
+        Keys and positions in lists from the outside in, as ``("events", 0, "time")``.
+    found, remedy, severity : str
+        As of the problem.
+    """
+    path = scenario.path
+    text = path.read_text(encoding="utf-8-sig") if path and path.is_file() else ""
+    return Problem(location_of(path or "scenario", text, keys), found, remedy, severity)
+
+
+def location_of(path: str | Path, text: str, keys: Sequence[str | int]) -> str:
+    """File and line of a key, as messages name it; the file alone where the key is not in its text."""
+    line = line_of(text, keys)
+    return f"{path}, line {line}" if line else str(path)
+
+
+def line_of(text: str, keys: Sequence[str | int]) -> int:
+    """Line of a key, or of the innermost table around it, in the text of a TOML file; 0 where there is none.
+
+    Examples
+    --------
+    >>> line_of("step_size = 0.1\\n[[events]]\\ntime = 2.0", ("events", 0, "time"))
+    3
+    """
+    section, counts, depth, found = (), {}, 0, 0
+    for number, line in enumerate(text.splitlines(), 1):
+        here = section
+        if header := re.match(r"\s*(\[\[?)\s*([\w.-]+)\s*\]", line):
+            name, repeated = header[2], header[1] == "[["
+            counts[name] = counts.get(name, -1) + 1
+            section = here = (name, counts[name]) if repeated else (name,)
+        elif key := re.match(r"""\s*(["']?)([\w.-]+)\1\s*=""", line):
+            here = (*section, key[2])
+        if len(here) > depth and here == tuple(keys[: len(here)]):
+            depth, found = len(here), number
+    return found

@@ -1,0 +1,141 @@
+"""Reading a scenario file, with every mistake in it said at its line."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario.check import check_times
+from shipcosim.scenario.locations import line_of, location_of
+from shipcosim.scenario.model import Event, Expectation, Scenario
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+LONGEST_LINE = 20_000
+"""Characters in a line of a TOML file."""
+
+_REMEDIES = {
+    "string_type": "It should be a text in quotes.",
+    "float_type": "It should be a number, without quotes and with a decimal point.",
+    "list_type": "It should be a list: [ , ].",
+    "too_short": "It takes more values than that.",
+    "too_long": "It takes fewer values than that.",
+}
+"""What would be right, where pydantic's words would not help."""
+
+_PARTS = {"events": Event, "expect": Expectation}
+
+
+def read_scenario(path: str | os.PathLike) -> Scenario:
+    """Read and check a scenario file.
+
+    Raises
+    ------
+    ShipcosimError
+        With every problem of the file: its line, what was found, what would be right.
+    """
+    path = Path(path)
+    text = _text(path)
+    try:
+        content = toml_of(text)
+    except ValueError as error:
+        raise ShipcosimError(_no_toml(path, str(error))) from error
+    try:
+        scenario = Scenario.model_validate(content)
+    except ValidationError as error:
+        raise ShipcosimError(_problems_of(path, text, error)) from None
+    scenario._path = path
+    if problems := [p for p in check_times(scenario) if p.severity == "error"]:
+        raise ShipcosimError(problems)
+    return scenario
+
+
+def toml_of(text: str) -> dict[str, Any]:
+    """Content of a TOML text.
+
+    Raises
+    ------
+    ValueError
+        If it is not TOML, or one that takes a reader without limits far too long: lines, brackets and numbers of
+        thousands of parts.
+    """
+    if (longest := max(map(len, text.split("\n")))) > LONGEST_LINE:
+        raise ValueError(f"a line has {longest} characters, at most {LONGEST_LINE} are read")
+    try:
+        content = tomllib.loads(text)
+        too_large = any(abs(number) >= 2**64 for number in _whole_numbers(content))
+    except RecursionError:
+        raise ValueError("brackets or tables are nested too deep") from None
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError:
+        raise ValueError("a number has thousands of digits") from None
+    if too_large:
+        raise ValueError("a whole number has more than 64 bits")
+    return content
+
+
+def _whole_numbers(content: Any) -> Iterator[int]:
+    """All whole numbers in what a TOML text holds."""
+    if isinstance(content, (dict, list)):
+        for part in content.values() if isinstance(content, dict) else content:
+            yield from _whole_numbers(part)
+    elif isinstance(content, int):
+        yield content
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror or error}.")) from error
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
+        raise ShipcosimError(Problem(f"{path}, line {line}", found, "Save the file in UTF-8.")) from error
+
+
+def _no_toml(path: Path, message: str) -> Problem:
+    """What the TOML reader says, with its line where all other messages have theirs."""
+    line = re.search(r" \(at line (\d+), column \d+\)", message)
+    where = f"{path}, line {line[1]}" if line else str(path)
+    found = f"is no TOML: {message.replace(line[0], '') if line else message}."
+    return Problem(where, found, "Scenarios are text files in TOML: keys, =, values, texts in quotes.")
+
+
+def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]:
+    """pydantic's findings in our words, one for each key, in the order of the file."""
+    problems = {}
+    for finding in error.errors():
+        keys = finding["loc"]
+        where = line_of(text, keys), keys[: 3 if keys[0] in _PARTS else 2]
+        problems.setdefault(where, Problem(location_of(path, text, keys), *_found_and_remedy(finding)))
+    return [problems[where] for where in sorted(problems, key=lambda where: where[0])]
+
+
+def _found_and_remedy(finding: ErrorDetails) -> tuple[str, str]:
+    keys, kind = finding["loc"], finding["type"]
+    part = _PARTS.get(str(keys[0]), Scenario) if len(keys) > 1 else Scenario
+    label = ".".join(str(k) for k in (keys if part is Scenario else keys[2:]))
+    last = str(keys[-1]) if keys else ""
+    if kind == "extra_forbidden":
+        return f"unknown key '{last}'.", suggestion(last, part.model_fields)
+    if kind == "missing":
+        return f"'{last}' is missing.", ""
+    if kind == "value_error":
+        return str(finding.get("ctx", {})["error"]), ""
+    remedy = _REMEDIES.get(kind) or finding["msg"].replace("Input", "It", 1) + "."
+    return f"{label} = {_as_toml(finding['input'])}.", remedy
+
+
+def _as_toml(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, (bool, str)) else repr(value)
