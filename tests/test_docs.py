@@ -11,6 +11,7 @@ from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / name for name in ("README.md", "CHANGELOG.md")] + sorted((ROOT / "docs").glob("*.md"))
+PAGES += sorted((ROOT / "docs" / "generated").glob("*.md"))
 PAGES += sorted((ROOT / "fmus").glob("*/README.md"))
 USED = ("build", "docs", "fmus", "scenarios", "ssp")
 

@@ -1,4 +1,4 @@
-"""The numbers of docs/validation.md are those that the code gives today; for the sections that take seconds."""
+"""The numbers of docs/generated/validation.md are those of the code today, in the sections that take seconds."""
 
 import re
 from math import isclose
@@ -15,7 +15,7 @@ TITLES = {"turn": "1 The recorded", "trials": "2 The trials", "units": "3 Propel
 def validate(root):
     """The command's module; the pictures go nowhere."""
     patch = pytest.MonkeyPatch()
-    patch.syspath_prepend(str(root / "docs" / "validation"))
+    patch.syspath_prepend(str(root / "docs" / "generators" / "validation"))
     import common
     import validate
 
@@ -41,11 +41,11 @@ def sections(text):
 @pytest.mark.parametrize("name", TITLES)
 def test_committed_page_holds_what_the_code_gives(validate, found, root, name):
     """Same words; numbers within 1 % or one unit of their last digit, for other machines' rounding."""
-    page = sections((root / "docs" / "validation.md").read_text(encoding="utf-8"))
+    page = sections((root / "docs" / "generated" / "validation.md").read_text(encoding="utf-8"))
     made = sections(validate.template())
     title = next(title for title in made if title.startswith(TITLES[name]))
     now = made[title].format_map(found)
-    assert NUMBER.sub("#", page[title]) == NUMBER.sub("#", now), "run docs/validation/validate.py"
+    assert NUMBER.sub("#", page[title]) == NUMBER.sub("#", now), "run docs/generators/validation/validate.py"
     for old, new in zip(NUMBER.findall(page[title]), NUMBER.findall(now), strict=True):
         digit = 10.0 ** -len(old.partition("e")[0].partition(".")[2])
         exponent = 10.0 ** float(old.partition("e")[2] or 0)

@@ -18,7 +18,7 @@ def compiler(request, needs):
 @pytest.fixture(scope="module")
 def stated(root):
     """Verdicts that the page states, by engine and feature."""
-    script = root / "docs" / "write_interoperability.py"
+    script = root / "docs" / "generators" / "write_interoperability.py"
     spec = importlib.util.spec_from_file_location("write_interoperability", script)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

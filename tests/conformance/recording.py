@@ -1,7 +1,7 @@
 """What becomes of each feature in each engine, found by running it: right, refused, silently wrong, crashes or hangs.
 
-`record` runs every case on an engine in a process of its own, which may die of it; docs/write_interoperability.py makes
-the page in docs/ from what it returns. As a script this is that process: NAME of the engine, FOLDER, then cases.
+`record` runs every case on an engine in a process of its own, which may die of it; write_interoperability.py in docs/
+makes the page from what it returns. As a script this is that process: NAME of the engine, FOLDER, then cases.
 """
 
 import json

@@ -13,7 +13,7 @@ import pytest
 from fmpy import read_model_description, simulate_fmu
 
 from shipcosim.cli.project import build_stale
-from shipcosim.cosim.export import fmu as export_fmu
+from shipcosim.cosim import export_fmu
 from shipcosim.series import read_table
 from shipcosim.ssp import read_system
 
@@ -101,7 +101,8 @@ class Reference:
     """The reference result of an FMU of the project: commands that drive the FMU through it, row by row."""
 
     def __init__(self, name, fmu, root):
-        spec = importlib.util.spec_from_file_location("documents", root / "docs" / "write_fmu_documents.py")
+        script = root / "docs" / "generators" / "write_fmu_documents.py"
+        spec = importlib.util.spec_from_file_location("documents", script)
         documents = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(documents)
         self.parameters, self.fmu = documents.PARAMETERS.get(name, {}), fmu

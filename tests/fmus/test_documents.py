@@ -25,7 +25,8 @@ def fmus():
 
 @pytest.fixture(scope="session")
 def documents():
-    spec = importlib.util.spec_from_file_location("write_fmu_documents", ROOT / "docs" / "write_fmu_documents.py")
+    script = ROOT / "docs" / "generators" / "write_fmu_documents.py"
+    spec = importlib.util.spec_from_file_location("write_fmu_documents", script)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

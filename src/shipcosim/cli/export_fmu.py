@@ -32,7 +32,7 @@ def fmu(
     """
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cli.project import build_stale, check_is_system, experiment_of, find_project
-    from shipcosim.cosim.export import fmu as export_fmu
+    from shipcosim.cosim import export_fmu
     from shipcosim.ssp import read_system
 
     check_is_system(ssp)

@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))  # diagnose
 from trial import comparison, manoeuvres, runs, scoring, tables
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGE = ROOT / "docs" / "diagnosis-trial.md"
+PAGE = ROOT / "docs" / "generated" / "diagnosis-trial.md"
 FIRST_SEED = 5000  # of the trial; below 1000 is for developing
 
 
@@ -37,11 +37,11 @@ def main(arguments=None):
     sailing.set_defaults(call=_sail)
     showing = commands.add_parser("table", help="print the table of results")
     showing.add_argument("results", type=Path, nargs="*", default=[ROOT / "results" / "trial.jsonl"])
-    showing.add_argument("--write", action="store_true", help="into docs/diagnosis-trial.md too, between its markers")
+    showing.add_argument("--write", action="store_true", help="into docs/generated/diagnosis-trial.md too")
     showing.set_defaults(call=_table)
     beside = commands.add_parser("rivals", help="print the rates of several tools on the same logs")
     beside.add_argument("results", type=Path, nargs="+")
-    beside.add_argument("--write", action="store_true", help="into docs/diagnosis-trial.md too, between its markers")
+    beside.add_argument("--write", action="store_true", help="into docs/generated/diagnosis-trial.md too")
     beside.set_defaults(call=_rivals)
     options = parser.parse_args(arguments)
     options.call(options)
@@ -84,7 +84,9 @@ def _show(result):
 
 
 def _table(options):
-    _tell(tables.table(_found(options.results)), "table", options.write)
+    results = _found(options.results)
+    _tell(tables.leading(results), "leading", options.write)
+    _tell(tables.table(results), "table", options.write)
 
 
 def _rivals(options):

@@ -312,6 +312,6 @@ def test_before_sailing_nothing_is_said_of_weather_that_the_ship_cannot_hold_aga
 
 
 def test_the_page_lists_the_library(root):
-    page = (root / "docs" / "manoeuvres.md").read_text(encoding="utf-8")
+    page = (root / "docs" / "generated" / "manoeuvres.md").read_text(encoding="utf-8")
     for i, one in enumerate(library(problem().model), start=1):
         assert f"| {i} | {one.name} | {one.minutes:g} |" in page

@@ -25,7 +25,7 @@ class Thruster(Fmu):
         self.thrust = thrust_after(self.thrust, self.thrust_cmd, h, self.thrust_max, self.time_constant)
 '''
 THRUST_AFTER = """
-from .maths import exp
+from shipcosim.models.core.maths import exp
 
 
 def thrust_after(thrust, command, h, limit, time_constant):

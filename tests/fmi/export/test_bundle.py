@@ -37,6 +37,7 @@ def test_only_what_is_reached_by_imports_comes_along(folder):
         "late.py",
         "shipcosim/__init__.py",
         "shipcosim/models/__init__.py",
+        "shipcosim/models/core/__init__.py",
         "shipcosim/models/core/maths.py",
     }
 
@@ -48,7 +49,7 @@ def test_only_what_is_reached_by_imports_comes_along(folder):
         ("import helper as h, math", "import P.helper as h, math"),
         ("import shipcosim.models.core.maths", "import P.shipcosim.models.core.maths, P.shipcosim as shipcosim"),
         ("import shipcosim.models.core.maths as m", "import P.shipcosim.models.core.maths as m"),
-        ("from shipcosim.models.core import maths", "from P.shipcosim.models import maths"),
+        ("from shipcosim.models.core import maths", "from P.shipcosim.models.core import maths"),
         ("from  helper  import (\n    a,\n    b\n)", "from  P.helper  import (\n    a,\n    b\n)"),
         ("é = 'é'; import helper; x = 1", "é = 'é'; import P.helper as helper; x = 1"),
         ("import math, \\\n    helper  # why", "import math, P.helper as helper \\\n  # why"),

@@ -53,7 +53,7 @@ def form_of(case):
 @pytest.fixture(scope="module")
 def page(root):
     """Verdicts that docs/interoperability.md states, by column and feature."""
-    spec = importlib.util.spec_from_file_location("page", root / "docs" / "write_interoperability.py")
+    spec = importlib.util.spec_from_file_location("page", root / "docs" / "generators" / "write_interoperability.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.recorded(module.PAGE.read_text(encoding="utf-8"))

@@ -1,6 +1,6 @@
-"""Make docs/validation.md and its pictures: every number in it comes from here.
+"""Make docs/generated/validation.md and its pictures: every number in it comes from here.
 
-    .venv/bin/python docs/validation/validate.py
+    .venv/bin/python docs/generators/validation/validate.py
 
 takes about three minutes. It needs the reference data in ../shared, which is not part of the project, and matplotlib.
 """
@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-PAGE = HERE.parent / "validation.md"
-SHARED = HERE.parents[2] / "shared"
+PAGE = HERE.parents[1] / "generated" / "validation.md"
+SHARED = HERE.parents[3] / "shared"
 QUICK = ("turn", "trials", "units", "loads")
 """Sections that take seconds."""
 SLOW = ("thesis", "steps")
@@ -78,7 +78,7 @@ def main():
         return 2
     found = numbers(SHARED, progress=lambda name: print(f"{name} ...", flush=True))
     PAGE.write_text(template().format_map(found), encoding="utf-8")
-    print("docs/validation.md and docs/validation/pictures/ are written.")
+    print("docs/generated/validation.md and docs/generated/pictures/ are written.")
     return 0
 
 

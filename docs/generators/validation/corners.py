@@ -12,7 +12,7 @@ from shipcosim.cosim import simulate
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STEPS = (0.2, 0.1, 0.05, 0.025, 0.0125)  # s, coarse to fine; differences are to the finest
 THRUSTERS = ("tunnel", "port", "starboard")
 CALM = {

@@ -14,7 +14,7 @@ from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ships import parameters
 
-PICTURES = Path(__file__).resolve().parent / "pictures"
+PICTURES = Path(__file__).resolve().parents[2] / "generated" / "pictures"
 KNOT = 1852.0 / 3600.0
 MODEL, REFERENCE, THIRD = "#1f5fa8", "#c8501e", "#5a8f3c"
 

@@ -1,6 +1,7 @@
 """Writes what is derived from the FMUs: the table of variables in each README, and each reference.csv.
 
-Run `python docs/write_fmu_documents.py` after an FMU or a number has changed; tests compare the files with this.
+Run `python docs/generators/write_fmu_documents.py` after an FMU or a number has changed; tests compare the files
+with this.
 
 A reference result is 60 s of one component of the four-corner run: at each row the inputs it had there, and the outputs
 that the FMU gives when it is started with the first row's inputs and stepped from row to row with the inputs held.
@@ -21,7 +22,7 @@ from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table, read_table, write_table
 from shipcosim.ssp import read_system
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 MARK = "## Variables\n"
 DURATION, INTERVAL = 60.0, 0.5  # s
 COMPONENTS = {
