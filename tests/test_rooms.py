@@ -7,15 +7,16 @@ import pytest
 
 MAY_IMPORT = {
     "errors": set(),
+    "units": set(),
     "models": set(),
-    "series": {"errors"},
-    "fmi": {"models", "errors"},
-    "ssp": {"series", "errors"},
-    "scenario": {"series", "ssp", "errors"},
-    "cosim": {"series", "ssp", "scenario", "fmi", "errors"},
-    "diagnose": {"errors", "models", "series", "ssp", "scenario", "cosim"},
-    "report": {"errors", "models", "series", "fmi", "ssp", "scenario", "cosim", "diagnose"},
-    "cli": {"errors", "models", "series", "fmi", "ssp", "scenario", "cosim", "report", "diagnose"},
+    "series": {"errors", "units"},
+    "fmi": {"models", "errors", "units"},
+    "ssp": {"series", "errors", "units"},
+    "scenario": {"series", "ssp", "errors", "units"},
+    "cosim": {"series", "ssp", "scenario", "fmi", "errors", "units"},
+    "diagnose": {"errors", "units", "models", "series", "ssp", "scenario", "cosim"},
+    "report": {"errors", "units", "models", "series", "fmi", "ssp", "scenario", "cosim", "diagnose"},
+    "cli": {"errors", "units", "models", "series", "fmi", "ssp", "scenario", "cosim", "report", "diagnose"},
     "api": {"errors", "series", "fmi", "ssp", "scenario", "cosim", "report", "diagnose"},
 }
 ONLY_DOOR = {
@@ -25,7 +26,7 @@ ONLY_DOOR = {
     "libcosimpy": {"cosim.engines"},
     "ecospy": {"cosim.engines"},
     "torch": {"learn"},
-    "pint": {"series"},
+    "pint": {"units"},
     "plotly": {"report"},
     "typer": {"cli"},
 }

@@ -86,3 +86,14 @@ def suggestion(name, known):
     shown = ", ".join(known[:12]) + (f", ... ({len(known)} in all)" if len(known) > 12 else "")
     close = get_close_matches(name, known[:MOST_COMPARED], n=1) if len(name) < LONGEST_NAME else ()
     return f"There is: {shown}." + (f" Did you mean '{close[0]}'?" if close else "")
+
+
+def it_has(name, known):
+    """Remedy for a name that something does not have.
+
+    Examples
+    --------
+    >>> it_has("thrust_comand", ["thrust_cmd"])
+    "It has: thrust_cmd. Did you mean 'thrust_cmd'?"
+    """
+    return "It has" + suggestion(name, known).removeprefix("There is")

@@ -1,7 +1,7 @@
 """Tables: every run and every measurement is one `xarray.Dataset` over `time` in seconds, signals with unit and name.
 
-The only door to pint and pyarrow. xarray, pint and pyarrow are imported where they are used: together they take a
-second, which a command that only prints its help should not pay.
+The only door to pyarrow. xarray and pyarrow are imported where they are used: they take most of a second, which a
+command that only prints its help should not pay.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.units import UnitError, spelled_conversion
 
 if TYPE_CHECKING:
     import xarray
@@ -161,44 +162,10 @@ def conversion(unit_from: str | None, unit_to: str | None) -> tuple[float, float
     """
     if not unit_from or not unit_to or unit_from == unit_to:
         return 1.0, 0.0
-    import pint
-
     try:
-        units = _units()
-        source, target = units(_pint_spelling(unit_from)).units, units(_pint_spelling(unit_to)).units
-        offset, one = (float(units.Quantity(value, source).to(target).magnitude) for value in (0.0, 1.0))
-    except pint.UndefinedUnitError as error:
-        why = str(error).replace("is not defined in the unit registry", "is not known")
-        found = f"cannot convert '{unit_from}' into '{unit_to}': {why}."
-        raise ShipcosimError(Problem("", found, "Units are written like N.m, kn or deg.")) from error
-    except pint.DimensionalityError as error:
-        raise ShipcosimError(
-            Problem("", f"cannot convert '{unit_from}' into '{unit_to}': they measure different things.")
-        ) from error
-    return one - offset, offset
-
-
-@cache
-def _units():
-    import pint
-
-    return pint.UnitRegistry()
-
-
-_UNIT_TOKEN = re.compile(r"(?P<name>[A-Za-z_%°µΩ]+)(?:\^|\*\*)?(?P<power>-?\d)?|(?P<sign>[.*/()]|1(?!\d))|\s+")
-
-
-def _pint_spelling(unit):
-    """FMI's "kg.m2/s" as pint wants it. Only names, powers and signs get through: pint evaluates what it reads."""
-    spelling, position = "", 0
-    while position < len(unit):
-        token = _UNIT_TOKEN.match(unit, position)
-        if token is None:
-            raise ShipcosimError(Problem("", f"'{unit}' is no unit.", "Units are written like N.m, kg.m2/s or deg."))
-        power = f"**{token['power']}" if token["power"] else ""
-        spelling += (token["name"] or (token["sign"] or "").replace(".", "*")) + power
-        position = token.end()
-    return spelling
+        return spelled_conversion(unit_from, unit_to)
+    except UnitError as error:
+        raise ShipcosimError(Problem("", error.found, error.remedy)) from error
 
 
 def _netcdf(table):

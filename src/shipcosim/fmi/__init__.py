@@ -1,7 +1,6 @@
 """Writing FMUs: declare variables on a class, write `step`, and `shipcosim.fmi.export.builder` packs it.
 
-What is named here travels inside every FMU, so it needs Python alone. `builder`, `bundle`, `description` and `units`
-stay behind.
+What is named here travels inside every FMU, so it needs Python alone. The folder `export` stays behind.
 """
 
 from shipcosim.fmi.fmu import Fmu

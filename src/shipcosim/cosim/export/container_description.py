@@ -6,7 +6,6 @@ from shipcosim import __version__
 from shipcosim.cosim.export.container_face import SHOWN, Face, is_structured, library_type
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import System
-from shipcosim.ssp.xml.units import BASE
 from shipcosim.ssp.xml.values import text_of
 
 BINARY = "container_fmu"
@@ -76,14 +75,8 @@ def _add_units(root, system, face):
             raise ShipcosimError(Problem(system.name, text, "An FMU can have one definition of a unit."))
         element = xml.SubElement(definitions, "Unit", name=name)
         for unit in found:
-            xml.SubElement(element, "BaseUnit", _base(unit))
+            xml.SubElement(element, "BaseUnit", unit.base_unit_attributes)
             break
-
-
-def _base(unit):
-    powers = {name: str(power) for name, power in zip(BASE, unit.exponents, strict=True) if power}
-    powers |= {"factor": repr(unit.factor)} if unit.factor != 1.0 else {}
-    return powers | ({"offset": repr(unit.offset)} if unit.offset else {})
 
 
 def _add_types(root, face):

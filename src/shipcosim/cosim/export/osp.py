@@ -13,7 +13,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, check_scenario
 from shipcosim.scenario.osp import scenario_text
 from shipcosim.ssp import System, with_values
-from shipcosim.ssp.read.declarations import unused
+from shipcosim.ssp.xml.markup import free_name
 
 STRUCTURE, SCENARIO = "OspSystemStructure.xml", "scenario.json"
 TYPES = ("Real", "Integer", "Boolean", "String")
@@ -102,7 +102,7 @@ def _file_names(system):
     for component in system.components.values():
         path = component.fmu.path
         if path not in names:
-            names[path] = unused(path.stem, {name.removesuffix(".fmu") for name in names.values()}) + ".fmu"
+            names[path] = free_name(path.stem, {name.removesuffix(".fmu") for name in names.values()}) + ".fmu"
     return names
 
 

@@ -4,7 +4,7 @@ import math
 from xml.etree import ElementTree as xml
 
 import shipcosim
-from shipcosim.fmi.units import base_unit
+from shipcosim.units import fmi_unit
 
 QUANTITIES = {
     "m": "Length",
@@ -133,15 +133,12 @@ def _unit_definitions(root, variables, units):
     definitions = xml.SubElement(root, "UnitDefinitions")
     for unit in units:
         try:
-            exponents, factor, offset = base_unit(unit)
+            defined = fmi_unit(unit)
         except ValueError as error:
             users = ", ".join(variable.name for variable in variables if variable.unit == unit)
             raise ValueError(f"{users}: {error}") from None
         element = xml.SubElement(definitions, "Unit", name=unit)
-        base = {name: str(power) for name, power in exponents.items()}
-        base |= {"factor": repr(factor)} if factor != 1.0 else {}
-        base |= {"offset": repr(offset)} if offset else {}
-        xml.SubElement(element, "BaseUnit", base)
+        xml.SubElement(element, "BaseUnit", defined.base_unit_attributes)
         if unit in DISPLAYED:
             xml.SubElement(element, "DisplayUnit", name=DISPLAYED[unit], factor=repr(180 / math.pi))
 

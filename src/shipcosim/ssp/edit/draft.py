@@ -13,12 +13,11 @@ from shipcosim.ssp.edit.parameter_sets import Sets
 from shipcosim.ssp.edit.write import write_file
 from shipcosim.ssp.flatten.system import assemble_package
 from shipcosim.ssp.fmu.description import describe_fmu
-from shipcosim.ssp.read.declarations import unused
 from shipcosim.ssp.read.package import SYSTEM_STRUCTURE
 from shipcosim.ssp.read.structure import FMU
 from shipcosim.ssp.xml.archive import write_archive
 from shipcosim.ssp.xml.document import Document, Findings, child
-from shipcosim.ssp.xml.markup import to_bytes
+from shipcosim.ssp.xml.markup import free_name, to_bytes
 
 
 class Draft:
@@ -133,7 +132,7 @@ class Draft:
             if place.name == file.name and path.is_file() and cmp(path, file, shallow=False):
                 return quote(place.relative_to(self.path.parent).as_posix())
         names = {path.name for path in (*known, *self.package.held, *folder.glob("*"))}
-        name = unused(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
+        name = free_name(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
         self.package.held[folder / name] = file.resolve()
         return quote(f"resources/{name}")
 

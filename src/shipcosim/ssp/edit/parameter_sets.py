@@ -9,8 +9,8 @@ from urllib.parse import unquote, urlsplit
 from lxml import etree
 
 from shipcosim.ssp.edit.names import walk
-from shipcosim.ssp.read.declarations import define_unit
 from shipcosim.ssp.read.parameters import TOLERANCE
+from shipcosim.ssp.xml.definitions import define_unit
 from shipcosim.ssp.xml.document import Document, Findings, child, children, local, read_document
 from shipcosim.ssp.xml.markup import add, drop, ensure, put
 from shipcosim.ssp.xml.values import KINDS, text_of

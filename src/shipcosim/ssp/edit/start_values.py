@@ -6,9 +6,10 @@ from math import isfinite
 from shipcosim.errors import ShipcosimError, suggestion
 from shipcosim.ssp.edit.write import KIND_OF
 from shipcosim.ssp.read.parameters import ParameterValue, tolerance_of
+from shipcosim.ssp.xml.definitions import read_units
 from shipcosim.ssp.xml.document import children, qualified
 from shipcosim.ssp.xml.markup import drop
-from shipcosim.ssp.xml.units import conversion, find_unit, read_units, relation
+from shipcosim.units import conversion, find_unit, relation
 
 
 class StartValues(MutableMapping):

@@ -11,20 +11,21 @@ from urllib.parse import quote
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp.check import problems_of
+from shipcosim.ssp.edit.connectors import declare, declare_variable
 from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.experiment import write_step_size
 from shipcosim.ssp.edit.names import attached, best_pair, connections, find_connector, find_element, split_owner, walk
 from shipcosim.ssp.edit.start_values import StartValues
 from shipcosim.ssp.fmu.description import read_fmu
 from shipcosim.ssp.osp.reader import osp_file
-from shipcosim.ssp.read.declarations import declare, declare_variable
 from shipcosim.ssp.read.package import SYSTEM_STRUCTURE, Package, open_package
 from shipcosim.ssp.read.parameters import has_root
 from shipcosim.ssp.read.structure import FMU, KIND_NAMES
 from shipcosim.ssp.xml.annotations import step_sizes
+from shipcosim.ssp.xml.definitions import read_units
 from shipcosim.ssp.xml.document import Document, Findings, child, children, local, parse
 from shipcosim.ssp.xml.markup import add, add_osp, drop, ensure
-from shipcosim.ssp.xml.units import find_unit, read_units
+from shipcosim.units import find_unit
 
 EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"
   version="1.0" name="">

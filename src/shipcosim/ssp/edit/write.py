@@ -14,7 +14,7 @@ from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.xml.archive import write_archive
 from shipcosim.ssp.xml.document import Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
-from shipcosim.ssp.xml.units import find_unit
+from shipcosim.units import find_unit
 
 KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}
 

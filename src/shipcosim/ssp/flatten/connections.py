@@ -2,10 +2,9 @@
 
 from typing import NamedTuple
 
-from shipcosim.errors import suggestion
+from shipcosim.errors import it_has, suggestion
 from shipcosim.ssp.flatten.connectors import FREE, SOURCES_INSIDE, SOURCES_OUTSIDE, Key, Wire, variable_port
 from shipcosim.ssp.read.structure import KIND_NAMES, signal
-from shipcosim.ssp.xml.values import has
 
 FEEDS = {
     "parameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
@@ -101,7 +100,7 @@ def _exists(end, ends, link, system, tree):
     if component is None or fmu is not None:
         wanted, known = _wanted(end, ends, fmu, tree)
         owner = end.element or system.name
-        tree.findings.error(link.place, f"{owner} has no {wanted} '{end.name}'.", has(end.name, known))
+        tree.findings.error(link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, known))
     return False
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.read.parameters import ParameterValue, Transformation
-from shipcosim.ssp.xml.units import Unit, find_unit
+from shipcosim.units import Unit, find_unit
 
 SOURCES_OUTSIDE = ("output", "calculatedParameter", "local", "constant")
 SOURCES_INSIDE = ("input", "parameter", "structuralParameter")

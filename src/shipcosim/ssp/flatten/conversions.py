@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from shipcosim.ssp.xml.units import Unit, conversion, relation
-from shipcosim.ssp.xml.values import has
+from shipcosim.errors import it_has
+from shipcosim.units import Unit, conversion, relation
 
 TAKES = {
     "Real": ("Real", "Integer"),
@@ -132,7 +132,7 @@ def _by_number(table, source, target, place, findings):
     """Table of numbers from a table of item names."""
     for name, items in [(name, source) for name in table] + [(name, target) for name in table.values()]:
         if name not in items:
-            findings.error(place, f"The enumeration has no item '{name}'.", has(name, items))
+            findings.error(place, f"The enumeration has no item '{name}'.", it_has(name, items))
     return {source[a]: target[b] for a, b in table.items() if a in source and b in target}
 
 

@@ -6,7 +6,7 @@ become ports with wires between them, so that what follows knows no hierarchy.
 
 from dataclasses import dataclass, replace
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, it_has, suggestion
 from shipcosim.ssp.flatten.connections import wire_of
 from shipcosim.ssp.flatten.connectors import Key, Port, Setting, Wire, variable_port
 from shipcosim.ssp.fmu.arrays import element_connectors, element_links, element_values, without_arrays
@@ -21,8 +21,7 @@ from shipcosim.ssp.read.structure import (
     DictionaryReference,
     SystemElement,
 )
-from shipcosim.ssp.xml.units import find_unit, relation
-from shipcosim.ssp.xml.values import has
+from shipcosim.units import find_unit, relation
 
 MOST_SYSTEMS = 10_000  # a few files that include each other can describe more than any memory holds
 
@@ -167,7 +166,7 @@ class Tree:
             if fmu is not None:
                 found = f"{fmu.path.name} has no {_causality(connector.kind)} '{connector.name}'."
                 known = fmu.named(connector.kind) or list(fmu.variables)
-                self.findings.error(connector.place, found, has(connector.name, known))
+                self.findings.error(connector.place, found, it_has(connector.name, known))
             fields = (connector.kind, connector.type, "component", connector.unit, connector.items)
             return Port(*fields, place=connector.place)
         self._compare(connector, variable, fmu)
@@ -214,7 +213,7 @@ class Tree:
                 continue
             if connector.name not in entries:
                 found = f"The dictionary '{element.dictionary}' has no '{connector.name}'."
-                self.findings.error(connector.place, found, has(connector.name, entries))
+                self.findings.error(connector.place, found, it_has(connector.name, entries))
                 continue
             entry = entries[connector.name]
             self.references[key] = Key(owner, connector.name)
@@ -265,7 +264,7 @@ class Tree:
         for entry in mapping:
             if entry.source not in by_name:
                 found = f"The parameter set '{values.name}' has no '{entry.source}'."
-                self.findings.error(entry.place, found, has(entry.source, by_name))
+                self.findings.error(entry.place, found, it_has(entry.source, by_name))
                 continue
             how = (entry.transformation, entry.suppress_unit_conversion)
             renamed = replace(by_name[entry.source], name=entry.target)

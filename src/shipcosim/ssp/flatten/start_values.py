@@ -9,10 +9,9 @@ from collections import defaultdict
 from dataclasses import replace
 from difflib import get_close_matches
 
-from shipcosim.errors import suggestion
+from shipcosim.errors import it_has, suggestion
 from shipcosim.ssp.flatten.connectors import SOURCES_INSIDE, Key, variable_port
 from shipcosim.ssp.flatten.conversions import Flow, advance
-from shipcosim.ssp.xml.values import has
 
 
 class Settings:
@@ -110,7 +109,7 @@ class Settings:
         table = step.transformation.table if step.transformation else {}
         name = table.get(value, value)
         if name not in port.items:
-            self.findings.error(place, f"The enumeration has no item '{name}'.", has(name, port.items))
+            self.findings.error(place, f"The enumeration has no item '{name}'.", it_has(name, port.items))
         step = replace(step, transformation=None)
         return port.items.get(name), replace(flow, items=port.items), step
 
@@ -134,7 +133,7 @@ class Settings:
         place, name = setting.value.place, setting.name
         element, known = self._nearest(setting)
         if element is not None:
-            self.findings.error(place, f"{element} has no parameter '{name}'.", has(name, known))
+            self.findings.error(place, f"{element} has no parameter '{name}'.", it_has(name, known))
             return
         elements = sorted({key.split(".")[0] for key in known})
         first = name.split(".")[0]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, it_has, suggestion
 from shipcosim.ssp.flatten.connectors import Key
 from shipcosim.ssp.flatten.hierarchy import Tree
 from shipcosim.ssp.flatten.start_values import Settings, check_bounds
@@ -15,7 +15,6 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.parameters import ParameterSet, read_parameter_set
 from shipcosim.ssp.read.structure import Experiment, read_structure
 from shipcosim.ssp.xml.document import Findings, read_document
-from shipcosim.ssp.xml.values import has
 
 
 @dataclass(frozen=True)
@@ -143,7 +142,7 @@ class System:
             owner = max(owners, key=len)
             variable = signal[len(owner) + 1 :]
             known = self.components[owner].fmu.variables
-            return Problem(where, f"{owner} has no variable '{variable}'.", has(variable, known))
+            return Problem(where, f"{owner} has no variable '{variable}'.", it_has(variable, known))
         element = signal.split(".")[0]
         known = [*self.components, *self.inputs, *self.outputs, *self.parameters]
         return Problem(where, f"There is no component or connector '{element}'.", suggestion(element, known))

@@ -10,8 +10,8 @@ from pathlib import Path
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.fmu.fmi1 import interfaces_of, is_negated, items_of, traits_of
 from shipcosim.ssp.xml.archive import entries, read_entry
+from shipcosim.ssp.xml.definitions import read_units
 from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, is_true, local, parse
-from shipcosim.ssp.xml.units import read_units
 from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS, read_value
 

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from shipcosim.errors import it_has
 from shipcosim.ssp.flatten.wiring import Connection
 from shipcosim.ssp.xml.document import local
-from shipcosim.ssp.xml.values import has
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class Wiring:
         known = self.functions[function]
         if signal not in known.signals:
             found = f"The {known.kind} '{function}' has no signal '{signal}'."
-            self.findings.error(place, found, has(signal, known.signals))
+            self.findings.error(place, found, it_has(signal, known.signals))
             return
         ends = self._ends.setdefault((function, signal), [])
         if ends and not signal.startswith("out"):

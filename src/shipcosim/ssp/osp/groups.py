@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from shipcosim.errors import it_has
 from shipcosim.ssp.xml.document import local, read_document
-from shipcosim.ssp.xml.values import has
 
 ENDING = "_OspModelDescription.xml"
 
@@ -90,7 +90,7 @@ def _group(element, fmu, document, findings):
             name = part.get("ref", "")
             if name not in fmu.variables:
                 found = f"{fmu.path.name} has no variable '{name}'."
-                findings.error(document.place(part, element.get("name", "")), found, has(name, fmu.variables))
+                findings.error(document.place(part, element.get("name", "")), found, it_has(name, fmu.variables))
             variables.append(name)
         else:
             groups.append(_group(part, fmu, document, findings))

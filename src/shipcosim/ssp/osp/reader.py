@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
-from shipcosim.errors import suggestion
+from shipcosim.errors import it_has, suggestion
 from shipcosim.ssp.flatten.connectors import Setting
 from shipcosim.ssp.flatten.hierarchy import Tree
 from shipcosim.ssp.flatten.start_values import Settings
@@ -23,8 +23,8 @@ from shipcosim.ssp.osp.times import own_step, read_experiment
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.read.structure import FMU, ComponentElement
 from shipcosim.ssp.xml.document import local, read_document, reporting
-from shipcosim.ssp.xml.units import find_unit, relation
-from shipcosim.ssp.xml.values import has, read_value
+from shipcosim.ssp.xml.values import read_value
+from shipcosim.units import find_unit, relation
 
 OSP_STRUCTURE = "OspSystemStructure.xml"
 SOURCES = ("output", "calculatedParameter")
@@ -281,7 +281,7 @@ class _Reader:
         function, name = self.functions[signal.get("function")], signal.get("name")
         if name not in function.groups:
             text = f"The {function.kind} '{function.name}' has no group of signals '{name}'."
-            self.findings.error(place, text, has(name, function.groups))
+            self.findings.error(place, text, it_has(name, function.groups))
             return
         if found is None:
             self.wiring.give_up(function.name)
@@ -313,7 +313,7 @@ class _Reader:
             found = f"The variable groups of {fmu.path.name} are described nowhere."
             self.findings.error(place, found, f"Put {file_names(fmu)[0]} beside it.")
         elif name not in groups:
-            self.findings.error(place, f"{simulator} has no variable group '{name}'.", has(name, groups))
+            self.findings.error(place, f"{simulator} has no variable group '{name}'.", it_has(name, groups))
         return (groups or {}).get(name)
 
     def _end(self, element, place):
@@ -323,7 +323,7 @@ class _Reader:
         if fmu is None:
             return None
         if name not in fmu.variables:
-            self.findings.error(place, f"{simulator} has no variable '{name}'.", has(name, fmu.variables))
+            self.findings.error(place, f"{simulator} has no variable '{name}'.", it_has(name, fmu.variables))
             return None
         return simulator, name
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
 from shipcosim.ssp.osp.schema import NAMESPACE
-from shipcosim.ssp.read.declarations import unused
+from shipcosim.ssp.xml.markup import free_name
 from shipcosim.ssp.xml.values import text_of
 
 
@@ -93,12 +93,12 @@ def _connections(connections, taken):
     for target, feeding in into.items():
         first = feeding[0]
         if len(feeding) > 1:
-            name = unused(f"sum_{len(sums)}", taken)
+            name = free_name(f"sum_{len(sums)}", taken)
             sums.append(f'<Sum name="{name}" inputCount="{len(feeding)}"/>')
             joined += [_signal(c.source, name, f"in[{i}]") for i, c in enumerate(feeding)]
             joined.append(_signal(target, name, "out"))
         elif (first.factor, first.offset) != (1.0, 0.0):
-            name = unused(f"linear_{len(linear)}", taken)
+            name = free_name(f"linear_{len(linear)}", taken)
             how = f'factor="{first.factor!r}" offset="{first.offset!r}"'
             linear.append(f'<LinearTransformation name="{name}" {how}/>')
             joined += [_signal(first.source, name, "in"), _signal(target, name, "out")]

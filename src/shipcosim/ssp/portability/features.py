@@ -13,12 +13,11 @@ from lxml import etree
 from shipcosim.ssp.flatten.connectors import Key
 from shipcosim.ssp.osp.groups import file_names
 from shipcosim.ssp.portability.subject import elements_of
-from shipcosim.ssp.read.declarations import TYPES
 from shipcosim.ssp.read.structure import FMU, STEP_SIZES, DictionaryReference, SystemElement
 from shipcosim.ssp.xml.document import NAMESPACES, child, children, local
 from shipcosim.ssp.xml.markup import OSP_TYPE
-from shipcosim.ssp.xml.units import find_unit, relation
-from shipcosim.ssp.xml.values import KINDS
+from shipcosim.ssp.xml.values import KINDS, SSP_1_TYPES
+from shipcosim.units import find_unit, relation
 
 DECLARING = re.compile(rb"<[\w.-]+:Algorithm\s[^>]*xmlns")
 """A start tag that declares a prefix; whether it does cannot be seen any more once it is read."""
@@ -108,7 +107,7 @@ def connectors_of_2(subject):
 
 
 def _types_of_2(element):
-    return [local(part) for part in element if local(part) in KINDS and local(part) not in TYPES]
+    return [local(part) for part in element if local(part) in KINDS and local(part) not in SSP_1_TYPES]
 
 
 def enumeration_connectors(subject):

@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-from shipcosim.errors import ShipcosimError, suggestion
+from shipcosim.errors import ShipcosimError, it_has, suggestion
 from shipcosim.ssp.xml.archive import read_entry, unpack
 from shipcosim.ssp.xml.document import LARGEST_FILE, Document, parse, read_document
-from shipcosim.ssp.xml.values import has
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
 
@@ -149,7 +148,7 @@ def open_package(path, findings, fmus=(), shown=None):
     package = Package(Path(unpacked.name), shown, variant or SYSTEM_STRUCTURE, fmus, unpacked)
     if not (package.folder / package.ssd).is_file():
         there = [file.name for file in package.folder.glob("*.ssd")]
-        findings.error(shown, f"The archive has no {package.ssd} at its top.", has(package.ssd, there))
+        findings.error(shown, f"The archive has no {package.ssd} at its top.", it_has(package.ssd, there))
         return None
     return package
 

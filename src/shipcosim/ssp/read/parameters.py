@@ -6,10 +6,11 @@ Reference: System Structure and Parameterization 1.0, sections 4.5, 6, 7 and 8.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from shipcosim.ssp.xml.definitions import read_enumerations, read_units
 from shipcosim.ssp.xml.document import NAMESPACES, children, is_true, local, qualified, reporting
-from shipcosim.ssp.xml.units import Unit, find_unit, read_units
 from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS, read_value
+from shipcosim.units import Unit, find_unit
 
 TOLERANCE = "shipcosim.tolerance"
 """Type of the annotation with a parameter's tolerance."""
@@ -265,13 +266,3 @@ def read_dictionary(document, findings):
             unit = find_unit(typed.get("unit"), units)
             entries[element.get("name")] = DictionaryEntry(element.get("name"), KINDS[local(typed)], unit, items)
     return entries
-
-
-def read_enumerations(elements):
-    """Items (name to value) of Enumeration elements, by the enumeration's name."""
-    return {
-        element.get("name"): {
-            item.get("name"): read_value("Integer", item.get("value", "")) for item in children(element, "ssc:Item")
-        }
-        for element in elements
-    }

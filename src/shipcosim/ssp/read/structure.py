@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 from shipcosim.ssp.read.parameters import (
     Transformation,
     has_root,
-    read_enumerations,
     read_transformation,
 )
 from shipcosim.ssp.xml.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored, stated
+from shipcosim.ssp.xml.definitions import read_enumerations, read_units
 from shipcosim.ssp.xml.document import Document, child, children, is_true, local, reporting
-from shipcosim.ssp.xml.units import Unit, find_unit, read_units
 from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS, read_value
+from shipcosim.units import Unit, find_unit
 
 FMU = "application/x-fmu-sharedlibrary"
 SSD = "application/x-ssp-definition"

@@ -3,6 +3,7 @@
 Elements are put where the schema wants them and indented like their neighbours.
 """
 
+from collections.abc import Container
 from copy import deepcopy
 
 from lxml import etree
@@ -136,3 +137,18 @@ def osp_namespace(root):
     found = [element.tag for element in root.iter("{*}Algorithm", "{*}*") if OSP_MARK in element.tag]
     found.sort(key=lambda tag: not tag.endswith("}Algorithm"))
     return etree.QName(found[0]).namespace if found else OSP
+
+
+def free_name(name: str, taken: Container[str]) -> str:
+    """The name, with a number behind it where it is taken.
+
+    Examples
+    --------
+    >>> free_name("line", ["line", "line_2"])
+    'line_3'
+    """
+    number, free = 1, name
+    while free in taken:
+        number += 1
+        free = f"{name}_{number}"
+    return free

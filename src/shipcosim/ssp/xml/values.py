@@ -2,8 +2,6 @@
 
 import math
 
-from shipcosim.errors import suggestion
-
 KINDS = {
     "Real": "Real",
     "Float64": "Real",
@@ -17,6 +15,9 @@ KINDS = {
     "Clock": "Clock",
 }
 """Kind of each type name of FMI 2.0, FMI 3.0 and SSP: what can be connected and converted alike."""
+
+SSP_1_TYPES = ("Real", "Integer", "Boolean", "String", "Enumeration", "Binary")
+"""Types of SSP 1.0; the kinds of all others (FMI 3.0) are among them, but for clocks."""
 
 BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
@@ -79,14 +80,3 @@ def text_of(value):
     if isinstance(value, bool):
         return "true" if value else "false"
     return value.hex() if isinstance(value, bytes) else str(value)
-
-
-def has(name, known):
-    """Remedy for a name that something does not have, in the words of the conventions.
-
-    Examples
-    --------
-    >>> has("thrust_comand", ["thrust_cmd"])
-    "It has: thrust_cmd. Did you mean 'thrust_cmd'?"
-    """
-    return "It has" + suggestion(name, known).removeprefix("There is")

@@ -1,0 +1,88 @@
+"""Units and enumerations that a file of SSP or FMI defines: read, and added to it."""
+
+from collections.abc import Iterable, Mapping
+
+from lxml import etree
+
+from shipcosim.ssp.xml.document import children, local
+from shipcosim.ssp.xml.markup import add, ensure, free_name
+from shipcosim.ssp.xml.values import read_value
+from shipcosim.units import BASE_UNITS, Unit, relation
+
+
+def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
+    """Units by name from Unit elements of an SSP file or model description; those without a base unit are left out.
+
+    Raises
+    ------
+    ValueError
+        If an exponent, factor or offset is no number.
+    """
+    units = {}
+    for element in elements:
+        base = next((part for part in element if local(part) == "BaseUnit"), None)
+        if base is not None and element.get("name") is not None:
+            exponents = tuple(int(base.get(name, 0)) for name in BASE_UNITS)
+            scale = float(base.get("factor", 1.0)), float(base.get("offset", 0.0))
+            units[element.get("name")] = Unit(element.get("name"), exponents, *scale)
+    return units
+
+
+def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str, int]]:
+    """Items (name to value) of Enumeration elements of an SSP file, by the enumeration's name.
+
+    Raises
+    ------
+    ValueError
+        If an item's value is no whole number.
+    """
+    return {
+        element.get("name"): {
+            item.get("name"): read_value("Integer", item.get("value", "")) for item in children(element, "ssc:Item")
+        }
+        for element in elements
+    }
+
+
+def define_unit(root: etree._Element, tag: str, unit: Unit) -> bool:
+    """Define a unit in a file, if it is not; false where its name means another unit there.
+
+    Parameters
+    ----------
+    root : lxml element
+        Of an SSD or SSV.
+    tag : str
+        The list of units there: ``"ssd:Units"``, ``"ssv:Units"``.
+    unit : Unit
+        One that is defined nowhere stays so.
+    """
+    defined = read_units(children(root, tag, "ssc:Unit"))
+    if unit.name in defined:
+        return relation(unit, defined[unit.name]) in ("same", "unknown")
+    if unit.exponents is not None:
+        element = add(ensure(root, tag), "ssc:Unit", name=unit.name)
+        add(element, "ssc:BaseUnit", **unit.base_unit_attributes)
+    return True
+
+
+def define_enumeration(root: etree._Element, name: str, items: Mapping[str, int]) -> str:
+    """Name of an enumeration with these items in an SSD, which gets one if it has none.
+
+    Parameters
+    ----------
+    root : lxml element
+        Of the SSD.
+    name : str
+        Wanted name of a new one; it gets a number behind it where it is taken.
+    items : mapping of str to int
+        Values by the items' names.
+    """
+    defined = read_enumerations(children(root, "ssd:Enumerations", "ssc:Enumeration"))
+    for known, its in defined.items():
+        if its == dict(items):
+            return known
+    free = free_name(name, defined)
+    element = add(ensure(root, "ssd:Enumerations"), "ssc:Enumeration", name=free)
+    for item, value in items.items():
+        add(element, "ssc:Item", name=item, value=str(value))
+    return free

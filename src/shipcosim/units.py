@@ -1,0 +1,317 @@
+"""Units of measurement: what a spelling such as ``"N.s2/m2"`` means in SI base units, and conversions between units.
+
+The one table of units, for FMUs, system structures and time series. Spellings that it does not hold, such as ``"ft"``,
+are left to pint where a time series is converted. This is the only door to pint, which takes half a second to import
+and is therefore imported only then.
+
+Reference: FMI 2.0.4, section 2.2.2; the same in FMI 3.0 and SSP 1.0. BIPM, The International System of Units, 9th ed.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pint
+
+BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+"""In the order of FMI. The radian is one of them there, so that an angle is not taken for a ratio."""
+
+_ANGLE = BASE_UNITS.index("rad")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit of measurement: value in SI base units = factor * value + offset.
+
+    Parameters
+    ----------
+    name : str
+        As the file spells it.
+    exponents : tuple of 8 int or None
+        Of the base units kg, m, s, A, K, mol, cd, rad; None where the unit is defined nowhere.
+    factor, offset : float
+        To SI base units.
+    """
+
+    name: str
+    exponents: tuple[int, ...] | None = None
+    factor: float = 1.0
+    offset: float = 0.0
+
+    @property
+    def powers(self) -> dict[str, int]:
+        """Exponents by base unit, those that are not 0, in the order of `BASE_UNITS`; empty without a definition."""
+        pairs = zip(BASE_UNITS, self.exponents, strict=True) if self.exponents else ()
+        return {name: power for name, power in pairs if power}
+
+    @property
+    def base_unit_attributes(self) -> dict[str, str]:
+        """Attributes of the element ``BaseUnit`` that defines the unit in a file of FMI or SSP."""
+        attributes = {name: str(power) for name, power in self.powers.items()}
+        attributes |= {"factor": repr(self.factor)} if self.factor != 1.0 else {}
+        return attributes | ({"offset": repr(self.offset)} if self.offset else {})
+
+
+class UnitError(ValueError):
+    """Units that cannot be read or converted.
+
+    Parameters
+    ----------
+    found : str
+        What is wrong, as a sentence.
+    remedy : str
+        What would be right; empty where nothing can be said.
+    """
+
+    def __init__(self, found: str, remedy: str = ""):
+        super().__init__(f"{found} {remedy}".rstrip())
+        self.found, self.remedy = found, remedy
+
+
+def _unit(name: str, factor: float = 1.0, offset: float = 0.0, **exponents: int) -> Unit:
+    return Unit(name, tuple(exponents.get(base, 0) for base in BASE_UNITS), factor, offset)
+
+
+SYMBOLS = {
+    unit.name: unit
+    for unit in (
+        _unit("1"),
+        _unit("-"),
+        _unit("%", 0.01),
+        _unit("kg", kg=1),
+        _unit("g", 1e-3, kg=1),
+        _unit("t", 1e3, kg=1),
+        _unit("m", m=1),
+        _unit("nmi", 1852.0, m=1),
+        _unit("s", s=1),
+        _unit("min", 60.0, s=1),
+        _unit("h", 3600.0, s=1),
+        _unit("d", 86400.0, s=1),
+        _unit("A", A=1),
+        _unit("K", K=1),
+        _unit("degC", 1.0, 273.15, K=1),
+        _unit("mol", mol=1),
+        _unit("cd", cd=1),
+        _unit("rad", rad=1),
+        _unit("deg", math.pi / 180, rad=1),
+        _unit("rev", 2 * math.pi, rad=1),
+        _unit("rpm", 2 * math.pi / 60, rad=1, s=-1),
+        _unit("kn", 1852.0 / 3600.0, m=1, s=-1),
+        _unit("Hz", s=-1),
+        _unit("N", kg=1, m=1, s=-2),
+        _unit("Pa", kg=1, m=-1, s=-2),
+        _unit("bar", 1e5, kg=1, m=-1, s=-2),
+        _unit("J", kg=1, m=2, s=-2),
+        _unit("W", kg=1, m=2, s=-3),
+        _unit("V", kg=1, m=2, s=-3, A=-1),
+        _unit("Ohm", kg=1, m=2, s=-3, A=-2),
+        _unit("C", A=1, s=1),
+        _unit("l", 1e-3, m=3),
+    )
+}
+"""Units by their symbol, for spellings that no file defines."""
+
+PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "h": 1e2, "d": 1e-1, "c": 1e-2, "m": 1e-3, "u": 1e-6, "n": 1e-9}
+WITH_PREFIX = {"g", "m", "s", "A", "K", "mol", "rad", "Hz", "N", "Pa", "bar", "J", "W", "C", "V", "Ohm", "l"}
+"""Symbols that a prefix of the SI can stand before."""
+
+_FACTOR = re.compile(r"(?P<symbol>[A-Za-z%]+|1|-)(?:\^?(?P<exponent>[+-]?\d+))?")
+
+
+def fmi_unit(spelling: str) -> Unit:
+    """Unit of a spelling in FMI's form, to be written into a model description.
+
+    Parameters
+    ----------
+    spelling : str
+        Products with ".", at most one "/", several units below it in brackets: ``"N.s2/m2"``, ``"1/(m.s)"``.
+
+    Returns
+    -------
+    Unit
+
+    Raises
+    ------
+    UnitError
+        If the spelling does not follow this form, or holds a symbol that is not known.
+
+    Examples
+    --------
+    >>> fmi_unit("N.s2/m2").powers
+    {'kg': 1, 'm': -1}
+    >>> fmi_unit("rpm").powers
+    {'s': -1, 'rad': 1}
+    """
+    if re.search(r"\d\.\d", spelling):
+        raise UnitError(f"unit {spelling!r}: FMI knows whole exponents only; give the square of the value instead")
+    if re.search(r"[*^]|/.*/", spelling):
+        raise UnitError(f"unit {spelling!r}: FMI writes 'N.m', 'm2' and at most one '/', as in 'J/(kg.K)'")
+    return _read(spelling)
+
+
+def spelled_unit(spelling: str) -> Unit | None:
+    """Unit of a spelling as files have it (``kg.m2/s``, ``N/(m.s)``, ``m/s^2``, ``kn``), or None if it makes no sense.
+
+    Examples
+    --------
+    >>> spelled_unit("km/h").factor == 1000 / 3600
+    True
+    >>> spelled_unit("parsnip")
+    """
+    try:
+        return _read(spelling)
+    except UnitError:
+        return None
+
+
+def _read(spelling: str) -> Unit:
+    """Unit of a spelling, or UnitError."""
+    numerator, *denominators = spelling.replace("*", ".").split("/")
+    parts = [(part, 1) for part in numerator.split(".")]
+    for denominator in denominators:
+        bracketed = re.fullmatch(r"\((.*)\)", denominator)
+        if "." in denominator and not bracketed:
+            below = f"'{numerator}/({denominator})'"
+            raise UnitError(f"unit {spelling!r}: put what stands below the line in brackets: {below}")
+        parts += [(part, -1) for part in (bracketed[1] if bracketed else denominator).split(".")]
+    exponents, factor, offset = [0] * len(BASE_UNITS), 1.0, 0.0
+    for text, sign in parts:
+        unit, power = _part(text, spelling)
+        power *= sign
+        if unit.offset and (len(parts), power) != (1, 1):
+            raise UnitError(f"unit {spelling!r}: {unit.name} is a scale of temperature; write K in a product")
+        exponents = [have + power * more for have, more in zip(exponents, unit.exponents or (), strict=True)]
+        factor, offset = factor * unit.factor**power, unit.offset
+    return Unit(spelling, tuple(exponents), factor, offset)
+
+
+def _part(text: str, spelling: str) -> tuple[Unit, int]:
+    """Unit and exponent of one part of a product, such as "mm2"."""
+    match = _FACTOR.fullmatch(text)
+    if match is None:
+        raise UnitError(f"unit {spelling!r}: cannot read {text!r}; a unit looks like 'kg.m2' or 'N.s2/m2'")
+    symbol, power = match["symbol"], int(match["exponent"] or 1)
+    if symbol in SYMBOLS:
+        return SYMBOLS[symbol], power
+    prefix, rest = symbol[:1], symbol[1:]
+    if prefix in PREFIXES and rest in WITH_PREFIX:
+        return Unit(symbol, SYMBOLS[rest].exponents, PREFIXES[prefix] * SYMBOLS[rest].factor), power
+    raise UnitError(f"unit {spelling!r}: {symbol!r} is not known; known are {', '.join(sorted(SYMBOLS))}, SI prefixes")
+
+
+def find_unit(name: str | None, *definitions: Mapping[str, Unit]) -> Unit | None:
+    """Unit of a name: as a file defines it, else by the common spelling, else a unit without definition.
+
+    Parameters
+    ----------
+    name : str or None
+        None: no unit.
+    *definitions : mapping of name to Unit
+        Definitions of the file that the name stands in; the first that has the name counts.
+    """
+    if name is None:
+        return None
+    for units in definitions:
+        if name in units:
+            return units[name]
+    return spelled_unit(name) or Unit(name)
+
+
+def relation(source: Unit, target: Unit) -> str:
+    """How two units relate: ``same``, ``convertible``, ``angle`` (all but rad equal), ``unknown``, ``incompatible``."""
+    if source.exponents is None or target.exponents is None:
+        return "same" if source.name == target.name else "unknown"
+    if source.exponents == target.exponents:
+        return "same" if (source.factor, source.offset) == (target.factor, target.offset) else "convertible"
+    return "angle" if source.exponents[:_ANGLE] == target.exponents[:_ANGLE] else "incompatible"
+
+
+def conversion(source: Unit | None, target: Unit | None) -> tuple[float, float]:
+    """Factor and offset from one unit to the other: target value = factor * source value + offset.
+
+    A value without a unit, or one of a unit that cannot be converted into the other, is left as it is: (1, 0).
+
+    Examples
+    --------
+    >>> conversion(spelled_unit("degC"), spelled_unit("K"))
+    (1.0, 273.15)
+    """
+    if source is None or target is None or relation(source, target) in ("same", "unknown", "incompatible"):
+        return 1.0, 0.0
+    return source.factor / target.factor, (source.offset - target.offset) / target.factor
+
+
+def spelled_conversion(source: str, target: str) -> tuple[float, float]:
+    """Factor and offset from one unit to the other by their spellings, those included that pint alone knows.
+
+    Parameters
+    ----------
+    source, target : str
+        ``"kn"``, ``"N.m"``, ``"ft"``.
+
+    Returns
+    -------
+    tuple of two float
+        Target value = factor * source value + offset.
+
+    Raises
+    ------
+    UnitError
+        If a unit is unknown or the two do not measure the same thing.
+
+    Examples
+    --------
+    >>> spelled_conversion("kn", "m/s")
+    (0.5144444444444445, 0.0)
+    """
+    units = spelled_unit(source), spelled_unit(target)
+    if None in units:
+        return _pint_conversion(source, target)
+    if relation(*units) == "incompatible":
+        raise UnitError(f"cannot convert '{source}' into '{target}': they measure different things.")
+    return conversion(*units)
+
+
+def _pint_conversion(source: str, target: str) -> tuple[float, float]:
+    import pint
+
+    try:
+        registry = _registry()
+        units = [registry(_pint_spelling(spelling)).units for spelling in (source, target)]
+        offset, one = (float(registry.Quantity(value, units[0]).to(units[1]).magnitude) for value in (0.0, 1.0))
+    except pint.UndefinedUnitError as error:
+        why = str(error).replace("is not defined in the unit registry", "is not known")
+        found = f"cannot convert '{source}' into '{target}': {why}."
+        raise UnitError(found, "Units are written like N.m, kn or deg.") from error
+    except pint.DimensionalityError as error:
+        raise UnitError(f"cannot convert '{source}' into '{target}': they measure different things.") from error
+    return one - offset, offset
+
+
+@cache
+def _registry() -> pint.UnitRegistry:
+    import pint
+
+    return pint.UnitRegistry()
+
+
+_TOKEN = re.compile(r"(?P<name>[A-Za-z_%°µΩ]+)(?:\^|\*\*)?(?P<power>-?\d)?|(?P<sign>[.*/()]|1(?!\d))|\s+")
+
+
+def _pint_spelling(unit: str) -> str:
+    """FMI's "kg.m2/s" as pint wants it. Only names, powers and signs get through: pint evaluates what it reads."""
+    spelling, position = "", 0
+    while position < len(unit):
+        token = _TOKEN.match(unit, position)
+        if token is None:
+            raise UnitError(f"'{unit}' is no unit.", "Units are written like N.m, kg.m2/s or deg.")
+        power = f"**{token['power']}" if token["power"] else ""
+        spelling += (token["name"] or (token["sign"] or "").replace(".", "*")) + power
+        position = token.end()
+    return spelling
