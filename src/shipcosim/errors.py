@@ -1,5 +1,6 @@
-"""What every room says when it cannot go on: where, what was found, what would be right."""
+"""Errors and remarks in one form: where, what was found, what would be right."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -29,13 +30,13 @@ class Problem:
     remedy: str = ""
     severity: str = "error"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for part in ("where", "found", "remedy"):
             text = getattr(self, part)
             if len(text) > LONGEST_TEXT:
                 object.__setattr__(self, part, f"{text[: LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4 :]}")
 
-    def __str__(self):
+    def __str__(self) -> str:
         text = f"{self.where}: {self.found}" if self.where else self.found
         return f"{text} {self.remedy}".rstrip()
 
@@ -49,14 +50,14 @@ class ShipcosimError(Exception):
         What is wrong.
     """
 
-    def __init__(self, problems):
+    def __init__(self, problems: Problem | str | Iterable[Problem | str]):
         if isinstance(problems, (Problem, str)):
             problems = [problems]
         self.problems = [p if isinstance(p, Problem) else Problem("", p) for p in problems]
         super().__init__("\n".join(map(str, worth_showing(self.problems))))
 
 
-def worth_showing(problems):
+def worth_showing(problems: Iterable[Problem]) -> list[Problem]:
     """As many of the problems as anybody reads, errors before remarks if there are more, and how many others there are.
 
     Examples
@@ -64,15 +65,15 @@ def worth_showing(problems):
     >>> [str(problem) for problem in worth_showing([Problem("", str(i)) for i in range(103)])][-2:]
     ['99', 'And 3 more.']
     """
-    problems = list(problems)
-    if len(problems) <= MOST_SHOWN:
-        return problems
-    problems.sort(key=lambda problem: problem.severity != "error")
-    more = Problem("", f"And {len(problems) - MOST_SHOWN} more.", severity=problems[MOST_SHOWN].severity)
-    return [*problems[:MOST_SHOWN], more]
+    listed = list(problems)
+    if len(listed) <= MOST_SHOWN:
+        return listed
+    listed.sort(key=lambda problem: problem.severity != "error")
+    more = Problem("", f"And {len(listed) - MOST_SHOWN} more.", severity=listed[MOST_SHOWN].severity)
+    return [*listed[:MOST_SHOWN], more]
 
 
-def suggestion(name, known):
+def suggestion(name: str, known: Iterable[str]) -> str:
     """Remedy for an unknown name: what there is, and the nearest of it.
 
     Examples
@@ -80,11 +81,11 @@ def suggestion(name, known):
     >>> suggestion("thrust_comand", ["thrust_cmd"])
     "There is: thrust_cmd. Did you mean 'thrust_cmd'?"
     """
-    known = sorted(filter(None, known))
-    if not known:
+    names = sorted(filter(None, known))
+    if not names:
         return "There is none."
-    shown = ", ".join(known[:12]) + (f", ... ({len(known)} in all)" if len(known) > 12 else "")
-    close = get_close_matches(name, known[:MOST_COMPARED], n=1) if len(name) < LONGEST_NAME else ()
+    shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")
+    close = get_close_matches(name, names[:MOST_COMPARED], n=1) if len(name) < LONGEST_NAME else ()
     return f"There is: {shown}." + (f" Did you mean '{close[0]}'?" if close else "")
 
 
