@@ -339,8 +339,9 @@ def test_each_system_of_the_conformance_suite_is_exported_with_its_values_or_ref
     outcome = {True: set(), False: set()}
     for name, case in cases().items():
         path = write(case, tmp_path / name, "ssp, 1.0" if "1.0" in case.versions else "ssp, 2.0")
-        system, fmu = read_system(path), tmp_path / f"{name}.fmu"
+        fmu = tmp_path / f"{name}.fmu"
         try:
+            system = read_system(path)
             export_fmu(system, fmu, case.step_size or system.experiment.step_size)
         except ShipcosimError as error:
             assert all("container FMU" in problem.remedy or problem.where for problem in error.problems), name
