@@ -11,7 +11,7 @@ import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
-from shipcosim.diagnose.inference.linearisation import advanced, linearise
+from shipcosim.diagnose.inference.linearisation import Regressor, advanced, linearise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.null_distribution import healthy_records
 from shipcosim.diagnose.log.checks.examine import examine
@@ -78,7 +78,7 @@ def _integrated(motion, record, model, row):
 def test_columns_of_a_small_craft_are_what_her_motion_changes_by():
     model, record, motion = along(usv.structure, short_usv)
     turns = [{"left.thrust_loss": 0.1}, {"hull.drag_scale": 0.5}, {"right.rpm_offset": 10.0}]
-    linear = linearise(motion, record, model, turns)
+    linear = linearise(motion, record, model, [Regressor(changes) for changes in turns])
     start = Motion(*(value[:-1] for value in motion))
     for column, change in enumerate(turns, start=1):
         other = model.with_values({path: model.get(path) + by for path, by in change.items()})

@@ -274,7 +274,7 @@ def print_diagnosis(story, folder, as_json):
         print(json.dumps(diagnosis.as_json(), indent=2, ensure_ascii=False))
         return
     console = Console(highlight=False, soft_wrap=True)
-    word, sentence = outcome(diagnosis, story.effects)
+    word, sentence = outcome(diagnosis, story.causes)
     style = {"consistent": "bold green", "named": "bold blue"}.get(diagnosis.verdict, "bold red")
     console.print(Text(word, style=style), Text(sentence))
     listed = Table(box=None, pad_edge=False, show_header=False)
@@ -297,7 +297,7 @@ def print_diagnosis(story, folder, as_json):
     sections += [("Remarks", Text("\n".join(story.notes), style="yellow") if story.notes else None)]
     extension = story.extension
     extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
-    sections += [("What to do next", Text("\n".join(f"- {s}" for s in next_steps(diagnosis, extended))))]
+    sections += [("What to do next", Text("\n".join(f"- {s}" for s in next_steps(diagnosis, extended, story.causes))))]
     for heading, content in sections:
         if content is not None:
             console.print()

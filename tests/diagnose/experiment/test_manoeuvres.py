@@ -160,7 +160,7 @@ def test_noisy_logs_show_the_expected_difference_or_somewhat_more():
 
 
 def _log_evidence(fit, motion, record, noise):
-    found = innovations(linearise(motion, record, fit.model, [c.turns for c in fit.columns]), noise, record)
+    found = innovations(linearise(motion, record, fit.model, fit.columns), noise, record)
     rows = np.moveaxis(found.white, 0, 1).reshape(len(motion.x), -1, len(fit.columns) + 1)
     scores = []
     for y, logdet in zip(rows, found.log_determinant.sum(0), strict=True):

@@ -8,7 +8,7 @@ import pytest
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.hypotheses.catalogue import Cause, CauseParameter
+from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body

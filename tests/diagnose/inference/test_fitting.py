@@ -72,7 +72,7 @@ def test_known_numbers_leave_out_what_a_cause_turns_or_speaks_for():
     lag = next(s for s in problem("healthy").hypotheses if s.cause == "navigation_lag")
 
     def turned(hypotheses):
-        return {path for column in problem("healthy").known(hypotheses) for path in column.turns}
+        return {path for column in problem("healthy").known(hypotheses) for path in column.changes}
 
     assert "port.thrust_loss" in turned(()) and "port.thrust_loss" not in turned((loss,))
     assert "instruments.thruster_lag" in turned(()) and "instruments.thruster_lag" not in turned((lag,))
@@ -81,11 +81,11 @@ def test_known_numbers_leave_out_what_a_cause_turns_or_speaks_for():
 
 def test_a_vector_is_sought_all_round_and_a_turning_current_by_its_trend():
     groups = {s.cause: probes(s) for s in problem("healthy").hypotheses}
-    sizes = [np.hypot(*column.turns.values()) for (column,) in groups["wave_drift"]]
+    sizes = [np.hypot(*column.changes.values()) for (column,) in groups["wave_drift"]]
     np.testing.assert_allclose(sizes, 0.005 * 531e3)
     assert len(sizes) == 12
     ((first, *_), *_) = groups["current_varying"]
-    assert first.turns == {"water.current_north": 0.2}
+    assert first.changes == {"water.current_north": 0.2}
 
 
 def test_what_is_left_of_a_fit_is_known_numbers_alone():

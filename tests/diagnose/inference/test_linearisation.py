@@ -19,7 +19,7 @@ from shipcosim.diagnose.inference.innovations import (
     log_likelihoods,
     oscillation,
 )
-from shipcosim.diagnose.inference.linearisation import STATES, Linear, advanced, linearise, rows_first
+from shipcosim.diagnose.inference.linearisation import STATES, Linear, Regressor, advanced, linearise, rows_first
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.model import Motion, motion_rates, shown
 
@@ -41,6 +41,7 @@ COLUMNS = [
     {"instruments.lever_y": 4.0},
     {"instruments.heading_bias": 0.05},
 ]
+REGRESSORS = [Regressor(changes) for changes in COLUMNS]
 
 
 @cache
@@ -49,7 +50,7 @@ def about():
     record = record_of(twin.logs()["healthy"], twin.model())
     model = twin.model().with_values(WRONG)
     motion = first_motion(record, model)
-    return record, model, motion, linearise(motion, record, model, COLUMNS)
+    return record, model, motion, linearise(motion, record, model, REGRESSORS)
 
 
 def start_of_steps(motion):
@@ -80,7 +81,9 @@ def test_a_slow_end_of_a_varying_current_is_not_turned_round_by_its_own_columns(
     record, model, motion, _ = about()
     ends = {"water.north_start": 0.15, "water.east_start": -0.1, "water.north_end": 0.012, "water.east_end": -0.008}
     slow = replace(model, span=(record.time[0], record.time[-1])).with_values(ends)
-    linear = linearise(motion, record, slow, [{name: 0.2} for name in ends])
+    names = list(ends)
+    pairs = dict.fromkeys(names[:2], tuple(names[:2])) | dict.fromkeys(names[2:], tuple(names[2:]))
+    linear = linearise(motion, record, slow, [Regressor({name: 0.2}, vector=pair) for name, pair in pairs.items()])
     ahead = (
         advanced(start_of_steps(motion), record, slow.with_values({name: by * ends[name] for name in list(ends)[2:]}))
         for by in (1.05, 0.95)
@@ -196,7 +199,7 @@ def test_steps_over_which_nothing_is_known_teach_nothing():
     record, model, motion, _ = about()
     known = record.known.copy()
     known[50:60] = False
-    linear = linearise(motion, _with(record, known), model, COLUMNS)
+    linear = linearise(motion, _with(record, known), model, REGRESSORS)
     assert (linear.driven[50:60] == 0.0).all() and (linear.driven[49] != 0.0).any()
 
 

@@ -8,7 +8,7 @@ from diagnose import twin
 from scipy.stats import chi2
 
 from shipcosim.diagnose.inference.innovations import Noise, innovations
-from shipcosim.diagnose.inference.linearisation import linearise
+from shipcosim.diagnose.inference.linearisation import Regressor, linearise
 from shipcosim.diagnose.inference.noise import explained, first_noise, tuned
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 
@@ -71,7 +71,7 @@ def test_what_is_explained_is_taken_out():
     """A problem whose log is twice its second column is left with nothing."""
     record = record_of(twin.logs()["healthy"], twin.model())
     motion = first_motion(record, twin.model())
-    linear = linearise(motion, record, twin.model(), [{"vessel.mass_scale": 0.1}])
+    linear = linearise(motion, record, twin.model(), [Regressor({"vessel.mass_scale": 0.1})])
     doubled = linear._replace(driven=linear.driven[..., [1, 1]] * [2.0, 1.0], seen=linear.seen[..., [1, 1]])
     left = explained(doubled, np.array([2.0]))
     assert left.driven.shape[-1] == left.seen.shape[-1] == 1

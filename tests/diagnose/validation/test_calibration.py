@@ -38,5 +38,5 @@ def test_a_system_with_the_set_is_the_ship_that_the_log_would_have(written):
 def test_no_number_of_a_cause_and_none_far_beyond_its_tolerance_is_in_it(written):
     fit, values, ship = written
     assert "port.thrust_loss" not in values and ship.get("port.thrust_loss") == 0.0
-    sizes = {path: size for column in fit.columns for path, size in column.turns.items()}
+    sizes = {path: size for column in fit.columns for path, size in column.changes.items()}
     assert np.max([abs(value - fit.model.get(path)) / sizes[path] for path, value in values.items()]) < 4.0

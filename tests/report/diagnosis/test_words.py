@@ -5,7 +5,7 @@ import pytest
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
 from shipcosim.report.diagnosis.numbers import plain, plus_minus, vector
-from shipcosim.report.diagnosis.words import ADVICE, estimate_rows, next_steps, outcome, title, told, where
+from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome, title, told, where
 
 LOSS = Finding("thrust_loss", "port", parameters={"loss": Estimate(0.337, 0.0121, "1")})
 GAP = Finding("gap", kind="data", segments=((463.0, 499.0), (912.0, 1001.0)), channels=("north", "east"))
@@ -82,13 +82,15 @@ def test_onset_is_told():
 
 
 def test_cause_of_ones_own_speaks_by_its_own_sentence():
-    effect = read_catalogue()["drag"].model_copy(update={"cause": "ice", "sentence": "Ice is on the hull"})
+    effect = read_catalogue()["drag"].model_copy(
+        update={"cause": "ice", "sentence": "Ice is on the hull", "statement": ""}
+    )
     ice = Finding("ice", parameters={"thickness": Estimate(0.2, 0.05, "m")})
     assert told(ice, {"ice": effect}) == "ice is on the hull: thickness 0.20 ± 0.05 m"
 
 
 def test_every_cause_of_the_catalogue_has_advice():
-    assert set(read_catalogue()) == set(ADVICE)
+    assert all(cause.next_step and cause.statement for cause in read_catalogue().values())
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,7 @@ def separations(problem, fits, manoeuvres):
     for a, (motion, record) in enumerate(zip(motions, records, strict=True)):
         record = replace(record, measured=_shown(motion, models[a]))
         right = linearise(motion, record, models[a], [])
-        tolerated = linearise(motion, record, _in_true_wind(problem.model), [column.turns for column in known])
+        tolerated = linearise(motion, record, _in_true_wind(problem.model), known)
         for b in range(len(fits)):
             if b != a:
                 there = _beside(fits[b], models[b], motion, record, right, tolerated, known)
@@ -127,7 +127,7 @@ def _whole(fit):
     """The ship that a fit believes in: its causes, and all known numbers at their most likely."""
     values = {}
     for column, share in zip(fit.columns, fit.left, strict=True):
-        for path, size in column.turns.items():
+        for path, size in column.changes.items():
             values[path] = values.get(path, fit.model.get(path)) + float(share) * size
     return _in_true_wind(fit.model.with_values(values))
 
@@ -145,18 +145,18 @@ def _shared_columns(fits):
 def _own(fit):
     turned = {path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths}
     turned |= {path for s in fit.hypotheses for path in s.effect.companions}
-    return [column for column in fit.columns if turned & set(column.turns)]
+    return [column for column in fit.columns if turned & set(column.changes)]
 
 
 def _key(column):
-    return tuple(sorted(column.turns.items()))
+    return tuple(sorted(column.changes.items()))
 
 
 def _beside(fit, model, motion, record, right, tolerated, known):
     """The problem of a fit on a motion by another truth: what it misses more than the truth, and all its columns."""
     shared = [_key(column) for column in known]
     own = [column for column in fit.columns if _key(column) not in shared]
-    mine = linearise(motion, record, model, [column.turns for column in own])
+    mine = linearise(motion, record, model, own)
     mine.driven[..., 0] -= right.driven[..., 0]
     mine.seen[..., 0] -= right.seen[..., 0]
     both = beside(mine, tolerated)  # missed, own, all known
@@ -265,7 +265,7 @@ def testability(model, hypotheses, noise, manoeuvres, wind=None):
     groups = [(hypothesis, group) for hypothesis in hypotheses for group in probes(hypothesis)]
     columns = known + [column for _, group in groups for column in group]
     with threadpool_limits(1):
-        white = innovations(linearise(motion, record, model, [c.turns for c in columns]), noise, record).white
+        white = innovations(linearise(motion, record, model, columns), noise, record).white
     found = {hypothesis.label: np.full(len(manoeuvres), np.inf) for hypothesis in hypotheses}
     through = _through(motion, track, manoeuvres, dp)
     for i, one in enumerate(manoeuvres):
@@ -280,9 +280,9 @@ def testability(model, hypotheses, noise, manoeuvres, wind=None):
 def _shows(products, columns, places, known):
     """Gain of one cause of typical size, known numbers within their tolerance; of its least visible parameter."""
     places = list(places)
-    taken = {path for place in places for path in columns[place].turns}
+    taken = {path for place in places for path in columns[place].changes}
     prior = np.zeros(len(columns))
-    prior[:known] = [0.0 if taken & set(column.turns) else column.prior for column in columns[:known]]
+    prior[:known] = [0.0 if taken & set(column.changes) else column.prior for column in columns[:known]]
     prior[places] = 1.0
     blank = products.copy()
     blank[0, :] = blank[:, 0] = 0.0

@@ -1,87 +1,20 @@
-"""The catalogue of causes: one file each in `effects/`, and what they mean on one ship."""
+"""The catalogue of causes, read from one file each, and the hypotheses that they are on one ship."""
 
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 
+from shipcosim.diagnose.hypotheses.cause import Cause, Fault
 from shipcosim.diagnose.result import label_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 
-__all__ = ["Cause", "CauseParameter", "HypothesisParameter", "Hypothesis", "read_catalogue", "hypotheses_of"]
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class CauseParameter(_Strict):
-    """A parameter of a cause.
-
-    Attributes
-    ----------
-    of : list of str
-        Numbers of the ship that take its value: ``vessel.mass_scale``; ``{thruster}`` stands for the component,
-        ``{azimuths}`` for each azimuth thruster at once, whether it turns or not.
-    unit : str
-        Unit in which it is reported; that of the number is converted.
-    typical : float
-        Size that matters, as distance from neutral.
-    tolerance : float, optional
-        Standard deviation that is no cause yet, where the ship's parameter sets do not say.
-    bounds : tuple of two floats
-        Values beyond are implausible.
-    relative_to : str, optional
-        Number of the ship whose value typical, tolerance and bounds are multiplied by.
-    """
-
-    of: list[str]
-    unit: str = "1"
-    typical: float
-    tolerance: float = 0.0
-    bounds: tuple[float, float]
-    relative_to: str | None = None
-
-
-class Cause(_Strict):
-    """A cause as its file has it.
-
-    Attributes
-    ----------
-    cause, sentence, reference : str
-    for_each : "ship", "thruster" or "azimuth"
-        Where it can sit.
-    law : "linear", "vector" or "turning"
-        Whether small effects add up; or act by a vector's size and direction, and the cause is sought by directions
-        first; or by two vectors, start and end, and it is sought as a linear trend first.
-    least : float
-        An effect below this share of its typical size is not named.
-    companions : list of str
-        Numbers that are only known within their tolerance and only matter where this cause acts.
-    shape : list of str
-        Companions that, taken together, must lie within their tolerances: with another shape it is another cause.
-    replaces : list of str
-        Numbers that this cause speaks for: their tolerance is left out where it acts.
-    special : str, optional
-        A simpler cause that this one contains, its parameters several times in the same order.
-    parameters : dict of str to CauseParameter
-    """
-
-    cause: str
-    sentence: str
-    reference: str
-    for_each: Literal["ship", "thruster", "azimuth"] = "ship"
-    law: Literal["linear", "vector", "turning"] = "linear"
-    least: float = 0.2
-    companions: list[str] = []
-    shape: list[str] = []
-    replaces: list[str] = []
-    special: str | None = None
-    parameters: dict[str, CauseParameter]
+__all__ = ["Hypothesis", "HypothesisParameter", "hypotheses_of", "read_catalogue", "read_faults"]
 
 
 @dataclass(frozen=True)
@@ -127,9 +60,16 @@ class Hypothesis:
         """``thrust_loss of port``."""
         return label_of(self.cause, self.component)
 
+    def vector_of(self, parameter: HypothesisParameter) -> tuple[str, ...]:
+        """Numbers that a parameter is a vector with, where the law is one of vectors that turn; else none."""
+        if self.effect.law != "turning":
+            return ()
+        first = self.parameters.index(parameter) // 2 * 2
+        return tuple(other.paths[0] for other in self.parameters[first : first + 2])
 
-def read_catalogue(folder=None):
-    """All causes, our own and those of a folder.
+
+def read_catalogue(folder: str | Path | None = None) -> dict[str, Cause]:
+    """All causes by name: our own, and those of a folder.
 
     Parameters
     ----------
@@ -138,27 +78,46 @@ def read_catalogue(folder=None):
 
     Returns
     -------
-    dict of str to Effect
+    dict of str to Cause
 
     Raises
     ------
     ShipcosimError
         With everything that is wrong in the files.
     """
-    found, problems = {}, []
-    ours = sorted(files("shipcosim.diagnose.hypotheses").iterdir(), key=lambda path: path.name)
-    for path in (*ours, *(sorted(Path(folder).iterdir()) if folder else ())):
-        if path.name.endswith(".toml"):
-            try:
-                effect = Cause.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
-                found[effect.cause] = effect
-            except (tomllib.TOMLDecodeError, ValidationError) as error:
-                problems.append(
-                    Problem(str(path), str(error), "See docs/add-a-cause.md for what a cause's file holds.")
-                )
+    own = sorted(Path(folder).iterdir()) if folder else []
+    found, problems = dict(_shipped()), []
+    for path in (path for path in own if path.name.endswith(".toml")):
+        try:
+            cause = Cause.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+            found[cause.cause] = cause
+        except (tomllib.TOMLDecodeError, ValidationError) as error:
+            problems.append(Problem(str(path), str(error), "See docs/add-a-cause.md for what a cause's file holds."))
     if problems:
         raise ShipcosimError(problems)
     return found
+
+
+@cache
+def read_faults() -> dict[str, Fault]:
+    """All kinds of faults of the log and of the connections, by name."""
+    found = (Fault.model_validate(content) for content in _contents("faults"))
+    return {fault.fault: fault for fault in found}
+
+
+@cache
+def _shipped() -> dict[str, Cause]:
+    """Our own causes by name."""
+    found = (Cause.model_validate(content) for content in _contents())
+    return {cause.cause: cause for cause in found}
+
+
+def _contents(*folder: str) -> Iterator[dict]:
+    """Contents of our own .toml files in a folder, by name of the file."""
+    place = files("shipcosim.diagnose.hypotheses").joinpath(*folder)
+    for path in sorted(place.iterdir(), key=lambda path: path.name):
+        if path.name.endswith(".toml"):
+            yield tomllib.loads(path.read_text(encoding="utf-8"))
 
 
 def hypotheses_of(catalogue, model):

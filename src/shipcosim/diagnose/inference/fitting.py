@@ -7,30 +7,14 @@ import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence, gram
 from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import beside, linearise
+from shipcosim.diagnose.inference.linearisation import Regressor, beside, linearise
 from shipcosim.diagnose.inference.noise import explained
+from shipcosim.diagnose.ship.environment import NONLINEAR
 
 DIRECTIONS = 12
 ROUNDS = 5
-_BENT = {"instruments.wind_lag"}  # whose effect is not linear within its tolerance, in quick gusts
 _FAR = 3.0  # tolerances, beyond which nothing is linearised about
 _SLOW, _STILL = 0.35, 0.05  # of the faster end: a current this slow at first sight has no direction; where it starts
-
-
-@dataclass(frozen=True)
-class Regressor:
-    """One θ.
-
-    Attributes
-    ----------
-    turns : dict of str to float
-        By how much it changes each number at θ = 1.
-    prior : float
-        Standard deviation of θ.
-    """
-
-    turns: dict
-    prior: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -137,7 +121,7 @@ def prepared(problem, rounds=3):
     for _ in range(rounds):
         alone = linearise(motion, problem.record, problem.model, [])
         motion = _smoothed(alone, innovations(alone, problem.noise, problem.record).white[..., 0], problem, motion)
-    base = linearise(motion, problem.record, problem.model, [column.turns for column in problem.basis])
+    base = linearise(motion, problem.record, problem.model, problem.basis)
     return replace(problem, motion=motion, base=base)
 
 
@@ -154,7 +138,7 @@ def _smoothed(linear, white, problem, motion):
 
 
 def _key(column):
-    return tuple(sorted(column.turns.items()))
+    return tuple(sorted(column.changes.items()))
 
 
 def fitted(problem, hypotheses=(), values=None, rounds=ROUNDS):
@@ -177,7 +161,7 @@ def fitted(problem, hypotheses=(), values=None, rounds=ROUNDS):
     columns = problem.known(hypotheses) + _own(problem, hypotheses)
     for _ in range(rounds):
         model = problem.model.with_values(values | about)
-        linear = linearise(motion, problem.record, model, [column.turns for column in columns])
+        linear = linearise(motion, problem.record, model, columns)
         last, fit = fit, _posterior(problem, hypotheses, values, columns, linear, model, motion)
         motion, values, about = fit.motion, _next(fit), _about(fit)
         moved = [
@@ -192,9 +176,12 @@ def _own(problem, hypotheses):
     """Columns of hypotheses, what is only known within a tolerance about them first."""
     about = [path for hypothesis in hypotheses for path in hypothesis.effect.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
-    return found + [
-        Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for s in hypotheses for parameter in s.parameters
-    ]
+    return found + [_regressor(one, parameter) for one in hypotheses for parameter in one.parameters]
+
+
+def _regressor(hypothesis, parameter):
+    """The regressor of a parameter of a hypothesis."""
+    return Regressor(dict.fromkeys(parameter.paths, parameter.typical), vector=hypothesis.vector_of(parameter))
 
 
 def _posterior(problem, hypotheses, values, columns, linear, model, motion):
@@ -238,10 +225,10 @@ def _bounded(hypotheses, values):
 
 def _about(fit):
     """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
-    wanted = _BENT | {path for hypothesis in fit.hypotheses for path in hypothesis.effect.companions}
+    wanted = NONLINEAR | {path for hypothesis in fit.hypotheses for path in hypothesis.effect.companions}
     found = {}
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
-        for path, size in column.turns.items() if wanted & set(column.turns) else ():
+        for path, size in column.changes.items() if wanted & set(column.changes) else ():
             found[path] = fit.model.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
     return found
 
@@ -294,12 +281,12 @@ def gains(products, columns, centre, wanted, model):
         for group in probes(hypothesis):
             here = prior.copy()
             here[place : place + len(group)] = 1.0
-            taken = {path for column in group for path in column.turns} | set(hypothesis.effect.replaces)
-            here[[i for i, column in enumerate(columns) if taken & set(column.turns)]] = 0.0
+            taken = {path for column in group for path in column.changes} | set(hypothesis.effect.replaces)
+            here[[i for i, column in enumerate(columns) if taken & set(column.changes)]] = 0.0
             score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
             values = {}
             for column, share in zip(group, theta[place : place + len(group)], strict=True):
-                for path, size in column.turns.items():
+                for path, size in column.changes.items():
                     values[path] = values.get(path, model.get(path)) + share * size
             tries.append((score - nothing, values))
             place += len(group)
@@ -314,10 +301,8 @@ def _together(tries, hypothesis):
     best = int(scores.argmax())
     values = tries[best][1]
     if hypothesis.effect.law == "turning":
-        north, east = values.pop("water.current_north"), values.pop("water.current_east")
-        grown = values.pop("water.trend_north"), values.pop("water.trend_east")
-        names = [parameter.paths[0] for parameter in hypothesis.parameters]
-        ends = _one_way(np.array([north, east]), np.array([north + grown[0], east + grown[1]]))
+        first, grown = np.array([values[path] for path in hypothesis.effect.sought_by]).reshape(2, 2)
+        names, ends = [parameter.paths[0] for parameter in hypothesis.parameters], _one_way(first, first + grown)
         values = dict(zip(names, map(float, np.concatenate(ends)), strict=True))
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
 
@@ -338,8 +323,7 @@ def probes(hypothesis):
     if hypothesis.effect.law == "linear":
         return [[Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for parameter in parameters]]
     if hypothesis.effect.law == "turning":
-        names = ("current_north", "current_east", "trend_north", "trend_east")
-        return [[Regressor({f"water.{name}": parameters[0].typical}) for name in names]]
+        return [[Regressor({path: parameters[0].typical}) for path in hypothesis.effect.sought_by]]
     pair, size = (parameters[0].paths[0], parameters[1].paths[0]), parameters[0].typical
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     return [[Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]
@@ -349,6 +333,6 @@ def _centre(columns, model, neutral):
     """θ of the ship model that the columns were linearised about; 0 for known numbers."""
     found = np.zeros(len(columns))
     for i, column in enumerate(columns):
-        path, size = next(iter(column.turns.items()))
+        path, size = next(iter(column.changes.items()))
         found[i] = (model.get(path) - neutral.get(path)) / size
     return found

@@ -4,6 +4,8 @@ About a motion near the measured one the ship is a linear system that varies in 
 rows of a log and over several logs; only the filter goes from row to row.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +17,7 @@ __all__ = [
     "SLOW_TIME",
     "STATES",
     "Linear",
+    "Regressor",
     "advanced",
     "beside",
     "linearise",
@@ -26,10 +29,30 @@ __all__ = [
 STATES = 18
 """x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3), what waves add
 to position and heading (3) and to velocity (3), in the ship's axes."""
-_SHARE = 0.2  # of a column's size, for differences
+_SHARE = 0.2  # of a regressor's size, for differences
 SLOW_STD = np.array([0.1, 0.1, np.radians(0.1)])
 SLOW_TIME = np.array([240.0, 240.0, 60.0])
 """Slow errors of position and heading, stationary standard deviation [m, m, rad] and correlation time [s]."""
+
+
+@dataclass(frozen=True)
+class Regressor:
+    """What one θ changes of the ship, and how large θ may be.
+
+    Attributes
+    ----------
+    changes : dict of str to float
+        By how much each number of the ship is changed at θ = 1.
+    prior : float
+        Standard deviation of θ.
+    vector : tuple of str
+        Numbers that are a vector together whose direction matters: one that is short is not turned round by the
+        differences that are taken for its slope.
+    """
+
+    changes: dict[str, float]
+    prior: float = 1.0
+    vector: tuple[str, ...] = ()
 
 
 class Linear(NamedTuple):
@@ -127,7 +150,7 @@ def runge_kutta(motion, h, inputs, model, load=lambda psi: (0.0, 0.0, 0.0)):
     return Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
 
 
-def linearise(motion, record, model, columns):
+def linearise(motion, record, model, regressors: Sequence[Regressor]) -> Linear:
     """The linear problem about a motion.
 
     Parameters
@@ -136,15 +159,14 @@ def linearise(motion, record, model, columns):
         (..., n) arrays near what was measured.
     record : Record
     model : ShipModel
-    columns : sequence of dict of str to float
-        What each θ turns: by how much each number is changed at θ = 1.
+    regressors : sequence of Regressor
 
     Returns
     -------
     Linear
     """
     lead = record.measured.shape[:-2]
-    n, p = record.time.size, len(columns)
+    n, p = record.time.size, len(regressors)
     start = Motion(*(value[..., :-1] for value in motion))
     base, seen = advanced(start, record, model), shown(motion, model)
     driven, out = np.empty((n - 1, *lead, 6, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
@@ -157,16 +179,16 @@ def linearise(motion, record, model, columns):
     like = model, loads(middle, inputs, model)
     transition = _transition(middle, inputs, like, record)
     slopes = np.zeros((p, 3, *lead, n - 1))
-    shares = np.array([_small(turns, model) for turns in columns]).reshape(p)
-    for j, turns in enumerate(columns):
+    shares = np.array([_step_share(regressor, model) for regressor in regressors]).reshape(p)
+    for j, changes in enumerate(regressor.changes for regressor in regressors):
         up, down = (
-            model.with_values({path: model.get(path) + share * size for path, size in turns.items()})
+            model.with_values({path: model.get(path) + share * size for path, size in changes.items()})
             for share in (shares[j], -shares[j])
         )
-        if any(path.endswith("_lag") for path in turns):
+        if any(path.endswith("_lag") for path in changes):
             late = (motion_rates(middle, record.inputs(ship, 0.5), ship) for ship in (down, up))
             slopes[j] = _apart(*late)[3:]
-        elif any(not path.startswith("instruments.") for path in turns):
+        elif any(not path.startswith("instruments.") for path in changes):
             for slope, apart in zip(slopes[j], rates_apart(down, up, middle, inputs, like), strict=True):
                 slope[...] = apart
         else:
@@ -177,15 +199,13 @@ def linearise(motion, record, model, columns):
     return Linear(transition, driven, _output(motion, seen, model), out, whole)
 
 
-def _small(turns, model):
-    """Share of a column's size for differences; a slow end of a varying current must not be turned round by it."""
-    found = _SHARE
-    for path, size in turns.items():
-        _, _, end = path.rpartition("_")
-        if path in (f"water.north_{end}", f"water.east_{end}"):
-            speed = np.hypot(model.get(f"water.north_{end}"), model.get(f"water.east_{end}"))
-            found = min(found, max(_SHARE * speed / abs(size), 1e-4)) if speed else found
-    return found
+def _step_share(regressor: Regressor, model) -> float:
+    """Share of a regressor's size for differences; they must not turn round a vector that is short."""
+    length = float(np.hypot(*(model.get(path) for path in regressor.vector))) if regressor.vector else 0.0
+    if not length:
+        return _SHARE
+    size = max(abs(size) for size in regressor.changes.values())
+    return min(_SHARE, max(_SHARE * length / size, 1e-4))
 
 
 def _apart(one, other):

@@ -12,7 +12,6 @@ from shipcosim.diagnose.ship.surrogate import with_surrogates
 
 __all__ = ["prepare", "unidentifiable"]
 
-_LIKE_WIND = ("wind_scale", "wind_direction", "wave_drift", "tow")  # steady forces, from the earth or the air
 _GUSTS = 10.0  # times as fast may an unexplained force walk where nobody knows the wind
 _MOST_WALK = 3e-5  # m/s2.5: some 400 N on Gunnerus in ten minutes
 
@@ -73,12 +72,11 @@ def unidentifiable(everyone, record, clean, third_party=()):
     list of Hypothesis
     """
     silent = [name for name in record.units if f"{name}_rpm" not in clean and name not in third_party]
-    return [s for s in everyone if s.component in silent or (record.wind is None and s.cause in _LIKE_WIND)]
+    return [s for s in everyone if s.component in silent or (record.wind is None and s.effect.without_wind != "sought")]
 
 
 def _unknown_wind(everyone):
-    """Tolerance of a force over ground, where nobody knows the wind."""
-    parameters = [
-        parameter for hypothesis in everyone if hypothesis.cause == "tow" for parameter in hypothesis.parameters
-    ]
+    """Tolerances of what stands for the wind, where nobody knows it: the typical size of causes allowed for."""
+    allowed = [hypothesis for hypothesis in everyone if hypothesis.effect.without_wind == "allowed for"]
+    parameters = [parameter for hypothesis in allowed for parameter in hypothesis.parameters]
     return {path: parameter.typical for parameter in parameters for path in parameter.paths}

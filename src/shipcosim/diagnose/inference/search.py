@@ -61,7 +61,7 @@ def explain(problem, *, most=3, likely=6, near=12.0, enough=5.0):
 def _strained(fit):
     """Numbers that a fit has far from what is known of them: what they do may be bent there, as a lag's."""
     known = zip(fit.columns, fit.theta, strict=True)
-    return {path for column, theta in known if abs(theta) > STRAIN for path in column.turns}
+    return {path for column, theta in known if abs(theta) > STRAIN for path in column.changes}
 
 
 def at_first_sight(problem):

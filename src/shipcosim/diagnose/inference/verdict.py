@@ -143,7 +143,7 @@ def admissible(fit, fits, chance):
 def _in_shape(hypothesis, fit):
     """Whether what tells a cause's shape lies within its tolerances, taken together."""
     shape = set(hypothesis.effect.shape)
-    squares = sum(t**2 for t, column in zip(fit.theta, fit.columns, strict=True) if set(column.turns) & shape)
+    squares = sum(t**2 for t, column in zip(fit.theta, fit.columns, strict=True) if set(column.changes) & shape)
     return not shape or bool(chi2.sf(squares, len(shape)) > _ANOTHER)
 
 
@@ -221,8 +221,8 @@ def not_testable(problem, products, columns, groups):
     for hypothesis, places in groups:
         prior = known.copy()
         prior[list(places)] = 1.0
-        taken = {path for i in places for path in columns[i].turns}
-        prior[[i for i, c in enumerate(columns) if i not in places and taken & set(c.turns)]] = 0.0
+        taken = {path for i in places for path in columns[i].changes}
+        prior[[i for i, c in enumerate(columns) if i not in places and taken & set(c.changes)]] = 0.0
         blank = products.copy()
         blank[0, :] = blank[:, 0] = 0.0
         covariance = evidence(blank, prior)[2][np.ix_(places, places)]

@@ -147,10 +147,10 @@ def _settled(clean, mislabel, fault, problem, model, catalogue):
 
 
 def _price(fault, fit):
-    """What a fault of the inputs' channels has to gain over a fit: little, if it is a unit and the fit a scale."""
-    label = mislabel_of(fault)
-    is_scale = any(hypothesis.cause == "wind_scale" for hypothesis in fit.hypotheses)
-    return _UNIT if label is not None and label.scale is not None and is_scale else _FAULT
+    """What a fault of the inputs' channels has to gain over a fit: little, if a wrong unit looks like a cause in it."""
+    label, alike = mislabel_of(fault), {channel for one in fit.hypotheses for channel in one.effect.unit_of}
+    is_unit = label is not None and label.scale is not None
+    return _UNIT if is_unit and alike & set(fault.channels) else _FAULT
 
 
 def _is_explained(problem, fit):

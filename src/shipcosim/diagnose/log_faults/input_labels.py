@@ -148,7 +148,7 @@ def with_label(clean, mislabel, segments=()):
 def _by_row(problem, record):
     """Log-likelihood of each row, known numbers fitted within their tolerances; what that costs is shared by all."""
     columns = problem.known(())
-    linear = linearise(problem.motion, record, problem.model, [column.turns for column in columns])
+    linear = linearise(problem.motion, record, problem.model, columns)
     found = innovations(linear, problem.noise, record)
     theta = evidence(gram(found).products, np.ones(len(columns)))[1]
     left = found.white[..., 0] - found.white[..., 1:] @ theta

@@ -7,8 +7,10 @@ import numpy as np
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.hull import HullParameters
 
-__all__ = ["Instruments", "Water", "drift_arm_of", "hat_functions", "share_of", "stern_of", "swell_of"]
+__all__ = ["NONLINEAR", "Instruments", "Water", "drift_arm_of", "hat_functions", "share_of", "stern_of", "swell_of"]
 
+NONLINEAR = frozenset({"instruments.wind_lag"})
+"""Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them anew."""
 _NEUTRAL = "neutral"
 _SWELLS = 8
 _STERN = -17.0  # m, of the lengthened Gunnerus

@@ -35,7 +35,7 @@ def calibrate(system, fit, path):
     deviations = np.sqrt(np.diag(fit.covariance))
     causes = {place for hypothesis in fit.hypotheses for of in hypothesis.parameters for place in of.paths}
     for column, deviation in zip(fit.columns, deviations, strict=True):
-        for place, size in column.turns.items():
+        for place, size in column.changes.items():
             variable = _same(system, place, before.get(place))
             if place not in causes and variable is not None:
                 unit = None if variable.unit in (None, "1") else variable.unit

@@ -153,7 +153,7 @@ def _judged(model, inside, rows, seen, holds):
 def calibrated(fit):
     """The ship model of a fit with every known number where the log would have it, within its tolerance."""
     changes = zip(fit.columns, fit.left, strict=True)
-    moved = [(path, size * share) for column, share in changes for path, size in column.turns.items()]
+    moved = [(path, size * share) for column, share in changes for path, size in column.changes.items()]
     return fit.model.with_values({path: fit.model.get(path) + by for path, by in moved})
 
 

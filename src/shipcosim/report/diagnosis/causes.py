@@ -1,7 +1,12 @@
 """Figures and tables of which cause: evidence, estimates, whiteness, and what this log could not have shown."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.hypotheses.cause import Cause, placeholders
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.noise import explained
 from shipcosim.diagnose.inference.search import without_causes
@@ -184,30 +189,40 @@ def _leg(there, before):
     return text
 
 
-def not_testable_rows(problem, names):
+def not_testable_rows(
+    problem: IdentificationProblem, names: Sequence[str], causes: Mapping[str, Cause] | None = None
+) -> list[tuple[str, str, str]]:
     """Why this log could not have shown some causes: the cause, and what the log has of what would show it."""
-    sentences = {s.cause: s.effect.sentence for s in problem.hypotheses}
-    return [(title(name), sentences.get(name, ""), _reason(name, problem)) for name in names]
+    facts, known, rows = log_facts(problem), read_catalogue() if causes is None else causes, []
+    for name in names:
+        cause = known.get(name)
+        reason = f"{_reason(cause, facts)}an effect of typical size would not have stood out"
+        rows.append((title(name), cause.sentence if cause else "", reason))
+    return rows
 
 
-def _reason(cause, problem):
+def _reason(cause: Cause | None, facts: Mapping[str, str | None]) -> str:
+    """What the log lacks to show a cause, and a semicolon; nothing where its file does not say."""
+    if cause is None or not cause.why_not_testable:
+        return ""
+    missing = [name for name in placeholders(cause.why_not_testable) if facts[name] is None]
+    if missing:
+        return f"there is no {missing[0].partition('_')[0]} in the log; "
+    return cause.why_not_testable.format_map(facts) + "; "
+
+
+def log_facts(problem: IdentificationProblem) -> dict[str, str | None]:
+    """What a cause's file can say of a log, see `FACTS`; None for what the log does not have."""
     record, motion = problem.record, problem.motion
-    speed = np.hypot(motion.u, motion.v)
-    facts = {
-        "reverse_loss": lambda: f"units ran astern in {_reverse(problem):.0f} % of the log",
-        "thruster_interaction": lambda: "units hardly pointed at each other while they thrust",
-        "drag": lambda: f"the ship moved ahead or astern at {_rms(motion.u)} m/s (rms)",
-        "crossflow": lambda: f"she moved sideways at {_rms(motion.v)} m/s (rms)",
-        "velocity_scale": lambda: f"she moved at {_rms(speed)} m/s (rms)",
-        "mass": lambda: f"she accelerated by {_rms(np.gradient(motion.u, record.step))} m/s² (rms)",
-        "lever_arm": lambda: f"she turned at {_rms(np.degrees(motion.r))} °/s (rms)",
-        "heading_bias": lambda: f"she moved at {_rms(speed)} m/s (rms), so its direction says little of the heading",
-        "wind_scale": lambda: _wind(record),
-        "wind_direction": lambda: _wind(record),
-        "navigation_lag": lambda: f"she moved at {_rms(speed)} m/s (rms)",
+    return {
+        "astern_share": f"{_reverse(problem):.0f} %",
+        "speed": f"{_rms(np.hypot(motion.u, motion.v))} m/s",
+        "surge": f"{_rms(motion.u)} m/s",
+        "surge_acceleration": f"{_rms(np.gradient(motion.u, record.step))} m/s²",
+        "sway": f"{_rms(motion.v)} m/s",
+        "wind_speed": None if record.wind is None else f"{plain(float(np.mean(record.wind[0])), 2)} m/s",
+        "yaw_rate": f"{_rms(np.degrees(motion.r))} °/s",
     }
-    fact = facts[cause]() + "; " if cause in facts else ""
-    return f"{fact}an effect of typical size would not have stood out"
 
 
 def _rms(values):
@@ -217,9 +232,3 @@ def _rms(values):
 def _reverse(problem):
     shares = [np.mean(problem.record.units[name][0] < 0.0) for name in problem.model.azimuths]
     return 100.0 * max(shares, default=0.0)
-
-
-def _wind(record):
-    if record.wind is None:
-        return "there is no wind in the log"
-    return f"the wind was {plain(float(np.mean(record.wind[0])), 2)} m/s"

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.report.theme.display import as_variable, thinned
 
 GROUPS = (  # title, channels, unit
@@ -161,7 +162,7 @@ def _curve(name, time, values, colour, unit, **look):
 
 
 def _concerns(fault, channels):
-    return not fault.channels or fault.cause == "clock" or set(fault.channels) & set(channels)
+    return not fault.channels or read_faults()[fault.cause].in_every_channel or set(fault.channels) & set(channels)
 
 
 def _shades(fault, raw):

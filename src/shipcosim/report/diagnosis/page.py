@@ -8,6 +8,8 @@ from string import Template
 from typing import Any
 
 import shipcosim
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.log.remarks import remarks
 from shipcosim.report.diagnosis import parts
 from shipcosim.report.diagnosis.numbers import plain
@@ -69,9 +71,9 @@ class Story:
     unseen_errors: Any = field(default_factory=dict)
 
     @property
-    def effects(self):
+    def causes(self) -> dict[str, Cause]:
         """The causes by name."""
-        return {hypothesis.cause: hypothesis.effect for hypothesis in self.details.problem.hypotheses}
+        return read_catalogue() | {one.cause: one.effect for one in self.details.problem.hypotheses}
 
     @property
     def notes(self):
@@ -114,13 +116,13 @@ def render(story):
     """The page as text."""
     figures = parts.Figures()
     made = [section(story, figures) for section in _SECTIONS.values()]
-    word, sentence = outcome(story.diagnosis, story.effects)
+    word, sentence = outcome(story.diagnosis, story.causes)
     title = f"Diagnosis of {story.source}"
     extended = story.extension.ssp.name if story.extension is not None and story.extension.values else None
     summary = [
         parts.verdict(story.diagnosis.verdict, word, sentence),
         parts.key_figures(key_figures(story.diagnosis)),
-        parts.next_steps(next_steps(story.diagnosis, extended)),
+        parts.next_steps(next_steps(story.diagnosis, extended, story.causes)),
     ]
     return Template(_asset("diagnosis.html")).substitute(
         title=escape(title),

@@ -3,13 +3,14 @@
 import numpy as np
 
 from shipcosim.diagnose.experiment.manoeuvres import cannot_turn, library
+from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.verdict import gained
 from shipcosim.diagnose.validation.gain import rms
 from shipcosim.report.diagnosis import causes, error, parts
 from shipcosim.report.diagnosis.data import log_panels, track_panel
 from shipcosim.report.diagnosis.numbers import plain
-from shipcosim.report.diagnosis.words import REPAIRS, estimate_rows, title, told, where
+from shipcosim.report.diagnosis.words import estimate_rows, title, told, where
 
 
 def data_section(story, figures):
@@ -17,7 +18,7 @@ def data_section(story, figures):
     details = story.details
     faults = [f for f in story.diagnosis.findings if f.kind == "data"]
     rows = [
-        (title(f.cause), ", ".join(f.channels) or "all", where(f), f.note or told(f), REPAIRS.get(f.cause, "see JSON"))
+        (title(f.cause), ", ".join(f.channels) or "all", where(f), f.note or told(f), read_faults()[f.cause].repair)
         for f in faults
     ]
     text = (
@@ -100,7 +101,7 @@ def causes_section(story, figures):
     content.append(_to_sail(diagnosis.prescription, problem))
     if diagnosis.not_testable:
         content.append(parts.subheading("What this log could not have shown"))
-        rows = causes.not_testable_rows(problem, diagnosis.not_testable)
+        rows = causes.not_testable_rows(problem, diagnosis.not_testable, story.causes)
         content.append(parts.table(["Cause", "What it would be", "Why not"], rows))
     return parts.section("causes", "3 Which cause?", *content)
 

@@ -1,0 +1,76 @@
+"""Texts of the causes' files with the estimates of a finding filled in."""
+
+from collections.abc import Mapping
+
+from shipcosim.diagnose.result import Estimate
+from shipcosim.report.diagnosis.numbers import plus_minus, vector
+
+__all__ = ["filled"]
+
+
+def filled(text: str, parameters: Mapping[str, Estimate], component: str | None = None) -> str:
+    """A text with placeholders for the parameters of a cause, with their estimates.
+
+    Parameters
+    ----------
+    text : str
+        ``{lag}`` is a value with its standard deviation and unit, ``{loss:percent}`` a share in percent.
+        ``{offset:signed too much|too little}`` is the size, then the first words if it is positive, else the second;
+        ``{scale:excess larger|smaller}`` in percent, how far a factor is above or below 1, with such words.
+        ``{north+east}`` is size and direction of a vector, ``{component}`` the thruster.
+    parameters : dict of str to Estimate
+    component : str, optional
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    KeyError
+        A parameter that is not there.
+
+    Examples
+    --------
+    >>> filled("the {component} thruster loses {loss:percent}", {"loss": Estimate(0.337, 0.012, "1")}, "port")
+    'the port thruster loses 34 ± 1 %'
+    >>> filled("the ship is {scale:excess heavier|lighter}", {"scale": Estimate(0.9, 0.02, "1")})
+    'the ship is 10 ± 2 % lighter'
+    """
+    return text.format_map(_Values(parameters, component))
+
+
+class _Values(dict):
+    """What the placeholders of a text stand for."""
+
+    def __init__(self, parameters: Mapping[str, Estimate], component: str | None) -> None:
+        super().__init__({name: _Value(estimate) for name, estimate in parameters.items()}, component=component)
+
+    def __missing__(self, key: str) -> str:
+        first, plus, second = key.partition("+")
+        if not plus:
+            raise KeyError(key)
+        return vector(self[first].estimate, self[second].estimate)
+
+
+class _Value:
+    """An estimate in a text, by the format that the placeholder asks for."""
+
+    def __init__(self, estimate: Estimate) -> None:
+        self.estimate = estimate
+
+    def __format__(self, wanted: str) -> str:
+        form, _, words = wanted.partition(" ")
+        above, _, below = words.partition("|")
+        value, std = self.estimate.estimate, self.estimate.std
+        if form == "percent":
+            return _percent(value, std)
+        if form == "excess":
+            return f"{_percent(abs(value - 1), std)} {above if value > 1 else below}"
+        if form == "signed":
+            return f"{plus_minus(self.estimate, absolute=True)} {above if value > 0 else below}"
+        return plus_minus(self.estimate)
+
+
+def _percent(value: float, std: float) -> str:
+    return f"{100 * value:.0f} ± {max(100 * std, 0.5):.0f} %"
