@@ -5,7 +5,6 @@ Trained on the rows that the diagnosis' own gain trains on, and judged on the sa
 
 import numpy as np
 import torch
-from trial.tools import system, with_drift
 
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.pipeline import diagnose
@@ -13,6 +12,7 @@ from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, shown
 from shipcosim.diagnose.validation.gain import compare, gain
 from shipcosim.diagnose.validation.predictions import missing
 from shipcosim.diagnose.validation.split import in_rows
+from trial.tools import system, with_drift
 
 HIDDEN, EPOCHS, PATIENCE = 24, 600, 60
 RATE, DECAY = 3e-3, 1e-3

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
-from trial.tools import system
 
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.checks.examine import examine
@@ -19,6 +18,7 @@ from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.model import Motion, motion_rates, ship_model_of, shown
+from trial.tools import system
 
 SMOOTH = 4.0  # s, standard deviation of the Gaussian that measurements and model are smoothed with
 SHARE = 0.2  # of a typical effect, for differences

@@ -7,6 +7,7 @@ import os
 
 import numpy as np
 import pytest
+
 from trial import comparison, runs, tables
 from trial.__main__ import FIRST_SEED
 from trial.scoring import score

@@ -1,7 +1,5 @@
 """The array form against the co-simulation: time of one variation of the four-corner run, 1000 variations at once."""
 
-import statistics
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +10,7 @@ from shipcosim.cosim import simulate
 from shipcosim.models import dp_loop
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
+from speed.measure import cpu_seconds, reported
 
 VARIATIONS, REPEATS, TO_REACH = 1000, 5, 50.0
 START, ALONE, MANY = 1.0, 120.0, 20.0  # s of the run: what both take off, and how far each goes; a step costs the same
@@ -27,9 +26,8 @@ def test_a_variation_of_the_array_form_is_50_times_as_fast_as_the_co_simulation(
         alone = _per_second(lambda duration: simulate(system, _until(scenario, duration)), ALONE)
         many = _per_second(_arrays, MANY)
         ratios.append(alone / (many / VARIATIONS))
-    print(f"\narray form, {VARIATIONS} variations: {statistics.median(ratios):.0f} times as fast per variation")
-    print(f"({min(ratios):.0f} to {max(ratios):.0f} in {REPEATS} pairs; to reach {TO_REACH:.0f}, aim 100)")
-    assert statistics.median(ratios) >= TO_REACH
+    what = f"array form, {VARIATIONS} variations, each against the co-simulation"
+    assert reported(what, ratios, "times as fast", f"{TO_REACH:.0f}, aim 100") >= TO_REACH
 
 
 def _until(scenario, duration):
@@ -38,7 +36,7 @@ def _until(scenario, duration):
 
 def _per_second(run, duration):
     """CPU seconds of a simulated second, the start left out."""
-    return (_elapsed(lambda: run(duration)) - _elapsed(lambda: run(START))) / (duration - START)
+    return (cpu_seconds(lambda: run(duration)) - cpu_seconds(lambda: run(START))) / (duration - START)
 
 
 def _arrays(duration):
@@ -53,10 +51,3 @@ def _arrays(duration):
     )
     events = [(0.0, weather | {"x_set": 20.0})]
     return dp_loop.simulate(system, events, variations=VARIATIONS, stop_time=duration, every=10)
-
-
-def _elapsed(function):
-    """CPU seconds: both run in one thread, and other work on the machine does not count."""
-    start = time.process_time()
-    function()
-    return time.process_time() - start

@@ -4,15 +4,13 @@ NumPy takes all columns, or all levels of noise, in one call for each row and ea
 calls. Both give the same likelihoods.
 """
 
-import statistics
-import time
-
 import numpy as np
 import pytest
 
 from shipcosim.diagnose.inference import linearisation as problem
 from shipcosim.diagnose.inference.innovations import Noise, innovations, log_likelihoods
 from shipcosim.diagnose.inference.linearisation import STATES, Linear
+from speed.measure import cpu_seconds, reported
 
 ROWS, COLUMNS, LEVELS, REPEATS = 2400, 60, 24, 5
 COLUMNS_TO_REACH, LEVELS_TO_REACH = 3.0, 3.0
@@ -45,18 +43,8 @@ def test_levels_of_noise_are_compared_3_times_as_fast_as_by_numpy():
 
 
 def ratio(what, ours, theirs, to_reach):
-    ratios = [elapsed(theirs) / elapsed(ours) for _ in range(REPEATS)]
-    middle = statistics.median(ratios)
-    print(f"\n{what} over {ROWS} rows: {middle:.1f} times as fast as NumPy")
-    print(f"({min(ratios):.1f} to {max(ratios):.1f} in {REPEATS} pairs; to reach {to_reach:.0f})")
-    return middle
-
-
-def elapsed(function):
-    """CPU seconds: both run in one thread."""
-    start = time.process_time()
-    function()
-    return time.process_time() - start
+    ratios = [cpu_seconds(theirs) / cpu_seconds(ours) for _ in range(REPEATS)]
+    return reported(f"{what} over {ROWS} rows", ratios, "times as fast as NumPy", f"{to_reach:.0f}")
 
 
 def drawn(columns):

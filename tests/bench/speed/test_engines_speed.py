@@ -5,13 +5,13 @@ A first round that is not counted imports and builds what is made once.
 """
 
 import time
-from statistics import median
 
 import pytest
 
 from shipcosim.cosim import engines_missing, simulate
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
+from speed.measure import reported
 
 RUNS = 5
 TO_REACH = {"libcosim": (2.5, 3.4), "ecos": (1.5, 2.0)}  # times as long as ours: goal and aim
@@ -33,14 +33,7 @@ def seconds(root):
             table = simulate(system, scenario, engine=engine)
             durations[engine].append(time.perf_counter() - begin)
             assert table.sizes["time"] == 22001
-    for engine, values in durations.items():
-        print(f"\n{engine}: {spread(values)} s", end="")
-    print()
     return durations
-
-
-def spread(values):
-    return f"median {median(values):.2f} of {len(values)}, {min(values):.2f} to {max(values):.2f}"
 
 
 @pytest.mark.slow
@@ -50,13 +43,11 @@ def test_faster_than_other_engines(seconds, engine, needs):
         needs(f"engine {engine}")
     ratios = [theirs / ours for ours, theirs in zip(seconds["fmpy"], seconds[engine], strict=True)]
     goal, aim = TO_REACH[engine]
-    print(f"\n{spread(ratios)} times as fast as {engine}; to reach {goal}, aim {aim}")
-    assert median(ratios) >= goal
+    assert reported(f"four corners, beside {engine}", ratios, "times as fast", f"{goal}, aim {aim}") >= goal
 
 
 @pytest.mark.slow
 def test_faster_than_real_time(seconds):
     factors = [1100.0 / duration for duration in seconds["fmpy"]]
     goal, aim = TIMES_REAL_TIME
-    print(f"\n{spread(factors)} times real time; to reach {goal:g}, aim {aim:g}")
-    assert median(factors) >= goal
+    assert reported("four corners", factors, "times real time", f"{goal:g}, aim {aim:g}") >= goal

@@ -9,11 +9,11 @@ import sys
 import sysconfig
 import time
 from pathlib import Path
-from statistics import median
 
 import pytest
 
 from shipcosim.cli.project import build_stale
+from speed.measure import reported
 
 RUNS = 5
 LONGEST_HELP, LONGEST_START = 0.3, 2.0  # s
@@ -34,12 +34,6 @@ def command():
     return str(Path(sysconfig.get_path("scripts")) / ("shipcosim.exe" if os.name == "nt" else "shipcosim"))
 
 
-def told(what, seconds, longest):
-    low, middle, high = (f"{value:.2f}" for value in (min(seconds), median(seconds), max(seconds)))
-    print(f"\n{what}: {middle} s (median of {len(seconds)}, {low} to {high}); to reach {longest} s")
-    return median(seconds)
-
-
 @pytest.mark.slow
 def test_help_comes_at_once():
     seconds = []
@@ -47,7 +41,7 @@ def test_help_comes_at_once():
         start = time.perf_counter()
         subprocess.run([command(), "--help"], check=True, capture_output=True)
         seconds.append(time.perf_counter() - start)
-    assert told("shipcosim --help", seconds, LONGEST_HELP) < LONGEST_HELP
+    assert reported("shipcosim --help", seconds, "s", f"{LONGEST_HELP}") < LONGEST_HELP
 
 
 @pytest.mark.slow
@@ -62,4 +56,4 @@ def test_first_step_of_a_run_comes_within_two_seconds(root, tmp_path):
         done = subprocess.run([sys.executable, "-c", code, *arguments], cwd=root, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         seconds.append(float(done.stderr.partition("first step at ")[2].split()[0]) - start)
-    assert told("first step of shipcosim run", seconds, LONGEST_START) < LONGEST_START
+    assert reported("first step of shipcosim run", seconds, "s", f"{LONGEST_START}") < LONGEST_START

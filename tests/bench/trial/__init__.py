@@ -3,8 +3,8 @@
 Only here do the independent truth (`tests/bench/truth`) and the diagnosis meet; each knows nothing of the other.
 """
 
-from .runs import SETS, diagnosed, run
-from .scoring import Score, score
-from .tables import rates, table
+from trial.runs import SETS, diagnosed, run
+from trial.scoring import Score, score
+from trial.tables import rates, table
 
 __all__ = ["SETS", "Score", "diagnosed", "rates", "run", "score", "table"]

@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # truth, trial
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))  # diagnose
 
 from trial import comparison, manoeuvres, runs, scoring, tables
 

@@ -1,7 +1,7 @@
 """The project's diagnosis beside its rivals, on the same logs."""
 
-from .runs import KINDS, key
-from .tables import ROWS, content
+from trial.runs import KINDS, key
+from trial.tables import ROWS, content
 
 LABELS = {
     "trial.tools:ours": "shipcosim",

@@ -4,13 +4,11 @@ import time
 from functools import cache
 from pathlib import Path
 
-from truth import draw
-
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.ship.model import ship_model_of
-
-from .runs import TOOL, add, answered, key, pool_of, read_results
-from .tools import system
+from trial.runs import TOOL, add, answered, key, pool_of, read_results
+from trial.tools import system
+from truth import draw
 
 AFTER = "{} sailed"
 """Name of a set after the manoeuvre."""

@@ -12,13 +12,11 @@ from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 
+import shipcosim
+from trial.scoring import DATA_FAULTS
+from trial.tools import twin_of
 from truth import draw_many
 from truth.cases import CAUSES
-
-import shipcosim
-
-from .scoring import DATA_FAULTS
-from .tools import twin_of
 
 KINDS = ("trial", "work", "hold")
 TOOL = "trial.tools:ours"

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from .runs import KINDS
-from .scoring import named_rightly, score
+from trial.runs import KINDS
+from trial.scoring import named_rightly, score
 
 UNJUDGED = {"verdict": "error", "findings": []}
 Z = 1.959964

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from truth.orders import Orders, leg_speeds
 
 from trial import manoeuvres, runs, tools
+from truth.orders import Orders, leg_speeds
 
 AMBIGUOUS = {"verdict": "ambiguous", "findings": [], "prescription": {"manoeuvre": "turn by 90 deg and hold"}}
 LENGTHS = []

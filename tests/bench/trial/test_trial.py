@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from truth import weekly_seed
 
 from trial import runs, scoring, tables
+from truth import weekly_seed
 
 SAMPLE = (
     ("trial", "one", 4),

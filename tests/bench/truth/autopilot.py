@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .plant import to_body, to_earth
-from .ship import (
+from truth.plant import to_body, to_earth
+from truth.ship import (
     AZIMUTH_RPM_MAX,
     BOLLARD_AHEAD,
     BOLLARD_ASTERN,

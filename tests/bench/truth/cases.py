@@ -11,13 +11,13 @@ from itertools import combinations
 import numpy as np
 import pandas as pd
 
-from . import autopilot, effects, faults, sensors, unknowns
-from .effects import Answer, Effect
-from .loop import AFTER, BEFORE, HALF_SECOND, Setup, run
-from .orders import Orders, carried_out
-from .ship import draw_coefficients
-from .streams import Lengthened, stream
-from .weather import draw_weather, elevation, wind_series, windier
+from truth import autopilot, effects, faults, sensors, unknowns
+from truth.effects import Answer, Effect
+from truth.loop import AFTER, BEFORE, HALF_SECOND, Setup, run
+from truth.orders import Orders, carried_out
+from truth.ship import draw_coefficients
+from truth.streams import Lengthened, stream
+from truth.weather import draw_weather, elevation, wind_series, windier
 
 KINDS = ("trial", "work", "hold")
 BATCH = 64

@@ -5,9 +5,9 @@ A draw gives an effect whose answer names segments and channels; `true_times` an
 
 import numpy as np
 
-from .effects import Answer, Effect, draw_size, either
-from .plant import to_earth
-from .sensors import ROLES
+from truth.effects import Answer, Effect, draw_size, either
+from truth.plant import to_earth
+from truth.sensors import ROLES
 
 KNOT = 1852.0 / 3600.0
 NAVIGATION = ("north", "east", "heading", "surge", "sway", "yaw_rate")

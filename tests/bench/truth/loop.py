@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import effects, plant, sensors, unknowns
-from .autopilot import Autopilot, Plan, Style
-from .knobs import Knobs
-from .sensors import RECORDED, THRUSTER_ROWS, Noise
-from .ship import Coefficients
-from .weather import Weather
+from truth import effects, plant, sensors, unknowns
+from truth.autopilot import Autopilot, Plan, Style
+from truth.knobs import Knobs
+from truth.sensors import RECORDED, THRUSTER_ROWS, Noise
+from truth.ship import Coefficients
+from truth.weather import Weather
 
 BEFORE = 240  # s that the loop runs before the log, so that it starts settled
 AFTER = 130  # and after it, for clocks that run fast

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .autopilot import FIXED, TURNING, ByHand, Plan
-from .plant import to_earth
+from truth.autopilot import FIXED, TURNING, ByHand, Plan
+from truth.plant import to_earth
 
 THRUSTERS = ("port", "starboard", "tunnel")
 STOP = 30  # s until the ship has done with what she was about

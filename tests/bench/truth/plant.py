@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .ship import GRAVITY, STRIP_X, TOW_X
-from .thrusters import tunnel_load, unit_loads
+from truth.ship import GRAVITY, STRIP_X, TOW_X
+from truth.thrusters import tunnel_load, unit_loads
 
 LIFT_X = -2.3
 X = STRIP_X[:, None]

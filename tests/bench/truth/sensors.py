@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .plant import to_body, to_earth
-from .weather import gauss_markov, wave_motion
+from truth.plant import to_body, to_earth
+from truth.weather import gauss_markov, wave_motion
 
 MAST_HEIGHT = 10.0  # of the antenna above the roll axis, for ships that roll [m]
 GAUSS_MARKOV = ((0.1, 240.0), (0.1, 240.0), (np.radians(0.1), 60.0))  # north, east, heading: [m or rad, s]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .ship import BETA_STEP, PROPELLER_DIAMETER, WATER_DENSITY
+from truth.ship import BETA_STEP, PROPELLER_DIAMETER, WATER_DENSITY
 
 DISC = np.pi / 4 * PROPELLER_DIAMETER**2
 TIP = 0.7 * np.pi * PROPELLER_DIAMETER

@@ -6,8 +6,8 @@ in the draws; those that need motion to show are not used in a stationkeeping lo
 
 import numpy as np
 
-from .effects import Answer, Effect, direction, either
-from .plant import to_body
+from truth.effects import Answer, Effect, direction, either
+from truth.plant import to_body
 
 
 def draw_periodic_moment(rng, size, place):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import lfilter
 
-from .ship import BREADTH, DRAUGHT, GRAVITY, LENGTH
+from truth.ship import BREADTH, DRAUGHT, GRAVITY, LENGTH
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from . import cases, effects, unknowns
-from .cases import CAUSES, KINDS, draw, draw_many, weekly_seed
-from .sensors import ROLES
+from truth import cases, effects, unknowns
+from truth.cases import CAUSES, KINDS, draw, draw_many, weekly_seed
+from truth.sensors import ROLES
 
 SHORT = {"minutes": 10}
 IN_LOOP = [cause for cause in CAUSES if cause in effects.ACT]

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from .ship import (
+from truth.ship import (
     BETA,
     OTHER_WIND_LOAD,
     THRUST_COEFFICIENT,
@@ -15,7 +15,7 @@ from .ship import (
     strip_coefficients,
     wind_table,
 )
-from .thrusters import axial_thrust, side_force
+from truth.thrusters import axial_thrust, side_force
 
 
 def test_propeller_table_is_the_scaled_series_of_the_reference(shared):

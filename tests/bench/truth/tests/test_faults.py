@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from . import faults
-from .effects import Answer, Effect
-from .plant import to_body
-from .sensors import ROLES
+from truth import faults
+from truth.effects import Answer, Effect
+from truth.plant import to_body
+from truth.sensors import ROLES
 
 TIMES = np.arange(1201)
 

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from . import plant
-from .knobs import Knobs
-from .ship import DRAUGHT, LENGTH, WATER_DENSITY, Coefficients, draw_coefficients
-from .thrusters import unit_loads
+from truth import plant
+from truth.knobs import Knobs
+from truth.ship import DRAUGHT, LENGTH, WATER_DENSITY, Coefficients, draw_coefficients
+from truth.thrusters import unit_loads
 
 KNOT = 1852.0 / 3600.0
 N = 2

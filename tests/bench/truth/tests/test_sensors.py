@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from . import sensors
-from .knobs import NEUTRAL, SENSOR
-from .weather import Weather, draw_weather, elevation, gauss_markov, wind_series
+from truth import sensors
+from truth.knobs import NEUTRAL, SENSOR
+from truth.weather import Weather, draw_weather, elevation, gauss_markov, wind_series
 
 CALM = Weather(6.0, 0.5, 0.1, 0.0, 5.0, 0.5)
 ROWS, GRID = 601, np.arange(-240.0, 730.0, 0.5)

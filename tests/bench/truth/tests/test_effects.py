@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from . import effects, plant, unknowns
-from .knobs import Knobs
-from .ship import Coefficients, draw_coefficients
-from .thrusters import tunnel_load, unit_loads
+from truth import effects, plant, unknowns
+from truth.knobs import Knobs
+from truth.ship import Coefficients, draw_coefficients
+from truth.thrusters import tunnel_load, unit_loads
 
 N = 2
 ZERO = np.zeros(N)
@@ -198,7 +198,7 @@ def test_sizes_keep_to_the_table_and_use_it(cause):
 
 
 def test_the_table_of_sizes_in_the_readme_is_the_one_in_use():
-    text = (Path(__file__).parent / "README.md").read_text(encoding="utf-8")
+    text = (Path(__file__).resolve().parents[1] / "README.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\w+) \| ([\d.]+) \| ([\d.]+) \| (.*?)\|$", text, flags=re.M)
     assert {name: (float(low), float(high), unit.strip()) for name, low, high, unit in rows} == effects.SIZES
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from . import cases, orders
-from .cases import CAUSES, draw, draw_many
-from .orders import Orders
-from .ship import BOLLARD_ASTERN, PROPELLER_DIAMETER, WATER_DENSITY
-from .streams import Lengthened
-from .weather import gauss_markov
+from truth import cases, orders
+from truth.cases import CAUSES, draw, draw_many
+from truth.orders import Orders
+from truth.ship import BOLLARD_ASTERN, PROPELLER_DIAMETER, WATER_DENSITY
+from truth.streams import Lengthened
+from truth.weather import gauss_markov
 
 BEGINS = 600 + cases.AFTER + orders.STOP
 TURN = {"legs": [[30, 0, 0, 0], [90, 0, 0, np.pi / 2], [60, 0, 0, np.pi / 2]]}
