@@ -8,12 +8,12 @@ from typing import Literal
 
 import pytest
 from pydantic import BaseModel, ConfigDict, Field
-from truth import draw
 from typer.testing import CliRunner
 
 import shipcosim.cli.diagnosis as command
 from shipcosim.cli import app
 from shipcosim.ssp import read_system
+from truth import draw
 
 FILES = ["diagnosis.json", "extended.ssp", "extended.ssv", "report.html"]
 USED = ("build", "fmus", "ssp")

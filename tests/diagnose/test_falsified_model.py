@@ -3,11 +3,11 @@
 from xml.sax.saxutils import quoteattr
 
 import pytest
-from truth import draw
 
 import shipcosim as sc
 from shipcosim.diagnose.pipeline import diagnose
 from shipcosim.ssp import read_system
+from truth import draw
 
 SEED, MINUTES = 17, 20
 SSV = """<?xml version="1.0" encoding="UTF-8"?>

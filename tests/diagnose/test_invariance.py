@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+
+from shipcosim.diagnose.log.reader import read_log
 from trial import variants
 from trial.runs import TOOL, outcome_of
 from truth import draw
-
-from shipcosim.diagnose.log.reader import read_log
 
 TURN = 50.0  # [deg]
 LATE = 86400.0  # [s]

@@ -5,7 +5,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from truth import draw
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
@@ -40,6 +39,7 @@ from shipcosim.diagnose.validation.split import (
     without_headings,
 )
 from shipcosim.ssp import read_system, with_values
+from truth import draw
 
 CONTRACT = {"horizon_s", "before_m", "bias_observer_m", "after_m", "noise_floor_m", "share_of_explainable", "ci95"}
 

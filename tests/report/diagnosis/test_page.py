@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from truth import draw
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre, library
@@ -21,6 +20,7 @@ from shipcosim.report.diagnosis.error import condition_table, error_panels, erro
 from shipcosim.report.diagnosis.page import Story, render, write_diagnosis
 from shipcosim.report.diagnosis.parts import metres
 from shipcosim.ssp import read_system
+from truth import draw
 
 SECTIONS = ("log", "error", "causes", "extension", "gain")
 
