@@ -63,3 +63,17 @@ def test_links_of_a_page_lead_to_files(page):
     targets = [target.partition("#")[0] for target in re.findall(r"\]\(([^)\s]+)\)", text) if "://" not in target]
     missing = [target for target in targets if target and not (page.parent / target).exists()]
     assert missing == []
+
+
+@pytest.fixture(scope="session")
+def tracked():
+    """Paths of all files of the project, from its root."""
+    folders = ("docs", "fmus", "scenarios", "src", "ssp", "tests")
+    return [path.relative_to(ROOT).as_posix() for folder in folders for path in (ROOT / folder).rglob("*.*")]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_source_files_that_a_page_names_exist(page, tracked):
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    named = set(re.findall(r"`([a-z_0-9/]+/[a-z_0-9]+\.py)`", text)) - {"fmus/lag/lag.py"}  # the reader writes it
+    assert {name for name in named if not any(f"/{path}".endswith(f"/{name}") for path in tracked)} == set()
