@@ -6,6 +6,7 @@ import sys
 import pytest
 
 import shipcosim as sc
+from shipcosim.options import RunKeywords, RunOptions
 
 RAMP = '''
 from shipcosim.fmi import Fmu, Input, Output, Parameter
@@ -116,3 +117,13 @@ def test_what_makes_no_sense_is_refused(system):
     assert "is no multiple of the step size 0.1 s" in refused(system, stop_time=1.05, step_size=0.1)
     assert "The event does nothing." in refused(system, stop_time=1.0, step_size=0.1, events=[{"time": 0.0}])
     assert "ramp has no variable 'rat'." in refused(system, stop_time=1.0, step_size=0.1, set={"ramp.rat": 1.0})
+
+
+def test_keywords_of_a_run_are_its_options():
+    """But for `start_time`, whose default is the system's."""
+    keywords, options = as_written(RunKeywords), as_written(RunOptions)
+    assert keywords == {name: hint for name, hint in options.items() if name != "start_time"}
+
+
+def as_written(record):
+    return {name: getattr(hint, "__forward_arg__", hint) for name, hint in record.__annotations__.items()}

@@ -1,10 +1,20 @@
 """What `import shipcosim` offers, in one place."""
 
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Unpack
+
 from shipcosim.cosim import simulate as _simulate
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.scenario import Scenario, check_times, judge, read_scenario
 from shipcosim.series import read_table, write_table
 from shipcosim.ssp import System, SystemStructure, new, osp_file, parameter, read, read_system, write_ssv
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = [
     "Problem",
@@ -25,25 +35,17 @@ __all__ = [
 
 
 def simulate(
-    system=None,
-    scenario=None,
+    system: SystemStructure | System | str | os.PathLike[str] | None = None,
+    scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
-    stop_time=None,
-    step_size=None,
-    output_interval=None,
-    set=None,
-    events=(),
-    engine="fmpy",
-    inputs=None,
-    progress=None,
-    order="jacobi",
-    start_time=None,
-    until=None,
-    resume=None,
-    store=None,
-    isolate=False,
-    timeout=60.0,
-):
+    stop_time: float | None = None,
+    step_size: float | None = None,
+    output_interval: float | None = None,
+    set: Mapping[str, object] | None = None,
+    events: Iterable[Mapping[str, object]] = (),
+    start_time: float | None = None,
+    **options: Unpack[RunKeywords],
+) -> xarray.Dataset:
     """Run a system and return the table of all signals.
 
     Parameters
@@ -59,10 +61,10 @@ def simulate(
     events : iterable of mapping
         As in a scenario file: ``{"time": 10.0, "override": {"vessel.tau_X_5": 1e4}}``.
     start_time : float, optional
-        As for `shipcosim.cosim.simulate`; where nobody says anything, the system's default experiment does. [s]
+        As in `shipcosim.options.RunOptions`; where nobody says anything, the system's default experiment does. [s]
     engine, inputs, progress, order, until, resume, store, isolate, timeout
-        As for `shipcosim.cosim.simulate`: `until` and `store` stop at a time and keep the state of the whole system,
-        `resume` continues from there; `isolate` has each component run in a process of its own.
+        As in `shipcosim.options.RunOptions`: `until` and `store` stop at a time and keep the state of the whole
+        system, `resume` continues from there; `isolate` has each component run in a process of its own.
 
     Returns
     -------
@@ -76,23 +78,27 @@ def simulate(
     """
     if scenario is not None and not isinstance(scenario, Scenario):
         scenario = read_scenario(scenario)
-    if system is None:
-        system = scenario.system_path if scenario is not None else _missing("system", "Give a system or a scenario.")
-    if not isinstance(system, System):
-        parameters = () if scenario is None else scenario.parameter_paths
-        if not isinstance(system, SystemStructure) and osp_file(system):
-            system = read_system(system, parameters)
-        else:
-            structure = system if isinstance(system, SystemStructure) else read(system)
-            system = structure.checked(parameters)
+    system = _system(system, scenario)
     if start_time is None:
-        start_time = system.experiment.start_time if scenario is None and resume is None else 0.0
+        continues = options.get("resume") is not None
+        start_time = system.experiment.start_time if scenario is None and not continues else 0.0
     keys = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
     keys = {name: value for name, value in keys.items() if value is not None}
     scenario = _scenario(scenario, system.experiment, keys | {"set": set or {}, "events": list(events)})
-    course = {"order": order, "start_time": start_time, "until": until, "resume": resume, "store": store}
-    course |= {"isolate": isolate, "timeout": timeout}
-    return _simulate(system, scenario, engine=engine, inputs=inputs, progress=progress, **course)
+    return _simulate(system, scenario, RunOptions(start_time=start_time, **options))
+
+
+def _system(system, scenario):
+    """The checked system that a user means, or the scenario's where none is given."""
+    if system is None:
+        system = scenario.system_path if scenario is not None else _missing("system", "Give a system or a scenario.")
+    if isinstance(system, System):
+        return system
+    parameters = () if scenario is None else scenario.parameter_paths
+    if not isinstance(system, SystemStructure) and osp_file(system):
+        return read_system(system, parameters)
+    structure = system if isinstance(system, SystemStructure) else read(system)
+    return structure.checked(parameters)
 
 
 def _scenario(given, experiment, keys):

@@ -15,11 +15,20 @@ from shipcosim.series import make_table
 
 LOOP = {"plant": ("integrator", {"y_start": 0.3}), "law": ("gain", {"factor": -0.9})}
 CONNECTIONS = ["plant.y -> law.u", "law.y -> plant.u"]
+OURS = ENGINES["fmpy"]
 
 
 @pytest.fixture
 def loop(make_system):
     return make_system(LOOP, CONNECTIONS)
+
+
+def set_engines(monkeypatch, engines):
+    """Let these be the only engines."""
+    for name in list(ENGINES):
+        monkeypatch.delitem(ENGINES, name)
+    for name, run in engines.items():
+        monkeypatch.setitem(ENGINES, name, run)
 
 
 def by_name(comparison):
@@ -29,8 +38,8 @@ def by_name(comparison):
 def altered(name, change):
     """An engine that is ours with one signal changed."""
 
-    def run(system, scenario, **more):
-        table = ENGINES["fmpy"](system, scenario, **more)
+    def run(system, scenario, options):
+        table = OURS(system, scenario, options)
         table[name].values[:] = change(table[name].values)
         return table
 
@@ -83,28 +92,28 @@ def test_engines_that_agree_with_each_other_are_named_together(loop, make_scenar
     def scaled(values):
         return 1.1 * values
 
-    runs = {"same": ENGINES["fmpy"], "one": altered("law.y", scaled), "two": altered("law.y", scaled)}
-    monkeypatch.setattr("shipcosim.cosim.ENGINES", {"fmpy": ENGINES["fmpy"]} | runs)
+    runs = {"same": OURS, "one": altered("law.y", scaled), "two": altered("law.y", scaled)}
+    set_engines(monkeypatch, {"fmpy": OURS} | runs)
     signals = by_name(compare(loop, make_scenario(1.0, 0.1)))
     assert signals["law.y"].agreeing == [["fmpy", "same"], ["one", "two"]]
     assert signals["plant.y"].agreeing == [["fmpy", "same", "one", "two"]]
 
 
 def test_difference_of_angles_is_the_shorter_way_round(loop, make_scenario, monkeypatch):
-    def turned(system, scenario, **more):
-        table = ENGINES["fmpy"](system, scenario, **more)
+    def turned(system, scenario, options):
+        table = OURS(system, scenario, options)
         table["law.y"].values[:] += 2.0 * np.pi
         return table
 
     def in_radians(run):
-        def wrapped(*args, **more):
-            table = run(*args, **more)
+        def wrapped(system, scenario, options):
+            table = run(system, scenario, options)
             table["law.y"].attrs["units"] = "rad"
             return table
 
         return wrapped
 
-    monkeypatch.setattr("shipcosim.cosim.ENGINES", {"fmpy": in_radians(ENGINES["fmpy"]), "turned": in_radians(turned)})
+    set_engines(monkeypatch, {"fmpy": in_radians(OURS), "turned": in_radians(turned)})
     comparison = compare(loop, make_scenario(1.0, 0.1))
     assert by_name(comparison)["law.y"].engines["turned"].largest < 1e-12
 

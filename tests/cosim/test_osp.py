@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from osp_execution import assert_same, rows_of
 
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.cosim.export.osp import write_osp
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.ssp import read_system
@@ -179,8 +179,8 @@ def test_a_sum_survives_a_stop_in_between(write, make_scenario):
     system = read_system(write(LOOP, '<Sum name="all" inputCount="2"/>', connections))
     scenario, kept = make_scenario(1.8, 0.05), []
     whole = simulate(system, scenario)
-    simulate(system, scenario, until=0.65, store=kept.append)
-    rest = simulate(system, scenario, resume=kept[0])
+    simulate(system, scenario, RunOptions(until=0.65, store=kept.append))
+    rest = simulate(system, scenario, RunOptions(resume=kept[0]))
     assert rest["law.y"].values.tolist() == whole["law.y"].values[13:].tolist()
 
 
@@ -196,7 +196,7 @@ def test_an_event_on_a_summed_input_acts_on_the_sum(write, make_scenario):
     assert table["law.u"].values[:4].tolist() == added[:4].tolist()
     assert table["law.u"].values[4:8].tolist() == (added[4:8] + 1.0).tolist()
     assert table["law.u"].values[8:].tolist() == [3.0] * 5
-    theirs = simulate(system, make_scenario(0.6, 0.05, events=events), engine="libcosim")
+    theirs = simulate(system, make_scenario(0.6, 0.05, events=events), RunOptions(engine="libcosim"))
     assert all(theirs[name].values.tolist() == column.values.tolist() for name, column in table.data_vars.items())
 
 
@@ -218,7 +218,7 @@ def test_a_sum_is_the_closed_form_of_its_terms(write, make_scenario, order):
     simulators = simulator("plant", "integrator", y_start=0.25) + simulator("filter", "lag", y_start=0.5)
     simulators += simulator("law", "gain", factor=2.0)
     system = read_system(write(simulators, '<Sum name="all" inputCount="2"/>', connections))
-    table = simulate(system, make_scenario(1.0, 0.05), order=order)
+    table = simulate(system, make_scenario(1.0, 0.05), RunOptions(order=order))
     decay = 0.5 * np.exp(-table["time"].values)
     wanted = 2.0 * (0.25 + (decay if order == "gauss-seidel" else np.r_[0.5, decay[:-1]]))
     np.testing.assert_allclose(table["law.y"].values, wanted, rtol=1e-12)

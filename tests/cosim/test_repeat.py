@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from shipcosim.cli.project import build_stale
-from shipcosim.cosim import repeat, simulate
+from shipcosim.cosim import RunOptions, repeat, simulate
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table, read_table, write_table
 from shipcosim.ssp import with_values
@@ -17,7 +17,7 @@ from shipcosim.ssp import with_values
 RUN = """
 import sys
 from pathlib import Path
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.scenario import read_scenario
 from shipcosim.series import write_table
 from shipcosim.ssp import read_system
@@ -73,7 +73,7 @@ def run(make_system, make_scenario):
     events = [{"time": 0.5, "override": {"gain.y": 2.0}}, {"time": 1.0, "bias": {"push": 1.0}, "reset": ["gain.y"]}]
     inputs = make_table(np.linspace(0.0, 9.0, 10), [("push", np.arange(10.0), "", "")])
     system, scenario = make_system(PARTS, LINKS, PUSH), make_scenario(5.0, output_interval=0.5, events=events)
-    table = simulate(system, scenario, inputs=inputs, start_time=0.4, order="gauss-seidel", until=4.4)
+    table = simulate(system, scenario, RunOptions(inputs=inputs, start_time=0.4, order="gauss-seidel", until=4.4))
     return table, system, inputs
 
 
@@ -100,5 +100,9 @@ def test_what_differs_from_the_run_is_said(run, make_system, make_scenario):
     swapped = make_system(PARTS | {"clock": "meter"}, LINKS, PUSH)
     refused("clock: clock.fmu is another FMU than in the run", system=swapped)
     stored = []
-    simulate(system, make_scenario(5.0), until=1.0, store=stored.append)
-    refused("continued from a snapshot at 1 s", of=simulate(system, make_scenario(5.0), resume=stored[0]), inputs=None)
+    simulate(system, make_scenario(5.0), RunOptions(until=1.0, store=stored.append))
+    refused(
+        "continued from a snapshot at 1 s",
+        of=simulate(system, make_scenario(5.0), RunOptions(resume=stored[0])),
+        inputs=None,
+    )

@@ -5,7 +5,7 @@ import pytest
 import xarray
 
 from shipcosim.cli.project import build_stale
-from shipcosim.cosim import RunError, interpolated, replay, simulate
+from shipcosim.cosim import RunError, RunOptions, interpolated, replay, simulate
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario, read_scenario
 from shipcosim.series import make_table
@@ -28,7 +28,7 @@ def record(times, values, unit="1", **attributes):
 
 def test_fmus_get_the_time_of_a_run_that_starts_late(integrator, make_scenario):
     whole = simulate(integrator, make_scenario(110.0))
-    late = simulate(integrator, make_scenario(110.0), start_time=100.0)
+    late = simulate(integrator, make_scenario(110.0), RunOptions(start_time=100.0))
     assert late.time.values.tolist() == whole.time.values[1000:].tolist()
     assert np.array_equal(late["clock.time"][1:], whole["clock.time"][1001:])
     assert np.array_equal(late["clock.step_size"][1:], whole["clock.step_size"][1001:])
@@ -37,16 +37,16 @@ def test_fmus_get_the_time_of_a_run_that_starts_late(integrator, make_scenario):
 
 def test_events_of_a_run_that_starts_late_act_at_their_times(integrator, make_scenario):
     events = [{"time": 1.0, "override": {"ramp": 5.0}}, {"time": 10.5, "override": {"ramp": 2.0}}]
-    table = simulate(integrator, make_scenario(11.0, events=events), start_time=10.0)
+    table = simulate(integrator, make_scenario(11.0, events=events), RunOptions(start_time=10.0))
     assert table["ramp"].values.tolist() == [0.0] * 5 + [2.0] * 6
 
 
 def test_a_held_column_changes_at_its_rows_and_a_linear_one_between_them(integrator, make_scenario):
     times, values = [0.0, 3.0, 4.0], [1.0, 1.0, 3.0]
-    held = simulate(integrator, make_scenario(4.0), inputs=record(times, values), start_time=3.0)
+    held = simulate(integrator, make_scenario(4.0), RunOptions(inputs=record(times, values), start_time=3.0))
     assert held["ramp"].values.tolist() == [1.0] * 10 + [3.0]
     line = record(times, values, interpolation="linear")
-    linear = simulate(integrator, make_scenario(4.0), inputs=line, start_time=3.0)
+    linear = simulate(integrator, make_scenario(4.0), RunOptions(inputs=line, start_time=3.0))
     assert np.allclose(linear["ramp"], 1.0 + 2.0 * np.linspace(0.0, 1.0, 11), rtol=1e-14)
     # left Riemann sums of 1 + 2 t over 0.1 s steps
     assert np.allclose(linear["sum.y"], [0.1 * k + 0.01 * k * (k - 1) for k in range(11)], rtol=0, atol=1e-13)
@@ -56,14 +56,18 @@ def test_units_of_the_header_are_converted(make_system, make_scenario):
     connectors = {"speed": ("input", "Real", 'unit="rad/s"')}
     system = make_system({"shaft": "shaft"}, ["speed -> shaft.speed"], connectors)
     table = make_table(np.array([0.0, 1.0]), [("speed", np.array([30.0, 60.0]), "rpm", "")])
-    assert np.allclose(simulate(system, make_scenario(), inputs=table)["speed"][[0, -1]], [np.pi, 2.0 * np.pi])
+    assert np.allclose(
+        simulate(system, make_scenario(), RunOptions(inputs=table))["speed"][[0, -1]], [np.pi, 2.0 * np.pi]
+    )
 
 
 def test_an_angle_is_interpolated_the_shorter_way_round(make_system, make_scenario):
     system = make_system({"shaft": "shaft"}, ["course -> shaft.angle"], {"course": ("input", "Real", 'unit="deg"')})
     table = make_table(np.array([0.0, 1.0]), [("course", np.array([170.0, -170.0]), "deg", "")])
     marked = interpolated(table, system, ["c*"])
-    assert np.allclose(simulate(system, make_scenario(), inputs=marked)["course"], 170.0 + 20.0 * np.linspace(0, 1, 11))
+    assert np.allclose(
+        simulate(system, make_scenario(), RunOptions(inputs=marked))["course"], 170.0 + 20.0 * np.linspace(0, 1, 11)
+    )
     assert "interpolation" not in table["course"].attrs
 
 
@@ -89,21 +93,21 @@ GAP = record([*np.arange(0.0, 20.0, 0.5), *np.arange(40.0, 61.0, 0.5)], np.zeros
 )
 def test_a_table_that_cannot_feed_the_run_is_refused_in_words(integrator, make_scenario, table, said):
     with pytest.raises(ShipcosimError, match=f"(?s)inputs: .*{said}"):
-        simulate(integrator, make_scenario(60.0), inputs=table)
+        simulate(integrator, make_scenario(60.0), RunOptions(inputs=table))
 
 
 def test_what_is_wrong_outside_the_run_does_not_matter(integrator, make_scenario):
     table = GAP.copy(deep=True)
     table["ramp"][5] = np.nan
-    simulate(integrator, make_scenario(60.0), inputs=table, start_time=40.0)
-    simulate(integrator, make_scenario(60.0), inputs=GAP.assign_attrs(max_gap=100.0))
+    simulate(integrator, make_scenario(60.0), RunOptions(inputs=table, start_time=40.0))
+    simulate(integrator, make_scenario(60.0), RunOptions(inputs=GAP.assign_attrs(max_gap=100.0)))
 
 
 def test_whole_numbers_are_not_cut_off(make_system, make_scenario):
     system = make_system({"meter": "meter"}, ["n -> meter.number"], {"n": ("input", "Integer", "")})
     table = make_table(np.array([0.0, 1.0]), [("n", np.array([1.0, 0.7]), "", "")])
     with pytest.raises(ShipcosimError, match="n: is 0.7 at 1 s.*whole numbers"):
-        simulate(system, make_scenario(), inputs=table)
+        simulate(system, make_scenario(), RunOptions(inputs=table))
 
 
 def test_a_column_to_interpolate_has_to_be_there(integrator):
@@ -124,7 +128,7 @@ def test_segments_are_the_runs_that_each_would_be_alone(make_system):
     for number in (0, 2):
         own = with_values(system, {name: np.broadcast_to(v, 3)[number].item() for name, v in states.items()})
         scenario = Scenario(stop_time=starts[number] + 5.0, step_size=0.1)
-        alone = simulate(own, scenario, inputs=table, start_time=starts[number])
+        alone = simulate(own, scenario, RunOptions(inputs=table, start_time=starts[number]))
         for name in alone:
             assert np.array_equal(together[name][number], alone[name]), name
     assert np.allclose(together["clock.time"][1, 1:], 12.345 + np.linspace(0.1, 5.0, 50))

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table, write_table
 
@@ -30,7 +30,7 @@ def test_jacobi_delays_each_link_of_a_chain_by_one_step(make_system, make_scenar
 def test_gauss_seidel_passes_values_on_within_the_step_whatever_order_they_are_listed_in(make_system, make_scenario):
     chain = {"c": "integrator", "b": "integrator", "a": ("integrator", {"u": 1.0})}
     system = make_system(chain, ["a.y -> b.u", "b.y -> c.u"])
-    table = simulate(system, make_scenario(2.0, 0.1), order="gauss-seidel")
+    table = simulate(system, make_scenario(2.0, 0.1), RunOptions(order="gauss-seidel"))
     k, h = np.arange(21), 0.1
     assert np.allclose(table["b.y"], h**2 * k * (k + 1) / 2)
     assert np.allclose(table["c.y"], h**3 * k * (k + 1) * (k + 2) / 6)
@@ -39,7 +39,7 @@ def test_gauss_seidel_passes_values_on_within_the_step_whatever_order_they_are_l
 def test_gauss_seidel_breaks_a_loop_where_the_system_lists_it_first(make_system, make_scenario):
     loop = {"first": ("integrator", {"y_start": 1.0}), "law": ("gain", {"factor": -1.0})}
     system = make_system(loop, ["first.y -> law.u", "law.y -> first.u"])
-    gauss_seidel = simulate(system, make_scenario(1.0, 0.1), order="gauss-seidel")["first.y"].values
+    gauss_seidel = simulate(system, make_scenario(1.0, 0.1), RunOptions(order="gauss-seidel"))["first.y"].values
     assert np.allclose(gauss_seidel, 0.9 ** np.arange(11))
 
 
@@ -125,7 +125,7 @@ def test_connectors_of_the_system_are_fed_by_a_table_and_shown(make_system, make
     columns = [("held", np.array([0.1, 0.2, 0.3]), "rad", ""), ("ramp", np.array([0.0, 1.0, 3.0]), "", "")]
     inputs = make_table(np.array([0.0, 0.5, 1.0]), columns)
     inputs["ramp"].attrs["interpolation"] = "linear"
-    table = simulate(system, make_scenario(1.0, 0.1), inputs=inputs)
+    table = simulate(system, make_scenario(1.0, 0.1), RunOptions(inputs=inputs))
     degrees = np.degrees(np.repeat([0.1, 0.2, 0.3], [5, 5, 1]))
     ramp = np.interp(np.arange(11) * 0.1, [0.0, 0.5, 1.0], [0.0, 1.0, 3.0])
     assert np.allclose(table["held"], degrees) and table["held"].attrs["units"] == "deg"
@@ -154,7 +154,7 @@ def test_inputs_that_do_not_fit_are_refused(make_system, make_scenario, time, na
     system = make_system({"gain": "gain"}, ["ramp -> gain.u"], {"ramp": ("input", "Real", "")})
     inputs = make_table(np.array(time), [(name, np.array(values), "", "")])
     with pytest.raises(ShipcosimError, match=said):
-        simulate(system, make_scenario(1.0, 0.1), inputs=inputs)
+        simulate(system, make_scenario(1.0, 0.1), RunOptions(inputs=inputs))
 
 
 def test_start_values_come_from_the_system_and_the_scenario_over_it(make_system, make_scenario):
@@ -192,10 +192,12 @@ def test_table_says_what_is_needed_to_repeat_the_run(make_system, make_scenario,
 
 def test_progress_is_told_sparsely_and_to_the_end(make_system, make_scenario):
     told = []
-    simulate(make_system({"clock": "clock"}), make_scenario(50.0, 0.01), progress=lambda *done: told.append(done))
+    simulate(
+        make_system({"clock": "clock"}), make_scenario(50.0, 0.01), RunOptions(progress=lambda *done: told.append(done))
+    )
     assert told[0] == (0, 5000) and told[-1] == (5000, 5000) and len(told) < 50
 
 
 def test_unknown_engine_is_refused(make_system, make_scenario):
     with pytest.raises(ShipcosimError, match="engine 'simulink'"):
-        simulate(make_system({"clock": "clock"}), make_scenario(), engine="simulink")
+        simulate(make_system({"clock": "clock"}), make_scenario(), RunOptions(engine="simulink"))

@@ -255,11 +255,13 @@ def compare(
     from shipcosim.cli.comparison import matter_of, print_comparison, reading
     from shipcosim.cli.console import progress_of
     from shipcosim.cosim.compare import compare as compare_engines
+    from shipcosim.options import RunOptions
 
     system, happening = matter_of(what, parameters or (), stop_time, step_size, events)
     how = reading(what, system, happening, parameters) if as_read else nullcontext({})
     with how as tools, progress_of("Comparing") as progress:
-        comparison = compare_engines(system, happening, tolerance=tolerance, progress=progress, **tools)
+        options = RunOptions(progress=progress)
+        comparison = compare_engines(system, happening, options, tolerance=tolerance, **tools)
     print_comparison(comparison, as_json)
     if not comparison.agree:
         raise typer.Exit(FAILED)
@@ -348,7 +350,7 @@ def _simulate_and_save(system, scenario, out, engine, inputs=None, store=None, *
     """
     from shipcosim.cli.console import print_problems, print_summary, progress_of
     from shipcosim.cli.results import check_targets, save
-    from shipcosim.cosim import Interrupted, RunError, write_snapshot
+    from shipcosim.cosim import Interrupted, RunError, RunOptions, write_snapshot
     from shipcosim.cosim import simulate as simulate_system
     from shipcosim.scenario import judge
 
@@ -358,7 +360,8 @@ def _simulate_and_save(system, scenario, out, engine, inputs=None, store=None, *
     course |= {"store": snapshots.append} if store else {}
     try:
         with progress_of(scenario.name or system.name, scenario.stop_time) as progress:
-            table = simulate_system(system, scenario, engine=engine, inputs=inputs, progress=progress, **course)
+            options = RunOptions(engine=engine, inputs=inputs, progress=progress, **course)
+            table = simulate_system(system, scenario, options)
     except Interrupted as stop:
         _keep(stop.table, out, scenario, system)
         raise typer.Exit(INTERRUPTED) from None

@@ -9,8 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.cosim.engines.registry import ENGINES, engines_missing
 from shipcosim.cosim.master.run import RunError
+from shipcosim.cosim.simulate import simulate
 from shipcosim.errors import ShipcosimError
+from shipcosim.options import RunOptions
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import System
 
 if TYPE_CHECKING:
     import xarray
@@ -108,12 +113,11 @@ class Comparison:
 
 
 def compare(
-    system,
-    scenario,
+    system: System,
+    scenario: Scenario,
+    options: RunOptions | None = None,
     *,
-    inputs: xarray.Dataset | None = None,
     tolerance: float = TOLERANCE,
-    progress: Callable[[int, int], None] | None = None,
     readers: Mapping[str, Callable] | None = None,
     taken: Callable[[str], tuple] | None = None,
 ) -> Comparison:
@@ -121,12 +125,12 @@ def compare(
 
     Parameters
     ----------
-    system, scenario, inputs
+    system, scenario
         As for `shipcosim.cosim.simulate`.
+    options : RunOptions, optional
+        As for `shipcosim.cosim.simulate`, but for the engine; progress is told of the parts of all runs.
     tolerance : float
         Difference from which on a signal differs, relative to its range.
-    progress : callable, optional
-        Called with (parts done, parts in all) of all runs.
     readers : mapping of str to callable, optional
         Tools that read the file themselves, in place of the engines; see `shipcosim.cosim.engines.as_read.readers`.
     taken : callable, optional
@@ -137,11 +141,9 @@ def compare(
     ShipcosimError
         If our own engine cannot run it.
     """
-    from shipcosim.cosim import ENGINES, engines_missing
-
     left_out = {name: str(problem) for name, problem in engines_missing().items()}
     names = [name for name in readers or ENGINES if name not in left_out and name != OURS]
-    runs = _Runs(system, inputs, progress, len(names) + 3)
+    runs = _Runs(system, options or RunOptions(), len(names) + 3)
     scenario = scenario.model_copy(update={"output_interval": None})
     ours, tables = runs.run(OURS, scenario), {}
     half = runs.run(OURS, halved(scenario), weight=2)
@@ -166,8 +168,6 @@ def compare(
 
 def _traced(host, taken, ours, theirs, scenario, tolerance):
     """What a tool takes otherwise, each run here by itself and all of it together, as remarks and by signal."""
-    from shipcosim.cosim import simulate
-
     respects, whole = taken
     remarks, causes = [], {}
     names = [name for name in ours.data_vars if name in theirs]
@@ -209,22 +209,20 @@ def halved(scenario):
 class _Runs:
     """Runs one after the other, timed, with one progress over all of them."""
 
-    def __init__(self, system, inputs, progress, n_parts):
-        self.system, self.inputs, self.progress, self.n_parts = system, inputs, progress, n_parts
+    def __init__(self, system, options, n_parts):
+        self.system, self.options, self.n_parts = system, options, n_parts
         self.seconds, self._done = [], 0
 
     def run(self, engine, scenario, weight=1, reader=None):
-        from shipcosim.cosim import simulate
-
         def report(done, total):
-            if self.progress is not None:
-                self.progress(self._done + weight * done / total, self.n_parts)
+            if self.options.progress is not None:
+                self.options.progress(self._done + weight * done / total, self.n_parts)
 
         begin = perf_counter()
         try:
             if reader is not None:
                 return reader(self.system)
-            return simulate(self.system, scenario, engine=engine, inputs=self.inputs, progress=report)
+            return simulate(self.system, scenario, replace(self.options, engine=engine, progress=report))
         finally:
             self._done += weight
             self.seconds.append(perf_counter() - begin)

@@ -11,6 +11,7 @@ from shipcosim.cosim.master.inputs import digest
 from shipcosim.cosim.master.result import fingerprint, hashes
 from shipcosim.cosim.master.run import run
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import read_table
 from shipcosim.ssp import System, read_system, with_values
@@ -56,8 +57,9 @@ def repeat(
     starts = {name: value for name, value in json.loads(facts["start_values"]).items() if value is not None}
     about = {key: facts[key] for key in ("description", "stop_time", "step_size", "output_interval")}
     scenario = Scenario.model_validate(_plain(about) | {"events": json.loads(facts["events"])})
-    course = {"inputs": inputs, "order": facts["order"], "start_time": float(facts["start_time"])}
-    again = run(with_values(system, starts, "repeat"), scenario, until=facts.get("until"), **course)
+    start_time, until = float(facts["start_time"]), facts.get("until")
+    options = RunOptions(inputs=inputs, order=facts["order"], start_time=start_time, until=until)
+    again = run(with_values(system, starts, "repeat"), scenario, options)
     return again.assign_attrs(scenario=facts["scenario"])
 
 

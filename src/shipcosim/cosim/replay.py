@@ -15,6 +15,7 @@ from shipcosim.cosim.master.run import Journey, RunError
 from shipcosim.cosim.master.time_grid import span_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.series import conversion
 from shipcosim.ssp import System, with_values
@@ -109,7 +110,7 @@ class _Segments:
         step_size = step_size or system.experiment.step_size
         if problems := list(_bad_times(starts, duration, step_size, output_interval)):
             raise ShipcosimError(problems)
-        self.system, self.inputs, self.starts, self.duration = system, inputs, starts, duration
+        self.system, self.starts, self.duration, self.options = system, starts, duration, RunOptions(inputs=inputs)
         self.how = {"step_size": step_size, "output_interval": output_interval}
         self.states = {name: _per_segment(name, given, system, len(starts)) for name, given in states.items()}
 
@@ -130,7 +131,7 @@ class _Segments:
         start = float(self.starts[number])
         system = with_values(self.system, {name: values[number] for name, values in self.states.items()}, "states")
         scenario = Scenario(description=f"Replay of {system.name}", stop_time=start + self.duration, **self.how)
-        return Journey(system, scenario, span_of(scenario, start), inputs=self.inputs)
+        return Journey(system, scenario, span_of(scenario, start), self.options)
 
 
 def _bad_times(starts, duration, step_size, output_interval):

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from shipcosim.cosim import engines_missing, simulate
+from shipcosim.cosim import RunOptions, engines_missing, simulate
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
 from speed.measure import reported
@@ -25,12 +25,12 @@ def seconds(root):
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"])
     engines = ["fmpy", *(name for name in TO_REACH if name not in engines_missing())]
     for engine in engines:
-        simulate(system, scenario.model_copy(update={"stop_time": 5.0}), engine=engine)
+        simulate(system, scenario.model_copy(update={"stop_time": 5.0}), RunOptions(engine=engine))
     durations = {engine: [] for engine in engines}
     for _ in range(RUNS):
         for engine in engines:
             begin = time.perf_counter()
-            table = simulate(system, scenario, engine=engine)
+            table = simulate(system, scenario, RunOptions(engine=engine))
             durations[engine].append(time.perf_counter() - begin)
             assert table.sizes["time"] == 22001
     return durations

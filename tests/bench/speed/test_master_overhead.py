@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import read_system
@@ -48,6 +48,6 @@ def test_own_time_per_fmu_step(tmp_path):
     costs = []
     for _ in range(RUNS):
         told = []
-        simulate(system, scenario, progress=lambda done, total, told=told: told.append(time.perf_counter()))
+        simulate(system, scenario, RunOptions(progress=lambda done, total, told=told: told.append(time.perf_counter())))
         costs.append((told[-1] - told[0]) / (N_FMUS * N_STEPS))
     assert reported("step of an FMU", [1e6 * cost for cost in costs], "microseconds", "20, aim 10") < LARGEST

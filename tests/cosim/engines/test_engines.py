@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shipcosim.cosim import ENGINES, Interrupted, RunError, engines_missing, simulate
+from shipcosim.cosim import ENGINES, Interrupted, RunError, RunOptions, engines_missing, simulate
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table
@@ -64,7 +64,7 @@ def loop(make_system):
 
 def test_table_is_ours(loop, make_scenario, engine):
     scenario = make_scenario(15.0, 0.05)
-    ours, theirs = simulate(loop, scenario), simulate(loop, scenario, engine=engine)
+    ours, theirs = simulate(loop, scenario), simulate(loop, scenario, RunOptions(engine=engine))
     assert_alike(ours, theirs, EXACT[engine])
     assert ours["meter.number_seen"].values[-1] == 299
     assert theirs.attrs["engine"] == engine
@@ -74,7 +74,7 @@ def test_table_is_ours(loop, make_scenario, engine):
 
 def test_rows_at_the_output_interval(loop, make_scenario, engine):
     scenario = make_scenario(1.0, 0.05, output_interval=0.25)
-    assert_alike(simulate(loop, scenario), simulate(loop, scenario, engine=engine), EXACT[engine])
+    assert_alike(simulate(loop, scenario), simulate(loop, scenario, RunOptions(engine=engine)), EXACT[engine])
 
 
 EVENTS = [
@@ -95,7 +95,7 @@ EVENTS = [
 def test_events_act_alike(loop, make_scenario, engine):
     scenario = make_scenario(1.2, 0.05, events=EVENTS)
     ours = simulate(loop, scenario)
-    assert_alike(ours, simulate(loop, scenario, engine=engine), EXACT[engine])
+    assert_alike(ours, simulate(loop, scenario, RunOptions(engine=engine)), EXACT[engine])
     assert abs(ours["filter.y"] - simulate(loop, make_scenario(1.2, 0.05))["filter.y"]).max() > 0.05
 
 
@@ -103,10 +103,10 @@ def test_connected_values_of_other_types_change_in_libcosim_only(loop, make_scen
     events = [{"time": 0.2, "override": {"meter.number": 50, "clock.odd": True}}, {"time": 0.4, "reset": ["clock.odd"]}]
     scenario = make_scenario(1.0, 0.05, events=events)
     if engine == "libcosim":
-        assert_alike(simulate(loop, scenario), simulate(loop, scenario, engine=engine), 0.0)
+        assert_alike(simulate(loop, scenario), simulate(loop, scenario, RunOptions(engine=engine)), 0.0)
     else:
         with pytest.raises(ShipcosimError, match=r"meter\.number:? .*not Real"):
-            simulate(loop, scenario, engine=engine)
+            simulate(loop, scenario, RunOptions(engine=engine))
 
 
 def test_inputs_of_the_system_from_start_value_table_and_events(make_system, make_scenario, engine):
@@ -128,7 +128,7 @@ def test_inputs_of_the_system_from_start_value_table_and_events(make_system, mak
     table["push"].attrs["interpolation"] = "linear"
     events = [{"time": 0.3, "bias": {"push": 10.0}}, {"time": 0.6, "reset": ["push"]}]
     scenario = make_scenario(1.0, 0.05, events=events, set={"still": 4.0})
-    tables = [simulate(system, scenario, engine=name, inputs=table) for name in ("fmpy", engine)]
+    tables = [simulate(system, scenario, RunOptions(engine=name, inputs=table)) for name in ("fmpy", engine)]
     assert_alike(*tables, EXACT[engine])
     assert tables[1]["push"].values[6] == pytest.approx(1.0 - 2.0 / 3.0 + 10.0)
 
@@ -137,10 +137,10 @@ def test_step_of_its_own(make_system, make_scenario, engine):
     system = make_system({"clock": "clock", "slow": ("lag", {"time_constant": 1.3}, 0.15)}, ["clock.time -> slow.u"])
     scenario = make_scenario(3.0, 0.05)
     if engine == "libcosim":
-        assert_alike(simulate(system, scenario), simulate(system, scenario, engine=engine), 0.0)
+        assert_alike(simulate(system, scenario), simulate(system, scenario, RunOptions(engine=engine)), 0.0)
     else:
         with pytest.raises(ShipcosimError, match="steps 3 base steps at a time"):
-            simulate(system, scenario, engine=engine)
+            simulate(system, scenario, RunOptions(engine=engine))
 
 
 @pytest.mark.parametrize(
@@ -160,21 +160,24 @@ def test_step_of_its_own(make_system, make_scenario, engine):
 def test_what_an_engine_would_ignore_is_refused(make_system, make_scenario, engine, parts, connections, complaint):
     system = make_system(parts, connections)
     with pytest.raises(ShipcosimError, match=f"{engine} cannot make this connection.*{complaint}"):
-        simulate(system, make_scenario(), engine=engine)
+        simulate(system, make_scenario(), RunOptions(engine=engine))
 
 
 def test_other_orders_are_refused(loop, make_scenario, engine):
     with pytest.raises(ShipcosimError, match="gauss-seidel"):
-        simulate(loop, make_scenario(), engine=engine, order="gauss-seidel")
+        simulate(loop, make_scenario(), RunOptions(engine=engine, order="gauss-seidel"))
 
 
 def test_failure_gives_the_rows_before_it(make_system, make_scenario, engine):
     system = make_system({"failing": ("failing", {"when": 0.5})})
     if engine == "ecos":  # does not notice, and the table says that it would not
-        assert "does not say when an FMU fails" in simulate(system, make_scenario(), engine=engine).attrs["remarks"]
+        assert (
+            "does not say when an FMU fails"
+            in simulate(system, make_scenario(), RunOptions(engine=engine)).attrs["remarks"]
+        )
         return
     with pytest.raises(RunError, match="in the step from t = 0.5 s") as caught:
-        simulate(system, make_scenario(1.0, 0.1), engine=engine)
+        simulate(system, make_scenario(1.0, 0.1), RunOptions(engine=engine))
     table = caught.value.table
     assert table["time"].values[-1] == 0.5 and table.attrs["complete"] == 0
     assert "failing" in str(caught.value)
@@ -186,7 +189,7 @@ def test_interrupt_gives_the_rows_before_it(loop, make_scenario, engine):
             signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(Interrupted) as caught:
-        simulate(loop, make_scenario(2000.0, 0.05), engine=engine, progress=stop)
+        simulate(loop, make_scenario(2000.0, 0.05), RunOptions(engine=engine, progress=stop))
     table = caught.value.table
     assert table.attrs["complete"] == 0 and 100 <= table.sizes["time"] < 40001
 
@@ -194,7 +197,7 @@ def test_interrupt_gives_the_rows_before_it(loop, make_scenario, engine):
 def test_engines_leave_nothing_behind_that_another_run_would_import(pythonfmu_system, make_scenario, engine):
     system = pythonfmu_system("float(helper.VALUE)", "VALUE = 1", "VALUE = 1")
     before = list(sys.path), set(sys.modules)
-    simulate(system, make_scenario(), engine=engine)
+    simulate(system, make_scenario(), RunOptions(engine=engine))
     assert sys.path == before[0]
     assert {"helper", "model"}.isdisjoint(set(sys.modules) - before[1])
 
@@ -224,7 +227,7 @@ def test_engines_agree_on_the_four_corners(root, engine, stop_time):
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
     scenario = scenario.model_copy(update={"output_interval": None, "stop_time": stop_time, "expect": []})
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"])
-    ours, theirs = (simulate(system, scenario, engine=name) for name in ("fmpy", engine))
+    ours, theirs = (simulate(system, scenario, RunOptions(engine=name)) for name in ("fmpy", engine))
     assert list(ours.data_vars) == list(theirs.data_vars) and ours.sizes["time"] == 20 * stop_time + 1
     for name, column in ours.data_vars.items():
         values = column.values.astype(float)
@@ -232,7 +235,7 @@ def test_engines_agree_on_the_four_corners(root, engine, stop_time):
 
 
 def test_seeds_and_hashes_are_in_the_table(loop, make_scenario, engine):
-    table = simulate(loop, make_scenario(), engine=engine)
+    table = simulate(loop, make_scenario(), RunOptions(engine=engine))
     assert set(json.loads(table.attrs["fmus"])) == set(LOOP)
     assert json.loads(table.attrs["start_values"])["law.offset"] == 0.123
 
@@ -252,4 +255,4 @@ def test_names_with_dots_and_folders_with_blanks(make_system, make_scenario, eng
     ]
     system = replace(system, components=components, connections=tuple(inner))
     scenario = make_scenario(1.0, 0.1, events=[{"time": 0.5, "bias": {"inner.lag.u": 1.0}}])
-    assert_alike(simulate(system, scenario), simulate(system, scenario, engine=engine), EXACT[engine])
+    assert_alike(simulate(system, scenario), simulate(system, scenario, RunOptions(engine=engine)), EXACT[engine])

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conformance.cases import cases, write
 
-from shipcosim.cosim import RunError, engines_missing, export_fmu, simulate
+from shipcosim.cosim import RunError, RunOptions, engines_missing, export_fmu, simulate
 from shipcosim.cosim.export.container import PLATFORMS
 from shipcosim.cosim.export.fmu import block_of
 from shipcosim.errors import ShipcosimError
@@ -38,7 +38,7 @@ def chain(make_system):
 def block_values(fmu, stop_time, step_size, engine="fmpy", **values):
     """Table of the FMU alone, its signals named as in the system."""
     scenario = Scenario(stop_time=stop_time, step_size=step_size, set={f"block.{n}": v for n, v in values.items()})
-    table = simulate(block_of(fmu), scenario, engine=engine)
+    table = simulate(block_of(fmu), scenario, RunOptions(engine=engine))
     return table.rename({name: name.removeprefix("block.") for name in table.data_vars})
 
 
@@ -142,10 +142,8 @@ def test_connections_with_more_than_a_copy_are_refused(chain, tmp_path, change, 
 
 
 def test_a_block_that_computes_something_else_is_not_written(make_system, tmp_path, monkeypatch):
-    from shipcosim.cosim.export import fmu
-
     monkeypatch.setattr("shipcosim.cosim.export.container.feeders_first", lambda system: list(system.components))
-    monkeypatch.setattr(fmu, "SWEEPS", (1,))
+    monkeypatch.setattr("shipcosim.cosim.export.fmu.SWEEPS", (1,))
     parts = {name: ("gain", {"factor": 2.0}) for name in ("c", "b", "a")} | {"source": ("lag", {"y_start": 1.0})}
     system = make_system(parts, ["source.y -> a.u", "a.y -> b.u", "b.y -> c.u"])
     with pytest.raises(ShipcosimError, match=r"c.y is 8 at t = 0 s, in the FMU 0"):

@@ -10,7 +10,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from shipcosim.cosim import Interrupted, RunError, simulate
+from shipcosim.cosim import Interrupted, RunError, RunOptions, simulate
 from shipcosim.errors import ShipcosimError
 
 
@@ -71,7 +71,7 @@ def test_interrupt_in_the_progress_display_keeps_the_rows(failing, make_scenario
         raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as interrupted:
-        simulate(failing("nothing"), make_scenario(1.0, 0.1), progress=progress)
+        simulate(failing("nothing"), make_scenario(1.0, 0.1), RunOptions(progress=progress))
     assert interrupted.value.table.sizes["time"] == 1
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from shipcosim.cli.project import build_stale
-from shipcosim.cosim import Snapshot, read_snapshot, simulate, write_snapshot
+from shipcosim.cosim import RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.errors import ShipcosimError
@@ -128,24 +128,24 @@ def system(make_system):
 @pytest.mark.parametrize("until", [0.1, 0.4, 0.7, 0.8, 1.0, 1.3, 1.6, 2.0])
 def test_a_stored_run_goes_on_bit_for_bit(system, make_scenario, tmp_path, until, order):
     scenario, file = make_scenario(2.4, 0.1, events=EVENTS), tmp_path / "half.state"
-    whole = simulate(system, scenario, order=order)
-    first = simulate(system, scenario, order=order, until=until, store=file)
-    assert_same(whole, first, simulate(system, scenario, order=order, resume=file))
+    whole = simulate(system, scenario, RunOptions(order=order))
+    first = simulate(system, scenario, RunOptions(order=order, until=until, store=file))
+    assert_same(whole, first, simulate(system, scenario, RunOptions(order=order, resume=file)))
 
 
 def test_a_run_may_be_stored_more_than_once_and_between_two_rows(system, make_scenario):
     scenario, stored = make_scenario(2.4, 0.1, events=EVENTS, output_interval=0.3), []
     whole = simulate(system, scenario)
-    simulate(system, scenario, until=0.8, store=stored.append)
-    simulate(system, scenario, until=1.4, resume=stored[0], store=stored.append)
-    rest = simulate(system, scenario, resume=stored[1])
+    simulate(system, scenario, RunOptions(until=0.8, store=stored.append))
+    simulate(system, scenario, RunOptions(until=1.4, resume=stored[0], store=stored.append))
+    rest = simulate(system, scenario, RunOptions(resume=stored[1]))
     assert np.allclose(rest["time"], [1.5, 1.8, 2.1, 2.4])
     assert all(np.array_equal(rest[name], whole[name][5:]) for name in whole)
 
 
 def test_what_a_file_holds_is_what_was_stored(system, make_scenario, tmp_path):
     stored, file = [], tmp_path / "half.state"
-    simulate(system, make_scenario(2.4, 0.1, events=EVENTS), until=0.8, store=stored.append)
+    simulate(system, make_scenario(2.4, 0.1, events=EVENTS), RunOptions(until=0.8, store=stored.append))
     write_snapshot(stored[0], file)
     assert read_snapshot(file) == stored[0]
     assert (stored[0].time, stored[0].step) == (0.8, 8)
@@ -157,10 +157,10 @@ def test_what_a_file_holds_is_what_was_stored(system, make_scenario, tmp_path):
 def test_variations_fork_from_one_state(system, make_scenario):
     """The future may have other events; overrides in force stay; what lies before is not done again."""
     stored, base = [], make_scenario(1.2, 0.1, events=[{"time": 0.2, "override": {"push": 2.0, "gain.u": 4.0}}])
-    simulate(system, base, until=0.5, store=stored.append)
+    simulate(system, base, RunOptions(until=0.5, store=stored.append))
     for shift in (0.0, 1.0):
         events = [{"time": 0.1, "override": {"push": 99.0}}, {"time": 0.8, "bias": {"plant.y": shift}}]
-        forked = simulate(system, make_scenario(1.8, 0.1, events=events), resume=stored[0])
+        forked = simulate(system, make_scenario(1.8, 0.1, events=events), RunOptions(resume=stored[0]))
         assert np.all(forked["push"] == 2.0) and np.all(forked["gain.u"] == 4.0)
         jump = np.diff(forked["plant.y"].sel(time=[0.8, 0.9], method="nearest"))[0]
         assert abs(jump - shift) < 0.2
@@ -171,14 +171,14 @@ def test_a_table_feeds_the_rest_of_a_stored_run(system, make_scenario):
 
     times = np.linspace(0.0, 2.4, 49)
     table, scenario, stored = make_table(times, [("push", np.sin(times), "", "")]), make_scenario(2.4, 0.1), []
-    whole = simulate(system, scenario, inputs=table)
-    first = simulate(system, scenario, inputs=table, until=0.9, store=stored.append)
-    assert_same(whole, first, simulate(system, scenario, inputs=table, resume=stored[0]))
+    whole = simulate(system, scenario, RunOptions(inputs=table))
+    first = simulate(system, scenario, RunOptions(inputs=table, until=0.9, store=stored.append))
+    assert_same(whole, first, simulate(system, scenario, RunOptions(inputs=table, resume=stored[0])))
 
 
 def test_components_that_cannot_be_stored_are_named_before_the_run(pythonfmu_system, make_scenario):
     with pytest.raises(ShipcosimError) as error:
-        simulate(pythonfmu_system("1.0"), make_scenario(), store=[].append)
+        simulate(pythonfmu_system("1.0"), make_scenario(), RunOptions(store=[].append))
     found = [
         (problem.where, "does not declare canGetAndSetFMUstate" in problem.found) for problem in error.value.problems
     ]
@@ -188,14 +188,14 @@ def test_components_that_cannot_be_stored_are_named_before_the_run(pythonfmu_sys
 @pytest.fixture
 def stored(system, make_scenario) -> Snapshot:
     taken = []
-    simulate(system, make_scenario(2.4, 0.1), until=0.5, store=taken.append)
+    simulate(system, make_scenario(2.4, 0.1), RunOptions(until=0.5, store=taken.append))
     return taken[0]
 
 
 def test_a_state_goes_on_only_in_the_system_that_it_is_of(system, stored, make_system, make_scenario):
     def refused(other, scenario, said):
         with pytest.raises(ShipcosimError, match=said):
-            simulate(other, scenario, resume=stored)
+            simulate(other, scenario, RunOptions(resume=stored))
 
     scenario = make_scenario(2.4, 0.1)
     refused(with_values(system, {"law.factor": 3.0}), scenario, "law.factor was -0.9 and would now be 3.0.*An event")
@@ -225,20 +225,20 @@ def test_what_is_no_snapshot_is_refused(stored, tmp_path):
 @pytest.mark.parametrize("until", [0.0, 0.25, 3.0])
 def test_a_run_cannot_end_just_anywhere(system, make_scenario, until):
     with pytest.raises(ShipcosimError, match="no whole number of steps|would go from 0 s to"):
-        simulate(system, make_scenario(2.0, 0.1), until=until)
+        simulate(system, make_scenario(2.0, 0.1), RunOptions(until=until))
 
 
 CONTINUE = """
 import sys
 from pathlib import Path
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.scenario import Scenario
 from shipcosim.series import write_table
 from shipcosim.ssp import read_system
 folder, ssp, ssv, fmus = map(Path, sys.argv[1:])
 scenario = Scenario.model_validate_json((folder / "scenario.json").read_text())
 system = read_system(ssp, [ssv], fmus=[fmus])
-write_table(simulate(system, scenario, resume=folder / "half.state"), folder / "rest.nc")
+write_table(simulate(system, scenario, RunOptions(resume=folder / "half.state")), folder / "rest.nc")
 """
 
 
@@ -253,7 +253,7 @@ def test_the_dp_ship_goes_on_in_another_process_bit_for_bit(root, built, tmp_pat
     ssv = scenario.parameter_paths[0]
     system = read_system(scenario.system_path, [ssv], fmus=[built])
     whole = simulate(system, scenario)
-    first = simulate(system, scenario, until=25.35, store=tmp_path / "half.state")
+    first = simulate(system, scenario, RunOptions(until=25.35, store=tmp_path / "half.state"))
     (tmp_path / "scenario.json").write_text(scenario.model_dump_json())
     files = map(str, (tmp_path, scenario.system_path, ssv, built))
     subprocess.run([sys.executable, "-c", CONTINUE, *files], check=True, timeout=120)

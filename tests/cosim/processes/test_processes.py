@@ -13,7 +13,7 @@ import c_fmus
 import numpy as np
 import pytest
 
-from shipcosim.cosim import RunError, simulate
+from shipcosim.cosim import RunError, RunOptions, simulate
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.processes.parent import Isolated
 from shipcosim.cosim.slaves.fmi2 import SlaveError
@@ -182,7 +182,10 @@ def test_results_are_the_same_to_the_last_digit(make_system, make_scenario, orde
         make_system(PARTS, LINKS, {"push": ("input", "Real", "")}),
         make_scenario(2.4, 0.1, events=EVENTS),
     )
-    same(simulate(system, scenario, order=order), simulate(system, scenario, order=order, isolate=True))
+    same(
+        simulate(system, scenario, RunOptions(order=order)),
+        simulate(system, scenario, RunOptions(order=order, isolate=True)),
+    )
 
 
 @slow
@@ -192,11 +195,11 @@ def test_a_stored_run_goes_on_from_processes_to_processes_and_back(make_system, 
         make_scenario(2.4, 0.1, events=EVENTS),
     )
     whole, stored = simulate(system, scenario), []
-    simulate(system, scenario, until=0.8, store=stored.append, isolate=True)
-    simulate(system, scenario, until=0.8, store=stored.append)
+    simulate(system, scenario, RunOptions(until=0.8, store=stored.append, isolate=True))
+    simulate(system, scenario, RunOptions(until=0.8, store=stored.append))
     assert stored[0] == stored[1]
     for isolate in (False, True):
-        rest = simulate(system, scenario, resume=stored[0], isolate=isolate)
+        rest = simulate(system, scenario, RunOptions(resume=stored[0], isolate=isolate))
         assert all(rest[name].values.tobytes() == whole[name].values[8:].tobytes() for name in whole)
 
 
@@ -209,7 +212,7 @@ def test_the_dp_ship_gives_the_same_digits(root):
     scenario = read_scenario(root / "scenarios" / "gust.toml")
     scenario = scenario.model_copy(update={"stop_time": 5.0, "events": [], "expect": [], "output_interval": None})
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(root)])
-    same(simulate(system, scenario), simulate(system, scenario, isolate=True))
+    same(simulate(system, scenario), simulate(system, scenario, RunOptions(isolate=True)))
 
 
 # crashes
@@ -230,7 +233,7 @@ def test_the_dp_ship_gives_the_same_digits(root):
 )
 def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(system, make_scenario, how, said):
     with pytest.raises(RunError) as error:
-        simulate(system(how), make_scenario(1.0, 0.1), isolate=True, timeout=LIMIT)
+        simulate(system(how), make_scenario(1.0, 0.1), RunOptions(isolate=True, timeout=LIMIT))
     assert str(error.value).startswith("engine: failed in the step from t = 0.5 s. ")
     assert said in str(error.value)
     table = error.value.table
@@ -241,14 +244,14 @@ def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(syste
 def test_a_slow_component_failed_in_the_step_in_which_it_did(make_system, make_scenario, dangerous):
     system = make_system({"engine": ("dangerous", {"how": "read", "when": 0.6}, 0.3), "after": "gain"})
     with pytest.raises(RunError, match="engine: failed in the step from t = 0.6 s. Its process was ended"):
-        simulate(system, make_scenario(1.2, 0.1), isolate=True)
+        simulate(system, make_scenario(1.2, 0.1), RunOptions(isolate=True))
 
 
 def test_one_that_goes_down_at_the_start_is_named_too(system, make_scenario):
     with pytest.raises(
         RunError, match="engine: failed at the start. Its process was ended in .* by signal 11"
     ) as error:
-        simulate(system("signal", -1.0), make_scenario(1.0, 0.1), isolate=True)
+        simulate(system("signal", -1.0), make_scenario(1.0, 0.1), RunOptions(isolate=True))
     assert error.value.table.sizes["time"] == 0
 
 
@@ -264,7 +267,7 @@ def test_the_same_holds_for_an_fmu_made_from_c(falling, make_system, make_scenar
     """What it has printed into the buffer of C in the steps before does not go down with it."""
     system = make_system({"clock": "clock", "stone": ("falling", {"how": how})})
     with pytest.raises(RunError, match="stone: failed in the step from t = 0.4 s.*") as error:
-        simulate(system, make_scenario(1.0, 0.1), isolate=True, timeout=LIMIT)
+        simulate(system, make_scenario(1.0, 0.1), RunOptions(isolate=True, timeout=LIMIT))
     assert said in str(error.value)
     assert error.value.table["stone.x"].values[-1] == pytest.approx(0.4)
 
@@ -272,7 +275,7 @@ def test_the_same_holds_for_an_fmu_made_from_c(falling, make_system, make_scenar
 def test_one_that_goes_down_when_its_text_is_read_is_named_by_the_connection(make_system, dangerous, make_scenario):
     system = make_system({"engine": ("dangerous", {"how": "text"}), "meter": "meter"}, ["engine.text -> meter.text"])
     with pytest.raises(RunError) as error:
-        simulate(system, make_scenario(1.0, 0.1), isolate=True)
+        simulate(system, make_scenario(1.0, 0.1), RunOptions(isolate=True))
     said = str(error.value)
     assert said.startswith("engine.text -> meter.text: its value cannot be passed on. Its process ended itself")
     assert error.value.table["engine.count"].values.tolist() == [0, 1, 2]
@@ -291,14 +294,14 @@ def test_what_goes_wrong_without_a_crash_is_said_in_the_same_words(system, make_
     said = []
     for isolate in (False, True):
         with pytest.raises(RunError) as error:
-            simulate(system("raise"), make_scenario(1.0, 0.1), isolate=isolate)
+            simulate(system("raise"), make_scenario(1.0, 0.1), RunOptions(isolate=isolate))
         said.append(str(error.value))
     assert said[0] == said[1] and "50%s of it is wrong" in said[0] and "dangerous.py" in said[0]
 
 
 @pytest.mark.parametrize("how", ["garbage", "warn", *(pytest.param(how, marks=slow) for how in ("interrupt", ""))])
 def test_what_would_confuse_a_run_does_not(system, make_scenario, how):
-    table = simulate(system(how), make_scenario(1.0, 0.1), isolate=True)
+    table = simulate(system(how), make_scenario(1.0, 0.1), RunOptions(isolate=True))
     assert table["engine.count"].values.tolist() == list(range(11))
     assert ("100% full" in table.attrs["remarks"]) == (how == "warn")
 
@@ -307,7 +310,7 @@ def test_what_would_confuse_a_run_does_not(system, make_scenario, how):
 
 
 def test_what_components_print_is_shown_with_their_names(system, make_scenario, capfd):
-    simulate(system("print"), make_scenario(1.0, 0.1), isolate=True)
+    simulate(system("print"), make_scenario(1.0, 0.1), RunOptions(isolate=True))
     out, err = capfd.readouterr()
     assert out == ""
     lines = ["said by Python", "said as error", "said by the system: \u00f8", "\ufffd without end"]
@@ -315,7 +318,7 @@ def test_what_components_print_is_shown_with_their_names(system, make_scenario, 
 
 
 def test_a_flood_of_prints_is_cut(system, make_scenario, capfd):
-    simulate(system("flood"), make_scenario(1.0, 0.1), isolate=True)
+    simulate(system("flood"), make_scenario(1.0, 0.1), RunOptions(isolate=True))
     lines = capfd.readouterr().err.splitlines()
     assert lines[999:] == ["[engine] line 999", "[engine] prints more than 1000 lines; no more are shown"]
 
@@ -329,7 +332,7 @@ def processes(parent):
         ["ps", "-ww", "-o", "pid=,args=", "--ppid", str(parent)], capture_output=True, text=True
     ).stdout
     listed = [line.split(maxsplit=1) for line in found.splitlines()]
-    return [(int(pid), command) for pid, command in listed if "cosim.isolated" in command]
+    return [(int(pid), command) for pid, command in listed if "cosim.processes.child" in command]
 
 
 @pytest.mark.parametrize("how", ["read", *(pytest.param(how, marks=slow) for how in ("", "raise"))])
@@ -338,7 +341,7 @@ def test_nothing_is_left_behind(system, make_scenario, how, tmp_path, monkeypatc
     (tmp_path / "temporary").mkdir()
     part, descriptors = system(how), len(os.listdir("/proc/self/fd")) if sys.platform == "linux" else 0
     try:
-        simulate(part, make_scenario(1.0, 0.1), isolate=True)
+        simulate(part, make_scenario(1.0, 0.1), RunOptions(isolate=True))
     except RunError:
         pass
     gc.collect()
@@ -350,11 +353,12 @@ def test_nothing_is_left_behind(system, make_scenario, how, tmp_path, monkeypatc
 
 RUN = """
 import sys
-from shipcosim.cosim import Interrupted, simulate
+from shipcosim.cosim import Interrupted, RunOptions, simulate
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import read_system
 try:
-    simulate(read_system(sys.argv[1], fmus=[sys.argv[2]]), Scenario(stop_time=1.0, step_size=0.1), isolate=True)
+    system, scenario = read_system(sys.argv[1], fmus=[sys.argv[2]]), Scenario(stop_time=1.0, step_size=0.1)
+    simulate(system, scenario, RunOptions(isolate=True))
 except Interrupted as stop:
     print("interrupted after", stop.table.sizes["time"], "rows")
 """
@@ -403,10 +407,10 @@ def is_running(pid):
 
 def test_other_engines_refuse_it(system, make_scenario):
     with pytest.raises(ShipcosimError, match="does not know isolate. The engine 'fmpy' does."):
-        simulate(system(""), make_scenario(1.0, 0.1), engine="libcosim", isolate=True)
+        simulate(system(""), make_scenario(1.0, 0.1), RunOptions(engine="libcosim", isolate=True))
 
 
 @pytest.mark.parametrize("limit", [0.0, -1.0, float("nan"), float("inf")])
 def test_what_is_no_time_limit_is_refused(system, make_scenario, limit):
     with pytest.raises(ShipcosimError, match="is no time limit"):
-        simulate(system(""), make_scenario(1.0, 0.1), isolate=True, timeout=limit)
+        simulate(system(""), make_scenario(1.0, 0.1), RunOptions(isolate=True, timeout=limit))

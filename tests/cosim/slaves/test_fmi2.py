@@ -8,7 +8,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from shipcosim.cosim import RunError, simulate
+from shipcosim.cosim import RunError, RunOptions, simulate
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.ssp import read_system
 
@@ -127,8 +127,8 @@ def test_fmi3_values_of_all_sizes_travel(tanks, make_scenario):
 def test_fmi3_state_is_stored_and_restored(tanks, make_scenario, tmp_path):
     scenario = make_scenario(1.0, 0.125, set={"a.u": 4.0})
     whole = simulate(tanks, scenario)
-    simulate(tanks, scenario, until=0.375, store=tmp_path / "tanks.state")
-    rest = simulate(tanks, scenario, resume=tmp_path / "tanks.state")
+    simulate(tanks, scenario, RunOptions(until=0.375, store=tmp_path / "tanks.state"))
+    rest = simulate(tanks, scenario, RunOptions(resume=tmp_path / "tanks.state"))
     assert all(np.array_equal(rest[name], whole[name][3:]) for name in whole)
 
 

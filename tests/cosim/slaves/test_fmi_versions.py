@@ -4,7 +4,7 @@ import c_fmus
 import numpy as np
 import pytest
 
-from shipcosim.cosim import RunError, simulate
+from shipcosim.cosim import RunError, RunOptions, simulate
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component, Connection, System, check_system, read_fmu, read_system
@@ -394,4 +394,4 @@ def test_a_run_of_a_slave_of_fmi_1_can_be_repeated_and_not_stored(first, tmp_pat
     one, two = (simulate(system, SCENARIO)["m.x"] for _ in range(2))
     assert np.array_equal(one, two)
     with pytest.raises(ShipcosimError, match="first.fmu cannot store its state"):
-        simulate(system, SCENARIO, store=tmp_path / "x.state")
+        simulate(system, SCENARIO, RunOptions(store=tmp_path / "x.state"))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from shipcosim.cosim import RunError, repeat, simulate
+from shipcosim.cosim import RunError, RunOptions, repeat, simulate
 from shipcosim.cosim.master.run import Journey
 from shipcosim.cosim.master.time_grid import span_of
 from shipcosim.cosim.slaves.form import form_of
@@ -269,7 +269,7 @@ def test_events_without_end_end_the_run_with_their_component(run_model, version,
 def test_a_state_that_cannot_be_stored_is_said_before_the_run(run_model, model, make_scenario, tmp_path):
     system = System("one", "one.ssd", {"m": Component("m", read_fmu(model("decay", "2.0")))})
     with pytest.raises(ShipcosimError, match="m: it runs as model exchange, and the solver's state cannot be stored"):
-        simulate(system, make_scenario(), store=tmp_path / "x.state")
+        simulate(system, make_scenario(), RunOptions(store=tmp_path / "x.state"))
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -280,7 +280,7 @@ def test_runs_of_one_instance_and_repeated_runs_are_equal_to_the_digit(model, ve
     assert np.array_equal(repeat(whole, system)["m.h"], whole["m.h"])
     with Instances() as instances:
         for _ in range(2):
-            journey = Journey(system, scenario, span_of(scenario))
+            journey = Journey(system, scenario, span_of(scenario), RunOptions())
             journey.run(instances, lambda: None)
             journey.end()
             assert np.array_equal(journey.table(complete=True)["m.h"], whole["m.h"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shipcosim.cli.project import build_stale
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter
 from shipcosim.diagnose.result import Estimate, Finding
@@ -97,7 +97,7 @@ def run(ssp, fmus, *, stop=10.0, engine="fmpy", values=(), inputs=INPUTS, gusts=
     table = make_table(time, [(name, np.full(2, value), unit, "") for name, (value, unit) in inputs.items()])
     start = {f"vessel.{name}": value for name, value in START.items()} | {"environment.gust_scale": gusts}
     ready = with_values(read_system(ssp, fmus=[fmus]), start | dict(values))
-    return simulate(ready, Scenario(stop_time=stop, step_size=0.05), inputs=table, engine=engine)
+    return simulate(ready, Scenario(stop_time=stop, step_size=0.05), RunOptions(inputs=table, engine=engine))
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.ship.model import Inputs, Motion, current_at, loads, motion_rates, ship_model_of, shown
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
@@ -53,7 +53,7 @@ def sailed(request):
     inputs = make_table(
         np.array([0.0, 20.0]), [(n, np.full(2, value), unit, "") for n, (value, unit) in INPUTS.items()]
     )
-    table = simulate(ready, Scenario(stop_time=20.0, step_size=0.05), inputs=inputs)
+    table = simulate(ready, Scenario(stop_time=20.0, step_size=0.05), RunOptions(inputs=inputs))
     return table, twin.model().with_values(request.param | CURRENT)
 
 

@@ -27,8 +27,10 @@ from shipcosim.cosim.master.time_grid import span_of
 from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES
 from shipcosim.cosim.slaves.form import form_of
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunOptions
+from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
-from shipcosim.ssp import Connection
+from shipcosim.ssp import Connection, System
 
 if TYPE_CHECKING:
     import xarray
@@ -62,11 +64,13 @@ class Job:
 
     Parameters
     ----------
-    system, scenario, inputs, order
-        As for `shipcosim.cosim.simulate`.
+    system, scenario, options
+        As for `shipcosim.cosim.simulate`; of the options inputs, order and progress.
 
     Attributes
     ----------
+    progress : callable or None
+        As in RunOptions.
     plan : Plan
         Rows of the outputs that have to be recorded, steps of the components.
     times : (n + 1,) array
@@ -79,10 +83,11 @@ class Job:
         To make to what the engine passes on itself: outputs and connected inputs.
     """
 
-    def __init__(self, system, scenario, inputs=None, order="jacobi"):
-        if order != "jacobi":
-            raise ShipcosimError(f"Only the engine fmpy knows the order '{order}'; the others have jacobi.")
+    def __init__(self, system: System, scenario: Scenario, options: RunOptions):
+        if options.order != "jacobi":
+            raise ShipcosimError(f"Only the engine fmpy knows the order '{options.order}'; the others have jacobi.")
         self.system, self.scenario, self._span = system, scenario, span_of(scenario)
+        self.progress, inputs = options.progress, options.inputs
         self.times = self._span.times
         self._fed = feed(inputs, system, self.times) if inputs is not None else {}
         self._known = {"inputs_sha256": digest(inputs)} if inputs is not None else {}
@@ -170,9 +175,7 @@ class Job:
         return values
 
 
-def run_on(
-    engine: str, open_session: Callable[[Job], AbstractContextManager], job: Job, about: dict, progress=None
-) -> xarray.Dataset:
+def run_on(engine: str, open_session: Callable[[Job], AbstractContextManager], job: Job, about: dict) -> xarray.Dataset:
     """Run a job on an engine.
 
     Parameters
@@ -187,8 +190,6 @@ def run_on(
         What it is to do.
     about : dict
         Attributes of the table: the engine's version, remarks on it.
-    progress : callable, optional
-        As for `shipcosim.cosim.simulate`.
 
     Returns
     -------
@@ -206,7 +207,7 @@ def run_on(
 
     with held_back() as check_interrupt, _opened(engine, open_session, job) as session:
         try:
-            _advance(session, job, check_interrupt, progress)
+            _advance(session, job, check_interrupt)
         except EngineError as error:
             found = f"failed in the step from t = {job.times[session.n_done]:.9g} s. {error}"
             raise RunError(Problem(engine, found), table(complete=False)) from error
@@ -222,8 +223,8 @@ def _opened(engine, open_session, job):
         raise ShipcosimError(Problem(engine, f"refuses the system. {error}")) from error
 
 
-def _advance(session, job, check_interrupt, progress):
-    report_at = perf_counter()
+def _advance(session, job, check_interrupt):
+    progress, report_at = job.progress, perf_counter()
     for first, last, driven in job.stretches():
         check_interrupt()
         for end, value in driven.items():

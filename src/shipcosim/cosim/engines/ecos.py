@@ -5,12 +5,15 @@ connections. A connection that transforms, or that an event changes, gets a func
 value. Values are read through its interface after each step, since its CSV writer keeps six digits.
 """
 
+from __future__ import annotations
+
 import json
 from collections import defaultdict
 from contextlib import ExitStack
 from ctypes import byref, c_bool, c_char_p, c_double, c_int, c_size_t, c_void_p, sizeof
 from dataclasses import dataclass
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,8 +21,12 @@ from shipcosim.cosim.engines.adapter import EngineError, Job, complaints, is_lin
 from shipcosim.cosim.engines.traces import no_traces
 from shipcosim.cosim.master.plan import End, label
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System
+
+if TYPE_CHECKING:
+    import xarray
 
 TYPES = {"Real": ("real", c_double, float), "Integer": ("integer", c_int, int), "Boolean": ("bool", c_bool, bool)}
 """Names and types that it has for values."""
@@ -27,15 +34,15 @@ REMARK = "ecos does not say when an FMU fails, it goes on: hold the result again
 START = "start"  # name of the parameter set; ecos applies none without a name
 
 
-def run(system: System, scenario: Scenario, *, inputs=None, progress=None, order="jacobi"):
+def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Dataset:
     """Run a checked system on ecos. See `shipcosim.cosim.simulate`."""
     check_installed()
-    job = Job(system, scenario, inputs, order)
+    job = Job(system, scenario, options)
     added = sums(job.connections)
     if problems := complaints("ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)):
         raise ShipcosimError(problems)
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
-    return run_on("ecos", Session, job, about, progress)
+    return run_on("ecos", Session, job, about)
 
 
 def check_installed() -> None:

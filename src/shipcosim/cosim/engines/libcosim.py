@@ -6,6 +6,8 @@ linear transformation, in an OspSystemStructure.xml; start values through its in
 texts may be long. Events become a scenario of its own.
 """
 
+from __future__ import annotations
+
 import json
 import re
 import tempfile
@@ -13,6 +15,7 @@ from contextlib import ExitStack
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -21,20 +24,24 @@ from shipcosim.cosim.engines import adapter as outside
 from shipcosim.cosim.engines.adapter import EngineError, Job, held, indices, is_linear, run_on, sums
 from shipcosim.cosim.engines.traces import no_traces
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Simulator, System, seconds_text, structure_text
+
+if TYPE_CHECKING:
+    import xarray
 
 SERIES = {"Real": ("REAL", "real", c_double, np.float64), "Integer": ("INTEGER", "integer", c_int, np.int32)}
 """What its observer of time series can hold, in the names and types that it goes by there."""
 
 
-def run(system: System, scenario: Scenario, *, inputs=None, progress=None, order="jacobi"):
+def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Dataset:
     """Run a checked system on libcosim. See `shipcosim.cosim.simulate`."""
     check_installed()
-    job = Job(system, scenario, inputs, order)
+    job = Job(system, scenario, options)
     if problems := complaints(job):
         raise ShipcosimError(problems)
-    return run_on("libcosim", Session, job, {"libcosimpy_version": version("libcosimpy")}, progress)
+    return run_on("libcosim", Session, job, {"libcosimpy_version": version("libcosimpy")})
 
 
 def check_installed() -> None:

@@ -12,7 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim.export.container import write_container
+from shipcosim.cosim.master.run import run
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component, System, read_fmu
 
@@ -61,8 +63,9 @@ def export_fmu(
         for sweeps in SWEEPS:
             tried = Path(folder) / f"{sweeps}.fmu"
             remarks = write_container(system, tried, step_size, connectors_only=connectors_only, sweeps=sweeps)
-            ours = _run(system, step_size) if ours is None else ours
-            differing = _differences(ours, _run(block_of(tried), step_size, isolate=LIMIT))
+            ours = _run(system, step_size, RunOptions()) if ours is None else ours
+            container = _run(block_of(tried), step_size, RunOptions(isolate=True, timeout=LIMIT))
+            differing = _differences(ours, container)
             if not differing:
                 write_container(system, path, step_size, connectors_only=connectors_only, sweeps=sweeps)
                 return remarks
@@ -75,11 +78,9 @@ def block_of(fmu: Path) -> System:
     return System("block", str(fmu), {"block": Component("block", read_fmu(fmu))})
 
 
-def _run(system, step_size, isolate=None):
-    from shipcosim.cosim.master.run import run
-
+def _run(system, step_size, options):
     scenario = Scenario(description="side by side", step_size=step_size, stop_time=STEPS * step_size)
-    return run(system, scenario, isolate=isolate)
+    return run(system, scenario, options)
 
 
 def _differences(ours, theirs):

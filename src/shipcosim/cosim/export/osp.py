@@ -10,6 +10,7 @@ from shipcosim.cosim.engines.adapter import Job
 from shipcosim.cosim.engines.libcosim import complaints, event_of, structure_of
 from shipcosim.cosim.master.plan import KINDS
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_scenario
 from shipcosim.scenario.osp import scenario_text
 from shipcosim.ssp import System, with_values
@@ -49,7 +50,7 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     wrong = [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]
     if wrong:
         raise ShipcosimError(wrong)
-    job = Job(system, scenario)
+    job = Job(system, scenario, RunOptions())
     problems = [*complaints(job), *_values_problems(job)]
     if problems:
         raise ShipcosimError(problems)

@@ -1,7 +1,10 @@
 """Our engine: FMUs instantiated through FMPy, run by the master, their values in one table."""
 
+from __future__ import annotations
+
 import json
 from math import lcm
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,14 +19,21 @@ from shipcosim.cosim.master.recorder import Recorder
 from shipcosim.cosim.master.restore import check_fit, check_storable, put_back, take
 from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.signals import Exchange
+from shipcosim.cosim.master.snapshot import Snapshot, opened, writer
 from shipcosim.cosim.master.string_connections import Handover, Text
-from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.cosim.master.time_grid import Span, span_of
 from shipcosim.cosim.processes.parent import Isolated
 from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES, SlaveError
 from shipcosim.cosim.slaves.form import form_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.options import RunOptions
+from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
+from shipcosim.ssp import System
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class RunError(ShipcosimError):
@@ -42,32 +52,18 @@ class Interrupted(KeyboardInterrupt):
         self.table = table
 
 
-def run(
-    system,
-    scenario,
-    *,
-    inputs=None,
-    progress=None,
-    order="jacobi",
-    start_time=0.0,
-    until=None,
-    resume=None,
-    store=None,
-    isolate=None,
-):
-    """Run a checked system. See `simulate`; `resume` is a Snapshot, `store` a callable that gets one.
-
-    `isolate` is the time limit for an answer of a component in its own process [s], None without such processes.
-    """
+def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Dataset:
+    """Run a checked system with our own master. See `shipcosim.cosim.simulate`."""
+    resume, store = opened(options.resume), writer(options.store)
     if resume is not None:
         check_fit(resume, system, scenario)
-        start_time = resume.start_time
     if store is not None:
         check_storable(system)
-    span = span_of(scenario, start_time, resume.step if resume else 0, until)
-    journey = Journey(system, scenario, span, order, inputs, resume)
-    with held_back() as check_interrupt, Isolated(system, isolate) if isolate else Instances() as instances:
-        journey.run(instances, check_interrupt, progress)
+    start_time, first = (resume.start_time, resume.step) if resume else (options.start_time, 0)
+    journey = Journey(system, scenario, span_of(scenario, start_time, first, options.until), options, resume)
+    instances = Isolated(system, options.timeout) if options.isolate else Instances()
+    with held_back() as check_interrupt, instances:
+        journey.run(instances, check_interrupt, options.progress)
         if store is not None:
             store(journey.snapshot())
         journey.end()
@@ -85,10 +81,8 @@ class Journey:
         Checked against the system.
     span : Span
         The steps that are done.
-    order : str
-        Of the exchange.
-    inputs : Dataset, optional
-        Feeds inputs of the system.
+    options : RunOptions
+        Order of the exchange, and the table that feeds inputs of the system.
     resume : Snapshot, optional
         Where the run continues from; checked.
 
@@ -98,7 +92,10 @@ class Journey:
         If this cannot be run.
     """
 
-    def __init__(self, system, scenario, span, order="jacobi", inputs=None, resume=None):
+    def __init__(
+        self, system: System, scenario: Scenario, span: Span, options: RunOptions, resume: Snapshot | None = None
+    ):
+        order, inputs = options.order, options.inputs
         if order not in ORDERS:
             raise ShipcosimError(f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}")
         self._scenario, self._span, self._order, self._inputs, self._resume = scenario, span, order, inputs, resume

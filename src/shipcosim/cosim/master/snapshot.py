@@ -4,7 +4,9 @@ import io
 import json
 import os
 import zipfile
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
+from functools import partial
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
@@ -99,6 +101,35 @@ def read_snapshot(path: str | os.PathLike) -> Snapshot:
     except (zipfile.BadZipFile, KeyError, TypeError, ValueError, AttributeError, RuntimeError) as error:
         remedy = "Snapshots come from --store or simulate(..., store=...)."
         raise ShipcosimError(Problem(str(path), f"is no snapshot of a run: {error}.", remedy)) from error
+
+
+def opened(snapshot: Snapshot | str | os.PathLike[str] | None) -> Snapshot | None:
+    """The snapshot itself, read where it is a path.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be read or is no snapshot.
+    """
+    return snapshot if snapshot is None or isinstance(snapshot, Snapshot) else read_snapshot(snapshot)
+
+
+def writer(
+    store: Callable[[Snapshot], object] | str | os.PathLike[str] | None,
+) -> Callable[[Snapshot], object] | None:
+    """The function that gets a run's snapshot: the one given, or one that writes into the file of a path.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file's folder does not exist.
+    """
+    if store is None or callable(store):
+        return store
+    if not Path(store).absolute().parent.is_dir():
+        found = "There is no such folder to store the state in."
+        raise ShipcosimError(Problem(str(store), found, "Make it first."))
+    return partial(write_snapshot, path=store)
 
 
 def _typed(facts):

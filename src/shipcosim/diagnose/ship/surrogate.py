@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.cosim import simulate
+from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, drives_of
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
@@ -245,7 +245,7 @@ def _simulated(runs, third_party, fed, fine):
     clock = h * np.arange(lead + fine.size + 1)
     table = make_table(clock, [(name, np.append(values, values[-1]), "", "") for name, values in columns.items()])
     system = System("parts alone", "parts alone", components, tuple(connections), inputs)
-    found = simulate(system, Scenario(stop_time=float(clock[-1]), step_size=float(h)), inputs=table)
+    found = simulate(system, Scenario(stop_time=float(clock[-1]), step_size=float(h)), RunOptions(inputs=table))
     return found.isel(time=slice(lead + 1, None))  # what a step makes of a row is there at its end
 
 

@@ -1,0 +1,22 @@
+"""The engines that can run a system: our own master, libcosim and ecos."""
+
+from shipcosim.cosim.engines import ecos, libcosim
+from shipcosim.cosim.master.run import run
+from shipcosim.errors import Problem, ShipcosimError
+
+ENGINES = {"fmpy": run, "libcosim": libcosim.run, "ecos": ecos.run}
+"""Functions from a checked system, a scenario and `RunOptions` to a table."""
+
+OWN_OPTIONS = ("start_time", "until", "resume", "store", "isolate")
+"""Options that only our own engine, fmpy, knows."""
+
+
+def engines_missing() -> dict[str, Problem]:
+    """Engines that are not installed, with what to install."""
+    missing = {}
+    for name, module in {"libcosim": libcosim, "ecos": ecos}.items():
+        try:
+            module.check_installed()
+        except ShipcosimError as error:
+            missing[name] = error.problems[0]
+    return missing

@@ -1,0 +1,58 @@
+"""One run of a system through a scenario, on the engine that the options name."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from shipcosim.cosim.engines.registry import ENGINES, OWN_OPTIONS
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.options import RunOptions
+from shipcosim.scenario import Scenario, check_scenario
+from shipcosim.ssp import System, read_system, with_values
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def simulate(
+    system: System | str | os.PathLike[str], scenario: Scenario, options: RunOptions | None = None
+) -> xarray.Dataset:
+    """Run a system through a scenario.
+
+    Parameters
+    ----------
+    system : System or path
+        What runs; a path is read with the scenario's parameter sets.
+    scenario : Scenario
+        Steps, start values, events.
+    options : RunOptions, optional
+        How it runs: engine, inputs, start and end, processes.
+
+    Returns
+    -------
+    Dataset
+        One row per output interval from the start or the snapshot to the end: outputs of all components, inputs that
+        nothing feeds or an event changes, inputs and outputs of the system. Its attributes say what is needed to
+        repeat the run.
+
+    Raises
+    ------
+    ShipcosimError
+        If system, scenario and options do not fit together. As RunError, with the rows so far, if the run fails on
+        its way.
+    Interrupted
+        On Ctrl-C, with the rows so far.
+    """
+    options = options or RunOptions()
+    if options.engine not in ENGINES:
+        raise ShipcosimError(f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}")
+    if not isinstance(system, System):
+        system = read_system(system, scenario.parameter_paths, fmus=[scenario.project / "build" / "fmus"])
+    system = with_values(system, scenario.set, str(scenario.path or "scenario"))
+    if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
+        raise ShipcosimError(errors)
+    if options.engine != "fmpy" and (unknown := options.changed(OWN_OPTIONS)):
+        found = f"It does not know {', '.join(unknown)}."
+        raise ShipcosimError(Problem(f"engine '{options.engine}'", found, "The engine 'fmpy' does."))
+    return ENGINES[options.engine](system, scenario, options)

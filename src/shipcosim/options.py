@@ -1,0 +1,96 @@
+"""Options of a run: which engine runs it, from when to when, what feeds its inputs, in which processes.
+
+What happens in the run (steps, start values, events) is the scenario's; how it is carried out is said here.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypedDict
+
+from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.cosim.master.snapshot import Snapshot
+
+TIMEOUT = 60.0
+"""How long a component in its own process may take for an answer, if nothing else is said. [s]"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RunOptions:
+    """How a run is carried out.
+
+    Parameters
+    ----------
+    engine : str
+        What runs the FMUs: ``"fmpy"`` (our own co-simulation master), ``"libcosim"`` or ``"ecos"``. The last two know
+        neither `start_time` nor `until`, `resume`, `store` and `isolate`.
+    inputs : Dataset, optional
+        Feeds inputs of the system, by their names. A variable's attribute ``interpolation`` says what it does between
+        its rows: ``"held"``, the default, or ``"linear"``, angles the shorter way round. The table's attribute
+        ``max_gap`` is the longest time between two rows that is not taken for lost data. [s]
+    progress : callable, optional
+        Called with (steps done, steps in all) some ten times a second.
+    order : str
+        Order of the data exchange. ``"jacobi"``: every component steps with what the others had put out at the start
+        of the step, as in libcosim. ``"gauss-seidel"``: with what those before it have just put out.
+    start_time : float
+        Time at the start, which the FMUs are told and the scenario's times are on. A run that continues has that of
+        the run before. [s]
+    until : float, optional
+        Where the run ends, if not at the scenario's stop time. [s]
+    resume : Snapshot or path, optional
+        Where the run continues from: the scenario may have other events and another stop time from there on, and what
+        was overridden then stays so. What happens before that time in the scenario is not done again.
+    store : callable or path, optional
+        Gets the snapshot of the whole system at the end of the run.
+    isolate : bool
+        Whether each component runs in a process of its own: one that crashes or hangs then ends the run like one that
+        fails.
+    timeout : float
+        How long an isolated component may take for an answer. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If the timeout of isolated components is no positive number.
+    """
+
+    engine: str = "fmpy"
+    inputs: xarray.Dataset | None = None
+    progress: Callable[[int, int], None] | None = None
+    order: str = "jacobi"
+    start_time: float = 0.0
+    until: float | None = None
+    resume: Snapshot | str | os.PathLike[str] | None = None
+    store: Callable[[Snapshot], object] | str | os.PathLike[str] | None = None
+    isolate: bool = False
+    timeout: float = TIMEOUT
+
+    def __post_init__(self):
+        if self.isolate and not 0.0 < self.timeout < float("inf"):
+            found = f"{self.timeout:g} s is no time limit."
+            raise ShipcosimError(Problem("timeout", found, "Give a positive number."))
+
+    def changed(self, names: tuple[str, ...]) -> list[str]:
+        """Names among these whose value is not the default."""
+        return [name for name in names if getattr(self, name) != getattr(RunOptions, name)]
+
+
+class RunKeywords(TypedDict, total=False):
+    """`RunOptions` as keyword arguments, but for `start_time`, whose default `shipcosim.simulate` finds itself."""
+
+    engine: str
+    inputs: xarray.Dataset | None
+    progress: Callable[[int, int], None] | None
+    order: str
+    until: float | None
+    resume: Snapshot | str | os.PathLike[str] | None
+    store: Callable[[Snapshot], object] | str | os.PathLike[str] | None
+    isolate: bool
+    timeout: float
