@@ -1,7 +1,8 @@
 """System structures (SSP 1.0 and 2.0): read, check, change, write. The only door to lxml."""
 
 from shipcosim.ssp.check import check_file, check_system
-from shipcosim.ssp.edit.system_structure import SystemStructure, new, read
+from shipcosim.ssp.edit.opening import new, read
+from shipcosim.ssp.edit.system_structure import SystemStructure
 from shipcosim.ssp.edit.write import pack, parameter, write_ssv
 from shipcosim.ssp.flatten.system import Component, Signal, System, with_values
 from shipcosim.ssp.flatten.wiring import Connection

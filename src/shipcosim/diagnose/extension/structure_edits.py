@@ -11,7 +11,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.ship.instruments import InstrumentParameters, Shown
 from shipcosim.series import conversion
 from shipcosim.ssp import parameter
-from shipcosim.ssp.edit.system_structure import built_fmus
+from shipcosim.ssp.edit.opening import built_fmus
 
 RAMP = 30.0
 """Time over which something grows after its onset, assumed. [s]"""

@@ -68,6 +68,10 @@ class Draft:
         """Problem with something in the SSD."""
         return Problem(f"{self.package.show(self.path)}: {what}", found, remedy)
 
+    def error(self, what: str, found: str, remedy: str = "") -> ShipcosimError:
+        """Error about something in the SSD, to be raised."""
+        return ShipcosimError(self.problem(what, found, remedy))
+
     # ---------------------------------------------------------------- reading
 
     def assemble(self, parameters=()):

@@ -1,11 +1,25 @@
-"""The base step size of an SSD, which the standard leaves to annotations of the tools."""
+"""Default experiment of an SSD: start and stop, and the base step size, which the standard leaves to annotations."""
+
+from lxml import etree
 
 from shipcosim.ssp.xml.annotations import step_sizes
-from shipcosim.ssp.xml.document import local
+from shipcosim.ssp.xml.document import child, local
 from shipcosim.ssp.xml.markup import OSP_MARK, add_osp, ensure
 
 
-def write_step_size(root, step_size):
+def experiment_time(root: etree._Element, name: str) -> float | None:
+    """The attribute ``startTime`` or ``stopTime`` of an SSD's default experiment, or None. [s]"""
+    element = child(root, "ssd:DefaultExperiment")
+    text = None if element is None else element.get(name)
+    return None if text is None else float(text)
+
+
+def set_experiment_time(root: etree._Element, name: str, time: float) -> None:
+    """Set ``startTime`` or ``stopTime`` of an SSD's default experiment. [s]"""
+    ensure(root, "ssd:DefaultExperiment").set(name, repr(float(time)))
+
+
+def write_step_size(root: etree._Element, step_size: float) -> None:
     """State a base step size [s] in an SSD: wherever one is stated, and in OSP's annotation."""
     stated = list(step_sizes(root))
     for part, attribute in stated:

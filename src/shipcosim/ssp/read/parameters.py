@@ -3,8 +3,9 @@
 Reference: System Structure and Parameterization 1.0, sections 4.5, 6, 7 and 8.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from os import PathLike
 
 from shipcosim.ssp.xml.definitions import read_enumerations, read_units
 from shipcosim.ssp.xml.document import NAMESPACES, children, is_true, local, qualified, reporting
@@ -83,6 +84,10 @@ class ParameterSet:
     name: str
     values: tuple[ParameterValue, ...]
     file: str = ""
+
+
+ParameterSets = str | PathLike[str] | ParameterSet | Iterable[str | PathLike[str] | ParameterSet]
+"""Parameter sets given for a run: one or several, each read already or the path of its .ssv."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,81 @@
+"""System structures to look at and change: read from a file, or begun anew."""
+
+import tempfile
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp.edit.draft import Draft
+from shipcosim.ssp.edit.system_structure import SystemStructure
+from shipcosim.ssp.osp.reader import osp_file
+from shipcosim.ssp.read.package import SYSTEM_STRUCTURE, Package, open_package
+from shipcosim.ssp.read.parameters import has_root
+from shipcosim.ssp.xml.document import Document, Findings, child, parse
+
+EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"
+  version="1.0" name="">
+  <ssd:System name=""/>
+</ssd:SystemStructureDescription>
+"""
+
+
+def read(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | None = None) -> SystemStructure:
+    """Read a system structure to look at it, change it, run it, write it.
+
+    Parameters
+    ----------
+    path : path
+        A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, or a .ssd.
+    fmus : iterable of path, optional
+        Folders searched for FMUs that are not beside the SSD; build/fmus of the project around it if not given.
+
+    Returns
+    -------
+    SystemStructure
+        It may have faults: `check` tells them.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file, or no system structure in it.
+    """
+    findings = Findings()
+    if osp_file(path):
+        found = "An OspSystemStructure.xml cannot be edited."
+        raise ShipcosimError(Problem(str(path), found, "`simulate` and `read_system` take it."))
+    package = open_package(path, findings, built_fmus(path) if fmus is None else fmus)
+    document = None if package is None else package.document(findings)
+    if document is not None and has_root(document, "ssd:SystemStructureDescription", findings):
+        if child(document.root, "ssd:System") is None:
+            findings.error(document.place(document.root), "There is no System in it.", "Add <System name=...>.")
+    if package is None or document is None or findings.errors:
+        raise ShipcosimError(findings.errors)
+    return SystemStructure(Draft(package, document, str(path)))
+
+
+def new(name: str) -> SystemStructure:
+    """An empty system structure.
+
+    Parameters
+    ----------
+    name : str
+        Of the system.
+
+    Returns
+    -------
+    SystemStructure
+    """
+    folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+    root = parse(EMPTY.encode(), name, Findings())
+    for element in (root, child(root, "ssd:System")):
+        element.set("name", name)
+    package = Package(Path(folder.name), name, unpacked=folder)
+    document = Document(f"{name}/{SYSTEM_STRUCTURE}", root, package.folder)
+    return SystemStructure(Draft(package, document, name))
+
+
+def built_fmus(path: str | PathLike[str]) -> list[Path]:
+    """Folder build/fmus of the project around a system, in a list; empty where there is none."""
+    start = Path(str(path).partition("#")[0]).resolve()
+    return [folder for above in (start, *start.parents) if (folder := above / "build" / "fmus").is_dir()][:1]
