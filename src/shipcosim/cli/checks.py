@@ -1,5 +1,8 @@
 """What is wrong with a file of any kind that the commands take."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,12 +11,12 @@ import numpy as np
 from shipcosim.cli.project import SYSTEMS, built_fmus, find_project
 from shipcosim.errors import Problem, ShipcosimError
 
-LATE = 1e9  # s; beyond what any run reaches
+LATE, SMALLEST_STEP = 1e9, 1e-6  # s; beyond what any run has
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 
 
-def check_any(file, channels=None, hosts=()):
+def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()) -> list[Problem]:
     """Problems of a file; nothing is run and no binary loaded.
 
     Parameters
@@ -52,7 +55,7 @@ def check_any(file, channels=None, hosts=()):
         return error.problems
 
 
-def _host_problems(file, path, hosts):
+def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:
     """What tools would make of a system, or of a scenario's; None for other files."""
     from shipcosim.scenario import read_scenario
     from shipcosim.ssp.portability.check import check_for
@@ -67,7 +70,7 @@ def _host_problems(file, path, hosts):
     return [problem for host in hosts for problem in check_for(host, system, fmus=fmus)]
 
 
-def variables_in(file):
+def variables_in(file: str) -> list[tuple[str, ...]]:
     """An FMU's variables as rows of text: name, causality, type, unit, start, description; none for other files."""
     from shipcosim.ssp.fmu.description import describe_fmu
     from shipcosim.ssp.xml.document import Findings
@@ -80,7 +83,7 @@ def variables_in(file):
     ]
 
 
-def check_scenario_file(path):
+def check_scenario_file(path: Path) -> list[Problem]:
     """Problems of a scenario, in itself and with its system."""
     from shipcosim.scenario import check_files, check_scenario, read_scenario
     from shipcosim.ssp import read_system, with_values
@@ -96,7 +99,7 @@ def check_scenario_file(path):
     return [*problems, *check_scenario(scenario, system)]
 
 
-def check_osp_scenario(path):
+def check_osp_scenario(path: Path) -> list[Problem]:
     """Problems of a scenario of OSP, in itself and with the OspSystemStructure.xml beside it, where there is one."""
     from shipcosim.scenario import Scenario, check_scenario
     from shipcosim.scenario.osp import read_osp_scenario
@@ -104,17 +107,16 @@ def check_osp_scenario(path):
 
     structure = osp_file(path.parent)
     if structure is None:
-        return read_osp_scenario(path, 1e-6, LATE).remarks
+        return read_osp_scenario(path, SMALLEST_STEP, LATE).remarks
     system = read_system(structure)
-    step = system.experiment.step_size
-    read = read_osp_scenario(path, step, system.experiment.stop_time or LATE)
+    step, stop = system.experiment.step_size or SMALLEST_STEP, system.experiment.stop_time
+    read = read_osp_scenario(path, step, stop or LATE)
     last = max((event.time for event in read.events), default=0.0) + step
-    stop = system.experiment.stop_time or last
-    found = check_scenario(Scenario(stop_time=stop, step_size=step, events=read.events), system)
+    found = check_scenario(Scenario(stop_time=stop or last, step_size=step, events=read.events), system)
     return [*read.remarks, *(replace(problem, where=str(path)) for problem in found)]
 
 
-def _is_log(path):
+def _is_log(path: Path) -> bool:
     """Whether a table has a column of the navigation, by its role, so that it reads as measured data."""
     from shipcosim.diagnose.log.roles import NAVIGATION
     from shipcosim.series import read_columns
@@ -123,7 +125,7 @@ def _is_log(path):
     return "time" in columns and not {*NAVIGATION, "latitude"}.isdisjoint(columns)
 
 
-def check_log(path, channels=None):
+def check_log(path: Path, channels: Path | None = None) -> list[Problem]:
     """Faults of measured data as errors; what is ordinary in a log and handled, as remarks."""
     from shipcosim.diagnose.log.checks.examine import examine
     from shipcosim.diagnose.log.reader import read_log
@@ -143,7 +145,7 @@ def check_log(path, channels=None):
     return problems
 
 
-def check_table(path):
+def check_table(path: Path) -> list[Problem]:
     """Problems of a table: unordered or repeated times are errors, gaps and missing values remarks."""
     from shipcosim.series import read_table
 
@@ -168,7 +170,7 @@ def check_table(path):
     return problems
 
 
-def _check_system_file(file, path):
+def _check_system_file(file: str, path: Path) -> list[Problem]:
     from shipcosim.ssp import check_file
 
     project = find_project(path)

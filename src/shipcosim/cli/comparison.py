@@ -2,27 +2,29 @@
 
 import json
 import math
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from shipcosim.cli.console import WIDTH
-from shipcosim.cli.project import build_stale, built_fmus, experiment_of, find_project, find_scenario, with_osp_events
-from shipcosim.cosim.compare import OURS, Difference
+from shipcosim.cli.project import built_fmus, find_project
+from shipcosim.cosim.compare import OURS, Comparison, Difference, Signal
 from shipcosim.cosim.engines.as_read import readers
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.scenario import check_times, read_scenario
-from shipcosim.ssp import osp_file, pack, read_system
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import System, osp_file, pack
 from shipcosim.ssp.portability.as_interpreted import taken_by, told_set
 
 
-def print_comparison(comparison, as_json):
+def print_comparison(comparison: Comparison, as_json: bool) -> None:
     """Table of signals, then what did not run, what explains differences, and the verdict; or all of it as JSON."""
     if as_json:
         print(json.dumps(_plain(asdict(comparison) | {"agree": comparison.agree}), indent=2, ensure_ascii=False))
@@ -40,41 +42,10 @@ def print_comparison(comparison, as_json):
     console.print(*_verdict(comparison))
 
 
-def matter_of(given, parameters=(), stop_time=None, step_size=None, events=None):
-    """System and scenario that an argument means.
-
-    Parameters
-    ----------
-    given : str
-        A scenario (.toml, or its name in the project's scenarios/) or a system.
-    parameters : iterable of path
-        Parameter sets over those of the scenario or the system.
-    stop_time, step_size : float, optional
-        In place of those of the scenario or the system. [s]
-    events : path, optional
-        Scenario file of OSP: what happens besides.
-
-    Raises
-    ------
-    ShipcosimError
-        If there is no such thing, or the times do not fit.
-    """
-    if not given.endswith(".toml") and Path(given.partition("#")[0]).exists():
-        project = find_project(Path(given.partition("#")[0]))
-        system = read_system(given, parameters, fmus=[build_stale(project)] if project else ())
-        return system, with_osp_events(experiment_of(system, stop_time, step_size), events)
-    scenario = read_scenario(find_scenario(given))
-    fmus = [build_stale(scenario.project)]
-    system = read_system(scenario.system_path, [*scenario.parameter_paths, *parameters], fmus=fmus)
-    times = {"stop_time": stop_time, "step_size": step_size}
-    scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
-    if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
-        raise ShipcosimError(problems)
-    return system, with_osp_events(scenario, events)
-
-
 @contextmanager
-def reading(given, system, scenario, parameters=()):
+def reading(
+    given: str, system: System, scenario: Scenario, parameters: Sequence[Path] | None = None
+) -> Iterator[dict[str, Any]]:
     """Arguments of `compare` with which the tools read a system's file themselves.
 
     Parameters
@@ -85,7 +56,7 @@ def reading(given, system, scenario, parameters=()):
         As we read it.
     scenario : Scenario
         Its steps.
-    parameters : iterable of path
+    parameters : sequence of Path, optional
         Parameter sets that are not in the file: there must be none.
 
     Raises
@@ -101,8 +72,8 @@ def reading(given, system, scenario, parameters=()):
         found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
         raise ShipcosimError(Problem(given, found, "Let it start at 0."))
     with TemporaryDirectory(prefix="shipcosim-") as folder:
-        if osp_file(path):
-            yield {"readers": readers(osp_file(path).resolve(), scenario)}
+        if structure := osp_file(path):
+            yield {"readers": readers(structure.resolve(), scenario)}
             return
         if path.is_dir():
             pack(path, fmus, Path(folder) / "system.ssp")
@@ -118,7 +89,7 @@ def reading(given, system, scenario, parameters=()):
         }
 
 
-def _table(comparison):
+def _table(comparison: Comparison) -> Table:
     others = [name for name in comparison.seconds if name != OURS]
     table = Table(box=None, pad_edge=False)
     table.add_column("signal", no_wrap=True)
@@ -130,7 +101,7 @@ def _table(comparison):
     return table
 
 
-def _row(signal, others):
+def _row(signal: Signal, others: Sequence[str]) -> list[str]:
     found = [signal.engines.get(name, Difference(math.nan, math.nan, math.nan)) for name in others]
     worst = max(found, key=lambda d: math.inf if math.isnan(d.relative) else d.relative, default=None)
     cells = [signal.name, signal.unit, f"{signal.range:.4g}", *(f"{difference.largest:.1e}" for difference in found)]
@@ -139,7 +110,7 @@ def _row(signal, others):
     return [*cells, f"{signal.step.largest:.1e}", f"{signal.step.relative:.1e}", groups]
 
 
-def _verdict(comparison):
+def _verdict(comparison: Comparison) -> tuple[Text, Text]:
     others = [name for name in comparison.seconds if name != OURS]
     if not others and not comparison.failed:
         return Text("alone", style="bold yellow"), Text("No other engine ran: only the step-size error is known.")
@@ -151,7 +122,7 @@ def _verdict(comparison):
     return Text("differ", style="bold red"), Text(f"{differing} of {n} signals differ by more than {limit}.")
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """The same with numbers that JSON does not know as texts."""
     if isinstance(value, dict):
         return {name: _plain(part) for name, part in value.items()}

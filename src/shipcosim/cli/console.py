@@ -1,44 +1,53 @@
 """What the commands say: progress and errors on stderr, results on stdout."""
 
+from __future__ import annotations
+
 import json
 import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from shipcosim.errors import worth_showing
+from shipcosim.errors import Problem, worth_showing
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.scenario import Verdict
 
 WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
 STYLES = {"error": "bold red", "remark": "yellow"}
 VERDICTS = {"passed": "bold green", "failed": "bold red", "partial": "bold yellow"}
 
 
-def print_problems(problems):
+def print_problems(problems: Iterable[Problem]) -> None:
     """Errors as one readable block on stderr."""
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     for problem in worth_showing(problems):
         console.print(_block(problem))
 
 
-def _block(problem):
+def _block(problem: Problem) -> Text:
     block = Text(f"{problem.severity}: ", style=STYLES.get(problem.severity, ""))
     if problem.where:
         block.append(f"{_from_here(problem.where)}:\n", style="bold")
     return block.append(_from_here(f"{problem.found} {problem.remedy}").rstrip(), style="not bold default")
 
 
-def _from_here(text):
+def _from_here(text: str) -> str:
     """The text with the files in it named from the working folder."""
     here = str(Path.cwd()) + os.sep
     return text.replace(here, "") if len(here) > 1 else text
 
 
 @contextmanager
-def progress_of(label, duration=None):
+def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[[int, int], None]]:
     """Progress bar on stderr; yields a function of (done, in all). `duration` adds how fast time passes. [s]"""
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -48,7 +57,7 @@ def progress_of(label, duration=None):
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(str(label), total=None, pace="")
 
-        def report(done, total):
+        def report(done: int, total: int) -> None:
             elapsed = bar.tasks[0].elapsed or 0.0
             pace = f"{duration * done / total / elapsed:.0f} x real time" if duration and total and elapsed else ""
             bar.update(task, completed=done, total=total, pace=pace)
@@ -56,7 +65,9 @@ def progress_of(label, duration=None):
         yield report
 
 
-def print_summary(table, verdicts, page, *, to_stderr=False):
+def print_summary(
+    table: xarray.Dataset, verdicts: Sequence[Verdict], page: Path | None, *, to_stderr: bool = False
+) -> None:
     """How a run went: its expectations, what must not be overlooked, where the page is."""
     from shipcosim.report import digest
 
@@ -71,11 +82,10 @@ def print_summary(table, verdicts, page, *, to_stderr=False):
         console.print(f"Page: {shown_path(page)}", markup=False)
 
 
-def shown_path(path):
-    """A path as short as it can be said from here."""
-    here = Path.cwd()
-    path = Path(path).absolute()
-    return path.relative_to(here) if path.is_relative_to(here) else path
+def shown_path(path: str | os.PathLike[str]) -> Path:
+    """A path relative to the working folder where it lies in it, else absolute."""
+    here, absolute = Path.cwd(), Path(path).absolute()
+    return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
 
 
 def _expectations(judged):
@@ -88,7 +98,7 @@ def _expectations(judged):
     return listed
 
 
-def print_variables(rows):
+def print_variables(rows: Iterable[Sequence[str]]) -> None:
     """Table of an FMU's variables."""
     listed = Table(box=None, pad_edge=False)
     for heading in ("variable", "", "type", "unit", "start", "meaning"):
@@ -100,7 +110,7 @@ def print_variables(rows):
     console.print(listed)
 
 
-def print_report(reports, as_json):
+def print_report(reports: Mapping[str, Sequence[Problem]], as_json: bool) -> None:
     """Findings on files; `reports` maps a file to its problems."""
     if as_json:
         listed = [{"file": file, "problems": [asdict(p) for p in problems]} for file, problems in reports.items()]

@@ -1,17 +1,35 @@
 """The files of a run: all three are there afterwards, or none of them has changed."""
 
+from __future__ import annotations
+
 import os
 import tempfile
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.scenario import Scenario, Verdict
+    from shipcosim.ssp import System
 
 PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
 
 
-def save(table, folder, stem, *, scenario, system, verdicts=()):
+def save(
+    table: xarray.Dataset,
+    folder: str | os.PathLike[str],
+    stem: str,
+    *,
+    scenario: Scenario,
+    system: System,
+    verdicts: Sequence[Verdict] = (),
+) -> Path:
     """Write table and page; a complete run takes away what an interrupted one left before it.
 
     Parameters
@@ -49,7 +67,7 @@ def save(table, folder, stem, *, scenario, system, verdicts=()):
     return Path(folder) / page
 
 
-def check_targets(folder, store=None):
+def check_targets(folder: Path, store: Path | None = None) -> None:
     """Whether results can be written, as far as that can be known before a long run.
 
     Parameters
@@ -72,7 +90,7 @@ def check_targets(folder, store=None):
         raise ShipcosimError(problems)
 
 
-def _complaints(folder, must_exist=False):
+def _complaints(folder: Path, must_exist: bool = False) -> list[str]:
     there = next(parent for parent in (Path(folder), *Path(folder).absolute().parents) if parent.exists())
     if not there.is_dir():
         return [f"{there} is a file, not a folder."]
@@ -82,7 +100,7 @@ def _complaints(folder, must_exist=False):
 
 
 @contextmanager
-def staged(folder):
+def staged(folder: Path) -> Iterator[Path]:
     """A folder whose files move into `folder` at the end, unless something fails."""
     was_there = folder.exists()
     try:
@@ -106,6 +124,6 @@ def staged(folder):
         ) from error
 
 
-def _at_home(problem, stage, folder):
+def _at_home(problem: Problem, stage: Path, folder: Path) -> Problem:
     """The problem with the name that the file would have had."""
     return replace(problem, where=problem.where.replace(str(stage), str(folder)))

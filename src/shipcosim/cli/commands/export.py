@@ -1,12 +1,17 @@
-"""The command `shipcosim export fmu`."""
+"""The command `shipcosim export`: `export fmu` and `export osp`."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from shipcosim.cli.app import Debug, command
-from shipcosim.cli.export import exporting
+from shipcosim.cli.options import (
+    Debug,
+    OspEvents,
+    Parameters,
+    ScenariosStepSize,
+    ScenariosStopTime,
+)
 
 
 def fmu(
@@ -15,9 +20,7 @@ def fmu(
     step_size: Annotated[
         float | None, typer.Option("--step-size", help="[s] Of the exchange inside. Default: the system's.")
     ] = None,
-    parameters: Annotated[
-        list[Path] | None, typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins.")
-    ] = None,
+    parameters: Parameters = None,
     connectors_only: Annotated[
         bool, typer.Option("--connectors-only", help="Show the system's own connectors, nothing of its components.")
     ] = False,
@@ -25,23 +28,40 @@ def fmu(
         bool, typer.Option("--unchecked", help="Do not run FMU and system side by side first.")
     ] = False,
     debug: Debug = False,
-):
+) -> None:
     """Make one FMU of a whole system, a block in anyone's tool. FMPy's container FMU does the work in it.
 
     FMU and system are run side by side for some steps first; where they differ, no FMU is written.
     """
     from shipcosim.cli.console import print_problems, shown_path
-    from shipcosim.cli.project import build_stale, check_is_system, experiment_of, find_project
+    from shipcosim.cli.requests import experiment_of, system_of
     from shipcosim.cosim import export_fmu
-    from shipcosim.ssp import read_system
 
-    check_is_system(ssp)
-    project = find_project(Path(ssp.partition("#")[0]))
-    system = read_system(ssp, parameters or (), fmus=[build_stale(project)] if project else ())
+    system = system_of(ssp, parameters)
     step = experiment_of(system, system.experiment.stop_time or step_size or 1.0, step_size).step_size
     target = out / f"{system.name}.fmu"
     print_problems(export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked))
     typer.echo(shown_path(target))
 
 
-command(fmu, exporting)
+def osp(
+    what: Annotated[str, typer.Argument(metavar="SSP_OR_SCENARIO", help="A scenario, as for run, or a system.")],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the files; made if needed.")],
+    stop_time: ScenariosStopTime = None,
+    step_size: ScenariosStepSize = None,
+    parameters: Parameters = None,
+    events: OspEvents = None,
+    debug: Debug = False,
+) -> None:
+    """Write OspSystemStructure.xml, the FMUs and scenario.json, which libcosim runs as they are.
+
+    What OSP cannot express is refused; what gets lost on the way is said.
+    """
+    from shipcosim.cli.console import print_problems, shown_path
+    from shipcosim.cli.requests import system_and_scenario
+    from shipcosim.cosim.export.osp import write_osp
+
+    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events)
+    print_problems(write_osp(system, scenario, out))
+    for path in sorted(out.glob("*")):
+        typer.echo(shown_path(path))

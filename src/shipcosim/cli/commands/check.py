@@ -1,0 +1,42 @@
+"""The command `shipcosim check`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.exits import FAILED
+from shipcosim.cli.options import Debug, ReportAsJson
+
+
+def check(
+    files: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .xml .toml .json .yaml .csv .nc"),
+    ],
+    channels: Annotated[
+        Path | None, typer.Option("--channels", metavar="X.toml", help="Channel file of measured data.")
+    ] = None,
+    hosts: Annotated[
+        list[str] | None,
+        typer.Option("--for", metavar="TOOL", help="libcosim or ecos: what it would ignore or die of; repeatable."),
+    ] = None,
+    as_json: ReportAsJson = False,
+    debug: Debug = False,
+) -> None:
+    """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables.
+
+    A table whose columns are named by roles, or one with a channel file, is measured data: it is examined for faults.
+    """
+    from shipcosim.cli.checks import check_any, variables_in
+    from shipcosim.cli.console import print_report, print_variables
+    from shipcosim.ssp.portability.check import check_host
+
+    for host in hosts or ():
+        check_host(host)
+    reports = {file: check_any(file, channels, hosts or ()) for file in files}
+    print_report(reports, as_json)
+    for variables in () if as_json else filter(None, map(variables_in, files)):
+        print_variables(variables)
+    if any(problem.severity == "error" for problems in reports.values() for problem in problems):
+        raise typer.Exit(FAILED)

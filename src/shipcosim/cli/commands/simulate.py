@@ -1,0 +1,84 @@
+"""The command `shipcosim simulate`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.options import (
+    Debug,
+    Engine,
+    From,
+    Isolate,
+    OspEvents,
+    Out,
+    Parameters,
+    Settings,
+    Store,
+    SystemsStepSize,
+    SystemsStopTime,
+    Timeout,
+    Until,
+    finite,
+)
+
+System = Annotated[
+    str, typer.Argument(metavar="SSP", help="A .ssp, a .ssd, an OspSystemStructure.xml, or a folder with one.")
+]
+Inputs = Annotated[
+    Path | None, typer.Option("--inputs", metavar="TABLE", help="CSV or NetCDF that feeds the system's inputs.")
+]
+Interpolate = Annotated[
+    list[str] | None,
+    typer.Option("--interpolate", metavar="INPUT", help="Linear between rows, not held; '*' for all; repeatable."),
+]
+MaxGap = Annotated[
+    float | None,
+    typer.Option("--max-gap", callback=finite, help="[s] Longest time without a row. Default: 5 x an even spacing."),
+]
+StartTime = Annotated[
+    float | None,
+    typer.Option("--start-time", callback=finite, help="[s] On the clock of the table. Default: the system's."),
+]
+
+
+def simulate(
+    ssp: System,
+    stop_time: SystemsStopTime = None,
+    step_size: SystemsStepSize = None,
+    out: Out = None,
+    engine: Engine = "fmpy",
+    parameters: Parameters = None,
+    inputs: Inputs = None,
+    interpolate: Interpolate = None,
+    max_gap: MaxGap = None,
+    start_time: StartTime = None,
+    settings: Settings = None,
+    events: OspEvents = None,
+    until: Until = None,
+    store: Store = None,
+    resume: From = None,
+    isolate: Isolate = False,
+    timeout: Timeout = None,
+    debug: Debug = False,
+) -> None:
+    """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
+
+    Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
+    """
+    from shipcosim.cli.requests import experiment_of, inputs_of, isolation, parsed_settings, system_of, with_osp_events
+    from shipcosim.cli.runs import simulate_and_save
+    from shipcosim.options import RunOptions
+    from shipcosim.ssp import with_values
+
+    system = with_values(system_of(ssp, parameters), parsed_settings(settings or []), "--set")
+    scenario = experiment_of(system, stop_time, step_size)
+    table = inputs_of(inputs, system, interpolate or (), max_gap)
+    if start_time is None:
+        start_time = system.experiment.start_time if resume is None else 0.0
+    scenario = with_osp_events(scenario, events, start_time)
+    options = RunOptions(
+        engine=engine, inputs=table, start_time=start_time, until=until, resume=resume, **isolation(isolate, timeout)
+    )
+    default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
+    simulate_and_save(system, scenario, out or default, options, store)

@@ -1,0 +1,49 @@
+"""Arguments and options that several commands share, each declared once."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def finite(value: float | None) -> float | None:
+    """The value of an option in seconds; a number that is no time is refused."""
+    if value is not None and not math.isfinite(value):
+        raise typer.BadParameter(f"{value} is no time. Give it in seconds.")
+    return value
+
+
+Parameters = Annotated[
+    list[Path] | None, typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others; repeatable."),
+]
+OspEvents = Annotated[
+    Path | None,
+    typer.Option("--scenario", metavar="FILE", help="Scenario file of OSP (.json, .yaml): what happens in the run."),
+]
+SystemsStopTime = Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the system's.")]
+SystemsStepSize = Annotated[float | None, typer.Option("--step-size", help="[s] Default: the system's.")]
+ScenariosStopTime = Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the scenario's.")]
+ScenariosStepSize = Annotated[float | None, typer.Option("--step-size", help="[s] Default: the scenario's.")]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
+Engine = Annotated[str, typer.Option("--engine", help="What runs the FMUs: fmpy (ours), libcosim or ecos.")]
+Until = Annotated[float | None, typer.Option("--until", callback=finite, help="[s] End here, before the stop time.")]
+Store = Annotated[
+    Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")
+]
+From = Annotated[Path | None, typer.Option("--from", metavar="FILE", help="Continue from a state that --store left.")]
+Isolate = Annotated[
+    bool, typer.Option("--isolate", help="Run each component in a process of its own, which may crash or hang.")
+]
+Timeout = Annotated[
+    float | None,
+    typer.Option("--timeout", callback=finite, help="[s] Longest wait for a component of --isolate. Default: 60."),
+]
+ReportAsJson = Annotated[bool, typer.Option("--json", help="Report as JSON.")]
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]

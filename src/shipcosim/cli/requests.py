@@ -1,0 +1,187 @@
+"""What the arguments of a command ask for: a system, a scenario, start values, a table of inputs."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import xarray
+
+from shipcosim.cli.console import print_problems
+from shipcosim.cli.project import build_stale, check_is_system, find_project, find_scenario
+from shipcosim.cosim import interpolated
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario, check_times, read_scenario
+from shipcosim.scenario.osp import read_osp_scenario
+from shipcosim.series import read_table
+from shipcosim.ssp import System, read_system
+
+
+def system_of(given: str, parameters: Iterable[Path] | None = None) -> System:
+    """The system of a file or folder, with the FMUs of its project built where they are missing or out of date.
+
+    Parameters
+    ----------
+    given : str
+        As for `shipcosim.ssp.read_system`.
+    parameters : iterable of Path, optional
+        Parameter sets over those of the system.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is no system, or a faulty one.
+    """
+    check_is_system(given)
+    project = find_project(Path(given.partition("#")[0]))
+    return read_system(given, parameters or (), fmus=[build_stale(project)] if project else ())
+
+
+def system_and_scenario(
+    given: str,
+    parameters: Sequence[Path] | None = None,
+    stop_time: float | None = None,
+    step_size: float | None = None,
+    events: Path | None = None,
+) -> tuple[System, Scenario]:
+    """System and scenario of an argument that is either.
+
+    Parameters
+    ----------
+    given : str
+        A scenario (.toml, or its name in the project's scenarios/) or a system.
+    parameters : sequence of Path, optional
+        Parameter sets over those of the scenario or the system.
+    stop_time, step_size : float, optional
+        In place of those of the scenario or the system. [s]
+    events : Path, optional
+        Scenario file of OSP: what happens besides.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such thing, or the times do not fit.
+    """
+    if not given.endswith(".toml") and Path(given.partition("#")[0]).exists():
+        system = system_of(given, parameters)
+        return system, with_osp_events(experiment_of(system, stop_time, step_size), events)
+    scenario = read_scenario(find_scenario(given))
+    fmus = [build_stale(scenario.project)]
+    system = read_system(scenario.system_path, [*scenario.parameter_paths, *(parameters or ())], fmus=fmus)
+    times = {"stop_time": stop_time, "step_size": step_size}
+    scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
+    if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
+        raise ShipcosimError(problems)
+    return system, with_osp_events(scenario, events)
+
+
+def experiment_of(system: System, stop_time: float | None = None, step_size: float | None = None) -> Scenario:
+    """Scenario in which nothing happens, for as long and in such steps as asked for or as the system says.
+
+    Raises
+    ------
+    ShipcosimError
+        If neither says it, or the two do not fit together.
+    """
+    stop = stop_time if stop_time is not None else system.experiment.stop_time
+    step = step_size if step_size is not None else system.experiment.step_size
+    problems = [
+        Problem(option, f"{value} is no {what}.", f"Give {option} in seconds, greater than 0.")
+        for option, value, what in (("--stop-time", stop, "stop time"), ("--step-size", step, "step size"))
+        if value is None or not value > 0.0
+    ]
+    if stop is None or step is None or problems:
+        raise ShipcosimError(problems)
+    scenario = Scenario(description=f"Simulation of {system.name}", stop_time=stop, step_size=step)
+    if problems := [Problem("--stop-time, --step-size", p.found, p.remedy) for p in check_times(scenario)]:
+        raise ShipcosimError(problems)
+    return scenario
+
+
+def with_osp_events(scenario: Scenario, path: Path | None, start_time: float = 0.0) -> Scenario:
+    """Scenario with the events of an OSP scenario file added; the same without a path. Remarks are printed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its steps are the run's.
+    path : Path or None
+        Of the file.
+    start_time : float
+        Of the run. [s]
+    """
+    if path is None:
+        return scenario
+    read = read_osp_scenario(path, scenario.step_size, scenario.stop_time, start_time)
+    print_problems(read.remarks)
+    more = {"events": [*scenario.events, *read.events]}
+    return scenario.model_copy(update=more | ({"description": read.description} if read.description else {}))
+
+
+def inputs_of(path: Path | None, system: System, linear: Sequence[str], max_gap: float | None) -> xarray.Dataset | None:
+    """Table that feeds a system's inputs, or None without a path.
+
+    Parameters
+    ----------
+    path : Path or None
+        Of a table.
+    system : System
+        With the inputs.
+    linear : sequence of str
+        Columns, or patterns of them, that change linearly between their rows.
+    max_gap : float or None
+        Longest time between two rows. [s]
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file or column, or no table for these options.
+    """
+    if path is None:
+        if linear or max_gap is not None:
+            found = "There is no table that this could be about."
+            raise ShipcosimError(Problem("--interpolate, --max-gap", found, "Give one with --inputs."))
+        return None
+    table = interpolated(read_table(path), system, linear)
+    return table if max_gap is None else table.assign_attrs(max_gap=max_gap)
+
+
+def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
+    """Values of ``--set component.name=value``, each read as TOML; what is no TOML is text.
+
+    Examples
+    --------
+    >>> parsed_settings(["vessel.mass=5e5", "port.failed=true", "environment.spectrum=kaimal"])
+    {'vessel.mass': 500000.0, 'port.failed': True, 'environment.spectrum': 'kaimal'}
+    """
+    values, problems = {}, []
+    for setting in settings:
+        name, sign, text = setting.partition("=")
+        if not sign or not name.strip():
+            problems.append(Problem("--set", f"'{setting}' sets nothing.", "Right would be component.name=value."))
+        values[name.strip()] = _parsed(text.strip())
+    if problems:
+        raise ShipcosimError(problems)
+    return values
+
+
+def _parsed(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (ValueError, RecursionError):
+        return text
+
+
+def isolation(isolate: bool, timeout: float | None) -> dict[str, Any]:
+    """Options of a run that --isolate and --timeout stand for.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is a timeout of nothing.
+    """
+    if timeout is not None and not isolate:
+        raise ShipcosimError(Problem("--timeout", "Without --isolate there is no limit to a component's time."))
+    return {"isolate": isolate} | ({} if timeout is None else {"timeout": timeout})

@@ -1,0 +1,97 @@
+"""A run from the command line: simulated, judged, written to its folder, and summed up on the terminal."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from shipcosim.cli.console import print_problems, print_summary, progress_of
+from shipcosim.cli.exits import FAILED, INTERRUPTED
+from shipcosim.cli.results import check_targets, save
+from shipcosim.cosim import Interrupted, RunError, RunOptions, Snapshot, simulate, write_snapshot
+from shipcosim.errors import ShipcosimError
+from shipcosim.scenario import Scenario, judge
+from shipcosim.ssp import System
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def simulate_and_save(
+    system: System, scenario: Scenario, out: Path, options: RunOptions, store: Path | None = None
+) -> None:
+    """Run, judge, write, and say how it went.
+
+    Parameters
+    ----------
+    system : System
+        What runs.
+    scenario : Scenario
+        What happens, and what must hold.
+    out : Path
+        Folder of the results; made if needed.
+    options : RunOptions
+        How it is run; the progress is shown here.
+    store : Path, optional
+        File for the state of the whole system at the end.
+
+    Raises
+    ------
+    typer.Exit
+        If an expectation does not hold, or a component fails in its own process, which is a finding and not unusable
+        input; if the run was interrupted.
+    ShipcosimError
+        If the input cannot be used or the results cannot be written.
+    """
+    check_targets(out, store)
+    print_problems(problem for problem in system.remarks if problem.where not in system.components)
+    snapshots: list[Snapshot] = []
+    if store:
+        options = replace(options, store=snapshots.append)
+    table = _simulated(system, scenario, out, options)
+    scenario = _within(scenario, table)
+    verdicts = judge(table, scenario)
+    page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)
+    print_summary(table, verdicts, page)
+    if store:
+        for snapshot in snapshots:
+            write_snapshot(snapshot, store)
+    if not all(verdict.passed for verdict in verdicts):
+        raise typer.Exit(FAILED)
+
+
+def _simulated(system: System, scenario: Scenario, out: Path, options: RunOptions) -> xarray.Dataset:
+    """Table of the run; what there is of a run that does not get to its end is saved."""
+    try:
+        with progress_of(scenario.name or system.name, scenario.stop_time) as progress:
+            return simulate(system, scenario, replace(options, progress=progress))
+    except Interrupted as stop:
+        _save_partial(stop.table, out, scenario, system)
+        raise typer.Exit(INTERRUPTED) from None
+    except RunError as error:
+        try:
+            _save_partial(error.table, out, scenario, system)
+        except ShipcosimError as another:
+            error.problems += another.problems
+        if not options.isolate:
+            raise
+        print_problems(error.problems)
+        raise typer.Exit(FAILED) from None
+
+
+def _save_partial(table: xarray.Dataset, out: Path, scenario: Scenario, system: System) -> None:
+    """Save the rows of a run that did not get to its end, unless it did not even start."""
+    if table.sizes["time"]:
+        page = save(table, out, "result-partial", scenario=scenario, system=system)
+        print_summary(table, (), page, to_stderr=True)
+
+
+def _within(scenario: Scenario, table: xarray.Dataset) -> Scenario:
+    """The scenario with those expectations that lie within the table's times."""
+    first, last = table["time"].values[[0, -1]]
+    inside = [e for e in scenario.expect if not e.during or (first <= e.during[0] and e.during[1] <= last)]
+    is_whole = first == 0.0 and last >= scenario.stop_time - 1e-9
+    return scenario if is_whole else scenario.model_copy(update={"expect": inside})
