@@ -29,6 +29,8 @@ ONLY_DOOR = {
     "torch": {"learn"},
     "pint": {"units"},
     "plotly": {"report"},
+    "jinja2": {"report.theme"},
+    "markupsafe": {"report.theme"},
     "typer": {"cli"},
 }
 MOST_FILES = 20

@@ -18,7 +18,7 @@ def draw(four_corner):
         table = four_corner(1.0)
         scenario = Scenario(stop_time=1100.0, step_size=1.0, expect=[Expectation(**expect)])
         verdicts, roles = judge(table, scenario), find_roles(table.data_vars)
-        return add_derived(display_table(table, roles), table, roles, verdicts), verdicts
+        return add_derived(display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts), verdicts
 
     return draw
 

@@ -19,7 +19,7 @@ def table_of(time=None, **signals):
 def shown(table, verdicts=()):
     """As the page has it."""
     roles = find_roles(table.data_vars)
-    return add_derived(display_table(table, roles), table, roles, verdicts)
+    return add_derived(display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts)
 
 
 def test_angles_are_in_degrees_and_do_not_jump_at_the_half_turn():

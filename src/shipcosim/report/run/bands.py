@@ -1,10 +1,14 @@
 """Expectations as they are drawn: the allowed band of a signal in its window, coloured by whether it held."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+from xarray import Dataset
 
 from shipcosim.report.theme.display import wrapped
+from shipcosim.scenario import Expectation, Verdict
 
 
 @dataclass(frozen=True)
@@ -19,19 +23,19 @@ class Band:
         Whether the expectation holds.
     """
 
-    time: list
-    lower: list
-    upper: list
+    time: list[float]
+    lower: list[float]
+    upper: list[float]
     passed: bool
 
 
-def window(time, expect):
+def window(time: NDArray, expect: Expectation) -> NDArray:
     """Rows that an expectation looks at, (m,)."""
     start, end = expect.during or (-np.inf, np.inf)
     return np.flatnonzero((time >= start - 1e-6) & (time <= end + 1e-6))
 
 
-def bands_of(shown, signal, verdicts, minus=None):
+def bands_of(shown: Dataset, signal: str, verdicts: Iterable[Verdict], minus: str | None = None) -> list[Band]:
     """Bands of all expectations on a signal.
 
     Parameters
@@ -53,22 +57,22 @@ def bands_of(shown, signal, verdicts, minus=None):
     for verdict in verdicts:
         rows = window(shown["time"].values, verdict.expect)
         if signal in verdict.expect.signal and len(rows):
-            found.append(_band(shown.isel(time=rows), signal, verdict, minus))
+            found.append(_band_of(shown.isel(time=rows), signal, verdict, minus))
     return found
 
 
-def distance_bands(shown, signals, verdicts):
+def distance_bands(shown: Dataset, signals: list[str | None], verdicts: Iterable[Verdict]) -> list[Band]:
     """Bands of the expectations that several signals together stay near a point."""
     found = []
     for verdict in verdicts:
         time = shown["time"].values[window(shown["time"].values, verdict.expect)]
         if verdict.expect.signal == signals and verdict.expect.near is not None and len(time):
             limit = np.full(len(time), verdict.expect.within)
-            found.append(Band(*_corners(time, 0.0 * limit, limit), verdict.passed))
+            found.append(_band(time, 0.0 * limit, limit, verdict.passed))
     return found
 
 
-def _band(part, signal, verdict, minus):
+def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) -> Band:
     """Band over the rows of `part`."""
     drawn = part[signal].values
     lower, upper = _limits(part, signal, verdict.expect)
@@ -82,10 +86,10 @@ def _band(part, signal, verdict, minus):
     pad = 0.1 * (most - least)
     lower = np.where(np.isfinite(lower), lower, np.fmin(least, upper) - pad)
     upper = np.where(np.isfinite(upper), upper, np.fmax(most, lower) + pad)
-    return Band(*_corners(part["time"].values, lower, upper), verdict.passed)
+    return _band(part["time"].values, lower, upper, verdict.passed)
 
 
-def _limits(part, signal, expect):
+def _limits(part: Dataset, signal: str, expect: Expectation) -> tuple[NDArray, NDArray]:
     """Least and largest allowed value in the page's unit, (m,) each; infinite on an open side."""
     values, unit, factor = part[signal].values, part[signal].attrs["units"], part[signal].attrs["factor"]
     ones = np.ones(len(values))
@@ -100,8 +104,8 @@ def _limits(part, signal, expect):
     return middle - expect.within * factor, middle + expect.within * factor
 
 
-def _corners(time, lower, upper):
-    """The same band with as few points as it needs."""
+def _band(time: NDArray, lower: NDArray, upper: NDArray, passed: bool) -> Band:
+    """A band with as few corners as it needs."""
     if np.ptp(lower) == 0.0 and np.ptp(upper) == 0.0:
         time, lower, upper = time[[0, -1]], lower[[0, -1]], upper[[0, -1]]
-    return [np.round(values, 6).tolist() for values in (time, lower, upper)]
+    return Band(np.round(time, 6).tolist(), np.round(lower, 6).tolist(), np.round(upper, 6).tolist(), passed)

@@ -1,15 +1,21 @@
 """Signals that no component puts out but every reader looks for: errors, distances, wind as speed and direction."""
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
+from xarray import Dataset, Variable
 
 from shipcosim.report.run.bands import window
+from shipcosim.report.run.roles import Roles
 from shipcosim.report.theme.display import as_variable, unturned, wrapped
+from shipcosim.scenario import Verdict
 
 ERRORS = {"x": "north error", "y": "east error", "psi": "heading error"}
 FROM_REFERENCE, FROM_EXPECTED = "distance from reference", "distance from expected point"
 
 
-def add_derived(shown, table, roles, verdicts):
+def add_derived(shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> Dataset:
     """The shown table with the derived signals that it has the ingredients for.
 
     Parameters
@@ -31,13 +37,13 @@ def add_derived(shown, table, roles, verdicts):
     return shown.assign({**distances(shown, table, roles, verdicts), **true_flow(shown, roles)})
 
 
-def desired(roles, axis):
+def desired(roles: Roles, axis: str) -> str | None:
     """Signal that the ship's x, y or psi should follow: the reference, else the set point, or None."""
     reference = roles.signal(roles.reference, f"{axis}_d")
     return reference or next(iter(roles.anywhere(f"{axis}_set")), None)
 
 
-def errors(shown, roles):
+def errors(shown: Dataset, roles: Roles) -> dict[str, Variable]:
     """Ship minus reference in x, y and psi; headings the short way round."""
     found = {}
     for axis, name in ERRORS.items():
@@ -48,7 +54,7 @@ def errors(shown, roles):
     return found
 
 
-def distances(shown, table, roles, verdicts):
+def distances(shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> dict[str, Variable]:
     """Distance from the reference, and in the windows of expectations on the position the distance that was judged."""
     if not {ERRORS["x"], ERRORS["y"]} <= set(shown):
         return {}
@@ -60,18 +66,18 @@ def distances(shown, table, roles, verdicts):
     return found
 
 
-def judged_distance(table, signals, verdicts):
+def judged_distance(table: Dataset, signals: list[str | None], verdicts: Sequence[Verdict]) -> NDArray:
     """Distance from the expected point where an expectation on these signals together looks, NaN elsewhere, (n,)."""
     time, distance = table["time"].values, np.full(table.sizes["time"], np.nan)
     for expect in (v.expect for v in verdicts if v.expect.signal == signals and v.expect.near is not None):
         rows = window(time, expect)
-        targets = [table[n].values[rows] if isinstance(n, str) else n for n in expect.near]
+        targets = [table[n].values[rows] if isinstance(n, str) else n for n in expect.near or ()]
         gaps = [table[s].values[rows] - target for s, target in zip(signals, targets, strict=True)]
         distance[rows] = np.linalg.norm(gaps, axis=0)
     return distance
 
 
-def true_flow(shown, roles):
+def true_flow(shown: Dataset, roles: Roles) -> dict[str, Variable]:
     """Speed and direction of wind and current from their components north and east."""
     found = {}
     for what, sense, suffix in [("wind", -1.0, "from"), ("current", 1.0, "to")]:

@@ -1,26 +1,86 @@
-"""The page of a run: one HTML file with plotly.js inside, which opens anywhere and needs no network."""
+"""The page of a run: what it shows, and the functions that write it or say it in words."""
 
 import base64
-import json
-from dataclasses import asdict
-from html import escape
-from importlib.resources import files
-from string import Template
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
+from xarray import Dataset
 
-import shipcosim
-from shipcosim.report.run import summary
 from shipcosim.report.run.derived import add_derived
-from shipcosim.report.run.panels import make_sections
-from shipcosim.report.run.roles import find_roles
-from shipcosim.report.run.track import ship_size, track_figure
-from shipcosim.report.theme import palette, parts
+from shipcosim.report.run.details import Detail, details
+from shipcosim.report.run.expectations import Judged, judged, outcome
+from shipcosim.report.run.key_figures import key_figures
+from shipcosim.report.run.panels import Section, make_sections
+from shipcosim.report.run.remarks import remarks
+from shipcosim.report.run.roles import Roles, find_roles
+from shipcosim.report.run.track import Track, ship_size, track_figure
+from shipcosim.report.run.weather import Flow, weather
+from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import display_table, is_constant, thinned
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import Fact, Link, Outcome, Page, Table
+from shipcosim.scenario import Scenario, Verdict
 from shipcosim.series import write_file
+from shipcosim.ssp import System
 
 
-def write_report(table, path, *, scenario=None, verdicts=(), system=None):
+@dataclass(frozen=True)
+class Thinned:
+    """How many rows are drawn of how many, and how many rows each drawn pair spans."""
+
+    drawn: int
+    rows: int
+    span: int
+
+
+@dataclass(frozen=True)
+class RunPage(Page):
+    """What the page of a run shows.
+
+    Attributes
+    ----------
+    remarks : tuple of str
+        What must not be overlooked.
+    weather : tuple of Flow
+    expectations : tuple of Judged
+    key_figures : Table
+    thinned : Thinned, optional
+        Where not every row is drawn.
+    sections : tuple of Section
+        Panels over time.
+    details : tuple of Detail
+        Tables to unfold.
+    """
+
+    remarks: tuple[str, ...]
+    weather: tuple[Flow, ...]
+    expectations: tuple[Judged, ...]
+    key_figures: Table
+    thinned: Thinned | None
+    sections: tuple[Section, ...]
+    details: tuple[Detail, ...]
+
+
+class Digest(NamedTuple):
+    """What a page says in words: the verdict, what must not be overlooked, and the expectations."""
+
+    outcome: Outcome
+    remarks: list[str]
+    expectations: tuple[Judged, ...]
+
+
+def write_report(
+    table: Dataset,
+    path: str | os.PathLike[str],
+    *,
+    scenario: Scenario | None = None,
+    verdicts: Sequence[Verdict] = (),
+    system: System | None = None,
+) -> None:
     """Write the page of a run.
 
     Parameters
@@ -45,34 +105,18 @@ def write_report(table, path, *, scenario=None, verdicts=(), system=None):
     write_file(path, render(table, scenario=scenario, verdicts=verdicts, system=system).encode())
 
 
-def render(table, *, scenario=None, verdicts=(), system=None):
-    """The page as text; arguments as for `write_report`."""
-    roles = find_roles(table.data_vars)
-    shown = add_derived(display_table(table, roles), table, roles, verdicts)
-    drawn, span = thinned(shown)
-    track = track_figure(drawn, roles, verdicts, ship_size(table, roles))
-    sections = make_sections(shown, roles, verdicts)
-    return Template(_asset("template.html")).substitute(
-        title=escape(parts.title_of(scenario, system)),
-        css=_asset("page.css"),
-        header=parts.header(table, scenario, system, summary.outcome(table, verdicts)),
-        remarks=parts.remarks(summary.remarks(table, shown, roles)),
-        navigation=parts.navigation(sections, track is not None),
-        chart=parts.chart(track is not None),
-        weather=parts.weather(summary.weather(shown, roles)),
-        figures=parts.key_figures(summary.key_figures(shown, roles)),
-        expectations=parts.expectations(summary.judged(verdicts, shown)),
-        sections=parts.sections(sections),
-        thinning=parts.thinning(span, shown.sizes["time"], drawn.sizes["time"]),
-        details=parts.details(summary.details(table, system), scenario),
-        version=shipcosim.__version__,
-        plotly=_plotly(),
-        data=_embedded(_payload(drawn, table, track, sections, scenario)),
-        script=_asset("page.js"),
-    )
+def render(
+    table: Dataset,
+    *,
+    scenario: Scenario | None = None,
+    verdicts: Sequence[Verdict] = (),
+    system: System | None = None,
+) -> str:
+    """The page as HTML; arguments as for `write_report`."""
+    return render_template("run/run.html.jinja", _page(table, scenario, verdicts, system))
 
 
-def digest(table, verdicts=()):
+def digest(table: Dataset, verdicts: Sequence[Verdict] = ()) -> Digest:
     """What a page says in words, for those who do not open it.
 
     Parameters
@@ -84,16 +128,70 @@ def digest(table, verdicts=()):
 
     Returns
     -------
-    (Outcome, list of str, list of tuple)
-        Verdict on the run, what must not be overlooked, and the expectations as `summary.judged` gives them.
+    Digest
     """
+    roles, shown = _shown(table, verdicts)
+    return Digest(outcome(table, verdicts), remarks(table, shown, roles), judged(verdicts, shown))
+
+
+def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict], system: System | None) -> RunPage:
+    roles, shown = _shown(table, verdicts)
+    drawn, span = thinned(shown)
+    track = track_figure(drawn, roles, verdicts, ship_size(table, roles))
+    sections = make_sections(shown, roles, verdicts)
+    return RunPage(
+        title=_title(scenario, system),
+        facts=_facts(table, scenario),
+        outcome=outcome(table, verdicts),
+        links=_links(track, sections),
+        data=_drawn(drawn, table, track, sections, scenario),
+        remarks=tuple(remarks(table, shown, roles)),
+        weather=weather(shown, roles),
+        expectations=judged(verdicts, shown),
+        key_figures=key_figures(shown, roles),
+        thinned=Thinned(drawn.sizes["time"], shown.sizes["time"], span) if span > 1 else None,
+        sections=sections,
+        details=details(table, scenario, system),
+    )
+
+
+def _shown(table: Dataset, verdicts: Sequence[Verdict]) -> tuple[Roles, Dataset]:
+    """What the signals stand for, and the table in the units of the page with the derived signals."""
     roles = find_roles(table.data_vars)
-    shown = add_derived(display_table(table, roles), table, roles, verdicts)
-    return summary.outcome(table, verdicts), summary.remarks(table, shown, roles), summary.judged(verdicts, shown)
+    return roles, add_derived(display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts)
 
 
-def _payload(drawn, table, track, sections, scenario):
-    """What the page's script draws."""
+def _title(scenario: Scenario | None, system: System | None) -> str:
+    if scenario is not None and (scenario.description or scenario.name):
+        return scenario.description or scenario.name
+    return f"Simulation of {system.name}" if system is not None and system.name else "Simulation"
+
+
+def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
+    """What was run, for how long, in which steps and with which engine."""
+    facts = []
+    if scenario is not None:
+        facts = [("Ship", ", ".join(scenario.parameters)), ("System", scenario.system), ("Scenario", scenario.name)]
+    time = table["time"].values
+    if len(time):
+        facts.append(("Simulated", f"{time[-1] - time[0]:g} s"))
+    if "step_size" in table.attrs:
+        facts.append(("Step size", f"{table.attrs['step_size']} s"))
+    if "engine" in table.attrs:
+        facts.append(("Engine", str(table.attrs["engine"])))
+    return tuple(Fact(name, text) for name, text in facts if text)
+
+
+def _links(track: Track | None, sections: Sequence[Section]) -> tuple[Link, ...]:
+    chart = [Link("chart", "Track")] if track is not None else []
+    panels = [Link(f"section-{k}", section.title) for k, section in enumerate(sections)]
+    return (*chart, *panels, Link("choose", "All signals"), Link("details", "Parameters"))
+
+
+def _drawn(
+    drawn: Dataset, table: Dataset, track: Track | None, sections: Sequence[Section], scenario: Scenario | None
+) -> dict[str, Any]:
+    """What the script of the page draws."""
     return {
         "time": _packed(drawn["time"].values, "float64"),
         "signals": {
@@ -105,28 +203,15 @@ def _payload(drawn, table, track, sections, scenario):
             for name, v in drawn.data_vars.items()
         },
         "choice": [str(name) for name in table.data_vars if name in drawn],
-        "track": track,
+        "track": None if track is None else asdict(track),
         "panels": [asdict(panel) for section in sections for panel in section.panels],
         "events": sorted({event.time for event in scenario.events}) if scenario else [],
-        "colours": {"passed": palette.PASSED, "failed": palette.FAILED, "cycle": palette.CYCLE, "ink": palette.INK},
+        "colours": {"passed": palette.PASSED, "failed": palette.FAILED, "cycle": palette.CYCLE},
     }
 
 
-def _packed(values, kind):
+def _packed(values: ArrayLike, kind: str) -> str:
     """Numbers as base64 of little-endian bytes: a third of the size of text."""
     with np.errstate(over="ignore"):  # a run that diverged: what float32 cannot hold becomes a gap
         packed = np.asarray(values).astype(np.dtype(kind).newbyteorder("<"))
     return base64.b64encode(packed.tobytes()).decode()
-
-
-def _embedded(payload):
-    """JSON that cannot end the script it stands in."""
-    return json.dumps(payload, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-
-
-def _plotly():
-    return files("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8")
-
-
-def _asset(name):
-    return files("shipcosim.report.run").joinpath(name).read_text(encoding="utf-8")

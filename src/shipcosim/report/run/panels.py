@@ -1,11 +1,15 @@
 """Which time series a page draws, in sections of panels; what a table does not hold is left out."""
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
-from shipcosim.report.run.bands import bands_of, distance_bands
+from xarray import Dataset
+
+from shipcosim.report.run.bands import Band, bands_of, distance_bands
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE, desired
-from shipcosim.report.run.roles import join
+from shipcosim.report.run.roles import Roles, join
 from shipcosim.report.theme import palette
+from shipcosim.scenario import Verdict
 
 AXES = {"x": "North", "y": "East", "psi": "Heading"}
 LOADS = {"X": "Surge force", "Y": "Sway force", "N": "Yaw moment"}
@@ -28,8 +32,8 @@ class Panel:
 
     title: str
     unit: str
-    lines: list
-    bands: list = field(default_factory=list)
+    lines: tuple[Line, ...]
+    bands: tuple[Band, ...] = ()
     states: bool = False
 
 
@@ -38,10 +42,10 @@ class Section:
     """Panels under one heading."""
 
     title: str
-    panels: list
+    panels: tuple[Panel, ...]
 
 
-def make_sections(shown, roles, verdicts):
+def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> tuple[Section, ...]:
     """Every section that the table has signals for.
 
     Parameters
@@ -55,7 +59,7 @@ def make_sections(shown, roles, verdicts):
 
     Returns
     -------
-    list of Section
+    tuple of Section
     """
     motion = _motion(shown, roles, verdicts)
     made = {
@@ -65,27 +69,29 @@ def make_sections(shown, roles, verdicts):
         "Thrusters": _thrusters(shown, roles),
         "Environment": _environment(shown, roles),
     }
-    return [Section(title, panels) for title, panels in made.items() if panels]
+    return tuple(Section(title, tuple(panels)) for title, panels in made.items() if panels)
 
 
-def _panel(shown, title, lines, bands=(), states=False):
+def _panel(
+    shown: Dataset, title: str, lines: Iterable[Line], bands: Iterable[Band] = (), states: bool = False
+) -> list[Panel]:
     """The panel with those lines that are there, as a list of one or none."""
-    lines = [line for line in lines if line.signal in shown]
-    if not lines:
+    there = tuple(line for line in lines if line.signal in shown)
+    if not there:
         return []
-    return [Panel(title, shown[lines[0].signal].attrs["units"], lines, list(bands), states)]
+    return [Panel(title, shown[there[0].signal].attrs["units"], there, tuple(bands), states)]
 
 
-def _coloured(labels):
+def _coloured(labels: Mapping[str | None, str]) -> list[Line]:
     """Lines of equal rank, each in its colour; `labels` maps signals to labels."""
     return [Line(s, label, palette.CYCLE[k % len(palette.CYCLE)]) for k, (s, label) in enumerate(labels.items())]
 
 
-def _first(names):
+def _first(names: Iterable[str]) -> str | None:
     return next(iter(names), None)
 
 
-def _motion(shown, roles, verdicts):
+def _motion(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[Panel]:
     """North, east and heading, each beside its error; distance and speeds."""
     panels = []
     for axis, title in AXES.items():
@@ -103,7 +109,7 @@ def _motion(shown, roles, verdicts):
     return panels + _distance(shown, roles, verdicts) + _speeds(shown, roles)
 
 
-def _distance(shown, roles, verdicts):
+def _distance(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[Panel]:
     lines = [
         Line(FROM_REFERENCE, "from the reference", palette.SHIP),
         Line(FROM_EXPECTED, "from the expected point", palette.EXPECTED, width=2.0),
@@ -112,19 +118,19 @@ def _distance(shown, roles, verdicts):
     return _panel(shown, "Position error", lines, distance_bands(shown, position, verdicts))
 
 
-def _speeds(shown, roles):
+def _speeds(shown: Dataset, roles: Roles) -> list[Panel]:
     ahead, sideways, turn = (roles.signal(roles.ship, connector) for connector in "uvr")
     speeds = _panel(shown, "Speed over ground", _coloured({ahead: "ahead", sideways: "to starboard"}))
     return speeds + _panel(shown, "Rate of turn", _coloured({turn: "to starboard"}))
 
 
-def _expected(shown, verdicts, drawn):
+def _expected(shown: Dataset, verdicts: Sequence[Verdict], drawn: set[str | None]) -> list[Panel]:
     """A panel for every signal with an expectation that no other panel shows with its limits."""
     signals = dict.fromkeys(s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn)
     return [p for s in signals for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))]
 
 
-def _loads(shown, roles):
+def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
     """Forces and moment by source, with what the controller asks for."""
     panels = []
     for axis, title in LOADS.items():
@@ -137,7 +143,7 @@ def _loads(shown, roles):
     return panels
 
 
-def _thrusters(shown, roles):
+def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     """Thrust commanded and delivered per thruster; angles, speeds, power and limits of all."""
     panels = []
     for unit in roles.thrusters:
@@ -153,11 +159,13 @@ def _thrusters(shown, roles):
         panels += _panel(shown, f"Shaft speed, {', '.join(units)}", lines)
     for quantity, title in {"power": "Power", "torque": "Torque"}.items():
         panels += _panel(shown, title, _coloured({roles.signal(u, quantity): u for u in roles.thrusters}))
-    states = {signal: f"{c} {what}" for what in ("saturated", "failed") for c, signal in roles.flagged(what).items()}
+    states: dict[str | None, str] = {
+        signal: f"{c} {what}" for what in ("saturated", "failed") for c, signal in roles.flagged(what).items()
+    }
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
 
 
-def _angles(roles):
+def _angles(roles: Roles) -> list[Line]:
     lines = []
     for k, unit in enumerate(roles.thrusters):
         commanded = _command(roles, unit, "azimuth")
@@ -166,12 +174,12 @@ def _angles(roles):
     return lines
 
 
-def _command(roles, unit, quantity):
+def _command(roles: Roles, unit: str, quantity: str) -> str | None:
     """Signal of a thruster's command: its own input, or the allocator's output of its name."""
     return roles.signal(unit, f"{quantity}_cmd") or _first(roles.anywhere(f"{unit}_{quantity}_cmd"))
 
 
-def _environment(shown, roles):
+def _environment(shown: Dataset, roles: Roles) -> list[Panel]:
     """Wind, current and waves as speed and direction."""
     at = lambda connector: roles.signal(roles.environment, connector)  # noqa: E731
     flow = {

@@ -1,6 +1,7 @@
 """What the signals of a table stand for, found by their names alone, so that any system's table makes a page."""
 
 import re
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 LOAD = re.compile(r"tau_([A-Za-z]\w*)_([XYN])")
@@ -27,37 +28,38 @@ class Roles:
 
     ship: str | None
     reference: str | None
-    thrusters: tuple
+    thrusters: tuple[str, ...]
     environment: str | None
-    connectors: dict = field(repr=False)
+    connectors: dict[str, list[str]] = field(repr=False)
 
-    def signal(self, component, *connectors):
+    def signal(self, component: str | None, *connectors: str) -> str | None:
         """Name of the first of these connectors that the component has, or None."""
         for connector in connectors:
             if component is not None and connector in self.connectors.get(component, ()):
                 return join(component, connector)
         return None
 
-    def anywhere(self, *connectors):
+    def anywhere(self, *connectors: str) -> list[str]:
         """Names of all signals whose connector is one of these, in the order asked for."""
         return [join(component, c) for c in connectors for component, has in self.connectors.items() if c in has]
 
-    def flagged(self, connector):
+    def flagged(self, connector: str) -> dict[str, str]:
         """Signals of this connector by their component, of all components that have it: who says 'saturated'."""
         return {component: join(component, connector) for component, has in self.connectors.items() if connector in has}
 
-    def sources(self):
+    def sources(self) -> list[str]:
         """Names of what puts load on the ship: wind, drift, hull, thrusters, in the table's order."""
-        found = [LOAD.fullmatch(connector) for connector in self.connectors.get(self.ship, ())]
+        on_ship = self.connectors.get(self.ship, ()) if self.ship is not None else ()
+        found = [LOAD.fullmatch(connector) for connector in on_ship]
         return list(dict.fromkeys(m[1] for m in found if m and m[1] not in NOT_A_SOURCE))
 
 
-def join(component, connector):
+def join(component: str, connector: str) -> str:
     """Signal name; a connector of the outermost system is its name alone."""
     return f"{component}.{connector}" if component else connector
 
 
-def find_roles(names):
+def find_roles(names: Iterable[Hashable]) -> Roles:
     """Roles of the signals in a table.
 
     Parameters
@@ -74,12 +76,12 @@ def find_roles(names):
     >>> find_roles(["boat.x", "boat.y", "boat.psi", "boat.tau_wind_X", "bow.thrust", "bow.rpm"]).thrusters
     ('bow',)
     """
-    connectors = {}
+    connectors: dict[str, list[str]] = {}
     for name in names:
         component, _, connector = str(name).rpartition(".")
         connectors.setdefault(component, []).append(connector)
 
-    def having(*wanted):
+    def having(*wanted: str) -> list[str]:
         return [c for c, has in connectors.items() if set(wanted) <= set(has)]
 
     ships = sorted(having("x", "y", "psi"), key=lambda c: _likeness(c, connectors[c]), reverse=True)
@@ -93,6 +95,6 @@ def find_roles(names):
     )
 
 
-def _likeness(component, connectors):
+def _likeness(component: str, connectors: Sequence[str]) -> tuple[bool, int]:
     """How much like a ship: sensors and predictors have x, y and psi among their inputs too."""
     return component.endswith(("vessel", "ship", "hull")), sum(1 for c in connectors if LOAD.fullmatch(c))

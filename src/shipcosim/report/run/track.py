@@ -1,14 +1,19 @@
-"""The track on a chart: north up, one scale both ways, the ship drawn to scale where she was."""
+"""The track on a chart: north up, one scale both ways, the ship drawn to scale where her size is known."""
 
 import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from xarray import Dataset
 
 from shipcosim.report.run.derived import desired
-from shipcosim.report.run.roles import join
+from shipcosim.report.run.roles import Roles, join
 from shipcosim.report.theme import palette
+from shipcosim.scenario import Verdict
 
-LENGTH, BREADTH = 33.9, 9.6  # m, R/V Gunnerus between perpendiculars: for tables that do not say
 HULL = (  # outline over length and breadth from amidships, starboard side from stern to bow; drawn, not measured
     (-0.5, 0.44),
     (-0.46, 0.5),
@@ -19,16 +24,41 @@ HULL = (  # outline over length and breadth from amidships, starboard side from 
 )
 LEAST_ASPECT = 0.7  # of the chart's shorter side to its longer
 SPACING, TURN, MOST = 0.3, 20.0, 40  # outlines: apart in lengths, turned in deg, at most so many
+SYMBOL = 0.08  # length of the outline of a ship of unknown size, over the extent of the track
+SLENDERNESS = 3.5  # length over breadth of that outline
 
 
-def ship_size(table, roles):
-    """Length and breadth of the ship to draw, from the start values in the table's attributes. [m, m]"""
+@dataclass(frozen=True)
+class Track:
+    """The chart as the script of the page draws it.
+
+    Attributes
+    ----------
+    traces : list of dict
+        For plotly.
+    x, y : (float, float)
+        Ranges east and north. [m]
+    pose : list of str
+        Signals x, y and psi of the ship.
+    outline : list of list of float
+        Her outline in body axes, forward and to starboard. [m]
+    """
+
+    traces: list[dict[str, Any]]
+    x: tuple[float, float]
+    y: tuple[float, float]
+    pose: list[str]
+    outline: list[list[float]]
+
+
+def ship_size(table: Dataset, roles: Roles) -> tuple[float, float] | None:
+    """Length and breadth of the ship, where the start values in the table's attributes have both. [m, m]"""
     known = json.loads(table.attrs.get("start_values", "{}"))
-    sizes = (("length", LENGTH), ("breadth", BREADTH))
-    return tuple(float(known.get(join(roles.ship or "", name), default)) for name, default in sizes)
+    length, breadth = (known.get(join(roles.ship or "", name)) for name in ("length", "breadth"))
+    return None if length is None or breadth is None else (float(length), float(breadth))
 
 
-def hull_outline(length, breadth):
+def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:
     """Closed outline in body axes: forward and to starboard, (11,) each. [m, m]
 
     Examples
@@ -43,14 +73,14 @@ def hull_outline(length, breadth):
     return closed[:, 0], closed[:, 1]
 
 
-def placed(outline, x, y, psi):
+def placed(outline: tuple[NDArray, NDArray], x: float, y: float, psi: float) -> tuple[NDArray, NDArray]:
     """An outline on the chart: east and north of its corners. [m, m]"""
     forward, starboard = outline
     c, s = np.cos(np.radians(psi)), np.sin(np.radians(psi))
     return y + s * forward + c * starboard, x + c * forward - s * starboard
 
 
-def outline_rows(x, y, psi, length):
+def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[int]:
     """Rows at which to draw the ship: the first, the last, and whenever she moved or turned enough in between.
 
     Parameters
@@ -76,7 +106,9 @@ def outline_rows(x, y, psi, length):
         spacing, turn = 1.5 * spacing, 1.5 * turn
 
 
-def track_figure(shown, roles, verdicts, size):
+def track_figure(
+    shown: Dataset, roles: Roles, verdicts: Sequence[Verdict], size: tuple[float, float] | None
+) -> Track | None:
     """Traces and ranges of the chart, or None without a ship in the table.
 
     Parameters
@@ -87,69 +119,87 @@ def track_figure(shown, roles, verdicts, size):
         What the signals stand for.
     verdicts : sequence of Verdict
         Expectations; those on x and y together are drawn as circles.
-    size : (float, float)
-        Length and breadth of the ship. [m, m]
+    size : (float, float), optional
+        Length and breadth of the ship; without them a small symbol shows where she was. [m, m]
 
     Returns
     -------
-    dict or None
-        `traces` for plotly, `x` and `y` ranges, `pose` (names of the signals) and `outline` in body axes.
+    Track or None
     """
     names = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
-    if None in names or any(name not in shown for name in names):
+    pose = [name for name in names if name is not None and name in shown]
+    if len(pose) < 3:
         return None
-    x, y, psi = (shown[name].values for name in names)
+    x, y, psi = (shown[name].values for name in pose)
     known = np.isfinite(x) & np.isfinite(y) & np.isfinite(psi)
     if not known.any():
         return None
-    time = shown["time"].values[known]
-    ships = _ships(time, x[known], y[known], psi[known], size)
-    traces = [*_aims(shown, roles, verdicts, names), _line("track", y, x, palette.SHIP, 2.0), *ships]
-    outline = [np.round(side, 3).tolist() for side in hull_outline(*size)]
-    return {"traces": traces, **_ranges(traces), "pose": names, "outline": outline}
+    way = _line("track", y, x, palette.SHIP, 2.0)
+    x, y, psi, time = x[known], y[known], psi[known], shown["time"].values[known]
+    drawn = size or _symbol(x, y)
+    ships = _ships(time, x, y, psi, drawn, scale="" if size else ", not to scale")
+    traces = [*_aims(shown, roles, verdicts, pose[:2]), way, *ships]
+    outline = [np.round(side, 3).tolist() for side in hull_outline(*drawn)]
+    east, north = _ranges(traces)
+    return Track(traces, east, north, pose, outline)
 
 
-def _ships(time, x, y, psi, size):
+def _symbol(x: NDArray, y: NDArray) -> tuple[float, float]:
+    """Length and breadth of an outline that shows where a ship of unknown size was. [m, m]"""
+    length = max(SYMBOL * max(float(np.ptp(x)), float(np.ptp(y))), 1.0)
+    return length, length / SLENDERNESS
+
+
+def _ships(
+    time: NDArray, x: NDArray, y: NDArray, psi: NDArray, size: tuple[float, float], scale: str
+) -> list[dict[str, Any]]:
     """Outlines on the way, start and end, and a mark amidships of each that says when."""
     rows, outline = outline_rows(x, y, psi, size[0]), hull_outline(*size)
     corners = [placed(outline, x[k], y[k], psi[k]) for k in rows]
-    mark = [f"{time[k]:.6g} s<br>north {x[k]:.2f} m<br>east {y[k]:.2f} m<br>heading {psi[k] % 360:.1f}°" for k in rows]
     marks = {
         **_line("position", y[rows], x[rows], palette.SHIP, 0.0),
         "mode": "markers",
         "marker": {"color": palette.SHIP, "size": 5},
-        "text": mark,
-        "hovertemplate": "%{text}<extra></extra>",
+        "text": [f"{time[k]:.6g} s\nnorth {x[k]:.2f} m\neast {y[k]:.2f} m\nheading {psi[k] % 360:.1f}°" for k in rows],
+        "hovertemplate": "%{text}",
         "showlegend": False,
     }
     return [
-        _hulls("ship on the way", corners[1:-1], palette.SHIP, "rgba(0,114,178,0.05)", 0.8),
-        _hulls("start", corners[:1], palette.INK, "rgba(31,41,51,0.06)", 1.5, "dash"),
-        _hulls("end", corners[-1:], palette.INK, "rgba(0,114,178,0.18)", 2.0),
+        _hulls(f"ship on the way{scale}", corners[1:-1], palette.SHIP, 0.05, 0.8),
+        _hulls("start", corners[:1], palette.INK, 0.06, 1.5, "dash"),
+        _hulls("end", corners[-1:], palette.INK, 0.18, 2.0, fill=palette.SHIP),
         marks,
     ]
 
 
-def _hulls(name, corners, colour, fill, width, dash="solid"):
-    """Closed outlines in one trace, set apart by gaps."""
+def _hulls(
+    name: str,
+    corners: Sequence[tuple[NDArray, NDArray]],
+    colour: str,
+    opacity: float,
+    width: float,
+    dash: str = "solid",
+    fill: str = "",
+) -> dict[str, Any]:
+    """Closed outlines in one trace, set apart by gaps, filled with their own colour or another."""
     east = [value for e, _ in corners for value in [*_rounded(e), None]]
     north = [value for _, n in corners for value in [*_rounded(n), None]]
     line = {"color": colour, "width": width, "dash": dash}
     return {
         **{"type": "scatter", "mode": "lines", "name": name, "x": east, "y": north, "line": line},
-        **{"fill": "toself", "fillcolor": fill, "hoverinfo": "skip"},
+        **{"fill": "toself", "fillcolor": palette.faded(fill or colour, opacity), "hoverinfo": "skip"},
     }
 
 
-def _aims(shown, roles, verdicts, names):
+def _aims(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict], position: list[str]) -> list[dict[str, Any]]:
     """Where she should go: circles of the expectations, reference track, set points."""
-    aims = [_circle(verdict) for verdict in verdicts if _is_circle(verdict.expect, names[:2])]
-    reference = [desired(roles, axis) for axis in "xy"]
-    if None not in reference:
+    aims = [circle for verdict in verdicts for circle in _circle(verdict, position)]
+    reference = [name for axis in "xy" if (name := desired(roles, axis)) is not None]
+    if len(reference) == 2:
         x, y = (shown[name].values for name in reference)
         aims.append(_line("reference", y, x, palette.REFERENCE, 1.5, "dash"))
-    points = [next(iter(roles.anywhere(f"{axis}_set")), None) for axis in "xy"]
-    if None not in points:
+    points = [names[0] for axis in "xy" if (names := roles.anywhere(f"{axis}_set"))]
+    if len(points) == 2:
         x, y = (shown[name].values for name in points)
         marks = np.unique(np.round(np.column_stack([y, x]), 3), axis=0)
         symbol = {"symbol": "cross-thin", "size": 13, "line": {"width": 2, "color": palette.SET_POINT}}
@@ -158,20 +208,19 @@ def _aims(shown, roles, verdicts, names):
     return aims
 
 
-def _is_circle(expect, position):
-    numbers = all(isinstance(n, (int, float)) for n in expect.near or ["none"])
-    return expect.signal == position and numbers
-
-
-def _circle(verdict):
+def _circle(verdict: Verdict, position: list[str]) -> list[dict[str, Any]]:
+    """The circle in which the ship should stay, of an expectation on her position; else nothing."""
+    centre, radius = verdict.expect.near or [], verdict.expect.within or 0.0
+    numbers = [value for value in centre if isinstance(value, int | float)]
+    if verdict.expect.signal != position or len(numbers) != 2:
+        return []
     angle = np.linspace(0.0, 2.0 * np.pi, 41)
-    north, east = verdict.expect.near
-    radius, colour = verdict.expect.within, palette.PASSED if verdict.passed else palette.FAILED
+    (north, east), colour = numbers, palette.PASSED if verdict.passed else palette.FAILED
     trace = _line("limit", east + radius * np.cos(angle), north + radius * np.sin(angle), colour, 1.5)
-    return {**trace, "showlegend": False, "hoverinfo": "skip"}
+    return [{**trace, "showlegend": False, "hoverinfo": "skip"}]
 
 
-def _line(name, east, north, colour, width, dash="solid"):
+def _line(name: str, east: NDArray, north: NDArray, colour: str, width: float, dash: str = "solid") -> dict[str, Any]:
     return {
         "type": "scatter",
         "mode": "lines",
@@ -179,19 +228,20 @@ def _line(name, east, north, colour, width, dash="solid"):
         "x": _rounded(east),
         "y": _rounded(north),
         "line": {"color": colour, "width": width, "dash": dash},
-        "hovertemplate": f"{name}<br>north %{{y:.2f}} m<br>east %{{x:.2f}} m<extra></extra>",
+        "hovertemplate": f"{name}\nnorth %{{y:.2f}} m\neast %{{x:.2f}} m",
+        "named": False,
     }
 
 
-def _rounded(values):
-    return [round(float(v), 3) if np.isfinite(v) else None for v in values]
+def _rounded(values: ArrayLike) -> list[float | None]:
+    return [round(float(v), 3) if np.isfinite(v) else None for v in np.asarray(values, float)]
 
 
-def _ranges(traces):
+def _ranges(traces: list[dict[str, Any]]) -> list[tuple[float, float]]:
     """Ranges that hold everything drawn, with a margin, and fill most of the place whichever way the track runs."""
     middle, half = {}, {}
     for axis in "xy":
         values = [v for trace in traces for v in trace[axis] if v is not None]
         middle[axis], half[axis] = 0.5 * (min(values) + max(values)), 0.55 * (max(values) - min(values))
     least = LEAST_ASPECT * max(half.values())
-    return {axis: [middle[axis] - max(half[axis], least), middle[axis] + max(half[axis], least)] for axis in "xy"}
+    return [(middle[axis] - max(half[axis], least), middle[axis] + max(half[axis], least)) for axis in "xy"]

@@ -2,6 +2,8 @@
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+from xarray import Dataset
 
 READ_AS = {  # unit in the table: unit people read, factor, least size for which it pays
     "rad": ("deg", 180 / np.pi, 0.0),
@@ -17,15 +19,15 @@ READ_AS = {  # unit in the table: unit people read, factor, least size for which
 BYTES_FOR_SIGNALS = 2_700_000  # with plotly.js the page stays below 8 MB
 
 
-def display_table(table, roles):
+def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
     """The table in the units of the page.
 
     Parameters
     ----------
     table : xarray.Dataset
         Signals over `time`. [SI]
-    roles : Roles
-        What they stand for.
+    ship_heading : str, optional
+        Signal of the ship's heading: other headings are moved by whole turns to lie beside it.
 
     Returns
     -------
@@ -38,19 +40,20 @@ def display_table(table, roles):
     shown = xr.Dataset(coords={"time": ("time", np.asarray(table["time"].values, float))})
     for name, variable in numeric.items():
         unit, factor = units.get(variable.attrs.get("units"), (variable.attrs.get("units"), 1.0))
-        values = unturned(name, variable.values) if unit == "deg" else variable.values
+        values = unturned(str(name), variable.values) if unit == "deg" else variable.values
         shown[name] = as_variable(factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor)
         shown[name].attrs["logical"] = variable.dtype.kind == "b"
-    _align_headings(shown, roles)
+    if ship_heading is not None:
+        _align_headings(shown, ship_heading)
     return shown
 
 
-def units_to_read(table):
+def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
     """For each unit of the table: the unit to show and the factor; one choice for the whole page.
 
     Returns
     -------
-    dict of str to (str, float)
+    dict of str or None to (str, float)
     """
     chosen = {}
     for unit in {v.attrs.get("units") for v in table.data_vars.values()}:
@@ -61,12 +64,12 @@ def units_to_read(table):
     return chosen
 
 
-def wrapped(degrees):
+def wrapped(degrees: ArrayLike) -> NDArray:
     """Angle in [-180, 180). [deg]"""
     return (np.asarray(degrees) + 180.0) % 360.0 - 180.0
 
 
-def thinned(shown, budget=BYTES_FOR_SIGNALS):
+def thinned(shown: Dataset, budget: int = BYTES_FOR_SIGNALS) -> tuple[Dataset, int]:
     """The table with few enough rows for the page: the extremes of each interval, so that no peak is lost.
 
     Parameters
@@ -94,12 +97,12 @@ def thinned(shown, budget=BYTES_FOR_SIGNALS):
     return thin, span
 
 
-def is_constant(values):
+def is_constant(values: NDArray) -> bool:
     """True if all values are the same finite number."""
     return len(values) > 0 and bool(np.isfinite(values[0])) and bool(np.all(values == values[0]))
 
 
-def _extremes(values, drawn, starts, span):
+def _extremes(values: NDArray, drawn: NDArray, starts: NDArray, span: int) -> NDArray:
     """Values for the rows `drawn`: least and largest of each interval, in the order they occur."""
     answer = values[drawn].copy()
     position = {row: k for k, row in enumerate(drawn)}
@@ -113,12 +116,12 @@ def _extremes(values, drawn, starts, span):
     return answer
 
 
-def as_variable(values, unit, long_name, factor=1.0):
+def as_variable(values: ArrayLike, unit: str | None, long_name: str, factor: float = 1.0) -> xr.Variable:
     """A signal of the page."""
     return xr.Variable("time", values, {"units": unit or "", "long_name": long_name, "factor": factor})
 
 
-def unturned(name, radians):
+def unturned(name: str, radians: ArrayLike) -> NDArray:
     """Angle without jumps at half turns; directions from north start in [0, 2 pi). [rad]"""
     values = np.array(radians, float)
     finite = np.isfinite(values)
@@ -130,11 +133,8 @@ def unturned(name, radians):
     return values
 
 
-def _align_headings(shown, roles):
+def _align_headings(shown: Dataset, psi: str) -> None:
     """Move other headings by whole turns to lie beside the ship's."""
-    psi = roles.signal(roles.ship, "psi")
-    if psi is None:
-        return
     for name in shown.data_vars:
         if name != psi and "psi" in str(name).rpartition(".")[2].split("_") and shown[name].attrs["units"] == "deg":
             gap = np.nanmedian(shown[name].values - shown[psi].values)

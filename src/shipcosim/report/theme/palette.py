@@ -1,14 +1,28 @@
-"""Colours of the page: Okabe and Ito's, told apart with every kind of colour vision."""
+"""Colours of the figures, by the names that `theme.css` gives them: Okabe and Ito's, light and dark.
 
-BLUE, VERMILLION, GREEN, ORANGE = "#0072b2", "#d55e00", "#009e73", "#e69f00"
-SKY, PURPLE, OLIVE, INK, PALE = "#56b4e9", "#cc79a7", "#8a7f00", "#1f2933", "#c3cfd9"
+They can be told apart with every kind of colour vision. `theme/figures.js` looks a name up in the style sheet.
+"""
+
+BLUE, VERMILLION, GREEN, ORANGE = "@blue", "@vermillion", "@green", "@orange"
+SKY, PURPLE, OLIVE, INK, FAINT = "@sky", "@purple", "@olive", "@ink", "@faint"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, OLIVE, INK)
 
-SHIP, REFERENCE, SET_POINT, MEASURED, EXPECTED, COMMAND = BLUE, ORANGE, INK, PALE, PURPLE, INK
+SHIP, REFERENCE, SET_POINT, MEASURED, EXPECTED, COMMAND = BLUE, ORANGE, INK, FAINT, PURPLE, INK
 PASSED, FAILED = GREEN, VERMILLION
 SOURCES = {"wind": SKY, "drift": GREEN, "hull": ORANGE, "thrusters": BLUE}
 
 
-def source(name, rank):
+def source(name: str, rank: int) -> str:
     """Colour of a source of load; known ones keep theirs from page to page."""
     return SOURCES.get(name, CYCLE[(rank + 3) % len(CYCLE)])
+
+
+def faded(colour: str, opacity: float) -> str:
+    """The same colour, partly transparent; `opacity` from 0 to 1.
+
+    Examples
+    --------
+    >>> faded(BLUE, 0.2)
+    '@blue/0.2'
+    """
+    return f"{colour}/{opacity:g}"

@@ -1,8 +1,6 @@
-"use strict";
-// Draws the page from the data beside it. Panels are drawn as they come into view, the rest when the browser is idle;
-// all share one time window.
+// The page of a run: panels over time that share one time window, the track beside them, and signals to choose from.
 (() => {
-  const data = JSON.parse(document.getElementById("data").textContent);
+  const { data, axis, colour, draw, later, layout, markup, painted, traces } = report;
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
   const time = new Float64Array(bytes(data.time));
   const decoded = {};
@@ -10,8 +8,6 @@
     const packed = data.signals[name].values;
     return (decoded[name] ??= typeof packed === "number" ? new Float32Array(time.length).fill(packed) : new Float32Array(bytes(packed)));
   };
-  const font = { family: getComputedStyle(document.body).fontFamily, size: 12, color: data.colours.ink };
-  const axis = { gridcolor: "#e4e7eb", zerolinecolor: "#cbd2d9", linecolor: "#9aa5b1", ticks: "outside", tickcolor: "#9aa5b1", ticklen: 4 };
   const config = { responsive: true, displaylogo: false, scrollZoom: false, displayModeBar: "hover", modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]] };
   const whole = [time[0], time[time.length - 1]];
   let shownWindow = whole;
@@ -20,11 +16,11 @@
 
   function bandTraces(panel) {
     return panel.bands.map((band) => {
-      const colour = band.passed ? data.colours.passed : data.colours.failed;
+      const shade = band.passed ? data.colours.passed : data.colours.failed;
       return {
         type: "scatter", mode: "lines", name: band.passed ? "limit, held" : "limit, missed",
         x: [...band.time, ...band.time.slice().reverse()], y: [...band.upper, ...band.lower.slice().reverse()],
-        fill: "toself", fillcolor: colour + "38", line: { color: colour, width: 1 }, hoverinfo: "skip", showlegend: false,
+        fill: "toself", fillcolor: painted(`${shade}/0.22`), line: { color: painted(shade), width: 1 }, hoverinfo: "skip", showlegend: false,
       };
     });
   }
@@ -32,8 +28,8 @@
   function lineTraces(panel) {
     const unit = panel.unit ? " " + panel.unit : "";
     return panel.lines.map((line) => ({
-      type: "scatter", mode: "lines", name: line.label, x: time, y: values(line.signal),
-      line: { color: line.colour, dash: line.dash, width: line.width }, hovertemplate: `%{y:.4~g}${unit}`,
+      type: "scatter", mode: "lines", name: markup(line.label), x: time, y: values(line.signal),
+      line: { color: painted(line.colour), dash: line.dash, width: line.width }, hovertemplate: markup(`%{y:.4~g}${unit}`),
     }));
   }
 
@@ -42,29 +38,27 @@
     return panel.lines.flatMap((line, k) => [
       { type: "scatter", mode: "lines", x: whole, y: [rank(k), rank(k)], line: { width: 0 }, hoverinfo: "skip", showlegend: false },
       {
-        type: "scatter", mode: "lines", name: line.label, x: time, y: values(line.signal).map((v) => rank(k) + 0.8 * v), line: { color: line.colour, width: 1, shape: "hv" },
-        fill: "tonexty", fillcolor: line.colour + "66", text: Array.from(values(line.signal), (v) => (v ? "yes" : "no")), hovertemplate: "%{text}", showlegend: false,
+        type: "scatter", mode: "lines", name: markup(line.label), x: time, y: values(line.signal).map((v) => rank(k) + 0.8 * v), line: { color: painted(line.colour), width: 1, shape: "hv" },
+        fill: "tonexty", fillcolor: painted(`${line.colour}/0.4`), text: Array.from(values(line.signal), (v) => (v ? "yes" : "no")), hovertemplate: "%{text}", showlegend: false,
       },
     ]);
   }
 
   function layoutOf(panel) {
-    const title = { text: `<b>${panel.title}</b>` + (panel.unit ? ` [${panel.unit}]` : ""), x: 0, xanchor: "left", y: 0.98, yanchor: "top", font: { size: 13 } };
+    const title = { text: `<b>${markup(panel.title)}</b>` + markup(panel.unit ? ` [${panel.unit}]` : ""), x: 0, xanchor: "left", y: 0.98, yanchor: "top", font: { size: 13 } };
     const yaxis = panel.states
-      ? { ...axis, tickvals: panel.lines.map((_, k) => panel.lines.length - 0.6 - k), ticktext: panel.lines.map((l) => l.label), range: [-0.1, panel.lines.length], showgrid: false, zeroline: false, automargin: true }
-      : { ...axis, automargin: true };
-    const event = (t) => ({ type: "line", x0: t, x1: t, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: "#9aa5b1", width: 1, dash: "dot" } });
-    return {
-      title, font, yaxis, margin: { l: 56, r: 24, t: 54, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
-      legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom", font: { size: 11 } }, hoverlabel: { bgcolor: "rgba(255,255,255,0.92)", font: { size: 12 } },
-      xaxis: { ...axis, range: shownWindow.slice(), ticksuffix: " s", showticksuffix: "last", hoverformat: ".6~g", unifiedhovertitle: { text: "%{x} s" } },
-      shapes: data.events.filter((t) => t > whole[0]).map(event), paper_bgcolor: "#fff", plot_bgcolor: "#fff",
-    };
+      ? axis({ tickvals: panel.lines.map((_, k) => panel.lines.length - 0.6 - k), ticktext: panel.lines.map((l) => markup(l.label)), range: [-0.1, panel.lines.length], showgrid: false, zeroline: false })
+      : axis();
+    const event = (t) => ({ type: "line", x0: t, x1: t, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: colour("faint"), width: 1, dash: "dot" } });
+    return layout({
+      title, yaxis, margin: { l: 56, r: 24, t: 54, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
+      legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom", font: { size: 11 } },
+      xaxis: axis({ automargin: false, range: shownWindow.slice(), ticksuffix: " s", showticksuffix: "last", hoverformat: ".6~g", unifiedhovertitle: { text: "%{x} s" } }),
+      shapes: data.events.filter((t) => t > whole[0]).map(event),
+    });
   }
 
-  const waiting = new Map();  // place -> what to do with it
-
-  function draw(place, panel) {
+  function drawPanel(place, panel) {
     const traces = panel.states ? stateTraces(panel) : [...bandTraces(panel), ...lineTraces(panel)];
     Plotly.newPlot(place, traces, layoutOf(panel), config);
     place.on("plotly_relayout", (change) => follow(place, change));
@@ -77,35 +71,6 @@
     if (place.drawn === shownWindow) return;
     place.drawn = shownWindow;
     Plotly.relayout(place, { "xaxis.range": shownWindow.slice() });
-  }
-
-  function inView(place) {
-    const box = place.getBoundingClientRect();
-    return box.bottom > -200 && box.top < innerHeight + 200;
-  }
-
-  function work(all) {
-    const next = all || [...waiting.keys()].filter(inView);
-    for (const place of next.length ? next : [...waiting.keys()].slice(0, 1)) {
-      const task = waiting.get(place);
-      waiting.delete(place);
-      if (task) task();
-    }
-    if (waiting.size) schedule();
-    else document.body.dataset.drawn = "all";
-  }
-
-  let scheduled = false;
-  function schedule() {
-    if (scheduled) return;
-    scheduled = true;
-    delete document.body.dataset.drawn;
-    setTimeout(() => { scheduled = false; work(); }, 0);
-  }
-
-  function later(place, task) {
-    waiting.set(place, task);
-    schedule();
   }
 
   // ---- one time window for all panels
@@ -133,13 +98,13 @@
   const track = data.track && document.getElementById("track");
 
   function drawTrack() {
-    const chart = { ...axis, zeroline: false, ticksuffix: " m", constrain: "domain" };
-    const ghost = { type: "scatter", mode: "lines", name: "at the cursor", x: [], y: [], line: { color: "#d55e00", width: 2 }, fill: "toself", fillcolor: "rgba(213,94,0,0.15)", hoverinfo: "skip", showlegend: false };
-    Plotly.newPlot(track, [...data.track.traces, ghost], {
-      font, margin: { l: 60, r: 12, t: 30, b: 76 }, hovermode: "closest", dragmode: "pan", paper_bgcolor: "#fff", plot_bgcolor: "#fff",
+    const chart = { automargin: false, zeroline: false, ticksuffix: " m", constrain: "domain" };
+    const ghost = { type: "scatter", mode: "lines", name: "at the cursor", x: [], y: [], line: { color: colour("vermillion"), width: 2 }, fill: "toself", fillcolor: colour("vermillion/0.15"), hoverinfo: "skip", showlegend: false };
+    Plotly.newPlot(track, [...traces(data.track.traces), ghost], layout({
+      margin: { l: 60, r: 12, t: 30, b: 76 }, hovermode: "closest", dragmode: "pan",
       legend: { orientation: "h", x: 0.5, xanchor: "center", yref: "container", y: 0 },
-      xaxis: { ...chart, title: { text: "East" }, range: data.track.x }, yaxis: { ...chart, title: { text: "North" }, range: data.track.y, scaleanchor: "x", scaleratio: 1 },
-    }, { ...config, scrollZoom: true });
+      xaxis: axis({ ...chart, title: { text: "East" }, range: data.track.x }), yaxis: axis({ ...chart, title: { text: "North" }, range: data.track.y, scaleanchor: "x", scaleratio: 1 }),
+    }), { ...config, scrollZoom: true });
   }
 
   function rowAt(t) {
@@ -199,14 +164,13 @@
     for (const [unit, names] of Object.entries(units)) {
       const lines = names.map((signal, k) => ({ signal, label: signal, colour: cycle[k % cycle.length], dash: "solid", width: 1.5 }));
       const panel = { title: names.length > 1 ? "Chosen signals" : names[0], unit, lines, bands: [], states: false };
-      const place = chosenPlaces[unit];
-      if (place) Plotly.react(place, lineTraces(panel), layoutOf(panel), config);
-      else draw(newPlace(unit), panel);
+      const place = (chosenPlaces[unit] ??= newPlace());
+      draw(place, () => drawPanel(place, panel), true);
     }
   }
 
-  function newPlace(unit) {
-    const place = chosenPlaces[unit] = document.createElement("div");
+  function newPlace() {
+    const place = document.createElement("div");
     place.className = "panel";
     document.getElementById("chosen").append(place);
     return place;
@@ -226,17 +190,14 @@
 
   // ---- go
 
-  if (track) drawTrack();
+  if (track) draw(track, drawTrack);
   data.panels.forEach((panel, k) => {
     const place = document.getElementById(`panel-${k}`);
-    later(place, () => draw(place, panel));
+    draw(place, () => drawPanel(place, panel));
   });
   choices();
-  schedule();
   if (!data.panels.length) for (const box of [...document.querySelectorAll("#choices input")].slice(0, 6)) box.click();
-  addEventListener("scroll", schedule, { passive: true });
   addEventListener("beforeprint", () => {  // paper has a width of its own, see @page; plotly would resize too late
-    work([...waiting.keys()]);
     document.body.classList.add("printing");
     for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: place.clientWidth, height: place.clientHeight });
   });

@@ -1,0 +1,106 @@
+"""Events, start values, versions and whatever else a table says of its run, as tables to unfold."""
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from xarray import Dataset
+
+from shipcosim.report.theme.views import Table
+from shipcosim.scenario import Event, Scenario
+from shipcosim.ssp import System
+
+SHOWN_ELSEWHERE = ("events", "remarks")
+
+
+@dataclass(frozen=True)
+class Detail:
+    """A table to unfold, and its title."""
+
+    title: str
+    table: Table
+
+
+def details(table: Dataset, scenario: Scenario | None = None, system: System | None = None) -> tuple[Detail, ...]:
+    """Events and start values of the scenario, and what the attributes of the table say.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        The run.
+    scenario : Scenario, optional
+        What happened.
+    system : System, optional
+        Gives the units of start values.
+
+    Returns
+    -------
+    tuple of Detail
+    """
+    found = []
+    if scenario is not None and scenario.events:
+        found.append(_detail("events", [(f"{event.time:g} s", _happening(event)) for event in scenario.events]))
+    if scenario is not None and scenario.set:
+        found.append(_detail("start values of the scenario", scenario.set.items()))
+    return (*found, *(_detail(title, content.items()) for title, content in _attributes(table, system)))
+
+
+def parsed(value: Any) -> Any:
+    """An attribute of a table; attributes of NetCDF are flat, so a dictionary travels as JSON text."""
+    if isinstance(value, str) and value[:1] in "{[":
+        try:
+            return json.loads(value)
+        except ValueError:
+            return value
+    return value
+
+
+def _attributes(table: Dataset, system: System | None) -> list[tuple[str, dict[str, Any]]]:
+    """What the table says of its run: titles, and contents by name."""
+    plain: dict[str, Any] = {}
+    nested: list[tuple[str, dict[str, Any]]] = []
+    for key, value in table.attrs.items():
+        name, content = str(key), parsed(value)
+        if name == "start_values":
+            nested += _by_component(content, system)
+        elif isinstance(content, dict):
+            nested.append((name, content))
+        elif name not in SHOWN_ELSEWHERE:
+            plain[name] = content
+    return ([("run", plain)] if plain else []) + nested
+
+
+def _by_component(values: Mapping[str, Any], system: System | None) -> list[tuple[str, dict[str, Any]]]:
+    """Start values with their units, a table for each component."""
+    groups: dict[str, dict[str, Any]] = {}
+    for signal, value in values.items():
+        component, _, name = signal.rpartition(".")
+        unit = _unit(system, component, name) or ""
+        groups.setdefault(component, {})[name] = value if unit in ("", "1") else f"{value} {unit}"
+    return [(f"Start values: {component or 'the system'}", content) for component, content in groups.items()]
+
+
+def _unit(system: System | None, component: str, name: str) -> str | None:
+    if system is None:
+        return None
+    variables = system.components[component].fmu.variables if component in system.components else system.inputs
+    return variables[name].unit if name in variables else None
+
+
+def _happening(event: Event) -> str:
+    changes = [f"{name} = {value}" for name, value in event.override.items()]
+    changes += [f"{name} + {value}" for name, value in event.bias.items()]
+    return ", ".join(changes + [f"{name} released" for name in event.reset])
+
+
+def _detail(title: str, rows: Iterable[tuple[Any, Any]]) -> Detail:
+    words = title.replace("_", " ")
+    return Detail(words[:1].upper() + words[1:], Table(tuple((str(name), _text(value)) for name, value in rows)))
+
+
+def _text(value: Any) -> str:
+    """A value as text; dictionaries and lists as their items, one after the other."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_text(item)}" for key, item in value.items())
+    return ", ".join(map(_text, value)) if isinstance(value, (list, tuple)) else str(value)

@@ -1,0 +1,89 @@
+"""The expectations of a run and whether they hold, in the units that people read."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from xarray import Dataset
+
+from shipcosim.report.theme.views import Outcome
+from shipcosim.scenario import Expectation, Verdict
+
+
+class Judged(NamedTuple):
+    """An expectation as texts: whether it holds, the claim, its window, the worst value and when that was."""
+
+    passed: bool
+    expected: str
+    during: str
+    worst: str
+    time: str
+
+
+def is_complete(table: Dataset) -> bool:
+    """False for a run that was interrupted. NetCDF has no booleans, a text or a number counts too."""
+    return str(table.attrs.get("complete", True)).lower() not in ("false", "0")
+
+
+def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
+    """What the run comes to.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        The run.
+    verdicts : sequence of Verdict
+        Its expectations.
+
+    Returns
+    -------
+    Outcome
+    """
+    missed = sum(not v.passed for v in verdicts)
+    if not is_complete(table):
+        end = float(table["time"].values[-1]) if table.sizes["time"] else 0.0
+        return Outcome("partial", "PARTIAL", f"The run ended early, at {end:g} s. Its expectations were not judged.")
+    if not verdicts:
+        return Outcome("plain", "DONE", "Nothing was expected of this run.")
+    if missed:
+        return Outcome("failed", "FAIL", f"{missed} of {len(verdicts)} expectations missed.")
+    all_of_them = f"All {len(verdicts)} expectations hold." if len(verdicts) > 1 else "The expectation holds."
+    return Outcome("passed", "PASS", all_of_them)
+
+
+def judged(verdicts: Sequence[Verdict], shown: Dataset) -> tuple[Judged, ...]:
+    """Expectations and their verdicts in the units that people read.
+
+    Parameters
+    ----------
+    verdicts : sequence of Verdict
+        What was judged.
+    shown : xarray.Dataset
+        Table in the page's units.
+
+    Returns
+    -------
+    tuple of Judged
+    """
+    return tuple(_judged(verdict, shown[verdict.expect.signal[0]].attrs) for verdict in verdicts)
+
+
+def _judged(verdict: Verdict, shown_as: dict[str, Any]) -> Judged:
+    expect, unit, factor = verdict.expect, shown_as["units"], shown_as["factor"]
+    during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
+    worst, when = "no row", "–"
+    if np.isfinite(verdict.time):
+        worst, when = f"{factor * verdict.worst:.3g} {unit}".rstrip(), f"{verdict.time:g} s"
+    return Judged(verdict.passed, _claim(expect, unit, factor), during, worst, when)
+
+
+def _claim(expect: Expectation, unit: str, factor: float) -> str:
+    """What is expected: 'vessel.psi: 0 ± 1 deg'."""
+    text = lambda value: value if isinstance(value, str) else f"{round(factor * value, 4):.4g}"  # noqa: E731
+    subject = f"{expect.statistic} of " * bool(expect.statistic) + ", ".join(expect.signal)
+    if expect.near is not None and expect.within is not None:
+        target = ",\u00a0".join(map(text, expect.near))
+        target = f"({target})" if len(expect.near) > 1 else target
+        return f"{subject}: {target}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}".rstrip()
+    limits = {"≥": expect.at_least, "≤": expect.at_most}
+    return f"{subject} " + ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None).rstrip()

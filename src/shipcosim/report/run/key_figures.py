@@ -1,0 +1,39 @@
+"""Key figures of a run."""
+
+import numpy as np
+from xarray import Dataset
+
+from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
+from shipcosim.report.run.roles import Roles
+from shipcosim.report.theme.views import Table
+
+
+def key_figures(shown: Dataset, roles: Roles) -> Table:
+    """Errors, power and time at a limit: what people compare runs by.
+
+    Parameters
+    ----------
+    shown : xarray.Dataset
+        Table in the page's units, with the derived signals.
+    roles : Roles
+        What the signals stand for.
+
+    Returns
+    -------
+    Table
+        Name and text of each.
+    """
+    figures: list[tuple[str, str]] = []
+    for name, title in {FROM_REFERENCE: "Position error", ERRORS["psi"]: "Heading error"}.items():
+        if name in shown:
+            size, unit = np.abs(shown[name].values), shown[name].attrs["units"]
+            rms, largest = np.sqrt(np.nanmean(size**2)), np.nanmax(size)
+            figures.append((title, f"{rms:.2f} {unit} rms, {largest:.2f} {unit} at most"))
+    powers = [p for p in (roles.signal(unit, "power") for unit in roles.thrusters) if p in shown]
+    if powers:
+        total, unit = np.sum([shown[p].values for p in powers], axis=0), shown[powers[0]].attrs["units"]
+        figures.append(("Shaft power", f"{np.nanmean(total):.4g} {unit} mean, {np.nanmax(total):.4g} {unit} at most"))
+    for component, name in roles.flagged("saturated").items():
+        if name in shown:
+            figures.append((f"At a limit, {component}", f"{100 * np.mean(shown[name].values):.0f} % of the time"))
+    return Table(tuple(figures))

@@ -1,0 +1,86 @@
+"""What a reader of a run must not overlook: warnings, failures, values that are not finite, a ship that cannot hold."""
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import Dataset
+
+from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE
+from shipcosim.report.run.details import parsed
+from shipcosim.report.run.roles import Roles
+
+STRETCH = 60.0  # s over which a ship that cannot hold is recognised
+AT_LIMIT = 0.5  # share of the stretch in which something must be at its limit
+GROWTH = 2.0  # m by which the position error must grow over the stretch
+
+
+def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
+    """Sentences for what a reader must not overlook.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        The run; its attribute `remarks` holds what the FMUs warned of.
+    shown : xarray.Dataset
+        Table in the page's units, with the derived signals.
+    roles : Roles
+        What the signals stand for.
+
+    Returns
+    -------
+    list of str
+    """
+    said = [*parsed(table.attrs.get("remarks", "[]")), *_not_finite(shown)]
+    return said + _failures(shown, roles) + _lost_hold(shown, roles)
+
+
+_DERIVED = {*ERRORS.values(), FROM_REFERENCE, FROM_EXPECTED}
+
+
+def _not_finite(shown: Dataset) -> list[str]:
+    """The first signals that stop being numbers, and how many follow."""
+    begin: dict[str, float] = {
+        str(name): float(shown["time"].values[~np.isfinite(v.values)][0])
+        for name, v in shown.data_vars.items()
+        if str(name) not in _DERIVED and not np.isfinite(v.values).all()
+    }
+    names = sorted(begin, key=begin.__getitem__)
+    others = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return [f"Not finite from {begin[names[0]]:g} s on: {', '.join(names[:3])}{others}."] if names else []
+
+
+def _failures(shown: Dataset, roles: Roles) -> list[str]:
+    """What failed during the run, and when."""
+    begin: dict[float, list[str]] = {}
+    for component, signal in roles.flagged("failed").items():
+        if signal in shown and (failed := shown[signal].values > 0.5).any():
+            begin.setdefault(shown["time"].values[np.argmax(failed)], []).append(component)
+    return [f"Failed from {time:g} s on: {', '.join(components)}." for time, components in begin.items()]
+
+
+def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
+    """Where the thrust is at its limit and the error grows all the same: the ship cannot hold there."""
+    limits = {c: shown[s].values > 0.5 for c, s in roles.flagged("saturated").items() if s in shown}
+    time = shown["time"].values
+    starts = np.flatnonzero(time <= time[-1] - STRETCH)
+    if not limits or FROM_REFERENCE not in shown or not len(starts):
+        return []
+    ends = np.searchsorted(time, time[starts] + STRETCH, side="right") - 1
+    error = shown[FROM_REFERENCE].values
+    shares = {c: _share(flags, starts, ends) for c, flags in limits.items()}
+    lost = (error[ends] - error[starts] > GROWTH) & (np.max(list(shares.values()), axis=0) > AT_LIMIT)
+    if not lost.any():
+        return []
+    k = int(np.argmax(lost))
+    limited = [component for component, share in shares.items() if share[k] > AT_LIMIT]
+    drift = "She cannot hold" if error[-1] > GROWTH else "She is driven off for a while"
+    begin = starts[k] + np.argmax(limits[limited[0]][starts[k] :])
+    return [
+        f"{drift}: from {time[begin]:g} s on the thrust is at its limit ({', '.join(limited)}) while the "
+        f"position error grows to {error[ends[k]]:.1f} m within a minute, and to {np.nanmax(error):.1f} m at most."
+    ]
+
+
+def _share(flags: NDArray, starts: NDArray, ends: NDArray) -> NDArray:
+    """Share of set flags from each start up to its end."""
+    count = np.concatenate([[0.0], np.cumsum(flags)])
+    return (count[ends + 1] - count[starts]) / (ends + 1 - starts)

@@ -1,0 +1,63 @@
+"""The weather of a run: mean size and direction of wind, current and waves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import Dataset
+
+from shipcosim.report.run.roles import Roles
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Wind, current or waves.
+
+    Attributes
+    ----------
+    what : str
+        "wind", "current" or "waves".
+    size, unit : str
+        Mean size, or least and largest.
+    degrees : float
+        Mean direction, clockwise from north. [deg]
+    sense : str
+        Whether it comes "from" there or goes "to" there.
+    """
+
+    what: str
+    size: str
+    unit: str
+    degrees: float
+    sense: str
+
+    @property
+    def arrow(self) -> float:
+        """Angle by which an arrow to the south is turned clockwise to lie along the flow. [deg]"""
+        return self.degrees if self.sense == "from" else self.degrees + 180.0
+
+
+def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
+    """Wind, current and waves of the run, where there are any."""
+    found = []
+    for what, sense in [("wind", "from"), ("current", "to")]:
+        if f"{what} speed" in shown:
+            means = [roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)]
+            size, angle = means if None not in means else (f"{what} speed", f"{what} {sense}")
+            if np.nanmax(shown[size].values) > 0.0:
+                found.append(Flow(what, _span(shown[size].values), "m/s", _mean_direction(shown[angle].values), sense))
+    height, source = (roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from"))
+    if height in shown and source in shown and np.nanmax(shown[height].values) > 0.0:
+        found.append(Flow("waves", _span(shown[height].values), "m", _mean_direction(shown[source].values), "from"))
+    return tuple(found)
+
+
+def _span(values: NDArray) -> str:
+    """A value, or from least to largest where it changes."""
+    least, largest = (f"{pick(values):.2g}" for pick in (np.nanmin, np.nanmax))
+    return least if least == largest else f"{least}–{largest}"
+
+
+def _mean_direction(degrees: NDArray) -> float:
+    angle = np.radians(degrees)
+    return float(np.degrees(np.arctan2(np.nanmean(np.sin(angle)), np.nanmean(np.cos(angle)))) % 360.0)

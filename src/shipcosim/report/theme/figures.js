@@ -1,0 +1,82 @@
+"use strict";
+// What the figures of all pages share: the colours of the style sheet, light or dark; axes; and drawing as they come
+// into view, the rest when the browser is idle.
+const report = (() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+
+  function colour(name) {  // "blue", or "blue/0.2" for a transparent one
+    const [token, opacity] = name.split("/");
+    const found = getComputedStyle(document.documentElement).getPropertyValue(`--${token}`).trim();
+    return opacity ? found + Math.round(255 * opacity).toString(16).padStart(2, "0") : found;
+  }
+
+  // Our texts are plain; plotly reads some HTML in them.
+  const markup = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;").replace(/\n/g, "<br>");
+
+  function painted(value) {  // "@blue" becomes what the style sheet says that blue is
+    if (typeof value === "string") return /^@[a-z]+(\/[\d.]+)?$/.test(value) ? colour(value.slice(1)) : markup(value);
+    if (Array.isArray(value)) return value.length && typeof value[0] === "number" ? value : value.map(painted);
+    if (value && typeof value === "object") return Object.fromEntries(Object.entries(value).map(([k, v]) => [k, painted(v)]));
+    return value;
+  }
+
+  // Traces of plotly; `named: false` is ours: no box with the name of the trace at the pointer.
+  const traces = (all) => painted(all).map(({ named = true, ...trace }) => (named ? trace : { ...trace, hovertemplate: `${trace.hovertemplate}<extra></extra>` }));
+
+  function axis(own = {}) {
+    return { gridcolor: colour("grid"), zerolinecolor: colour("faint"), linecolor: colour("faint"), tickcolor: colour("faint"), ticks: "outside", ticklen: 4, automargin: true, ...own };
+  }
+
+  function layout(own = {}) {
+    return {
+      font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: colour("ink") }, paper_bgcolor: colour("card"), plot_bgcolor: colour("card"),
+      hoverlabel: { bgcolor: colour("card"), bordercolor: colour("faint"), font: { size: 12, color: colour("ink") } }, ...own,
+    };
+  }
+
+  // ---- drawing
+
+  const waiting = new Map();  // place -> what to do with it
+  const drawings = new Map();  // place -> how to draw it again
+
+  function inView(place) {
+    const box = place.getBoundingClientRect();
+    return box.bottom > -300 && box.top < innerHeight + 300;
+  }
+
+  function work(all) {
+    const next = all || [...waiting.keys()].filter(inView);
+    for (const place of next.length ? next : [...waiting.keys()].slice(0, 1)) {
+      const task = waiting.get(place);
+      waiting.delete(place);
+      if (task && place.isConnected) task();
+    }
+    if (waiting.size) schedule();
+    else document.body.dataset.drawn = "all";
+  }
+
+  let scheduled = false;
+  function schedule() {
+    if (scheduled) return;
+    scheduled = true;
+    delete document.body.dataset.drawn;
+    setTimeout(() => { scheduled = false; work(); }, 0);
+  }
+
+  function later(place, task) {
+    waiting.set(place, task);
+    schedule();
+  }
+
+  function draw(place, how, now) {
+    drawings.set(place, how);
+    if (now) how();
+    else later(place, how);
+  }
+
+  schedule();
+  addEventListener("scroll", schedule, { passive: true });
+  addEventListener("beforeprint", () => work([...waiting.keys()]));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => drawings.forEach((how, place) => later(place, how)));
+  return { data, colour, markup, painted, traces, axis, layout, draw, later };
+})();

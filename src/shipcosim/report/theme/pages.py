@@ -1,0 +1,50 @@
+"""Pages from templates: each is one HTML file with everything inside, which opens anywhere and needs no network."""
+
+from functools import cache
+from importlib.resources import files
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+import shipcosim
+from shipcosim.report.theme.views import Page
+
+
+def render(template: str, page: Page) -> str:
+    """A page as HTML. Every text in it is escaped, and a name that the template misspells is an error.
+
+    Parameters
+    ----------
+    template : str
+        File below `report/`, as in ``"run/run.html.jinja"``.
+    page : Page
+        What it shows.
+
+    Returns
+    -------
+    str
+    """
+    return _environment().get_template(template).render(page=page)
+
+
+@cache
+def _environment() -> Environment:
+    made = Environment(
+        loader=PackageLoader("shipcosim.report", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
+    made.globals |= {"asset": _asset, "plotly": _plotly, "version": shipcosim.__version__}
+    return made
+
+
+def _asset(path: str) -> Markup:
+    """A style sheet or script of ours, as it is."""
+    return Markup(files("shipcosim.report").joinpath(path).read_text(encoding="utf-8"))
+
+
+def _plotly() -> Markup:
+    return Markup(files("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8"))

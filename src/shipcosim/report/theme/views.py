@@ -1,0 +1,96 @@
+"""What the templates of all pages fill in: plain records of texts and figures, without any HTML."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+
+class Fact(NamedTuple):
+    """One fact below the title: its name and what it is."""
+
+    name: str
+    text: str
+
+
+class KeyFigure(NamedTuple):
+    """A number that readers compare runs by, as text, and what it is."""
+
+    value: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run or a diagnosis comes to: one word and one sentence; `kind` chooses the colour."""
+
+    kind: str
+    word: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link to a section of the page: its anchor, its title, and what the section found in a few words."""
+
+    anchor: str
+    title: str
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of texts; the columns numbered in `tight` do not wrap."""
+
+    rows: tuple[tuple[str, ...], ...]
+    head: tuple[str, ...] = ()
+    tight: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A plotly figure with its title, unit, and a sentence below.
+
+    Attributes
+    ----------
+    title, unit, note : str
+    traces : tuple of dict
+        Traces of plotly. A text is plain text: `theme/figures.js` turns line breaks and special characters into what
+        plotly wants. A colour is a name of `palette`.
+    layout : dict
+        Layout of plotly, as far as it is this figure's own.
+    """
+
+    title: str
+    unit: str
+    traces: tuple[dict[str, Any], ...]
+    layout: dict[str, Any] = field(default_factory=dict)
+    note: str = ""
+
+    @property
+    def drawn(self) -> dict[str, Any]:
+        """The part that the script of the page draws."""
+        return {"data": self.traces, "layout": self.layout}
+
+
+@dataclass(frozen=True)
+class Page:
+    """What every page has.
+
+    Attributes
+    ----------
+    title : str
+        Title in the browser and first heading.
+    facts : tuple of Fact
+        Below the title.
+    outcome : Outcome
+    links : tuple of Link
+        Navigation within the page.
+    data : mapping or tuple
+        What the script of the page draws, as JSON.
+    """
+
+    title: str
+    facts: tuple[Fact, ...]
+    outcome: Outcome
+    links: tuple[Link, ...]
+    data: Mapping[str, Any] | tuple[Any, ...]
