@@ -33,7 +33,6 @@ ONLY_DOOR = {
     "markupsafe": {"report.theme"},
     "typer": {"cli"},
 }
-MOST_FILES = 20
 
 
 def running(node):
@@ -143,11 +142,6 @@ def test_no_import_hides_behind_a_call(root):
         calls = [node for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.Call)]
         hidden = [c for c in calls if ast.unparse(c.func).endswith(("import_module", "__import__"))]
         assert not hidden or name_of(file, root) == "fmi.export.builder", file.relative_to(root)
-
-
-def test_folders_hold_at_most_20_files(root):
-    for folder in {file.parent for file in sources(root)}:
-        assert len(list(folder.glob("*.py"))) <= MOST_FILES, folder.relative_to(root)
 
 
 def test_fmus_import_the_shell_and_the_models_only(root):

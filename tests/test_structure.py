@@ -1,0 +1,110 @@
+"""Sizes of functions, classes and folders, types of public functions, and where the name of a ship may stand."""
+
+import ast
+from collections import Counter
+from statistics import median
+
+import pytest
+
+MEDIAN_FUNCTION, LARGEST_FUNCTION, LARGEST_CLASS = (5, 14), 45, 250  # lines, docstring not counted
+LARGER_CLASSES = {"_Reader"}  # in the end none
+MOST_FILES = 20  # in a folder, of Python
+UNTYPED = {"cosim": 156, "diagnose": 517, "fmi": 70, "models": 426, "report": 202, "ssp": 386, "cli": 10, "errors": 2}
+"""Arguments of public functions that have no type yet, by room. Only to be lowered."""
+
+NAMES_A_SHIP = {
+    "__init__.py",
+    "cli/commands/diagnose.py",
+    "cli/diagnosis.py",
+    "diagnose/extension/structure_edits.py",
+    "diagnose/inference/problem.py",
+    "diagnose/inference/thresholds.py",
+    "diagnose/ship/environment.py",
+    "diagnose/ship/inputs.py",
+    "diagnose/ship/track_keeping.py",
+    "models/control/observer.py",
+    "models/environment/earth_fixed_loads.py",
+    "models/propulsion/propeller.py",
+    "models/propulsion/thruster.py",
+    "models/ship/hull.py",
+    "models/ship/load_tables.py",
+    "models/ships.py",
+    "report/run/track.py",
+}
+"""Files that name Gunnerus; in the end only where a user's default is chosen."""
+
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+@pytest.fixture(scope="module")
+def package(root):
+    return root / "src" / "shipcosim"
+
+
+@pytest.fixture(scope="module")
+def trees(package):
+    """Syntax of every file of the package, by its path in it."""
+    files = sorted(package.rglob("*.py"))
+    return {file.relative_to(package).as_posix(): ast.parse(file.read_text(encoding="utf-8")) for file in files}
+
+
+def lines_of(node):
+    """Lines of a function or class without its docstring."""
+    first = node.body[0]
+    has_docstring = isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant)
+    lines = node.end_lineno - node.lineno + 1
+    return lines - (first.end_lineno - first.lineno + 1) if has_docstring else lines
+
+
+def nodes_of(trees, kinds):
+    for file, tree in trees.items():
+        yield from ((f"{file}:{node.lineno} {node.name}", node) for node in ast.walk(tree) if isinstance(node, kinds))
+
+
+def public(body):
+    """Public functions and methods, and how objects of public classes are made."""
+    for node in body:
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            yield from public(node.body)
+        elif isinstance(node, FUNCTIONS) and (not node.name.startswith("_") or node.name == "__init__"):
+            yield node
+
+
+def untyped(function):
+    """Names of a function's arguments that have no type."""
+    arguments = function.args
+    named = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
+    named += filter(None, (arguments.vararg, arguments.kwarg))
+    return [a.arg for a in named if a.annotation is None and a.arg not in ("self", "cls")]
+
+
+def test_functions_are_short(trees):
+    lengths = {name: lines_of(node) for name, node in nodes_of(trees, FUNCTIONS)}
+    least, most = MEDIAN_FUNCTION
+    assert least <= median(lengths.values()) <= most
+    assert not {name: lines for name, lines in lengths.items() if lines > LARGEST_FUNCTION}
+
+
+def test_classes_are_short(trees):
+    lengths = {name: lines_of(node) for name, node in nodes_of(trees, ast.ClassDef)}
+    assert {name.split()[1] for name, lines in lengths.items() if lines > LARGEST_CLASS} <= LARGER_CLASSES
+
+
+@pytest.mark.parametrize("base", ["src", "tests", "docs", "fmus"])
+def test_no_folder_holds_more_files_than_one_sees_at_a_glance(root, base):
+    files = Counter(file.parent.relative_to(root) for file in (root / base).rglob("*.py"))
+    assert not {str(folder): count for folder, count in files.items() if count > MOST_FILES}
+
+
+def test_arguments_of_public_functions_have_types(trees):
+    """As many without one as are allowed to a room."""
+    missing = Counter()
+    for file, tree in trees.items():
+        room = file.split("/")[0].removesuffix(".py")
+        missing[room] += sum(len(untyped(function)) for function in public(tree.body))
+    assert not {room: count for room, count in missing.items() if count > UNTYPED.get(room, 0)}
+
+
+def test_no_ship_is_named_but_where_a_default_is_chosen(package, trees):
+    named = {file for file in trees if "gunnerus" in (package / file).read_text(encoding="utf-8").lower()}
+    assert named <= NAMES_A_SHIP
