@@ -1,7 +1,8 @@
 """FMU of an azimuth thruster with its drive."""
 
+from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models.core.maths import pi, wrap
+from shipcosim.models.core.maths import pi
 from shipcosim.models.propulsion.drive import at_rest
 from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
 

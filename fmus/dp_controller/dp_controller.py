@@ -1,10 +1,11 @@
 """FMU of the DP controller: observer and control law."""
 
+from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models.control import observer
 from shipcosim.models.control import pid as control
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 
@@ -87,7 +88,7 @@ class DpController(Fmu):
         self._show(estimate, state)
 
     def _measurement(self):
-        return observer.Measurement(self.x_meas, self.y_meas, self.psi_meas, self.u_meas, self.v_meas, self.r_meas)
+        return Motion(self.x_meas, self.y_meas, self.psi_meas, self.u_meas, self.v_meas, self.r_meas)
 
     def _desired(self):
         return control.Desired(

@@ -1,7 +1,7 @@
 """FMU of wind, current and waves."""
 
+from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.core.maths import wrap
 from shipcosim.models.core.sampling import tidy_time
 from shipcosim.models.environment import waves
 from shipcosim.models.environment.weather import (

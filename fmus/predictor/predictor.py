@@ -1,12 +1,13 @@
 """FMU that predicts the ship by dead reckoning."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment.waves import components, drift_table, mean_drift
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.dead_reckoning import predict
 from shipcosim.models.ship.hull import HullParameters
-from shipcosim.models.ship.vessel import DriftParameters, Vessel
+from shipcosim.models.ship.vessel import DriftParameters
 
 HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
 
@@ -62,7 +63,7 @@ class Predictor(Fmu):
     def _predict(self):
         sea = (self.wave_height, self.wave_period, self.wave_from, self.wave_peak_enhancement, self.wave_seed)
         at_10, at_30, at_60 = predict(
-            Vessel(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat),
+            Motion(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat),
             (self.tau_thrusters_X, self.tau_thrusters_Y, self.tau_thrusters_N),
             mean_drift(self.psi_hat, components(*sea), drift_table(self.drift.drift_table)),
             (self.wind_north, self.wind_east),

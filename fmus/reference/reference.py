@@ -1,8 +1,8 @@
 """FMU of the reference model."""
 
+from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.control.reference import ReferenceParameters, at_rest, step
-from shipcosim.models.core.maths import wrap
 
 
 class Reference(Fmu):

@@ -1,13 +1,13 @@
 """FMU of the ship: hull, wind and waves under the loads of whatever is connected."""
 
+from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import tidy_time
 from shipcosim.models.environment import waves
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters, at_present, step
-from shipcosim.models.ship.vessel import Vessel as State
 
 
 class Vessel(Fmu):
@@ -84,7 +84,7 @@ class Vessel(Fmu):
     drift = Parameters(DriftParameters)
 
     def start(self):
-        self.state = State(self.x_start, self.y_start, wrap(self.psi_start), self.u_start, self.v_start, self.r_start)
+        self.state = Motion(self.x_start, self.y_start, wrap(self.psi_start), self.u_start, self.v_start, self.r_start)
         self._meet_waves(self.start_time)
         self._write()
 

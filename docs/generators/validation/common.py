@@ -53,7 +53,7 @@ def thrust_loads(state, n, azimuth, azimuths):
 
     Parameters
     ----------
-    state : vessel.Vessel
+    state : motion.Motion
         The ship.
     n, azimuth : float or (m,) array
         Shaft speed and direction of thrust. [rev/s, rad]
@@ -74,7 +74,7 @@ def settle(state, rpm, azimuth, hull, azimuths, *, time=400.0, h=0.1):
 
     Parameters
     ----------
-    state : vessel.Vessel
+    state : motion.Motion
         Start; floats or (m,) arrays.
     rpm, azimuth : like the state
         Both units. [rpm, rad]
@@ -85,7 +85,7 @@ def settle(state, rpm, azimuth, hull, azimuths, *, time=400.0, h=0.1):
 
     Returns
     -------
-    vessel.Vessel
+    motion.Motion
     """
     for _ in range(round(time / h)):
         load = thrust_loads(state, rpm / 60.0, azimuth, azimuths)

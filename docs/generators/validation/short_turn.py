@@ -7,9 +7,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from common import MODEL, REFERENCE, THIRD, hull_of, save, thrust_loads, units
 
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.thruster import azimuth_loads, azimuth_replay
 from shipcosim.models.ship.hull import hull_loads
-from shipcosim.models.ship.vessel import Vessel, step
+from shipcosim.models.ship.vessel import step
 
 SHIP = "gunnerus-28m9"
 RPM, AZIMUTH = 100.0, radians(20.0)  # of the record, both units
@@ -70,7 +71,7 @@ def missing_loads(record):
 def sailed_again(record, load):
     """States of the ship each second under loads ``load(second, share of the second, state)``, (n, 6)."""
     hull = hull_of(SHIP)
-    state = Vessel(*map(float, (*record.eta[:, 0], *record.nu[:, 0])))
+    state = Motion(*map(float, (*record.eta[:, 0], *record.nu[:, 0])))
     states = [state]
     for k in range(record.eta.shape[1] - 1):
         for share in (np.arange(PARTS) + 0.5) / PARTS:

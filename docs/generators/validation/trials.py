@@ -10,8 +10,9 @@ from common import KNOT, MODEL, REFERENCE, hull_of, save, settle, speed_of, tabl
 from trial_log import STEP
 from turning import swings, turn_numbers
 
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.thruster import turned
-from shipcosim.models.ship.vessel import Vessel, step
+from shipcosim.models.ship.vessel import step
 
 SHIP = "gunnerus-33m9"
 PARTS = 5  # steps per row of the log
@@ -28,7 +29,7 @@ def replay(part, state, hull, azimuths):
     ----------
     part : trial_log.Log
         Orders; a positive azimuth turns the ship to port, in the log as in the model.
-    state : Vessel
+    state : Motion
         The ship at its first row.
     hull : HullParameters
     azimuths : list of AzimuthParameters
@@ -56,7 +57,7 @@ def replay(part, state, hull, azimuths):
 
 def own_zig_zag(order, change, speed, rpm, hull, azimuths, *, time=220.0, h=0.1):
     """Zig-zag of the model with its own helm changes: times in s, headings in deg off the base course."""
-    state = settle(Vessel(0.0, 0.0, 0.0, speed, 0.0, 0.0), rpm, 0.0, hull, azimuths, time=120.0)
+    state = settle(Motion(0.0, 0.0, 0.0, speed, 0.0, 0.0), rpm, 0.0, hull, azimuths, time=120.0)
     state, side, helm, psi = state._replace(psi=0.0), 1.0, (0.0, rpm / 60.0), []
     for _ in range(round(time / h)):
         if -side * degrees(state.psi) >= change:  # positive order, turn to port
@@ -76,7 +77,7 @@ def _sailed(state, helm, order, h, hull, azimuths):
 
 def start_of(part, scale):
     """The ship at the first row of a window: speed through the water taken as that over ground, along the heading."""
-    return Vessel(0.0, 0.0, float(part.psi[0]), float(scale * np.hypot(part.u[0], part.v[0])), 0.0, float(part.r[0]))
+    return Motion(0.0, 0.0, float(part.psi[0]), float(scale * np.hypot(part.u[0], part.v[0])), 0.0, float(part.r[0]))
 
 
 def veres_hull(shared, *names):
@@ -120,13 +121,13 @@ def _speeds(log, scale, hull, azimuths):
         parts = [log.part(*leg) for leg in legs]
         speeds = [scale * float(np.mean(np.hypot(part.u, part.v))) / KNOT for part in parts]
         logged = min(float(np.mean([part.rpm.mean() for part in parts])), RPM_MAX)
-        state = settle(Vessel(0.0, 0.0, 0.0, 0.5 * sum(speeds) * KNOT, 0.0, 0.0), logged, 0.0, hull, azimuths)
+        state = settle(Motion(0.0, 0.0, 0.0, 0.5 * sum(speeds) * KNOT, 0.0, 0.0), logged, 0.0, hull, azimuths)
         trial, model = 0.5 * sum(speeds), speed_of(state) / KNOT
         numbers |= {f"trial_{rpm}": trial, f"model_{rpm}": model, f"off_{rpm}": 100.0 * (model / trial - 1.0)}
         order = f"{logged:.0f}" if rpm < RPM_MAX else f"{rpm} (model: {RPM_MAX:.0f})"
         numbers[f"apart_{rpm}"] = KNOT * abs(speeds[0] - speeds[1])
         rows.append([order, *(f"{s:.2f}" for s in speeds), f"{trial:.2f}", f"{model:.2f}", f"{model / trial - 1:+.1%}"])
-    state = settle(Vessel(0.0, 0.0, 0.0, 6.0, 0.0, 0.0), 195.0, 0.0, hull, azimuths)
+    state = settle(Motion(0.0, 0.0, 0.0, 6.0, 0.0, 0.0), 195.0, 0.0, hull, azimuths)
     numbers["model_195"] = speed_of(state) / KNOT
     header = ["order [rpm]", "one way [kn]", "other way [kn]", "trial, mean [kn]", "model [kn]", "difference"]
     sides = [float(np.mean(log.part(*leg).v)) for legs in trial_log.STRAIGHT.values() for leg in legs]

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.angles import wrap
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
 from shipcosim.models.control import observer, reference
@@ -16,7 +17,7 @@ from shipcosim.models.control import pid as control
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.control.reference import ReferenceParameters
-from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment import waves
 from shipcosim.models.environment import weather as environment
@@ -78,7 +79,7 @@ class Show(NamedTuple):
 class LoopState(NamedTuple):
     """All components at one time."""
 
-    vessel: vessel.Vessel
+    vessel: Motion
     show: Show
     means: environment.EnvironmentState
     air: tuple
@@ -138,7 +139,7 @@ def start(system, design, inputs, variations):
     means = environment.EnvironmentState(*(value + zero for value in inputs[3:7]))
     air = _air(0.0, means, system)
     current = environment.water_velocity(means)
-    ship = vessel.Vessel(zero, zero, zero, zero, zero, zero)
+    ship = Motion(zero, zero, zero, zero, zero, zero)
     show = _show(0.0, ship, air, current, system, design)
     measured = sensors.start(0.0, _truth(ship, show), parameters=system.sensors)
     units = (
@@ -360,4 +361,4 @@ def _truth(ship, show):
 
 
 def _measurement(state):
-    return observer.Measurement(*state.measured[:6])
+    return Motion(*state.measured[:6])

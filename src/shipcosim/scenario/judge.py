@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.angles import TURN, wrap_series
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario.model import Expectation, Scenario
 
@@ -85,7 +86,7 @@ def _values(table: xarray.Dataset, expect: Expectation, rows: np.ndarray) -> np.
     for i, (signal, target) in enumerate(zip(expect.signal, targets, strict=True)):
         values[:, i] -= target
         if table[signal].attrs.get("units") == "rad":
-            values[:, i] = (values[:, i] + np.pi) % (2.0 * np.pi) - np.pi
+            values[:, i] = wrap_series(values[:, i], TURN)
     return values
 
 

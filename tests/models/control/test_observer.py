@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shipcosim.models.control import observer
-from shipcosim.models.control.observer import DpShip, Measurement, ObserverParameters, at_rest, design, kalman_gain
+from shipcosim.models.control.observer import DpShip, ObserverParameters, at_rest, design, kalman_gain
+from shipcosim.models.core.motion import Motion
 
 SHIP, PARAMETERS = DpShip(), ObserverParameters()
 DESIGN = design(SHIP, PARAMETERS)
@@ -57,7 +58,7 @@ def plant(position, velocity, load, force, steps):
             velocity = velocity + h * (np.linalg.solve(MASS, load + body - DAMPING @ velocity) + frame)
             u, v, r = velocity
             position = position + h * np.array([c * u - s * v, s * u + c * v, r])
-        yield Measurement(*position, *velocity)
+        yield Motion(*position, *velocity)
 
 
 @pytest.mark.parametrize("heading", [0.0, 2.5])
@@ -73,7 +74,7 @@ def test_unknown_force_is_found_with_its_size_and_direction(heading):
 
 
 def test_estimate_of_a_resting_ship_stays_there():
-    measured = Measurement(3.0, -2.0, 1.0, 0.0, 0.0, 0.0)
+    measured = Motion(3.0, -2.0, 1.0, 0.0, 0.0, 0.0)
     estimate = at_rest(measured)
     for _ in range(100):
         estimate = step(estimate, measured)
@@ -83,10 +84,10 @@ def test_estimate_of_a_resting_ship_stays_there():
 @pytest.mark.parametrize("period", [5.0, 6.0])
 def test_less_than_a_fifth_of_the_wave_motion_passes(period):
     w, amplitude = 2.0 * math.pi / period, 0.05
-    estimate, found = at_rest(Measurement(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), []
+    estimate, found = at_rest(Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), []
     for k in range(4000):
         swing, rate = amplitude * math.sin(w * 0.1 * k), amplitude * w * math.cos(w * 0.1 * k)
-        estimate = step(estimate, Measurement(swing, 0.0, 0.0, rate, 0.0, 0.0))
+        estimate = step(estimate, Motion(swing, 0.0, 0.0, rate, 0.0, 0.0))
         found.append((estimate.x, estimate.u))
     x, u = np.abs(found[2000:]).max(axis=0)
     assert x < 0.2 * amplitude
@@ -96,9 +97,9 @@ def test_less_than_a_fifth_of_the_wave_motion_passes(period):
 def test_noise_of_the_sensors_is_filtered_to_centimetres():
     random = np.random.default_rng(1)
     noise = random.normal(size=(6000, 6)) * [0.2, 0.2, 0.1 * observer.DEGREE, 0.02, 0.02, 0.05 * observer.DEGREE]
-    estimate, found = at_rest(Measurement(*noise[0])), []
+    estimate, found = at_rest(Motion(*noise[0])), []
     for row in noise:
-        estimate = step(estimate, Measurement(*row))
+        estimate = step(estimate, Motion(*row))
         found.append(estimate[:6])
     x, y, psi, u, v, r = np.std(found[1000:], axis=0)
     assert max(x, y) < 0.04 and max(u, v) < 0.004
@@ -106,9 +107,9 @@ def test_noise_of_the_sensors_is_filtered_to_centimetres():
 
 
 def test_heading_through_south_does_not_jump():
-    estimate = at_rest(Measurement(0.0, 0.0, math.pi - 0.01, 0.0, 0.0, 0.002))
+    estimate = at_rest(Motion(0.0, 0.0, math.pi - 0.01, 0.0, 0.0, 0.002))
     for k in range(300):
         heading = math.remainder(math.pi - 0.01 + 0.002 * 0.1 * k, 2.0 * math.pi)
-        estimate = step(estimate, Measurement(0.0, 0.0, heading, 0.0, 0.0, 0.002))
+        estimate = step(estimate, Motion(0.0, 0.0, heading, 0.0, 0.0, 0.002))
     assert math.remainder(estimate.psi - heading, 2.0 * math.pi) == pytest.approx(0.0, abs=2e-3)
     assert estimate.r == pytest.approx(0.002, abs=2e-4)

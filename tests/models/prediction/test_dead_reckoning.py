@@ -4,11 +4,11 @@ import math
 
 import pytest
 
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.dead_reckoning import predict
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters
-from shipcosim.models.ship.vessel import Vessel
 
 HULL, WIND = HullParameters(), WindParameters()
 HORIZONS = (10.0, 30.0, 60.0)
@@ -30,7 +30,7 @@ def simulated(ship, seconds, thrusters, drift, air, current):
 
 @pytest.mark.parametrize(("speed", "near"), [(0.3, 0.02), (5.0, 0.2)])
 def test_prediction_is_the_simulation_with_loads_held(speed, near):
-    ship = Vessel(3.0, -2.0, 3.0, speed, 0.2, 0.02)
+    ship = Motion(3.0, -2.0, 3.0, speed, 0.2, 0.02)
     loads = (5e3, -6e3, 3e4), (-500.0, 800.0, 2e3), (-6.0, -6.0), (-0.3, 0.1)
     for seconds, found in zip(HORIZONS, ahead(ship, *loads), strict=True):
         expected = simulated(ship, seconds, *loads)
@@ -39,7 +39,7 @@ def test_prediction_is_the_simulation_with_loads_held(speed, near):
 
 
 def test_prediction_converges_with_the_step():
-    ship, loads = Vessel(0.0, 0.0, 0.0, 3.0, 0.2, 0.02), ((5e3, -6e3, 3e4), (0.0,) * 3, (-6.0, -6.0), (-0.3, 0.1))
+    ship, loads = Motion(0.0, 0.0, 0.0, 3.0, 0.2, 0.02), ((5e3, -6e3, 3e4), (0.0,) * 3, (-6.0, -6.0), (-0.3, 0.1))
     best = ahead(ship, *loads, longest_step=0.02)[-1]
     errors = [math.dist(ahead(ship, *loads, longest_step=h)[-1][:2], best[:2]) for h in (2.0, 1.0)]
     assert errors[1] < 0.6 * errors[0]
@@ -50,10 +50,10 @@ def test_free_ship_at_rest_in_the_water_goes_with_the_current():
     current = (0.4, -0.3)
     air = current  # no wind over the water she drifts with
     u, v = vessel.to_body(0.7, *current)
-    found = ahead(Vessel(1.0, 2.0, 0.7, u, v, 0.0), air=air, current=current)
+    found = ahead(Motion(1.0, 2.0, 0.7, u, v, 0.0), air=air, current=current)
     for seconds, ship in zip(HORIZONS, found, strict=True):
         assert ship[:3] == pytest.approx((1.0 + 0.4 * seconds, 2.0 - 0.3 * seconds, 0.7), abs=1e-6)
 
 
 def test_ship_without_any_load_stays():
-    assert all(ship == pytest.approx((1.0, 2.0, 3.0, 0.0, 0.0, 0.0)) for ship in ahead(Vessel(1.0, 2.0, 3.0, 0, 0, 0)))
+    assert all(ship == pytest.approx((1.0, 2.0, 3.0, 0.0, 0.0, 0.0)) for ship in ahead(Motion(1.0, 2.0, 3.0, 0, 0, 0)))

@@ -4,7 +4,8 @@ from math import cos, pi, radians, sin
 
 import pytest
 
-from shipcosim.models.ship.instruments import Shown, motion_of, recalled, remembered, shown
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.ship.instruments import motion_of, recalled, remembered, shown
 
 TURN = dict(speed=2.0, rate=0.05)
 
@@ -58,9 +59,9 @@ def test_motion_of_is_the_inverse():
 @pytest.mark.parametrize(("lag", "off"), [(0.0, 3e-4), (0.03, 2e-4), (0.05, 1e-4), (0.4, 1e-4), (1.13, 1e-4)])
 def test_recalled_lag_ago_is_the_motion_lag_ago(lag, off):
     """Stepped at 0.05 s through a heading of 180 deg; linear between steps leaves 1e-4 m, and beyond the last more."""
-    h, history = 0.05, ((0.0, Shown(*circle(0.0))),)
+    h, history = 0.05, ((0.0, Motion(*circle(0.0))),)
     for k in range(1400):
-        history = remembered(history, k * h, Shown(*circle(k * h)), (k + 1) * h - lag)
+        history = remembered(history, k * h, Motion(*circle(k * h)), (k + 1) * h - lag)
         then = (k + 1) * h - lag
         if then >= 0.0 and k > 0:
             assert recalled(history, then) == pytest.approx(circle(then), abs=off), then
@@ -68,11 +69,11 @@ def test_recalled_lag_ago_is_the_motion_lag_ago(lag, off):
 
 
 def test_before_the_start_all_is_as_at_the_start():
-    first = Shown(*circle(0.0))
+    first = Motion(*circle(0.0))
     history = remembered(((0.0, first),), 0.0, first, -2.0)
     assert recalled(history, -1.5) == pytest.approx(first)
 
 
 def test_a_heading_is_interpolated_the_shorter_way():
-    at = [Shown(0.0, 0.0, radians(angle), 0.0, 0.0, 0.0) for angle in (179.0, -179.0)]
+    at = [Motion(0.0, 0.0, radians(angle), 0.0, 0.0, 0.0) for angle in (179.0, -179.0)]
     assert abs(recalled(((0.0, at[0]), (1.0, at[1])), 0.25).psi) == pytest.approx(radians(179.5))

@@ -6,9 +6,10 @@ from math import cos, degrees, hypot, pi, radians, sin
 import numpy as np
 import pytest
 
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.ship.hull import HullParameters, hull_loads
-from shipcosim.models.ship.vessel import Vessel, nu_dot, step, through_water
+from shipcosim.models.ship.vessel import nu_dot, step, through_water
 from shipcosim.models.ships import parameters
 
 from .test_hull import mass_matrix
@@ -43,7 +44,7 @@ def test_short_ship_explains_the_recorded_accelerations(recorded):
 def test_short_ship_repeats_the_recorded_turn(recorded):
     """Forces between the samples of 1 s by interpolation; 3.3 m and 1.7 deg after 160 s is what the sheet found."""
     eta, nu, _, tau = recorded
-    ship, parts = Vessel(*map(float, (*eta[:, 0], *nu[:, 0]))), 10
+    ship, parts = Motion(*map(float, (*eta[:, 0], *nu[:, 0]))), 10
     for k in range(eta.shape[1] - 1):
         for share in (np.arange(parts) + 0.5) / parts:
             load = (1.0 - share) * tau[:, k] + share * tau[:, k + 1]
@@ -54,7 +55,7 @@ def test_short_ship_repeats_the_recorded_turn(recorded):
 
 def steady(rpm, angle, *, time=400.0, h=0.1):
     """The long ship after a while with both units alike: speed, yaw rate. [m/s, rad/s]"""
-    ship = Vessel(0.0, 0.0, 0.0, 4.0, 0.0, 0.0)
+    ship = Motion(0.0, 0.0, 0.0, 4.0, 0.0, 0.0)
     for _ in range(round(time / h)):
         motion = ship.u, ship.v, ship.r
         loads = [azimuth_loads(azimuth_replay(rpm / 60.0, angle, *motion, unit=u), *motion, unit=u) for u in UNITS]
@@ -82,7 +83,7 @@ def test_long_ship_turns_as_the_nominal_model(angle, rpm, diameter, rate):
 
 @pytest.mark.parametrize("hull", [LONG, SHORT], ids=["long", "short"])
 def test_port_turn_mirrors_starboard_turn(hull):
-    ship = mirrored = Vessel(0.0, 0.0, 0.0, 2.0, 0.0, 0.0)
+    ship = mirrored = Motion(0.0, 0.0, 0.0, 2.0, 0.0, 0.0)
     for _ in range(200):
         ship = step(ship, 2e4, 4e3, 5e4, 0.1, 0.2, 0.1, hull=hull)
         mirrored = step(mirrored, 2e4, -4e3, -5e4, 0.1, -0.2, 0.1, hull=hull)
@@ -92,7 +93,7 @@ def test_port_turn_mirrors_starboard_turn(hull):
 def test_kinetic_energy_of_the_free_long_ship_never_grows():
     """Relative to the water, over two minutes, from 300 states."""
     u, v, r, psi = np.random.default_rng(2).uniform(-1.0, 1.0, (4, 300)) * [[8.0], [3.0], [0.3], [pi]]
-    ship, current = Vessel(0.0 * u, 0.0 * u, psi, u, v, r), (0.4, -0.3)
+    ship, current = Motion(0.0 * u, 0.0 * u, psi, u, v, r), (0.4, -0.3)
 
     def energy(ship):
         nu_r = np.array([*through_water(ship.psi, ship.u, ship.v, *current), ship.r])
@@ -110,7 +111,7 @@ def test_kinetic_energy_of_the_free_long_ship_never_grows():
 def test_a_uniform_current_carries_a_free_ship_at_its_own_speed(hull):
     north, east, psi = 0.4, -0.3, 0.7
     u, v = north * cos(psi) + east * sin(psi), -north * sin(psi) + east * cos(psi)
-    ship = Vessel(0.0, 0.0, psi, u, v, 0.0)
+    ship = Motion(0.0, 0.0, psi, u, v, 0.0)
     for _ in range(100):
         ship = step(ship, 0.0, 0.0, 0.0, north, east, 0.5, hull=hull)
     np.testing.assert_allclose(ship, [50.0 * north, 50.0 * east, psi, u, v, 0.0], atol=1e-12)
@@ -118,7 +119,7 @@ def test_a_uniform_current_carries_a_free_ship_at_its_own_speed(hull):
 
 def test_motion_in_a_current_is_motion_in_still_water_plus_its_way():
     """Galilei: the same loads, seen by somebody who drifts along."""
-    still = Vessel(0.0, 0.0, 0.5, 1.0, 0.1, 0.02)
+    still = Motion(0.0, 0.0, 0.5, 1.0, 0.1, 0.02)
     u_c, v_c = 0.4 * cos(0.5) - 0.3 * sin(0.5), -0.4 * sin(0.5) - 0.3 * cos(0.5)
     carried = still._replace(u=1.0 + u_c, v=0.1 + v_c)
     for _ in range(100):
@@ -130,7 +131,7 @@ def test_motion_in_a_current_is_motion_in_still_water_plus_its_way():
 
 @pytest.mark.parametrize("hull", [LONG, replace(LONG, centre_of_gravity_x=1.0), SHORT], ids=["long", "offset", "short"])
 def test_acceleration_is_what_a_small_step_gives(hull):
-    ship, tau, current = Vessel(0.0, 0.0, 0.5, 2.0, 0.3, 0.05), (1e4, -2e3, 3e4), (0.4, -0.3)
+    ship, tau, current = Motion(0.0, 0.0, 0.5, 2.0, 0.3, 0.05), (1e4, -2e3, 3e4), (0.4, -0.3)
     later = step(ship, *tau, *current, 1e-5, hull=hull)
     found = (np.array(later[3:]) - ship[3:]) / 1e-5
     np.testing.assert_allclose(nu_dot(ship, *tau, *current, hull=hull), found, rtol=1e-4, atol=1e-7)
@@ -138,7 +139,7 @@ def test_acceleration_is_what_a_small_step_gives(hull):
 
 def test_equation_of_motion_is_that_of_the_thesis():
     """M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot = tau + hull loads in matrices, with the current's own rate."""
-    hull, ship, tau, current = LONG, Vessel(0.0, 0.0, 0.5, 2.0, 0.3, 0.05), (1e4, -2e3, 3e4), (0.4, -0.3)
+    hull, ship, tau, current = LONG, Motion(0.0, 0.0, 0.5, 2.0, 0.3, 0.05), (1e4, -2e3, 3e4), (0.4, -0.3)
     u, v, r = ship[3:]
     u_r, v_r = through_water(ship.psi, u, v, *current)
     rates = np.array(nu_dot(ship, *tau, *current, hull=hull))
@@ -152,7 +153,7 @@ def test_equation_of_motion_is_that_of_the_thesis():
 
 def test_halving_the_step_changes_nothing_that_matters():
     def run(h):
-        ship = Vessel(0.0, 0.0, 0.0, 5.0, 0.0, 0.0)
+        ship = Motion(0.0, 0.0, 0.0, 5.0, 0.0, 0.0)
         for _ in range(round(60.0 / h)):
             ship = step(ship, 6e4, 2e4, -2.5e5, 0.3, 0.1, h, hull=LONG)
         return ship

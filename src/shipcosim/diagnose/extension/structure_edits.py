@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import shipcosim
 from shipcosim.diagnose.ship.environment import drift_arm_of, stern_of
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.models.ship.instruments import InstrumentParameters, Shown
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.ship.instruments import InstrumentParameters
 from shipcosim.series import conversion
 from shipcosim.ssp import parameter
 from shipcosim.ssp.edit.opening import built_fmus
@@ -241,7 +242,7 @@ def add_instruments(edits, finding, errors):
         edits.remark(finding, "it is one of the log, not of the ship: shift the channels")
     if errors and not edits.suffix:
         edits.shows, edits.suffix = edits.insert("instruments", "instruments"), "_meas"
-        for name in Shown._fields:
+        for name in Motion._fields:
             edits.structure.connect(f"{edits.ship}.{name}", f"{edits.shows}.{name}")
     for name, given in errors.items():
         field_name = _ERRORS[name]

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.ship.model import Motion, loads, motion_rates, rates_apart, shown
+from shipcosim.models.core.integrate import rk4
 
 __all__ = [
     "SLOW_STD",
@@ -136,18 +137,10 @@ def runge_kutta(motion, h, inputs, model, load=lambda psi: (0.0, 0.0, 0.0)):
     """
     loads_at = load if isinstance(load, (list, tuple)) else (load, load, load)
 
-    def moved(rates, by):
-        return Motion(*(value + by * rate for value, rate in zip(motion, rates, strict=True)))
+    def rates(x, y, psi, u, v, r, i):
+        return motion_rates(Motion(x, y, psi, u, v, r), inputs[i], model, loads_at[i](psi))
 
-    def rates(where, i):
-        return motion_rates(where, inputs[i], model, loads_at[i](where.psi))
-
-    k1 = rates(motion, 0)
-    k2 = rates(moved(k1, 0.5 * h), 1)
-    k3 = rates(moved(k2, 0.5 * h), 1)
-    k4 = rates(moved(k3, h), 2)
-    slopes = zip(motion, k1, k2, k3, k4, strict=True)
-    return Motion(*(value + h / 6.0 * (a + 2.0 * (b + c) + d) for value, a, b, c, d in slopes))
+    return Motion(*rk4(rates, motion, h, ((0,), (1,), (2,))))
 
 
 def linearise(motion, record, model, regressors: Sequence[Regressor]) -> Linear:

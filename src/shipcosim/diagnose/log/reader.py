@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.angles import TURN, wrap_series
 from shipcosim.diagnose.log.channels import Channel, read_channels
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -124,6 +125,6 @@ def _local_position(signals):
     meridian = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / curvature**1.5
     parallel = EQUATORIAL_RADIUS / np.sqrt(curvature) * np.cos(latitude[first])
     signals["north"] = meridian * (latitude - latitude[first]), "m"
-    signals["east"] = parallel * (np.mod(longitude - longitude[first] + np.pi, 2 * np.pi) - np.pi), "m"
+    signals["east"] = parallel * wrap_series(longitude - longitude[first], TURN), "m"
     origin = np.degrees([latitude[first], longitude[first]])
     return {"latitude_origin": float(origin[0]), "longitude_origin": float(origin[1])}

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
@@ -126,7 +127,7 @@ class _Place:
 
     def __call__(self, values, is_angle):
         first, second = values[self.before], values[self.before + 1]
-        change = np.mod(second - first + 180.0, 360.0) - 180.0 if is_angle else second - first
+        change = wrap_series(second - first) if is_angle else second - first
         between = first + self.share * change
         exact = np.where(self.share == 0.0, first, np.where(self.share == 1.0, second, between))
         return np.where(self.empty, np.nan, exact)

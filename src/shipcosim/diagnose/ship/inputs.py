@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.ship.model import Inputs, Motion
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -100,7 +101,7 @@ def record_of(log, model):
         right = "A diagnosis needs north, east and heading over at least two minutes, better forty."
         raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
     measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
-    measured[:, 2] = _unwrapped(measured[:, 2])
+    measured[:, 2] = unwrap_series(measured[:, 2])
     remarks, known, units = [], np.ones(rows, bool), {}
     _check_third_party(log, model)
     for name in model.thrusters:
@@ -151,7 +152,7 @@ def _unit(log, name, model, rows, remarks):
     if name not in model.azimuths or f"{name}_azimuth" not in log:
         direction = np.full(rows, model.fixed.get(name, 0.0))
     whole = np.isfinite(speed) & np.isfinite(direction)
-    return (_calmed(speed), _calmed(_unwrapped(direction))), whole
+    return (_calmed(speed), _calmed(unwrap_series(direction))), whole
 
 
 def _check_third_party(log, model):
@@ -175,7 +176,7 @@ def _about_third_party(name, one):
 def _wind(log, rows, remarks):
     for speed, direction in (("wind_speed", "wind_from"), ("true_wind_speed", "true_wind_from")):
         if speed in log and direction in log:
-            pair = _column(log, speed, rows), _unwrapped(_column(log, direction, rows) * np.pi / 180.0)
+            pair = _column(log, speed, rows), unwrap_series(_column(log, direction, rows) * np.pi / 180.0)
             whole = np.isfinite(pair[0]) & np.isfinite(pair[1])
             if whole.any():
                 return tuple(_calmed(series) for series in pair), whole
@@ -199,14 +200,6 @@ def _filled(series):
     if not whole.any():
         return np.zeros_like(series)
     return np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
-
-
-def _unwrapped(angle):
-    """An angle without jumps of a turn, across rows without a value too."""
-    whole = np.isfinite(angle)
-    found = angle.copy()
-    found[whole] = np.unwrap(angle[whole])
-    return found
 
 
 def first_motion(record, model, smooth=4.0):

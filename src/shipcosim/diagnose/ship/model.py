@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.angles import wrap
 from shipcosim.diagnose.ship.environment import Instruments, Water, drift_arm_of, share_of, stern_of, swell_of
 from shipcosim.diagnose.ship.third_party_fmu import drives_of, part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed, thruster_loads
@@ -16,7 +17,8 @@ from shipcosim.diagnose.ship.tolerances import tolerances_of
 from shipcosim.diagnose.ship.wiring import wiring_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import cos, sin, wrap
+from shipcosim.models.core.maths import cos, sin
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import acts
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.environment.current import varying_current
@@ -44,17 +46,6 @@ __all__ = [
 _OURS = (AzimuthParameters, TunnelParameters)
 _CURRENT = tuple(f"{of}_{to}" for of in ("current", "trend") for to in ("north", "east"))
 _CURRENT += tuple(f"{to}_{at}" for to in ("north", "east") for at in ("start", "end"))
-
-
-class Motion(NamedTuple):
-    """Position, heading, velocity over ground, all of the low-frequency ship; arrays of one shape."""
-
-    x: Any
-    y: Any
-    psi: Any
-    u: Any
-    v: Any
-    r: Any
 
 
 class Inputs(NamedTuple):

@@ -8,6 +8,7 @@ import numpy as np
 
 from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates
 from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.models.core.integrate import euler
 
 _FREQUENCY = 0.5  # rad/s times the square root of the length in m over gravity, of the DP: 0.09 rad/s on Gunnerus
 _DAMPING = 0.8
@@ -86,9 +87,9 @@ def _at(inputs, k, units):
 
 def _moved(ship, last, inputs, model, h, dp):
     """The ships a step later by the rates in its middle, where those of the last step lead; and the rates."""
-    middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(ship, last, strict=True)))
+    middle = Motion(*euler(ship, last, 0.5 * h))
     rates = motion_rates(dp.bounded(middle), inputs, model)
-    return Motion(*(value + h * rate for value, rate in zip(ship, rates, strict=True))), rates
+    return Motion(*euler(ship, rates, h)), rates
 
 
 class Dp:

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.core.maths import cos, sin, wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import cos, sin
 from shipcosim.models.core.parameters import quantity
 
 DEGREE = math.pi / 180.0
@@ -112,17 +113,6 @@ class Estimate(NamedTuple):
     u_wave: float = 0.0
     v_wave: float = 0.0
     r_wave: float = 0.0
-
-
-class Measurement(NamedTuple):
-    """Measured position, heading and velocity over ground in the body frame. [m, m, rad, m/s, m/s, rad/s]"""
-
-    x: float
-    y: float
-    psi: float
-    u: float
-    v: float
-    r: float
 
 
 class AxisGains(NamedTuple):
@@ -254,7 +244,7 @@ def step(estimate, measured, load, *, ship, parameters, design):
     ----------
     estimate : Estimate
         Estimate at the start.
-    measured : Measurement
+    measured : Motion
         Measurement at the end.
     load : tuple of three
         Known load over the sample, thrusters and wind, body frame. [N, N, N.m]

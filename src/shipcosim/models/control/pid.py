@@ -4,8 +4,9 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import clip, exp, hypot, maximum, where, wrap
+from shipcosim.models.core.maths import clip, exp, hypot, maximum, where
 from shipcosim.models.core.parameters import quantity
 
 

@@ -7,7 +7,8 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from shipcosim.models.core.maths import exp, hypot, maximum, minimum, where, wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import exp, hypot, maximum, minimum, where
 from shipcosim.models.core.parameters import quantity
 
 

@@ -1,48 +1,87 @@
-"""The functions that models are written in: each works on floats, NumPy arrays and torch tensors.
+"""Elementary functions of the models: each works on Python floats, NumPy arrays and torch tensors alike.
 
 Python floats take the first branch, so that a model in an FMU costs what `math` costs. torch is never imported here;
-it can only be needed where somebody already passed a tensor.
+it is needed only where somebody has passed a tensor.
+
+References
+----------
+Definitions of elementary functions.
 """
 
 import math
 import sys
-from bisect import bisect_right
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
+
+Arithmetic = float | np.ndarray | Any
+"""A number in the arithmetic of its user: Python float, NumPy array or torch tensor (Any: torch is optional)."""
 
 pi = math.pi
 _TINY = 1e-30
 _FEW = 256  # elements, below which a call of NumPy costs more than what it computes
 
 
-def _library(*values):
-    """NumPy, or torch when one of the values is a tensor."""
+def library_of(*values: Arithmetic) -> Any:
+    """The library that computes with some values: torch where one of them is a tensor, NumPy elsewhere.
+
+    Parameters
+    ----------
+    values : float or (...) array or tensor
+        Values. [any units]
+
+    Returns
+    -------
+    module
+        ``numpy`` or ``torch``.
+    """
     torch = sys.modules.get("torch")
     if torch is not None and any(isinstance(value, torch.Tensor) for value in values):
         return torch
     return np
 
 
-def sin(x):
-    """Sine of an angle in rad."""
+def sin(x: Arithmetic) -> Arithmetic:
+    """Sine.
+
+    Parameters
+    ----------
+    x : float or (...) array or tensor
+        Angle. [rad]
+
+    Returns
+    -------
+    like x
+        [1]
+    """
     if isinstance(x, float):
         return math.sin(x)
-    return sincos(x)[0] if _many(x) else _library(x).sin(x)
+    return sincos(x)[0] if _many(x) else library_of(x).sin(x)
 
 
-def cos(x):
-    """Cosine of an angle in rad."""
+def cos(x: Arithmetic) -> Arithmetic:
+    """Cosine.
+
+    Parameters
+    ----------
+    x : float or (...) array or tensor
+        Angle. [rad]
+
+    Returns
+    -------
+    like x
+        [1]
+    """
     if isinstance(x, float):
         return math.cos(x)
-    return sincos(x)[1] if _many(x) else _library(x).cos(x)
+    return sincos(x)[1] if _many(x) else library_of(x).cos(x)
 
 
-def sincos(x):
-    """Sine and cosine of an angle in rad; together cheaper than each alone.
+def sincos(x: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
+    """Sine and cosine together, cheaper than each alone.
 
-    Of many angles at once they are t u and u - 1 with t = tan(x/2) and u = 2/(1 + t²): NumPy's tangent is vectorised,
-    its sine and cosine of doubles are not. They differ from those by some 1e-16.
+    Of many angles they are t u and u - 1 with t = tan(x/2) and u = 2/(1 + t²), half-angle formulas, because NumPy's
+    tangent is vectorised and its sine and cosine of doubles are not. These differ from sin x and cos x by some 1e-16.
 
     Parameters
     ----------
@@ -52,11 +91,12 @@ def sincos(x):
     Returns
     -------
     tuple of two, like x
+        Sine, cosine. [1, 1]
     """
     if isinstance(x, float):
         return math.sin(x), math.cos(x)
     if not isinstance(x, np.ndarray):
-        library = _library(x)
+        library = library_of(x)
         return library.sin(x), library.cos(x)
     if x.size < _FEW:
         return np.sin(x), np.cos(x)
@@ -69,299 +109,179 @@ def sincos(x):
     return t, u
 
 
-def exp(x):
-    """e to the x."""
-    return math.exp(x) if isinstance(x, float) else _library(x).exp(x)
+def exp(x: Arithmetic) -> Arithmetic:
+    """Exponential function.
+
+    Parameters
+    ----------
+    x : float or (...) array or tensor
+        Exponent. [1]
+
+    Returns
+    -------
+    like x
+        [1]
+    """
+    return math.exp(x) if isinstance(x, float) else library_of(x).exp(x)
 
 
-def sqrt(x):
-    """Square root; the derivative at 0 is infinite, so give a tensor a floor first."""
-    return math.sqrt(x) if isinstance(x, float) else _library(x).sqrt(x)
+def sqrt(x: Arithmetic) -> Arithmetic:
+    """Square root.
+
+    Parameters
+    ----------
+    x : float or (...) array or tensor
+        Not negative; above 0 for a tensor with gradient, whose derivative at 0 is infinite. [any unit]
+
+    Returns
+    -------
+    like x
+        [root of the unit of x]
+    """
+    return math.sqrt(x) if isinstance(x, float) else library_of(x).sqrt(x)
 
 
-def tanh(x):
-    """Hyperbolic tangent."""
-    return math.tanh(x) if isinstance(x, float) else _library(x).tanh(x)
+def floor(x: Arithmetic) -> Arithmetic:
+    """Largest whole number that is not above x, as float.
+
+    Parameters
+    ----------
+    x : float or (...) array or tensor
+        Number. [1]
+
+    Returns
+    -------
+    like x
+        [1]
+    """
+    return float(math.floor(x)) if isinstance(x, float) else library_of(x).floor(x)
 
 
-def floor(x):
-    """Largest whole number not above x, as float."""
-    return float(math.floor(x)) if isinstance(x, float) else _library(x).floor(x)
+def atan2(y: Arithmetic, x: Arithmetic) -> Arithmetic:
+    """Angle of the vector (x, y) from the x axis.
 
+    Parameters
+    ----------
+    y, x : float or (...) array or tensor
+        Components. [any unit, the same of both]
 
-def atan2(y, x):
-    """Angle of the vector (x, y) in (-π, π]."""
+    Returns
+    -------
+    like x
+        In [-π, π]. [rad]
+    """
     if isinstance(y, float) and isinstance(x, float):
         return math.atan2(y, x)
-    library = _library(y, x)
+    library = library_of(y, x)
     if library is np:
         return np.arctan2(y, x)
     return library.atan2(*_tensors(library, y, x))
 
 
-def hypot(x, y):
-    """Length of the vector (x, y); of tensors with a finite derivative at 0 too."""
+def hypot(x: Arithmetic, y: Arithmetic) -> Arithmetic:
+    """Length of the vector (x, y).
+
+    Parameters
+    ----------
+    x, y : float or (...) array or tensor
+        Components. [any unit, the same of both]
+
+    Returns
+    -------
+    like x
+        Length; of tensors with a finite derivative at 0. [the unit of x]
+    """
     if isinstance(y, float) and isinstance(x, float):
         return math.sqrt(x * x + y * y)
     square = x * x + y * y
-    return np.sqrt(square) if _library(x, y) is np else (square + _TINY).sqrt()
+    return np.sqrt(square) if library_of(x, y) is np else (square + _TINY).sqrt()
 
 
-def where(condition, a, b):
-    """`a` where the condition holds, `b` elsewhere. Both are evaluated."""
+def where(condition: Any, a: Arithmetic, b: Arithmetic) -> Arithmetic:
+    """One value where a condition holds, another elsewhere; both are evaluated.
+
+    Parameters
+    ----------
+    condition : bool or (...) array or tensor of bool
+        The condition. [1]
+    a, b : float or (...) array or tensor
+        Value where it holds, value elsewhere. [any unit, the same of both]
+
+    Returns
+    -------
+    like a and b
+        [the unit of a]
+    """
     if condition is True:
         return a
     if condition is False:
         return b
-    library = _library(condition, a, b)
+    library = library_of(condition, a, b)
     if library is np:
         return np.where(condition, a, b)
     return library.where(library.as_tensor(condition), *_tensors(library, a, b))
 
 
-def minimum(a, b):
-    """The smaller of the two, element by element."""
+def minimum(a: Arithmetic, b: Arithmetic) -> Arithmetic:
+    """The smaller of two values, element by element.
+
+    Parameters
+    ----------
+    a, b : float or (...) array or tensor
+        Values. [any unit, the same of both]
+
+    Returns
+    -------
+    like a
+        [the unit of a]
+    """
     if isinstance(a, float) and isinstance(b, float):
         return a if a < b else b
-    return np.minimum(a, b) if _library(a, b) is np else where(a < b, a, b)
+    return np.minimum(a, b) if library_of(a, b) is np else where(a < b, a, b)
 
 
-def maximum(a, b):
-    """The larger of the two, element by element."""
+def maximum(a: Arithmetic, b: Arithmetic) -> Arithmetic:
+    """The larger of two values, element by element.
+
+    Parameters
+    ----------
+    a, b : float or (...) array or tensor
+        Values. [any unit, the same of both]
+
+    Returns
+    -------
+    like a
+        [the unit of a]
+    """
     if isinstance(a, float) and isinstance(b, float):
         return a if a > b else b
-    return np.maximum(a, b) if _library(a, b) is np else where(a > b, a, b)
+    return np.maximum(a, b) if library_of(a, b) is np else where(a > b, a, b)
 
 
-def clip(x, low, high):
-    """`x` within [low, high]."""
+def clip(x: Arithmetic, low: Arithmetic, high: Arithmetic) -> Arithmetic:
+    """A value limited to the range [low, high].
+
+    Parameters
+    ----------
+    x : float or (...) array or tensor
+        Value. [any unit]
+    low, high : like x
+        Limits, low not above high. [the unit of x]
+
+    Returns
+    -------
+    like x
+        [the unit of x]
+    """
     if isinstance(x, float) and isinstance(low, float) and isinstance(high, float):
         x = x if x > low else low
         return x if x < high else high
     return minimum(maximum(x, low), high)
 
 
-def sign(x):
-    """-1.0, 0.0 or 1.0."""
-    return where(x > 0, 1.0, where(x < 0, -1.0, 0.0))
-
-
-def wrap(angle):
-    """The same angle in [-π, π)."""
-    if isinstance(angle, float) and -pi <= angle < pi:
-        return angle
-    return angle - 2.0 * pi * floor((angle + pi) / (2.0 * pi))
-
-
-def interp(x, xs, ys):
-    """Piecewise linear interpolation, constant beyond the ends.
-
-    Parameters
-    ----------
-    x : float or (...) array or tensor
-        Where.
-    xs : tuple of float, increasing
-        Abscissae of the table.
-    ys : tuple of float
-        Ordinates of the table.
-
-    Returns
-    -------
-    like x
-    """
-    if isinstance(x, float):
-        if x <= xs[0]:
-            return ys[0]
-        if x >= xs[-1]:
-            return ys[-1]
-        i = bisect_right(xs, x) - 1
-        return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
-    library = _library(x)
-    if library is np:
-        return np.interp(x, xs, ys)
-    return _interp_tensor(library, x, xs, ys)
-
-
-def interp_columns(x, xs, *columns):
-    """Several columns of one table by piecewise linear interpolation, constant beyond the ends.
-
-    Parameters
-    ----------
-    x : float or (...) array or tensor
-        Where.
-    xs : tuple of float, increasing
-        Abscissae of the table.
-    columns : tuples of float
-        Ordinates of the table.
-
-    Returns
-    -------
-    list, one value like x per column
-    """
-    if not isinstance(x, float):
-        return [interp(x, xs, ys) for ys in columns]
-    if x <= xs[0]:
-        return [ys[0] for ys in columns]
-    if x >= xs[-1]:
-        return [ys[-1] for ys in columns]
-    i = bisect_right(xs, x)
-    share = (x - xs[i - 1]) / (xs[i] - xs[i - 1])
-    return [ys[i - 1] + (ys[i] - ys[i - 1]) * share for ys in columns]
-
-
-class EvenTable(NamedTuple):
-    """Columns over evenly spaced abscissae, made by `even_table`.
-
-    Parameters
-    ----------
-    first, per_unit : float
-        First abscissa, and how many there are per unit.
-    rows : tuple of tuples of pairs
-        Per abscissa and column the value, and its change up to the next one.
-    array : (n, 2 columns) array
-        The same: values, then changes.
-    """
-
-    first: float
-    per_unit: float
-    rows: tuple
-    array: np.ndarray
-
-
-def even_table(xs, *columns):
-    """A table for `interp_even`.
-
-    Parameters
-    ----------
-    xs : (n,) array, evenly spaced
-        Abscissae.
-    columns : (n,) arrays
-        Ordinates of the table.
-
-    Returns
-    -------
-    EvenTable
-    """
-    values = np.stack(columns, axis=-1)
-    changes = np.diff(values, axis=0, append=values[-1:])
-    rows = (tuple(zip(*row, strict=True)) for row in zip(values.tolist(), changes.tolist(), strict=True))
-    per_unit = float((len(xs) - 1) / (xs[-1] - xs[0]))
-    return EvenTable(float(xs[0]), per_unit, tuple(rows), np.concatenate([values, changes], axis=-1))
-
-
-def interp_even(x, table):
-    """All columns of a table with even abscissae by piecewise linear interpolation, without a search.
-
-    Parameters
-    ----------
-    x : float or (...) array or tensor
-        Where, within the table.
-    table : EvenTable
-
-    Returns
-    -------
-    list, one value like x per column
-    """
-    position = (x - table.first) * table.per_unit
-    if isinstance(x, float):
-        below = int(position)
-        share = position - below
-        return [value + share * change for value, change in table.rows[below]]
-    below = floor(position)
-    library, share = _library(x), position - below
-    if library is np:
-        rows = np.take(table.array, below.astype(int), axis=0)
-    else:
-        rows = library.as_tensor(table.array, dtype=x.dtype, device=x.device)[below.detach().long()]
-    width = rows.shape[-1] // 2
-    return [rows[..., k] + share * rows[..., width + k] for k in range(width)]
-
-
-def rk4(rates, state, h):
-    """One Runge-Kutta step of fourth order.
-
-    Parameters
-    ----------
-    rates : callable
-        ``rates(*state)`` gives the tuple of time derivatives.
-    state : tuple of scalars
-        Values at the start.
-    h : float
-        Step. [s]
-
-    Returns
-    -------
-    tuple like state
-        Values at the end.
-
-    Examples
-    --------
-    Decay over one time constant, a tenth at a time, against 1/e = 0.367879:
-
-    >>> y = (1.0,)
-    >>> for _ in range(10):
-    ...     y = rk4(lambda y: (-y,), y, 0.1)
-    >>> round(y[0], 6)
-    0.36788
-    """
-    half, sixth = 0.5 * h, h / 6.0
-    k1 = rates(*state)
-    k2 = rates(*[y + half * k for y, k in zip(state, k1, strict=True)])
-    k3 = rates(*[y + half * k for y, k in zip(state, k2, strict=True)])
-    k4 = rates(*[y + h * k for y, k in zip(state, k3, strict=True)])
-    slopes = zip(state, k1, k2, k3, k4, strict=True)
-    return tuple([y + sixth * (a + 2.0 * (b + c) + d) for y, a, b, c, d in slopes])
-
-
-def rk4_pair(rates, x, y, h, start, middle, end):
-    """One Runge-Kutta step of fourth order of two variables, without the loops of `rk4`.
-
-    Parameters
-    ----------
-    rates : callable
-        ``rates(x, y, *driven)`` gives the two time derivatives.
-    x, y : scalars
-        Values at the start.
-    h : float
-        Step. [s]
-    start, middle, end : tuples
-        What the rates depend on besides, known in advance, at these times of the step.
-
-    Returns
-    -------
-    tuple of two
-        Values at the end.
-    """
-    half, sixth = 0.5 * h, h / 6.0
-    a, p = rates(x, y, *start)
-    b, q = rates(x + half * a, y + half * p, *middle)
-    c, r = rates(x + half * b, y + half * q, *middle)
-    d, s = rates(x + h * c, y + h * r, *end)
-    return x + sixth * (a + 2.0 * (b + c) + d), y + sixth * (p + 2.0 * (q + r) + s)
-
-
-def substeps(h, longest):
-    """Number of equal sub-steps of at most `longest` that make up the step h.
-
-    Examples
-    --------
-    >>> substeps(0.05, 0.05), substeps(0.1, 0.03)
-    (1, 4)
-    """
-    return max(1, math.ceil(h / longest - 1e-9))
-
-
 def _many(x):
     """Whether x is an array of so many elements that computing them costs more than a few calls of NumPy."""
     return isinstance(x, np.ndarray) and x.size >= _FEW
-
-
-def _interp_tensor(torch, x, xs, ys):
-    """`interp` with gradients."""
-    xs, ys = (torch.as_tensor(s, dtype=x.dtype, device=x.device) for s in (xs, ys))
-    x = x.clamp(xs[0], xs[-1])
-    i = (torch.searchsorted(xs, x.detach().contiguous(), right=True) - 1).clamp(0, len(xs) - 2)
-    return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
 
 
 def _tensors(torch, *values):

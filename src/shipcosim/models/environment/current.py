@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from shipcosim.models.core.maths import atan2, clip, hypot, where, wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import atan2, clip, hypot, where
 from shipcosim.models.core.parameters import quantity
 
 _STILL = 1e-9  # m/s, below which a current has no direction

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from shipcosim.models.core.maths import _library
+from shipcosim.models.core.maths import library_of
 
 
 def column(x):
@@ -24,7 +24,7 @@ def total(a, b):
 
 def tensors_if_any(arrays, *values):
     """The arrays as tensors of the kind of the first tensor among the values; as they are where there is none."""
-    if _library(*values) is np:
+    if library_of(*values) is np:
         return arrays
     tensor = next(value for value in values if hasattr(value, "new_tensor"))
     return tuple(tensor.new_tensor(array) for array in arrays)

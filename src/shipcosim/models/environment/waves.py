@@ -20,19 +20,9 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.models.core.maths import (
-    _library,
-    cos,
-    exp,
-    floor,
-    interp,
-    minimum,
-    pi,
-    sin,
-    sincos,
-    where,
-    wrap,
-)
+from shipcosim.angles import wrap
+from shipcosim.models.core.interpolation import interp
+from shipcosim.models.core.maths import cos, exp, floor, library_of, minimum, pi, sin, sincos, where
 from shipcosim.models.core.sampling import generator
 from shipcosim.models.core.tables import parse
 from shipcosim.models.environment.sinusoids import column, tensors_if_any, total
@@ -468,7 +458,7 @@ def _summed(rows, weights):
 
 def _grid(waves, table):
     """a_i D_i at each heading of the table, (headings, ..., 3, n)."""
-    stack = _library(waves.omega).stack
+    stack = library_of(waves.omega).stack
     amplitude = where(waves.omega > OMEGA_DRIFT_MAX, 0.0, waves.amplitude)
     return stack([stack([amplitude * interp(waves.omega, table.omega, D) for D in XYN], -2) for XYN in table.loads], 0)
 
@@ -500,7 +490,7 @@ def _not_zero(x):
 
 def _like(waves, *values):
     """The same waves as tensors, where one of the values is a tensor."""
-    if not isinstance(waves.omega, np.ndarray) or _library(*values) is np:
+    if not isinstance(waves.omega, np.ndarray) or library_of(*values) is np:
         return waves
     arrays = (waves.amplitude, waves.omega, waves.wavenumber, waves.phase, np.asarray(waves.direction))
     return Waves(*tensors_if_any(arrays, *values))

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from shipcosim.models.core.maths import clip, cos, sin, wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import clip, cos, sin
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.environment.gusts import gust
 

@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
+from shipcosim.angles import wrap
+from shipcosim.models.core.interpolation import interp_columns
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import atan2, hypot, interp_columns, pi, where, wrap
+from shipcosim.models.core.maths import atan2, hypot, pi, where
 from shipcosim.models.core.parameters import acts, quantity
 from shipcosim.models.core.tables import columns
 from shipcosim.models.ship.load_tables import WIND_33M9

@@ -2,10 +2,12 @@
 
 from math import ceil
 
-from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.integrate import midpoint_motion
+from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind, wind_loads
-from shipcosim.models.ship.vessel import Vessel, accelerations, through_water
+from shipcosim.models.ship.vessel import accelerations, through_water
 
 
 def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, hull, wind):
@@ -13,7 +15,7 @@ def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, h
 
     Parameters
     ----------
-    vessel : Vessel
+    vessel : Motion
         State now.
     thrusters : tuple of three
         Load of the thrusters, held in body axes. [N, N, N.m]
@@ -30,7 +32,7 @@ def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, h
 
     Returns
     -------
-    tuple of Vessel
+    tuple of Motion
         One per horizon.
 
     Notes
@@ -44,7 +46,7 @@ def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, h
         steps = ceil((horizon - before) / longest_step)
         for _ in range(steps):
             motion = _advance(motion, held, air, current, (horizon - before) / steps, hull=hull, wind=wind)
-        predictions.append(Vessel(*motion[:6]))
+        predictions.append(Motion(*motion[:6]))
         before = horizon
     return tuple(predictions)
 
@@ -55,23 +57,13 @@ def _advance(motion, held, air, current, h, *, hull, wind):
     `motion` is x, y, psi, u, v, r and the velocity through the water, u_r and v_r.
     """
     x, y, psi, u, v, r, u_r, v_r = motion
-    psi_mid = psi + 0.5 * h * r
-    wind_X, wind_Y, wind_N = wind_loads(*apparent_wind(psi_mid, u, v, *air), wind=wind)
+    wind_X, wind_Y, wind_N = wind_loads(*apparent_wind(psi + 0.5 * h * r, u, v, *air), wind=wind)
     X, Y, N = held[0] + wind_X, held[1] + wind_Y, held[2] + wind_N
-    u_dot, v_dot, r_dot = accelerations(u_r, v_r, r, X, Y, N, hull=hull)
-    u_mid, v_mid, r_mid = u_r + 0.5 * h * u_dot, v_r + 0.5 * h * v_dot, r + 0.5 * h * r_dot
-    u_dot, v_dot, r_dot = accelerations(u_mid, v_mid, r_mid, X, Y, N, hull=hull)
-    north, east = to_ned(psi_mid, u_mid, v_mid)
-    psi = wrap(psi + h * r_mid)
+
+    def rates(u_r, v_r, r):
+        return accelerations(u_r, v_r, r, X, Y, N, hull=hull)
+
+    x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, h, *current)
+    psi = wrap(psi)
     u_c, v_c = to_body(psi, *current)
-    u_r, v_r = u_r + h * u_dot, v_r + h * v_dot
-    return (
-        x + h * (north + current[0]),
-        y + h * (east + current[1]),
-        psi,
-        u_r + u_c,
-        v_r + v_c,
-        r + h * r_dot,
-        u_r,
-        v_r,
-    )
+    return x, y, psi, u_r + u_c, v_r + v_c, r, u_r, v_r

@@ -12,7 +12,8 @@ the motor's limits cut the torque, z follows back at k_i/k_p. The speed limit le
 
 from typing import Any, NamedTuple
 
-from shipcosim.models.core.maths import clip, maximum, minimum, pi, rk4_pair, substeps, where
+from shipcosim.models.core.integrate import rk4_pair, substeps
+from shipcosim.models.core.maths import clip, maximum, minimum, pi, where
 
 _LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
 _TURN = 2.0 * pi

@@ -14,7 +14,8 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from shipcosim.models.core.maths import atan2, even_table, interp_even, pi, sqrt, where
+from shipcosim.models.core.interpolation import even_table, interp_even
+from shipcosim.models.core.maths import atan2, pi, sqrt, where
 from shipcosim.models.core.parameters import quantity
 
 # Fourier coefficients of CT and CQ of B4-70, P/D 1.4: Roddy, Hess and Faller, Neural network predictions of the

@@ -1,6 +1,7 @@
 """The slipstream of a thruster and what lies in it."""
 
-from shipcosim.models.core.maths import atan2, exp, pi, where, wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import atan2, exp, pi, where
 
 
 def slipstream_share(x, y, azimuth, rpm, *, width):

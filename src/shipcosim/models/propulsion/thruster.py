@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import load_at, velocity_at
-from shipcosim.models.core.maths import clip, cos, exp, hypot, pi, sin, sqrt, where, wrap
+from shipcosim.models.core.maths import clip, cos, exp, hypot, pi, sin, sqrt, where
 from shipcosim.models.core.parameters import acts, quantity
 from shipcosim.models.propulsion.drive import at_rest, drive_step
 from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads

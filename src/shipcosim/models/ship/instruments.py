@@ -5,10 +5,10 @@ resolved with the measured heading.
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
+from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import to_body, to_ned, velocity_at
-from shipcosim.models.core.maths import wrap
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
 
 
@@ -21,25 +21,6 @@ class InstrumentParameters:
     lever_y: float = quantity(0.0, "m", "antenna to starboard of the origin", "neutral")
     velocity_scale: float = quantity(1.0, "1", "logged over true surge and sway", "neutral", minimum=0.01)
     lag: float = quantity(0.0, "s", "by how much all of it is late", "neutral", minimum=0.0)
-
-
-class Shown(NamedTuple):
-    """Motion as a log has it.
-
-    Parameters
-    ----------
-    x, y, psi : float or (...) array or tensor
-        Position north and east, heading. [m, m, rad]
-    u, v, r : like x
-        Velocity over ground forward and to starboard, yaw rate. [m/s, m/s, rad/s]
-    """
-
-    x: Any
-    y: Any
-    psi: Any
-    u: Any
-    v: Any
-    r: Any
 
 
 def shown(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, velocity_scale=1.0):
@@ -56,7 +37,7 @@ def shown(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, vel
 
     Returns
     -------
-    Shown
+    Motion
 
     Examples
     --------
@@ -69,7 +50,7 @@ def shown(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, vel
     north, east = to_ned(psi, lever_x, lever_y)
     u, v = velocity_at(lever_x, lever_y, u, v, r)
     u, v = to_body(heading_bias, velocity_scale * u, velocity_scale * v)
-    return Shown(x + north, y + east, wrap(psi + heading_bias), u, v, r)
+    return Motion(x + north, y + east, wrap(psi + heading_bias), u, v, r)
 
 
 def motion_of(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, velocity_scale=1.0):
@@ -86,14 +67,14 @@ def motion_of(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0,
 
     Returns
     -------
-    Shown
+    Motion
         True position, heading and velocity of the origin.
     """
     psi = wrap(psi - heading_bias)
     u, v = to_ned(heading_bias, u / velocity_scale, v / velocity_scale)
     u, v = velocity_at(-lever_x, -lever_y, u, v, r)
     north, east = to_ned(psi, lever_x, lever_y)
-    return Shown(x - north, y - east, psi, u, v, r)
+    return Motion(x - north, y - east, psi, u, v, r)
 
 
 def remembered(history, t, values, since):
@@ -101,11 +82,11 @@ def remembered(history, t, values, since):
 
     Parameters
     ----------
-    history : tuple of (float, Shown)
+    history : tuple of (float, Motion)
         In the order of time.
     t : float
         Time of the new entry. [s]
-    values : Shown
+    values : Motion
         The new entry.
     since : float
         Earliest time that will still be asked for. [s]
@@ -126,18 +107,18 @@ def recalled(history, t):
 
     Parameters
     ----------
-    history : tuple of (float, Shown)
+    history : tuple of (float, Motion)
         In the order of time, not empty.
     t : float
         Time. [s]
 
     Returns
     -------
-    Shown
+    Motion
 
     Examples
     --------
-    >>> at_0, at_2 = Shown(0.0, 0.0, 3.1, 0.0, 0.0, 0.0), Shown(4.0, 0.0, -3.1, 0.0, 0.0, 0.0)
+    >>> at_0, at_2 = Motion(0.0, 0.0, 3.1, 0.0, 0.0, 0.0), Motion(4.0, 0.0, -3.1, 0.0, 0.0, 0.0)
     >>> half_way = recalled(((0.0, at_0), (2.0, at_2)), 1.0)
     >>> half_way.x, round(half_way.psi, 3)
     (2.0, -3.142)
@@ -147,4 +128,4 @@ def recalled(history, t):
     share = max((t - t_0) / (t_1 - t_0), 0.0) if t_1 > t_0 else 1.0
     between = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
     between[2] = wrap(a.psi + share * wrap(b.psi - a.psi))
-    return Shown(*between)
+    return Motion(*between)

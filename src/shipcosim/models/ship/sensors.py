@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from math import radians
 from typing import NamedTuple
 
-from shipcosim.models.core.maths import atan2, cos, exp, hypot, sin, sqrt, wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import atan2, cos, exp, hypot, sin, sqrt
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.core.sampling import normals, samples_due
 

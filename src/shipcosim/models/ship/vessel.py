@@ -1,34 +1,16 @@
 """Motion of a ship in surge, sway and yaw, in a current that is uniform and holds over a step."""
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
-from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import substeps, wrap
+from shipcosim.angles import wrap
+from shipcosim.models.core.integrate import rk4_motion, substeps
+from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.hull import hull_loads
 from shipcosim.models.ship.load_tables import DRIFT_33M9
 
 _LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
-
-
-class Vessel(NamedTuple):
-    """State of a ship.
-
-    Parameters
-    ----------
-    x, y, psi : float or (...) array or tensor
-        Position north and east, heading. [m, m, rad]
-    u, v, r : like x
-        Velocity over ground in body axes. [m/s, m/s, rad/s]
-    """
-
-    x: Any
-    y: Any
-    psi: Any
-    u: Any
-    v: Any
-    r: Any
 
 
 @dataclass(frozen=True)
@@ -52,7 +34,7 @@ def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
 
     Parameters
     ----------
-    vessel : Vessel
+    vessel : Motion
         State at the start.
     tau_X, tau_Y, tau_N : like the state
         Loads from outside in body axes, held over the step. [N, N, N.m]
@@ -65,41 +47,20 @@ def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
 
     Returns
     -------
-    Vessel
+    Motion
         State at the end.
     """
+
+    def rates(u_r, v_r, r):
+        return accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, hull=hull)
 
     u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
     x, y, psi, r = vessel.x + h * current_north, vessel.y + h * current_east, vessel.psi, vessel.r
     parts = substeps(h, _LONGEST_SUBSTEP)
     for _ in range(parts):
-        x, y, psi, u_r, v_r, r = _part(x, y, psi, u_r, v_r, r, (tau_X, tau_Y, tau_N), h / parts, hull)
+        x, y, psi, u_r, v_r, r = rk4_motion(rates, x, y, psi, u_r, v_r, r, h / parts)
     u_c, v_c = to_body(psi, current_north, current_east)
-    return Vessel(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
-
-
-def _part(x, y, psi, u, v, r, tau, h, hull):
-    """A Runge-Kutta step as `maths.rk4`, in the frame of the water, without its loops: half as long in floats."""
-    half, sixth = 0.5 * h, h / 6.0
-    u1, v1, r1 = accelerations(u, v, r, *tau, hull=hull)
-    ub, vb, rb = u + half * u1, v + half * v1, r + half * r1
-    u2, v2, r2 = accelerations(ub, vb, rb, *tau, hull=hull)
-    uc, vc, rc = u + half * u2, v + half * v2, r + half * r2
-    u3, v3, r3 = accelerations(uc, vc, rc, *tau, hull=hull)
-    ud, vd, rd = u + h * u3, v + h * v3, r + h * r3
-    u4, v4, r4 = accelerations(ud, vd, rd, *tau, hull=hull)
-    x1, y1 = to_ned(psi, u, v)
-    x2, y2 = to_ned(psi + half * r, ub, vb)
-    x3, y3 = to_ned(psi + half * rb, uc, vc)
-    x4, y4 = to_ned(psi + h * rc, ud, vd)
-    return (
-        x + sixth * (x1 + 2.0 * (x2 + x3) + x4),
-        y + sixth * (y1 + 2.0 * (y2 + y3) + y4),
-        psi + sixth * (r + 2.0 * (rb + rc) + rd),
-        u + sixth * (u1 + 2.0 * (u2 + u3) + u4),
-        v + sixth * (v1 + 2.0 * (v2 + v3) + v4),
-        r + sixth * (r1 + 2.0 * (r2 + r3) + r4),
-    )
+    return Motion(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
 
 
 def accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, *, hull):

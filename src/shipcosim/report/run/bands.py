@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import Dataset
 
-from shipcosim.report.theme.display import wrapped
+from shipcosim.angles import wrap_series
 from shipcosim.scenario import Expectation, Verdict
 
 
@@ -80,7 +80,7 @@ def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) ->
         middle = part[minus].values
         lower, upper, drawn = lower - middle, upper - middle, drawn - middle
         if part[signal].attrs["units"] == "deg":
-            turn = wrapped(lower) - lower
+            turn = wrap_series(lower) - lower
             lower, upper = lower + turn, upper + turn
     least, most = (pick(drawn[np.isfinite(drawn)], initial=0.0) for pick in (np.min, np.max))
     pad = 0.1 * (most - least)

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import Dataset, Variable
 
+from shipcosim.angles import wrap_series
 from shipcosim.report.run.bands import window
 from shipcosim.report.run.roles import Roles
-from shipcosim.report.theme.display import as_variable, unturned, wrapped
+from shipcosim.report.theme.display import as_variable, unturned
 from shipcosim.scenario import Verdict
 
 ERRORS = {"x": "north error", "y": "east error", "psi": "heading error"}
@@ -50,7 +51,7 @@ def errors(shown: Dataset, roles: Roles) -> dict[str, Variable]:
         ship, reference = roles.signal(roles.ship, axis), desired(roles, axis)
         if ship and reference:
             error, unit = shown[ship].values - shown[reference].values, shown[ship].attrs["units"]
-            found[name] = as_variable(wrapped(error) if unit == "deg" else error, unit, name)
+            found[name] = as_variable(wrap_series(error) if unit == "deg" else error, unit, name)
     return found
 
 

@@ -5,6 +5,8 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from xarray import Dataset
 
+from shipcosim.angles import unwrap_series
+
 READ_AS = {  # unit in the table: unit people read, factor, least size for which it pays
     "rad": ("deg", 180 / np.pi, 0.0),
     "rad/s": ("deg/s", 180 / np.pi, 0.0),
@@ -62,11 +64,6 @@ def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
         largest = max((np.nanmax(np.abs(v)) for v in numeric if v.size and not np.isnan(v).all()), default=0.0)
         chosen[unit] = (shown, factor) if largest >= least else (unit or "", 1.0)
     return chosen
-
-
-def wrapped(degrees: ArrayLike) -> NDArray:
-    """Angle in [-180, 180). [deg]"""
-    return (np.asarray(degrees) + 180.0) % 360.0 - 180.0
 
 
 def thinned(shown: Dataset, budget: int = BYTES_FOR_SIGNALS) -> tuple[Dataset, int]:
@@ -127,7 +124,7 @@ def unturned(name: str, radians: ArrayLike) -> NDArray:
     finite = np.isfinite(values)
     if not finite.any():
         return values
-    values[finite] = np.unwrap(values[finite])
+    values = unwrap_series(values)
     if name.rpartition(".")[2].split("_")[-1] in ("from", "to", "mean"):
         values -= 2 * np.pi * np.floor(values[finite][0] / (2 * np.pi))
     return values

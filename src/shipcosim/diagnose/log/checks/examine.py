@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.log.checks.clock import wrong_clock
 from shipcosim.diagnose.log.checks.labels import mislabelled
 from shipcosim.diagnose.log.checks.samples import gaps, outliers, wraps
@@ -72,6 +73,5 @@ def _without(table, found):
         bad = inside(table["time"], finding.segments)
         table |= {role: np.where(bad, np.nan, table[role]) for role in finding.channels if role in table}
     if "heading" in table:
-        known = np.isfinite(table["heading"])
-        table["heading"][known] = np.degrees(np.unwrap(np.radians(table["heading"][known])))
+        table["heading"][:] = np.degrees(unwrap_series(np.radians(table["heading"])))
     return table

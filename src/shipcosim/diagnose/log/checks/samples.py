@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.result import Finding
 
@@ -150,7 +151,7 @@ def _bend(values, role):
     """Size of the second difference from each row on; angles the short way round."""
     bend = np.diff(values, n=2)
     if role == "heading" or role.endswith("_from"):
-        bend = np.mod(bend + 180.0, 360.0) - 180.0
+        bend = wrap_series(bend)
     return np.r_[np.where(np.isnan(bend), np.inf, np.abs(bend)), np.inf, np.inf]
 
 
@@ -234,7 +235,7 @@ def _long_way(time, heading, a, b, tolerance):
     Some of them may be missing.
     """
     n, between = len(a), len(heading) - len(a) - 1
-    crossing = (np.abs(b - a) > 180.0) & (np.abs(np.mod(b - a + 180.0, 360.0) - 180.0) < 45.0)
+    crossing = (np.abs(b - a) > 180.0) & (np.abs(wrap_series(b - a)) < 45.0)
     some = np.zeros(n, bool)
     for k in range(1, between + 1):
         share = (time[k : n + k] - time[:n]) / (time[between + 1 :] - time[:n])
@@ -250,8 +251,8 @@ def _round_south(log):
     They come and go within a few rows, much faster than the ship turns.
     """
     bad, known = np.zeros(len(log["heading"]), bool), np.flatnonzero(np.isfinite(log["heading"]))
-    time, heading = log["time"][known], np.mod(log["heading"][known] + 180.0, 360.0) - 180.0
-    change = np.abs(np.mod(np.diff(heading) + 180.0, 360.0) - 180.0) / np.diff(time)
+    time, heading = log["time"][known], wrap_series(log["heading"][known])
+    change = np.abs(wrap_series(np.diff(heading))) / np.diff(time)
     turning = np.nan_to_num(np.abs(log["yaw_rate"][known])) if "yaw_rate" in log else np.zeros(len(known))
     longest = (2 * LONGEST_WRAP + 1.5) * np.median(np.diff(log["time"]))
     for first, last in runs(np.abs(heading) > NEAR_NORTH):
@@ -276,7 +277,7 @@ def _far_off(values, is_angle):
         return np.zeros(len(values), bool)
     change = np.diff(values)
     if is_angle:
-        change = np.mod(change + 180.0, 360.0) - 180.0
+        change = wrap_series(change)
     usual = 1.4826 * np.nanmedian(np.abs(change - np.nanmedian(change))) + quantum(values) + 1e-12
     before, after = change[:-1], change[1:]
     with np.errstate(invalid="ignore"):
