@@ -6,6 +6,8 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Unpack
 
+from pydantic import ValidationError
+
 from shipcosim.cosim import simulate as _simulate
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunKeywords, RunOptions
@@ -113,7 +115,7 @@ def _scenario(given, experiment, keys):
         keys = had | keys
     try:
         scenario = Scenario.model_validate(keys)
-    except ValueError as error:  # pydantic's
+    except ValidationError as error:
         raise ShipcosimError([_problem(finding) for finding in error.errors()]) from None
     problems = [problem for problem in check_times(scenario) if problem.severity == "error"]
     if problems:

@@ -228,12 +228,18 @@ def _read_arrow(path):
     is_parquet = path.name.endswith(".parquet")
     try:
         content = read_parquet(path) if is_parquet else read_csv(path)
-        headers = [_HEADER.match(header) for header in content.column_names]
+        headers = [_name_and_unit(header) for header in content.column_names]
     except (OSError, pyarrow.ArrowInvalid, UnicodeDecodeError) as error:
         raise ShipcosimError(_unreadable(path, is_parquet, error)) from error
     if content.num_rows == 0:
         raise ShipcosimError(Problem(str(path), "has no row below its header.", "Each row is a time and its values."))
-    return [header["name"] for header in headers], [header["unit"] or "" for header in headers], content.columns
+    return [name for name, _ in headers], [unit for _, unit in headers], content.columns
+
+
+def _name_and_unit(header: str) -> tuple[str, str]:
+    """Parts of ``name [unit]``; the unit is empty where there is none."""
+    found = _HEADER.match(header)
+    return (found["name"], found["unit"] or "") if found else (header, "")
 
 
 def _unreadable(path, is_parquet, error):

@@ -270,12 +270,12 @@ def spelled_conversion(source: str, target: str) -> tuple[float, float]:
     >>> spelled_conversion("kn", "m/s")
     (0.5144444444444445, 0.0)
     """
-    units = spelled_unit(source), spelled_unit(target)
-    if None in units:
+    given, wanted = spelled_unit(source), spelled_unit(target)
+    if given is None or wanted is None:
         return _pint_conversion(source, target)
-    if relation(*units) == "incompatible":
+    if relation(given, wanted) == "incompatible":
         raise UnitError(f"cannot convert '{source}' into '{target}': they measure different things.")
-    return conversion(*units)
+    return conversion(given, wanted)
 
 
 def _pint_conversion(source: str, target: str) -> tuple[float, float]:

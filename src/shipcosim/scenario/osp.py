@@ -187,16 +187,19 @@ def _change(given: dict[str, Any], defaults: dict[str, Any], step_size: float) -
     if "time" not in given:
         raise ValueError("It has no time.", "Give it in seconds from the start of the run.")
     count = max(0, math.ceil(_seconds(given["time"], "time") / step_size - 1e-6))
-    for name in DEFAULTS:
-        if not isinstance(given.get(name, defaults.get(name)), str):
-            raise ValueError(f"It has no {name}, and the defaults have none.", f"Give it a {name}.")
-    model, variable, action = (given.get(name, defaults.get(name)) for name in DEFAULTS)
+    model, variable, action = (_text(given.get(name, defaults.get(name)), name) for name in DEFAULTS)
     if action not in ACTIONS:
         raise ValueError(f"The action '{action}' is not known.", suggestion(action, ACTIONS))
     value = None if action == "reset" else _value(given.get("value"))
     if action == "bias" and (isinstance(value, (str, bool))):
         raise ValueError(f"A bias of {value!r}.", "A bias is a number.")
     return count, action, f"{model}.{variable}", value
+
+
+def _text(given: Any, name: str) -> str:
+    if not isinstance(given, str):
+        raise ValueError(f"It has no {name}, and the defaults have none.", f"Give it a {name}.")
+    return given
 
 
 def _seconds(given: Any, name: str) -> float:
