@@ -1,13 +1,19 @@
 """What a diagnosis says: causes with their parameters, verdict and gain, as diagnosis.json holds them."""
 
+from __future__ import annotations
+
 from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.stages import JudgedLog
 
 __all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "ExperimentDesign", "label_of"]
 
 SCHEMA = "shipcosim-diagnosis/1"
 
 
-def label_of(cause, component):
+def label_of(cause: str, component: str | None) -> str:
     """A cause with its place, in words: ``thrust_loss of port``."""
     return f"{cause} of {component}" if component else cause
 
@@ -115,6 +121,8 @@ class Diagnosis:
     prescription : ExperimentDesign or None
     baseline, gain : dict or None
         As in the contract; None where there was too little data.
+    basis : JudgedLog or None
+        What it rests on, for further work: the log, the identification problem, the fits.
     """
 
     verdict: str
@@ -125,6 +133,7 @@ class Diagnosis:
     prescription: ExperimentDesign | None = None
     baseline: dict | None = None
     gain: dict | None = None
+    basis: JudgedLog | None = None
 
     def as_json(self) -> dict:
         """The diagnosis as the content of diagnosis.json."""

@@ -7,7 +7,7 @@ import numpy as np
 import torch
 
 from shipcosim.diagnose.inference.linearisation import linearise
-from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, shown
 from shipcosim.diagnose.validation.gain import compare, gain
 from shipcosim.diagnose.validation.predictions import missing
@@ -37,11 +37,11 @@ def gains(path):
     dict or None
         `gain` of the diagnosis and ``network_m``; None where the log is too short for a gain.
     """
-    _, details = diagnose(path, system())
-    comparison = compare(details.problem, details.fit)
+    basis = find_causes(path, system()).basis
+    comparison = compare(basis.problem, basis.fit)
     if comparison is None:
         return None
-    off = missed(details.problem, comparison)
+    off = missed(basis.problem, comparison)
     return gain(comparison.errors) | {"network_m": float(np.sqrt((off**2).mean()))}
 
 

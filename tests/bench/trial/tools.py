@@ -28,9 +28,9 @@ def system():
 
 def ours(path):
     """The project's own diagnosis."""
-    from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.diagnose.pipeline import find_causes
 
-    return diagnose(path, system())[0]
+    return find_causes(path, system())
 
 
 @dataclass(frozen=True)
@@ -71,18 +71,19 @@ def with_drift(path, nameless=None):
     -------
     WithGain
     """
-    from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.diagnose.pipeline import find_causes
     from shipcosim.diagnose.validation.gain import compare
 
     head = Path(path).with_suffix(".head.csv")
     table = pd.read_csv(path)
     table[table["time [s]"] <= UNTIL].to_csv(head, index=False)
-    diagnosis, details = diagnose(head, system())
-    if diagnosis.verdict != "named" or not details.fit.hypotheses:
+    diagnosis = find_causes(head, system())
+    problem, fit = diagnosis.basis.problem, diagnosis.basis.fit
+    if diagnosis.verdict != "named" or not fit.hypotheses:
         return WithGain(diagnosis)
-    under_dp = details.problem, compare(details.problem, details.fit)
-    adrift = _compared(path, details, UNTIL)
-    healthy = [_compared(twin_of(path), replace(details, fit=None), until)[1] for until in (SHARE * UNTIL, UNTIL)]
+    under_dp = problem, compare(problem, fit)
+    adrift = _compared(path, problem.noise, fit, UNTIL)
+    healthy = [_compared(twin_of(path), problem.noise, None, until)[1] for until in (SHARE * UNTIL, UNTIL)]
     under_dp = _gain(*under_dp, healthy[0], lambda errors: errors["start_time"].values <= UNTIL - 60.0, nameless)
     adrift = _gain(*adrift, healthy[1], lambda errors: errors["regime"].values == "drifting", nameless)
     return WithGain(replace(diagnosis, gain=under_dp), adrift)
@@ -93,21 +94,18 @@ def twin_of(path):
     return Path(path).with_suffix(".twin.csv")
 
 
-def _compared(path, details, until):
-    """Case of a log, and predictions on it after some time by the causes of a diagnosis, fitted until then."""
-    from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+def _compared(path, noise, fit, until):
+    """Problem of a log, and predictions on it after some time by the causes of a fit, fitted until then."""
     from shipcosim.diagnose.inference.fitting import fitted
-    from shipcosim.diagnose.inference.problem import prepare
-    from shipcosim.diagnose.log.checks.examine import examine
-    from shipcosim.diagnose.log.reader import read_log
-    from shipcosim.diagnose.log.repair import repaired
-    from shipcosim.diagnose.ship.model import ship_model_of
+    from shipcosim.diagnose.inference.problem import identification_problem
+    from shipcosim.diagnose.log.checks.examine import checked
+    from shipcosim.diagnose.pipeline import read_measurements
     from shipcosim.diagnose.validation.gain import compare
 
-    log = read_log(path)
-    case = prepare(repaired(log, examine(log)), ship_model_of(system()), read_catalogue(None), details.problem.noise)
-    fit = fitted(case, details.fit.hypotheses, details.fit.values) if details.fit else fitted(case)
-    return case, compare(case, fit, train=case.record.time <= until)
+    log = checked(read_measurements(path, system()))
+    problem = identification_problem(log.repaired, log.ship, log.causes, noise)
+    fit = fitted(problem, fit.hypotheses, fit.values) if fit else fitted(problem)
+    return problem, compare(problem, fit, train=problem.record.time <= until)
 
 
 def _gain(case, compared, healthy, chosen, nameless):

@@ -1,37 +1,73 @@
 """Whether a cause began during the log: the rows before it are then healthy, and the rest is diagnosed on its own."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.fitting import fitted, probes
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, probes
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import beside
+from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.search import at_first_sight, explain, without_causes
+from shipcosim.diagnose.inference.thresholds import (
+    CHANGE_POINT_BLOCK,
+    CHANGE_POINT_GAIN,
+    CHANGE_POINT_MARGIN,
+    CHANGE_POINT_SKIPPED,
+)
+from shipcosim.diagnose.stages import ExplainedLog
 
-_BLOCK = 60.0  # s
-_BLIND = 2  # blocks after an onset, in which the filter still answers to it
-_WORTH = 6.0  # nats, for a second look; twice that to be believed
+__all__ = ["change_point_of", "with_change_point"]
 
 
-def begun(problem, fits):
+def with_change_point(explained: ExplainedLog) -> ExplainedLog:
+    """The log from a change point on with its own causes, where that explains the whole better; else as it was.
+
+    A healthy log has no change point.
+    """
+    found = explained.identification
+    time = None if explained.is_healthy else change_point_of(found.problem, explained.fits)
+    if time is None:
+        return explained
+    row, whole = int(np.searchsorted(found.repaired["time"].values, time)), explained.fits[0].score
+    earlier, later = found.repaired.isel(time=slice(0, row)), found.repaired.isel(time=slice(row, None))
+    before, after = (
+        identification_problem(part, found.ship, found.causes, found.problem.noise) for part in (earlier, later)
+    )
+    healthy = fitted(before)
+    if healthy.score + at_first_sight(after) < whole:
+        return explained
+    fits = tuple(explain(after))
+    if healthy.score + fits[0].score < whole + 2.0 * CHANGE_POINT_GAIN:
+        return explained
+    return replace(
+        explained, identification=replace(found, repaired=later, problem=after), fits=fits, change_point=time
+    )
+
+
+def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> float | None:
     """When the likeliest cause would have begun: where the log splits best into rows without and with it.
 
     Parameters
     ----------
     problem : IdentificationProblem
-    fits : list of Fit
+    fits : sequence of Fit
         Of `explain`.
 
     Returns
     -------
     float or None
-        Time [s]; None where nothing is gained by an onset.
+        Time [s]; None where nothing is gained by a change point.
     """
     nothing = without_causes(fits)
     hypotheses = [hypothesis for hypothesis in problem.hypotheses if hypothesis.effect.law != "turning"]
     groups = [group for hypothesis in hypotheses for group in probes(hypothesis)]
     linear = beside(nothing.linear, problem.base_of([column for group in groups for column in group]))
-    parts = max(int(problem.record.time.size * problem.record.step / _BLOCK), 8)
+    parts = max(int(problem.record.time.size * problem.record.step / CHANGE_POINT_BLOCK), 8)
     blocks = gram(innovations(linear, problem.noise, problem.record), parts).blocks
     known, place, gains = len(nothing.columns), len(nothing.columns), []
     priors = []
@@ -41,45 +77,13 @@ def begun(problem, fits):
         place += len(group)
         priors.append(prior)
     none = np.where(np.arange(prior.size) < known, 1.0, 0.0)
-    for first in range(3, parts - _BLIND - 3):
-        before, after = blocks[:first].sum(0), blocks[first + _BLIND :].sum(0)
+    for first in range(CHANGE_POINT_MARGIN, parts - CHANGE_POINT_SKIPPED - CHANGE_POINT_MARGIN):
+        before, after = blocks[:first].sum(0), blocks[first + CHANGE_POINT_SKIPPED :].sum(0)
         healthy, throughout = evidence(before, none)[0], before + after
         later = max(evidence(after, prior)[0] for prior in priors)
         gains.append(healthy + later - max(evidence(throughout, prior)[0] for prior in (none, *priors)))
     if not gains:  # too short to be parted
         return None
     best = int(np.argmax(gains))
-    row = round((3 + best) / parts * problem.record.time.size)
-    return float(problem.record.time[row]) if gains[best] > _WORTH else None
-
-
-def from_change_point(clean, problem, fits, prepare):
-    """The diagnosis of the rows after an onset, where that explains the whole log better.
-
-    Parameters
-    ----------
-    clean : xarray.Dataset
-        Repaired log.
-    problem : IdentificationProblem
-    fits : list of Fit
-        Of the whole log.
-    prepare : callable
-        Makes the case of a part of the log.
-
-    Returns
-    -------
-    tuple of float, xarray.Dataset, Case, list of Fit, or None
-        Time of the onset [s], and the later rows with their case and fits.
-    """
-    time = begun(problem, fits)
-    if time is None:
-        return None
-    row = int(np.searchsorted(clean["time"].values, time))
-    earlier, later = clean.isel(time=slice(0, row)), clean.isel(time=slice(row, None))
-    healthy, after = fitted(prepare(earlier)), prepare(later)
-    if healthy.score + at_first_sight(after) < fits[0].score:
-        return None
-    found = explain(after)
-    if healthy.score + found[0].score < fits[0].score + 2.0 * _WORTH:
-        return None
-    return time, later, after, found
+    row = round((CHANGE_POINT_MARGIN + best) / parts * problem.record.time.size)
+    return float(problem.record.time[row]) if gains[best] > CHANGE_POINT_GAIN else None

@@ -1,30 +1,44 @@
-"""What healthy logs like this one score by chance: the ship keeps the log's track under a DP, many times over.
+"""Null distribution of causes' gains: what they gain on healthy logs, simulated on the log's track under a DP.
 
 Each of the healthy ships differs from the modelled one within its tolerances and has noise as in the log. Feedback
 moves thrusters and weather together, and a ship that keeps still moves by its noise alone: both can look like a cause,
 and here nothing is wrong that could be one.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.inference.evidence import gram
-from shipcosim.diagnose.inference.fitting import gains, prepared
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, gains, prepared
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME
 from shipcosim.diagnose.inference.noise import waves_of
+from shipcosim.diagnose.inference.thresholds import LOST_TRACK
 from shipcosim.diagnose.ship.inputs import Record, first_motion
-from shipcosim.diagnose.ship.model import shown
+from shipcosim.diagnose.ship.model import Motion, shown
 from shipcosim.diagnose.ship.track_keeping import Dp, sailed
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 
 __all__ = ["healthy_records", "null_gains"]
 
-_ASTRAY = 10.0  # times the usual squared innovations: of a small craft that spun away, as one in fifty did
 
-
-def null_gains(problem, motion, wanted, *, count=50, seed=0, batch=5):
-    """Gain of hypotheses on healthy logs like this one.
+def null_gains(
+    problem: IdentificationProblem,
+    motion: Motion,
+    wanted: Sequence[Hypothesis],
+    *,
+    count: int = 50,
+    seed: int = 0,
+    batch: int = 5,
+) -> dict[str, np.ndarray]:
+    """Gain of hypotheses on simulated healthy logs like this one.
 
     Parameters
     ----------
@@ -42,21 +56,21 @@ def null_gains(problem, motion, wanted, *, count=50, seed=0, batch=5):
     Returns
     -------
     dict of str to (m,) array
-        By the hypothesis's label. [nats] Ships that the linear problem loses tell nothing and are left out.
+        By the hypothesis's label. [nats] Ships that lose the track say nothing and are left out.
     """
     records = healthy_records(problem, motion, count, np.random.default_rng(seed))
     problem = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses)
-    missed, found = [], {hypothesis.label: [] for hypothesis in wanted}
+    squares, found = [], {hypothesis.label: [] for hypothesis in wanted}
     for first in range(0, count, batch):
         record = _some(records, slice(first, first + batch))
         here = prepared(replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1)
         columns = problem.known(())
         for products in gram(innovations(here.base, problem.noise, record)).products:
-            missed.append(products[0, 0])
+            squares.append(products[0, 0])
             for gain, hypothesis, _ in gains(products, columns, np.zeros(len(columns)), wanted, problem.model):
                 found[hypothesis.label].append(gain)
-    told = np.array(missed) < _ASTRAY * np.median(missed)
-    return {label: np.array(values)[told] for label, values in found.items()}
+    on_track = np.array(squares) < LOST_TRACK * np.median(squares)
+    return {label: np.array(values)[on_track] for label, values in found.items()}
 
 
 def _some(records, which):
@@ -65,7 +79,7 @@ def _some(records, which):
     return replace(records, measured=records.measured[which], units=units)
 
 
-def healthy_records(problem, motion, count, rng):
+def healthy_records(problem: IdentificationProblem, motion: Motion, count: int, rng: np.random.Generator) -> Record:
     """Logs of healthy ships that keep to a track in the log's weather.
 
     Parameters
@@ -99,7 +113,7 @@ def _drawn(model, count, rng):
 
 
 def _logged(motion, units, model, problem, rng):
-    """The log of the ships' motion, with the noise of the case: white, of waves, and slow in position and heading."""
+    """The log of the ships' motion, with the noise of the log: white, of waves, and slow in position and heading."""
     record, (count, n) = problem.record, motion.x.shape
     measured = np.stack([value.T for value in shown(motion, problem.model)], axis=-1)  # (n, m, 6)
     measured += rng.standard_normal(measured.shape) * np.asarray(problem.noise.white)

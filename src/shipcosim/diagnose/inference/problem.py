@@ -1,81 +1,110 @@
-"""A repaired log made ready: what can be suspected in it, and how noisy it is."""
+"""The identification problem of a repaired log: which causes it could show, and how noisy it is."""
 
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared, weighed
 from shipcosim.diagnose.inference.noise import first_noise, tuned
+from shipcosim.diagnose.inference.thresholds import GUST_FACTOR, LENGTHS_PER_GYRADIUS, MOST_WALK, TUNED_BESIDE
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.surrogate import with_surrogates
+from shipcosim.diagnose.stages import CheckedLog, Identification
 
-__all__ = ["prepare", "unidentifiable"]
+if TYPE_CHECKING:
+    import xarray
 
-_GUSTS = 10.0  # times as fast may an unexplained force walk where nobody knows the wind
-_MOST_WALK = 3e-5  # m/s2.5: some 400 N on Gunnerus in ten minutes
+    from shipcosim.diagnose.hypotheses.catalogue import Cause, Hypothesis
+    from shipcosim.diagnose.inference.innovations import Noise
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["identification_problem", "identified", "unidentifiable"]
 
 
-def prepare(clean, model, catalogue, noise=None):
-    """The case of a repaired log: noise tuned beside whatever explains it best at first sight.
+
+def identified(checked: CheckedLog) -> Identification:
+    """A checked log as an identification problem; its ship gets surrogates of third-party FMUs for this log."""
+    problem = identification_problem(checked.repaired, checked.ship, checked.causes)
+    ship = replace(checked.ship, third_party=problem.model.third_party)
+    return Identification(checked.log, ship, checked.causes, checked.faults, checked.repaired, problem)
+
+
+def identification_problem(
+    repaired: xarray.Dataset, ship: ShipModel, causes: dict[str, Cause], noise: Noise | None = None
+) -> IdentificationProblem:
+    """The identification problem of a repaired log.
 
     Parameters
     ----------
-    clean : xarray.Dataset
-    model : ShipModel
-    catalogue : dict of str to Cause
+    repaired : xarray.Dataset
+    ship : ShipModel
+    causes : dict of str to Cause
     noise : Noise, optional
-        Where it is known already.
+        Where it is known already; else it is tuned beside the cause that explains most at first sight.
 
     Returns
     -------
     IdentificationProblem
     """
-    model = replace(model, span=(float(clean["time"][0]), float(clean["time"][-1])))
-    model = replace(model, wind_is_true="wind_speed" not in clean and "true_wind_speed" in clean)
-    model = replace(model, fixed={n: angle for n, angle in model.fixed.items() if f"{n}_azimuth" not in clean})
-    record, length = record_of(clean, model), model.parts["hull"].length
-    motion = first_motion(record, model)
-    model = with_surrogates(model, record, motion)
-    everyone = hypotheses_of(catalogue, model)
-    hidden = unidentifiable(everyone, record, clean, model.third_party)
+    ship = _as_logged(ship, repaired)
+    record = record_of(repaired, ship)
+    motion = first_motion(record, ship)
+    ship = with_surrogates(ship, record, motion)
+    everyone = hypotheses_of(causes, ship)
+    hidden = unidentifiable(everyone, record, repaired, ship.third_party)
     if record.wind is None:
-        model = replace(model, tolerances=model.tolerances | _unknown_wind(everyone))
+        ship = replace(ship, tolerances=ship.tolerances | _unknown_wind(everyone))
     wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)
-    start = first_noise(record, length) if noise is None else noise
-    problem = prepared(IdentificationProblem(record, model, wanted, start, motion))
-    if noise is not None:
-        return problem
+    start = first_noise(record, ship.parts["hull"].length) if noise is None else noise
+    problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
+    return problem if noise is not None else prepared(replace(problem, noise=_tuned_noise(problem)))
+
+
+def _as_logged(ship, repaired):
+    """The ship with the log's time span, its kind of wind, and thrusters fixed where it has no direction of them."""
+    return replace(
+        ship,
+        span=(float(repaired["time"][0]), float(repaired["time"][-1])),
+        wind_is_true="wind_speed" not in repaired and "true_wind_speed" in repaired,
+        fixed={name: angle for name, angle in ship.fixed.items() if f"{name}_azimuth" not in repaired},
+    )
+
+
+def _tuned_noise(problem):
+    """Noise of maximum likelihood beside the cause that explains most at first sight."""
     fit = fitted(problem)
     gain, hypothesis, values = weighed(problem, fit)[0]
-    if gain > 3.0:
+    if gain > TUNED_BESIDE:
         fit = fitted(problem, (hypothesis,), values)
-    most = _MOST_WALK * np.array([1.0, 1.0, 4.0 / length])
-    most *= 1.0 if record.wind is not None else _GUSTS
-    noise = tuned(start, fit.linear, record, fit.left, most_walk=most)
-    return prepared(replace(problem, noise=noise))
+    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
+    most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
+    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most)
 
 
-def unidentifiable(everyone, record, clean, third_party=()):
-    """Suspects that a log without some channels cannot show: of wind and what acts like it, of silent thrusters.
+def unidentifiable(
+    everyone: Sequence[Hypothesis], record: Record, repaired: xarray.Dataset, third_party: Collection[str] = ()
+) -> list[Hypothesis]:
+    """Hypotheses that a log without some channels cannot show: of wind and what acts like it, of unlogged thrusters.
 
     Parameters
     ----------
     everyone : sequence of Hypothesis
     record : Record
-    clean : xarray.Dataset
+    repaired : xarray.Dataset
     third_party : collection of str
         Thrusters that the log is sure to have, whatever drives them.
-
-    Returns
-    -------
-    list of Hypothesis
     """
-    silent = [name for name in record.units if f"{name}_rpm" not in clean and name not in third_party]
+    silent = [name for name in record.units if f"{name}_rpm" not in repaired and name not in third_party]
     return [s for s in everyone if s.component in silent or (record.wind is None and s.effect.without_wind != "sought")]
 
 
-def _unknown_wind(everyone):
+def _unknown_wind(everyone: Iterable[Hypothesis]) -> dict[str, float]:
     """Tolerances of what stands for the wind, where nobody knows it: the typical size of causes allowed for."""
     allowed = [hypothesis for hypothesis in everyone if hypothesis.effect.without_wind == "allowed for"]
     parameters = [parameter for hypothesis in allowed for parameter in hypothesis.parameters]

@@ -3,10 +3,18 @@
 import numpy as np
 
 from shipcosim.diagnose.inference.fitting import fitted, weighed
+from shipcosim.diagnose.inference.unmodelled import is_healthy
+from shipcosim.diagnose.stages import ExplainedLog, Identification
 
-__all__ = ["at_first_sight", "explain", "names", "without_causes"]
+__all__ = ["at_first_sight", "explain", "names", "with_causes", "without_causes"]
 
 STRAIN = 2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
+
+
+def with_causes(found: Identification) -> ExplainedLog:
+    """An identified log with the sets of causes that explain it, best first."""
+    fits = tuple(explain(found.problem))
+    return ExplainedLog(found, fits, is_healthy(found.problem, fits[0]))
 
 
 def explain(problem, *, most=3, likely=6, near=12.0, enough=5.0):

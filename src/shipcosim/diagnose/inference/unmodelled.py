@@ -1,4 +1,8 @@
-"""Errors without a name: whether something pushes the ship, or is wrong in a channel, that no known cause explains."""
+"""Unmodelled errors: whether a force on the ship, or an error of a channel, is left that no known cause explains."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import chi2
@@ -6,27 +10,38 @@ from scipy.stats import chi2
 from shipcosim.diagnose.inference.evidence import evidence, gram
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import with_columns
+from shipcosim.diagnose.inference.thresholds import (
+    BASIS_FUNCTIONS,
+    CHANNEL_SIZES,
+    FORCE_SIZE,
+    LEAST_LOG_P,
+    LENGTHS_PER_GYRADIUS,
+    PERIODS,
+    SHORTEST_PERIOD,
+    SIZE_FROM_PART_TO_PART,
+    UNMODELLED,
+)
 from shipcosim.diagnose.ship.environment import hat_functions
 from shipcosim.diagnose.ship.model import shown
 
-__all__ = ["FORCES", "HATS", "PERIODS", "unexplained"]
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+
+__all__ = ["FORCES", "is_healthy", "unmodelled_gains"]
 
 FORCES = ("slow", "with the heading", "periodic")
-"""Kinds of errors without a name that push the ship."""
-
-HATS = 8
-PERIODS = 28
-_STEADY = 0.1  # of a cause's size, by which its law may be wrong from part to part (assumed)
-_SIZE = 1e-3  # m/s2, of a force that matters; 500 N on 500 t
-_OFF = (1.0, 1.0, np.radians(1.0), 0.03, 0.03, np.radians(0.03))  # of a channel: m, m, rad, m/s, m/s, rad/s
-_LEAST_LOG = -700.0  # of a p-value; smaller ones are 0 to the machine
-_LEVER = 4.0  # lengths of a ship over its radius of gyration, to turn that into a rate of yaw
+"""Kinds of unmodelled errors that push the ship."""
 
 
-def unexplained(problem, fit):
-    """Gain in log-evidence of errors without a name beside a fit.
+def is_healthy(problem: IdentificationProblem, fit: Fit) -> bool:
+    """Whether a fit has no cause, and no unmodelled error stands out beside it."""
+    return not fit.hypotheses and max(unmodelled_gains(problem, fit).values()) < UNMODELLED
 
-    Forces of three kinds: slow ones in the body frame (a few hat functions over time), ones that go with the heading,
+
+def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, float]:
+    """Gain in log-evidence of unmodelled errors beside a fit.
+
+    Forces of three kinds: slow ones in the body frame (a few basis functions over time), ones that go with the heading,
     and single sinusoids of any period, for which the search over periods is paid. Channels that are off by a
     constant, by a factor, or drift. Whether the causes of the fit are as large in each part of the log. And whether
     the numbers of the ship lie, taken together, within their tolerances.
@@ -60,10 +75,10 @@ def unexplained(problem, fit):
             place += basis.shape[-1]
             scores.append(evidence(products, here, centre)[0] - nothing)
         found[kind] = float(max(scores) - np.log(len(scores)))
-    return found | {"from part to part": _unsteady(fit), "beyond tolerances": _beyond(fit)}
+    return found | {"from part to part": _differs_by_part(fit), "beyond tolerances": _beyond_tolerances(fit)}
 
 
-def _unsteady(fit):
+def _differs_by_part(fit):
     """Evidence that a cause's size differs from part to part of the log by more than a tenth. [nats]
 
     Each part pulls at the estimate; what it would pull by chance is known, and the least likely pull counts.
@@ -76,12 +91,12 @@ def _unsteady(fit):
         for i in own:
             known = blocks[:, 1 + i, 1 + i]
             pull = blocks[:, 1 + i, 0] - blocks[:, 1 + i, 1:] @ fit.left
-            chance = known * (1.0 + (_STEADY * size) ** 2 * known) + 1e-9
+            chance = known * (1.0 + (SIZE_FROM_PART_TO_PART * size) ** 2 * known) + 1e-9
             unlikely.append(chi2.logsf((pull**2 / chance).sum(), len(blocks)))
     return _most_evidence(min(unlikely, default=0.0) + np.log(max(len(unlikely), 1)))
 
 
-def _beyond(fit):
+def _beyond_tolerances(fit):
     """Evidence that the known numbers lie farther off what they are known as than their tolerances say. [nats]
 
     In units of the tolerances the posterior mean has, in each direction, the variance that the log took from that of
@@ -96,7 +111,7 @@ def _beyond(fit):
 
 def _most_evidence(log_p):
     """The most evidence that a p-value can be: -log(-e p log p) (Sellke, Bayarri and Berger 2001). [nats]"""
-    log_p = max(log_p, _LEAST_LOG)
+    log_p = max(log_p, LEAST_LOG_P)
     return float(-1.0 - log_p - np.log(-log_p)) if log_p < -1.0 else 0.0
 
 
@@ -104,11 +119,11 @@ def _bases(problem, fit):
     """Accelerations in the body frame over the rows: by kind a list of (n, 3, p) arrays."""
     time, psi = problem.record.time, fit.motion.psi
     n = time.size
-    slow = hat_functions(np.linspace(0.0, 1.0, n), HATS).T
+    slow = hat_functions(np.linspace(0.0, 1.0, n), BASIS_FUNCTIONS).T
     c, s = np.cos(psi), np.sin(psi)
     heading = np.stack([c, s, np.cos(2 * psi), np.sin(2 * psi), c**3, s**3], axis=-1)
     span = time[-1] - time[0]
-    periods = np.geomspace(20.0, span, PERIODS)
+    periods = np.geomspace(SHORTEST_PERIOD, span, PERIODS)
     waves = [np.stack([np.sin(2 * np.pi * time / p), np.cos(2 * np.pi * time / p)], axis=-1) for p in periods]
     return {
         "slow": [_each_axis(slow)],
@@ -131,7 +146,7 @@ def _channels(problem, fit):
     time, motion = problem.record.time, np.stack(shown(fit.motion, fit.model), axis=-1)
     share = (time - time[0]) / (time[-1] - time[0])
     found = np.zeros((time.size, 6, 6, 3))
-    for i, size in enumerate(_OFF):
+    for i, size in enumerate(CHANNEL_SIZES):
         moved = motion[:, i] - motion[:, i].mean()
         shapes = [np.sin(np.pi * share), np.cos(np.pi * share), np.cos(2 * np.pi * share)]
         if i > 2:
@@ -143,7 +158,7 @@ def _channels(problem, fit):
 def _with(linear, accelerations, channels, problem):
     """The problem with a column for each acceleration, and for each error of a channel."""
     h, n = problem.record.step, problem.record.time.size
-    size = _SIZE * np.array([1.0, 1.0, _LEVER / problem.model.parts["hull"].length])
+    size = FORCE_SIZE * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
     driven = np.zeros((n - 1, 6, accelerations.shape[-1]))
     driven[:, 3:6] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
     driven = np.concatenate([driven, np.zeros((n - 1, 6, channels.shape[-1]))], axis=-1)

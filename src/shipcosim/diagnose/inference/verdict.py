@@ -1,48 +1,43 @@
 """From fitted sets of causes to a verdict: what may be named, how sure, and what cannot be told apart."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
 
-from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.fitting import Fit
+from shipcosim.diagnose.inference.null_distribution import null_gains
 from shipcosim.diagnose.inference.search import names, without_causes
+from shipcosim.diagnose.inference.thresholds import (
+    APART,
+    DEVIATIONS,
+    ENOUGH,
+    FAR_ABOVE_NULL,
+    MOST_CAUSES,
+    NULL_GAIN_UNKNOWN,
+    NULL_GAIN_WITHOUT_WIND,
+    SHAPE_CHANCE,
+    STEADY_SET_LOSS,
+    UNMODELLED,
+    UNMODELLED_SHARE,
+)
+from shipcosim.diagnose.inference.unmodelled import FORCES, unmodelled_gains
 from shipcosim.diagnose.result import Candidate, Estimate, Finding
+from shipcosim.diagnose.stages import ExplainedLog, JudgedLog
 
-__all__ = [
-    "APART",
-    "ENOUGH",
-    "MOST",
-    "UNMODELLED",
-    "TESTABLE",
-    "Judgement",
-    "admissible",
-    "gained",
-    "judge",
-    "labels",
-    "not_testable",
-]
+__all__ = ["Judgement", "admissible", "gained", "judge", "judged", "labels"]
 
-ENOUGH = 5.0
-"""What a cause must gain over the log without it. [nats]"""
-APART = 3.0
-"""Sets of causes closer than this cannot be told apart. [nats]"""
-TESTABLE = 8.0
-"""What a cause of typical size would have to gain, or this log could not have shown it. [nats]"""
-UNMODELLED = 8.0
-"""An error without a name that gains more than this beside the best set is one that nobody knows. [nats]"""
-MOST = 2
-"""Causes at once that are named. Where a third is needed, one that nobody knows is likelier than three at once."""
-_ANOTHER = 0.01  # probability of a shape as far from the known one, below which it is that of something else
-_LITTLE = 12.0  # nats, that a few wrong rows may give a cause
-_ROUGH = 0.02  # of the gain of large causes, whose laws are never that exact
-_AS_THEY_ARE = ("from part to part", "beyond tolerances")  # errors without a name that allow for that themselves
+_BY_PART = "from part to part"
+_AS_THEY_ARE = (_BY_PART, "beyond tolerances")  # unmodelled errors whose evidence does not grow with the causes' gain
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """What the evidence says.
+    """What the evidence says of the sets of causes.
 
     Attributes
     ----------
@@ -56,23 +51,61 @@ class Judgement:
     """
 
     verdict: str
-    fit: Any
-    findings: tuple
-    candidates: tuple
-    indistinguishable: tuple
-    rivals: tuple = ()
+    fit: Fit
+    findings: tuple[Finding, ...]
+    candidates: tuple[Candidate, ...]
+    indistinguishable: tuple[Candidate, ...]
+    rivals: tuple[Fit, ...] = ()
 
 
-def judge(fits, unmodelled, chance=None):
-    """The verdict on a log.
+def judged(explained: ExplainedLog) -> JudgedLog:
+    """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
+    problem, fits = explained.identification.problem, explained.fits
+    unmodelled, without_wind = {}, problem.record.wind is None
+
+    def unmodelled_beside(fit):
+        if fit not in unmodelled:
+            unmodelled[fit] = unmodelled_gains(problem, fit)
+        # where nobody knows the wind, a force that nobody explains is no surprise
+        return {kind: gain for kind, gain in unmodelled[fit].items() if kind not in FORCES or not without_wind}
+
+    null = {hypothesis.label: NULL_GAIN_WITHOUT_WIND for hypothesis in problem.hypotheses if without_wind}
+    judgement = judge(fits, unmodelled_beside, null)
+    if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
+        return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)  # whatever healthy logs gain
+    simulated = _largest_null_gains(problem, judgement.fit, fits)
+    if simulated:
+        null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
+        judgement = judge(fits, unmodelled_beside, null)
+    return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)
+
+
+def _largest_null_gains(problem, fit, fits):
+    """Largest gain of a fit's causes on simulated healthy logs, or mean and three deviations; where it could matter.
+
+    Where no healthy ship keeps to the log's track, as one that cannot go sideways, nobody knows: it is assumed.
+    """
+    if not any(gained(hypothesis, fit, fits) < FAR_ABOVE_NULL for hypothesis in fit.hypotheses):
+        return {}
+    found = null_gains(problem, fit.motion, fit.hypotheses)
+    return {
+        label: float(max(values.mean() + 3.0 * values.std(), values.max())) if values.size else NULL_GAIN_UNKNOWN
+        for label, values in found.items()
+    }
+
+
+def judge(
+    fits: Sequence[Fit], unmodelled: Callable[[Fit], dict[str, float]], null: dict[str, float] | None = None
+) -> Judgement:
+    """The verdict on the sets of causes that were fitted to a log.
 
     Parameters
     ----------
-    fits : list of Fit
+    fits : sequence of Fit
         Of `explain`.
     unmodelled : callable
-        Gives the gain of nameless forces beside a fit, as `unexplained` does.
-    chance : dict of str to float, optional
+        Gain of unmodelled errors beside a fit by kind, as `unmodelled_gains` gives it. [nats]
+    null : dict of str to float, optional
         What each hypothesis gains on healthy logs like this one, by label. [nats]
 
     Returns
@@ -80,13 +113,13 @@ def judge(fits, unmodelled, chance=None):
     Judgement
     """
     nothing = without_causes(fits)
-    fair = [fit for fit in fits if not fit.hypotheses or admissible(fit, fits, chance or {})]
-    best = _steadiest(sorted(fair, key=lambda fit: -fit.score), unmodelled)
+    fair = [fit for fit in fits if not fit.hypotheses or admissible(fit, fits, null or {})]
+    best = _best_steady(sorted(fair, key=lambda fit: -fit.score), unmodelled)
     scores = [fit.score if fit.hypotheses else fit.score + ENOUGH for fit in fair]
     candidates = _candidates(dict(zip(fair, _weights(scores), strict=True)))
-    worth = best.score - nothing.score
-    if len(best.hypotheses) > MOST or all(
-        _is_odd(unmodelled(fit), worth) for fit in (best, *_with_a_trifle(best, fits))
+    gain = best.score - nothing.score
+    if len(best.hypotheses) > MOST_CAUSES or all(
+        _stands_out(unmodelled(fit), gain) for fit in (best, *_with_a_small_cause(best, fits))
     ):
         return Judgement("unknown", best, (), candidates, ())
     if not best.hypotheses:
@@ -103,48 +136,50 @@ def judge(fits, unmodelled, chance=None):
     return Judgement("named", best, findings, candidates, ())
 
 
-def _is_odd(gains, worth):
-    """Whether errors without a name gain more than the worth of the causes lets one expect."""
-    rough = max(UNMODELLED, _ROUGH * worth)
-    return any(gain > (UNMODELLED if kind in _AS_THEY_ARE else rough) for kind, gain in gains.items())
+def _stands_out(gains, of_causes):
+    """Whether unmodelled errors gain more than the gain of the causes lets one expect."""
+    most = max(UNMODELLED, UNMODELLED_SHARE * of_causes)
+    return any(gain > (UNMODELLED if kind in _AS_THEY_ARE else most) for kind, gain in gains.items())
 
 
-def _steadiest(ranked, unmodelled):
+def _best_steady(ranked, unmodelled):
     """The best set, or one a little below it where the size of its causes differs from part to part of the log."""
     best = ranked[0]
     for other in ranked[1:]:
-        if unmodelled(best).get("from part to part", 0.0) <= UNMODELLED or best.score - other.score > _LITTLE:
+        if unmodelled(best).get(_BY_PART, 0.0) <= UNMODELLED or best.score - other.score > STEADY_SET_LOSS:
             break
         best = other
     return best
 
 
-def labels(fit):
+def labels(fit: Fit) -> list[str]:
+    """Labels of the causes of a fit."""
     return [hypothesis.label for hypothesis in fit.hypotheses]
 
 
-def admissible(fit, fits, chance):
-    """Whether each cause of a set is large enough, within its bounds, in its shape, and gains more than by chance."""
-    for hypothesis in fit.hypotheses:
-        size = _size(hypothesis, fit)
-        sure = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in hypothesis.parameters]) / np.sqrt(
-            len(hypothesis.parameters)
-        )
-        at_bound = any(
-            fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in hypothesis.parameters
-        )
-        if size < hypothesis.effect.least or size < 3.0 * sure or at_bound or not _in_shape(hypothesis, fit):
-            return False
-        if gained(hypothesis, fit, fits) < ENOUGH + max(chance.get(hypothesis.label, 0.0), 0.0):
-            return False
-    return True
+def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:
+    """Whether each cause of a set is large enough, within its bounds and shape, and gains more than on healthy logs."""
+    return all(
+        _is_sized(hypothesis, fit)
+        and _in_shape(hypothesis, fit)
+        and not gained(hypothesis, fit, fits) < ENOUGH + max(null.get(hypothesis.label, 0.0), 0.0)
+        for hypothesis in fit.hypotheses
+    )
+
+
+def _is_sized(hypothesis, fit):
+    """Whether a cause is large enough to matter, clearly off neutral, and not at a bound."""
+    parameters, size = hypothesis.parameters, _size(hypothesis, fit)
+    std = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in parameters]) / np.sqrt(len(parameters))
+    at_bound = any(fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in parameters)
+    return not (size < hypothesis.effect.least or size < DEVIATIONS * std or at_bound)
 
 
 def _in_shape(hypothesis, fit):
     """Whether what tells a cause's shape lies within its tolerances, taken together."""
     shape = set(hypothesis.effect.shape)
     squares = sum(t**2 for t, column in zip(fit.theta, fit.columns, strict=True) if set(column.changes) & shape)
-    return not shape or bool(chi2.sf(squares, len(shape)) > _ANOTHER)
+    return not shape or bool(chi2.sf(squares, len(shape)) > SHAPE_CHANCE)
 
 
 def _size(hypothesis, fit):
@@ -152,8 +187,8 @@ def _size(hypothesis, fit):
     return np.hypot.reduce([(fit.values[k.paths[0]] - k.neutral) / k.typical for k in hypothesis.parameters])
 
 
-def _with_a_trifle(best, fits):
-    """The likeliest fit with one more cause that is too small to matter, if any: what is odd without it has a name."""
+def _with_a_small_cause(best, fits):
+    """The likeliest fit with one more cause that is too small to matter, if any: it may explain an unmodelled error."""
     for fit in sorted(fits, key=lambda fit: -fit.score):
         more = [hypothesis for hypothesis in fit.hypotheses if hypothesis not in best.hypotheses]
         if len(more) == 1 and len(fit.hypotheses) == len(best.hypotheses) + 1 and fit.score > best.score + ENOUGH:
@@ -162,7 +197,7 @@ def _with_a_trifle(best, fits):
     return []
 
 
-def gained(hypothesis, fit, fits):
+def gained(hypothesis: Hypothesis, fit: Fit, fits: Sequence[Fit]) -> float:
     """What a cause gains in a set, against the set without it. [nats]"""
     rest = names(s for s in fit.hypotheses if s is not hypothesis)
     without = [other.score for other in fits if names(other.hypotheses) == rest]
@@ -196,37 +231,3 @@ def _finding(hypothesis, fit, candidates):
     }
     chance = next((c.probability for c in candidates if c.label == hypothesis.label), 0)
     return Finding(hypothesis.cause, hypothesis.component, "physics", chance, parameters)
-
-
-def not_testable(problem, products, columns, groups):
-    """Causes that would have gained too little to be seen in this log, had they had their typical size.
-
-    Parameters
-    ----------
-    problem : IdentificationProblem
-    products : array
-        Of the known numbers and all hypotheses' first columns.
-    columns : list of Regressor
-    groups : list of (Hypothesis, indices)
-
-    Returns
-    -------
-    tuple of str
-        Names of causes, none of whose places could have shown it.
-    """
-    seen = {}
-    known = np.array([column.prior for column in columns])
-    for _, places in groups:
-        known[list(places)] = 0.0
-    for hypothesis, places in groups:
-        prior = known.copy()
-        prior[list(places)] = 1.0
-        taken = {path for i in places for path in columns[i].changes}
-        prior[[i for i, c in enumerate(columns) if i not in places and taken & set(c.changes)]] = 0.0
-        blank = products.copy()
-        blank[0, :] = blank[:, 0] = 0.0
-        covariance = evidence(blank, prior)[2][np.ix_(places, places)]
-        gains = 0.5 * (1.0 / np.diag(covariance) - 1.0)
-        gain = float(np.max(gains)) - 0.5 * float(np.log1p(2.0 * np.max(gains)))
-        seen[hypothesis.cause] = max(seen.get(hypothesis.cause, -np.inf), gain)
-    return tuple(cause for cause, gain in sorted(seen.items()) if gain < TESTABLE)

@@ -1,8 +1,10 @@
-"""Segments in which the clock runs wrong, told by how the ship answers thrusters and wind.
+"""Segments in which the clock runs wrong, found from how the ship responds to thrusters and wind.
 
 With ρ true seconds per logged second, a step moves the ship ρ times as far, and changes her velocity ρ times as much.
 Each block of a log has a column for its own ρ; where a run of blocks agrees on one, the clock was wrong.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
@@ -10,27 +12,32 @@ import numpy as np
 from scipy.stats import chi2
 
 from shipcosim.diagnose.inference.evidence import gram
-from shipcosim.diagnose.inference.fitting import Regressor, fitted, prepared, weighed
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared, weighed
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import rows_first, with_columns
 from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.log_faults.thresholds import (
+    ASPECT_APART,
+    ASPECT_CHANCE,
+    CLOCK_BLOCK,
+    CLOCK_GAIN,
+    CLOCK_SLAB,
+    LARGEST_SHARE,
+    MOST_SEGMENTS,
+    OVER_CAUSE,
+    PLAUSIBLE_RATES,
+    RATE_UNSURE,
+    SHORTEST_CLOCK,
+    SMALLEST_RATE,
+    TYPICAL_RATE,
+    TYPICAL_SEGMENT,
+)
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.model import Motion, motion_rates
 
-__all__ = ["clock_by_answer", "is_testable", "with_rate"]
+__all__ = ["clock_by_response", "is_testable", "with_rate"]
 
-SLAB = 0.25  # typical size of ρ - 1
-BLOCK = 12.0  # [s]
-SHORTEST, LARGEST_SHARE = 60.0, 0.5  # [s]; of the log: longer is a scale, not a segment
-LEAST_GAIN = 8.0  # nats, after the cost of choosing the segment
-RIVAL = 5.0  # nats more than the likeliest cause
-PLAUSIBLE = 0.65, 1.5  # ρ
-SMALLEST = 0.08  # of ρ - 1, below which it is no fault
-TYPICAL, LASTS = 0.2, 240.0  # of ρ - 1, [s]; a wrong clock that a log should be able to show
-UNSURE = 0.03  # of ρ - 1, for what the ends of segments leave open
 ASPECTS = [0, 1], [3, 4], [2], [5]  # states of the motion: way and speed, heading and rate of turn
-APART = 0.15  # of ρ - 1, by which what an aspect tells may be off beyond chance
-CHANCE = 0.01  # that aspects of a wrong clock differ more
 
 
 @dataclass(frozen=True)
@@ -54,7 +61,7 @@ class _Blocks:
         return sums[None, :] - sums[:, None]
 
 
-def clock_by_answer(problem):
+def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     """A clock that runs wrong at one rate in a segment or two, if nothing else explains as much.
 
     Parameters
@@ -70,7 +77,7 @@ def clock_by_answer(problem):
     if finding is None:
         return None
     rival, hypothesis, values = weighed(problem, fitted(problem))[0]
-    if gain < rival + RIVAL or not _is_said_by_all(problem, finding, known):
+    if gain < rival + OVER_CAUSE or not _all_aspects_agree(problem, finding, known):
         return None
     if rival > 0.0:
         fit = fitted(problem, (hypothesis,), values)
@@ -80,11 +87,11 @@ def clock_by_answer(problem):
     return finding
 
 
-def _is_said_by_all(problem, finding, known):
-    """Whether way, speed, heading and turning tell of one rate.
+def _all_aspects_agree(problem, finding, known):
+    """Whether way, speed, heading and turning are those of one rate.
 
     A compass can be wrong alone, and so can a force: it changes the speed, but how far the ship comes at her speed
-    tells of the clock.
+    is a matter of the clock.
     """
     here = inside(0.5 * (problem.record.time[:-1] + problem.record.time[1:]), finding.segments)
     moved, driven = _moved(problem), np.zeros((len(here), 6, len(ASPECTS)))
@@ -92,14 +99,14 @@ def _is_said_by_all(problem, finding, known):
         driven[:, states, aspect] = -moved[:, states] * here[:, None]
     match, inner = _left(problem, known, driven)
     covariance = np.linalg.pinv(inner)
-    told, apart = covariance @ match, APART * (finding.parameters["rate"].estimate - 1.0)
+    rates, apart = covariance @ match, ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
-    rest = told - weight.sum(axis=0) @ told / weight.sum()
-    return bool(rest @ weight @ rest < chi2.isf(CHANCE, len(ASPECTS) - 1))
+    rest = rates - weight.sum(axis=0) @ rates / weight.sum()
+    return bool(rest @ weight @ rest < chi2.isf(ASPECT_CHANCE, len(ASPECTS) - 1))
 
 
-def with_rate(problem, finding, logged):
-    """A finding on the clock with its rate settled: the first is about a motion that the wrong clock has bent.
+def with_rate(problem: IdentificationProblem, finding: Finding, logged: np.ndarray) -> Finding:
+    """A finding on the clock with its rate settled: the first is about a motion that the wrong clock has distorted.
 
     Parameters
     ----------
@@ -113,24 +120,24 @@ def with_rate(problem, finding, logged):
     inner = np.interp(np.ravel(finding.segments), logged, np.linspace(time[0], time[-1], len(logged)))
     blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.known(()))
     own = np.arange(1, len(inner), 2)
-    more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + SLAB**-2)
+    more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + CLOCK_SLAB**-2)
     rate = finding.parameters["rate"]
     return replace(finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))})
 
 
-def is_testable(problem):
+def is_testable(problem: IdentificationProblem) -> bool:
     """Whether a typical wrong clock, at any time of the log with even odds, would have gained enough to be seen."""
     blocks = _blocks(problem, _edges(problem), problem.known(()))
     count = len(blocks.edges) - 1
-    span = max(int(LASTS / (blocks.edges[1] - blocks.edges[0])), 1)
+    span = max(int(TYPICAL_SEGMENT / (blocks.edges[1] - blocks.edges[0])), 1)
     energy = np.median(np.diagonal(blocks.of_runs()[1], offset=span))
-    return bool(_nats(TYPICAL * energy, energy) - 2.0 * np.log(count) > LEAST_GAIN)
+    return bool(_nats(TYPICAL_RATE * energy, energy) - 2.0 * np.log(count) > CLOCK_GAIN)
 
 
 def _edges(problem):
     """Even edges of blocks."""
     time = problem.record.time
-    return np.linspace(time[0], time[-1], max(int(np.ptp(time) / BLOCK), 4) + 1)
+    return np.linspace(time[0], time[-1], max(int(np.ptp(time) / CLOCK_BLOCK), 4) + 1)
 
 
 def _most_likely(blocks):
@@ -139,30 +146,30 @@ def _most_likely(blocks):
     count = len(blocks.edges) - 1
     span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
     block = blocks.edges[1] - blocks.edges[0]
-    allowed = (span * block >= SHORTEST) & (span <= LARGEST_SHARE * count)
+    allowed = (span * block >= SHORTEST_CLOCK) & (span <= LARGEST_SHARE * count)
     cost = 2.0 * np.log(count)
     gain, runs = 0.0, []
-    for _ in range(2):
+    for _ in range(MOST_SEGMENTS):
         at = _best(match, energy, allowed)
         nats = _nats(match[at], energy[at]) - cost * (1 + len(runs))
-        if nats < gain + LEAST_GAIN * (not runs) or np.isneginf(nats):
+        if nats < gain + CLOCK_GAIN * (not runs) or np.isneginf(nats):
             break
-        gain, runs, value = nats, [*runs, at], match[at] / (energy[at] + SLAB**-2)
-        std = (energy[at] + SLAB**-2) ** -0.5
+        gain, runs, value = nats, [*runs, at], match[at] / (energy[at] + CLOCK_SLAB**-2)
+        std = (energy[at] + CLOCK_SLAB**-2) ** -0.5
         match, energy = match[at] + match, energy[at] + energy + 2.0 * blocks.with_run(*at)
         first, last = at
         allowed = allowed & ((np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last))
-    if not runs or not PLAUSIBLE[0] < 1.0 + value < PLAUSIBLE[1] or abs(value) < SMALLEST:
+    if not runs or not PLAUSIBLE_RATES[0] < 1.0 + value < PLAUSIBLE_RATES[1] or abs(value) < SMALLEST_RATE:
         return 0.0, None
     segments = tuple(sorted((float(blocks.edges[a]), float(blocks.edges[b])) for a, b in runs))
-    rate = {"rate": Estimate(1.0 + float(value), float(np.hypot(std, UNSURE * value)), "1")}
+    rate = {"rate": Estimate(1.0 + float(value), float(np.hypot(std, RATE_UNSURE * value)), "1")}
     note = "the ship answers thrusters and wind at another rate than logged"
     return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
 
 
 def _nats(match, energy):
-    precision = np.maximum(energy, 0.0) + SLAB**-2
-    return 0.5 * match**2 / precision - 0.5 * np.log(precision * SLAB**2)
+    precision = np.maximum(energy, 0.0) + CLOCK_SLAB**-2
+    return 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2)
 
 
 def _best(match, energy, allowed):

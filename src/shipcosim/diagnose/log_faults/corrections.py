@@ -1,158 +1,215 @@
-"""What is wrong with a log or with the system's connections, and only the ship's answer tells: found, and put right.
+"""Faults of a log, and wrong connections of a system, that only the ship's response shows: found and put right.
 
-Each step gives back what it was given where nothing is wrong. A step is taken where the evidence for what is put right
-is larger than that for any cause that would leave it as it is.
+Each step leads from one identification to the next, and gives back the one that it was given where nothing is wrong. A
+step is taken where the evidence for what is put right is larger than that for any cause that would leave it as it is.
 """
+
+from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.diagnose.inference.problem import prepare
+from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.search import at_first_sight, explain
-from shipcosim.diagnose.inference.unmodelled import unexplained
-from shipcosim.diagnose.inference.verdict import MOST, UNMODELLED
+from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
+from shipcosim.diagnose.inference.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of, mislabel_of, possible
 from shipcosim.diagnose.log.repair import repaired
-from shipcosim.diagnose.log_faults.clock import clock_by_answer, with_rate
-from shipcosim.diagnose.log_faults.input_labels import likelihood, settled, suspected, with_label
+from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
+from shipcosim.diagnose.log_faults.input_labels import (
+    likelihood,
+    suspected_inputs,
+    with_label,
+    with_refined_segment,
+)
 from shipcosim.diagnose.log_faults.navigation_labels import relabelled
+from shipcosim.diagnose.log_faults.thresholds import FAULT, MOST_INPUT_FAULTS, MOST_TRIED, ROUNDS_OF_SEGMENT, UNIT
 from shipcosim.diagnose.result import Finding
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.wiring import put_right
+from shipcosim.diagnose.stages import ExplainedLog, Identification
 
-__all__ = ["rewired", "with_right_clock", "with_right_inputs", "with_right_wind", "with_right_sensors"]
+__all__ = [
+    "corrected",
+    "with_right_clock",
+    "with_right_connections",
+    "with_right_inputs",
+    "with_right_navigation",
+    "with_right_wind",
+]
 
-_FAULT = 15.0  # nats that a fault of the data has to gain over the best causes without it
-_UNIT = 3.0  # nats that another unit has to gain over the scale of the same channel, which is free to be anything
-_SUSPECTS = 3  # faults of thrusters' and the wind's channels that are tried
-_SETTLING = 2  # times that the segment of one is settled, at most
+
+def corrected(found: Identification) -> Identification:
+    """A log with navigation, clock and wind, and a system with connections, as the ship's response says."""
+    navigation = with_right_navigation(found)
+    clock = with_right_clock(navigation)
+    wind = with_right_wind(clock)
+    return with_right_connections(wind)
 
 
-def with_right_sensors(log, faults, clean, problem, model, catalogue):
-    """Faults, log and case with the channels of the navigation labelled as the ship's answer says."""
-    found, likely = (faults, clean, problem), relabelled(log, faults, problem)
-    enough = explain(problem, most=1)[0].score + _FAULT if likely else None
-    for better in likely:
-        right = repaired(log, better.faults)
-        again = prepare(right, model, catalogue)
-        if at_first_sight(again) + better.stretch < enough:
+def with_right_navigation(found: Identification) -> Identification:
+    """The log with the channels of the navigation labelled as the ship's response says."""
+    candidates = relabelled(found.log, found.faults, found.problem)
+    best, enough = found, explain(found.problem, most=1)[0].score + FAULT if candidates else None
+    for candidate in candidates:
+        again = _repaired(found, candidate.faults)
+        if at_first_sight(again.problem) + candidate.density < enough:
             continue
-        score = explain(again, most=1)[0].score + better.stretch
+        score = explain(again.problem, most=1)[0].score + candidate.density
         if score > enough:
-            found, enough = (better.faults, right, again), score
+            best, enough = again, score
+    return best
+
+
+def with_right_clock(found: Identification) -> Identification:
+    """The log with the segments of a wrong clock that the ship's response shows."""
+    others = tuple(fault for fault in found.faults if fault.cause != "clock")
+    as_logged = found if len(others) == len(found.faults) else _repaired(found, others)
+    clock = clock_by_response(as_logged.problem)
+    if clock is None:
+        return found
+    first = _repaired(found, (*others, clock))
+    clock = with_rate(first.problem, clock, first.repaired["logged_time"].values)
+    return _repaired(found, (*others, clock), first.problem.noise)
+
+
+def with_right_wind(found: Identification) -> Identification:
+    """The log with a mislabelled wind read as the ship's response says: what it is instead, and where."""
+    for place, fault in enumerate(found.faults):
+        if mislabel_of(fault) in WIND_LABELS and len(fault.segments) < 2:
+            found = _with_right_wind_label(found, place)
     return found
 
 
-def with_right_clock(log, faults, clean, problem, model, catalogue):
-    """Faults, log and case with the segments of a wrong clock that the ship's answer tells of."""
-    others = [fault for fault in faults if fault.cause != "clock"]
-    as_logged = problem if len(others) == len(faults) else prepare(repaired(log, others), model, catalogue)
-    clock = clock_by_answer(as_logged)
-    if clock is None:
-        return faults, clean, problem
-    clean = repaired(log, [*others, clock])
-    problem = prepare(clean, model, catalogue)
-    faults = [*others, with_rate(problem, clock, clean["logged_time"].values)]
-    clean = repaired(log, faults)
-    return faults, clean, prepare(clean, model, catalogue, problem.noise)
+def _with_right_wind_label(found, place):
+    """The log with one fault of the wind's labels, by its place among the faults, settled."""
+    before, after = found.faults[:place], found.faults[place + 1 :]
+    as_logged = replace(found, repaired=repaired(found.log, (*before, *after)))
+    fault, problem = _likeliest_direction(as_logged, found.faults[place])
+    fault, right = _with_settled_segment(replace(as_logged, problem=problem), mislabel_of(fault), fault)
+    return replace(right, faults=(*before, fault, *after))
 
 
-def with_right_wind(log, faults, clean, problem, model, catalogue):
-    """Faults, log and case with a wrongly labelled wind as the ship's answer says: what it is instead, and where."""
-    for i, fault in enumerate(faults):
-        if mislabel_of(fault) in WIND_LABELS and len(fault.segments) < 2:
-            raw = repaired(log, faults[:i] + faults[i + 1 :])
-            fault, problem = _counted_otherwise(raw, fault, problem, model, catalogue)
-            fault, clean, problem = _settled(raw, mislabel_of(fault), fault, problem, model, catalogue)
-            faults = [*faults[:i], fault, *faults[i + 1 :]]
-    return faults, clean, problem
+def _likeliest_direction(as_logged, fault):
+    """A fault of the wind's direction, and the problem, by the likeliest label of those that could be meant.
+
+    `as_logged` has the log without that fault put right, and the problem with it put right.
+    """
+    log, problem = as_logged.repaired, as_logged.problem
+    if mislabel_of(fault).scale is not None:
+        return fault, problem
+    directions = [label for label in possible(WIND_LABELS, log) if label.scale is None]
+    rights = {label: with_label(log, label, fault.segments) for label in directions}
+    label = max(rights, key=lambda label: likelihood(problem, record_of(rights[label], as_logged.ship)))
+    if label is mislabel_of(fault):
+        return fault, problem
+    again = identification_problem(rights[label], as_logged.ship, as_logged.causes)
+    if at_first_sight(again) < at_first_sight(problem) + FAULT:
+        return fault, problem
+    return finding_of(label, fault.probability, *fault.segments), again
 
 
-def _counted_otherwise(raw, told, problem, model, catalogue):
-    """A fault of the wind's direction, and its case, by the likeliest label of those that could be meant."""
-    if mislabel_of(told).scale is not None:
-        return told, problem
-    directions = [label for label in possible(WIND_LABELS, raw) if label.scale is None]
-    rights = {label: with_label(raw, label, told.segments) for label in directions}
-    label = max(rights, key=lambda label: likelihood(problem, record_of(rights[label], model)))
-    if label is mislabel_of(told):
-        return told, problem
-    again = prepare(rights[label], model, catalogue)
-    if at_first_sight(again) < at_first_sight(problem) + _FAULT:
-        return told, problem
-    return finding_of(label, told.probability, *told.segments), again
+def with_right_connections(found: Identification) -> Identification:
+    """The ship with connections as their names say, where the log contradicts how the system has them."""
+    if found.ship.wiring is None:
+        return found
+    score = at_first_sight(found.problem)
+    for name, what in found.ship.wiring.odd.items():
+        ship = replace(found.ship, wiring=put_right(found.ship.wiring, name))
+        problem = identification_problem(found.repaired, ship, found.causes)
+        if (rewired := at_first_sight(problem)) > score + FAULT:
+            finding = Finding("connection", name, "physics", 0.99, {}, note=what)
+            found = replace(found, ship=ship, problem=problem, misconnections=(*found.misconnections, finding))
+            score = rewired
+    return found
 
 
-def rewired(clean, model, catalogue, problem):
-    """Connections of the system that the log contradicts, and ship and case with them as their names say."""
-    if model.wiring is None:
-        return [], model, problem
-    found, score = [], at_first_sight(problem)
-    for name, told in model.wiring.odd.items():
-        better = replace(model, wiring=put_right(model.wiring, name))
-        again = prepare(clean, better, catalogue)
-        scored = at_first_sight(again)
-        if scored > score + _FAULT:
-            found.append(Finding("connection", name, "physics", 0.99, {}, note=told))
-            model, problem, score = better, again, scored
-    return found, model, problem
+def with_right_inputs(explained: ExplainedLog) -> ExplainedLog:
+    """The log with mislabelled channels of thrusters and wind put right, where it is not healthy; explained anew."""
+    known = len(explained.identification.faults)
+    for _ in range(MOST_INPUT_FAULTS):
+        better = None if explained.is_healthy else _with_right_input(explained)
+        if better is None:
+            break
+        *others, fault = better.identification.faults[known:]
+        if any(set(fault.channels) & set(other.channels) for other in others):
+            break  # what a channel already put right cannot be again: something else is wrong with it
+        explained = better
+    return explained
 
 
-def with_right_inputs(clean, problem, fits, model, catalogue):
-    """The likeliest fault of thrusters' or the wind's channels, and all with it put right; None if there is none.
+def _with_right_input(explained):
+    """The log with the likeliest fault of thrusters' or the wind's channels put right; None if there is none.
 
     The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is held against
     all causes; further ones only where they are better than those even so.
     """
-    likely = []
-    for _, mislabel, fault in suspected(clean, problem)[:_SUSPECTS]:
-        again = prepare(with_label(clean, mislabel, fault.segments), model, catalogue)
-        likely.append((at_first_sight(again), mislabel, fault, again))
-    least = min(fits[0].score, at_first_sight(problem) + _FAULT) if likely else 0.0
-    for sight, mislabel, fault, again in sorted(likely, key=lambda entry: -entry[0]):
-        if sight < least:
+    found, best = explained.identification, explained.fits[0]
+    candidates = []
+    for _, mislabel, fault in suspected_inputs(found.repaired, found.problem)[:MOST_TRIED]:
+        again = _relabelled(found, mislabel, fault)
+        candidates.append((at_first_sight(again.problem), mislabel, fault, again.problem))
+    least = min(best.score, at_first_sight(found.problem) + FAULT) if candidates else 0.0
+    for score, mislabel, fault, problem in sorted(candidates, key=lambda entry: -entry[0]):
+        if score < least:
             return None
-        least = fits[0].score
-        fault, right, again = _settled(clean, mislabel, fault, again, model, catalogue)
-        if at_first_sight(again) < fits[0].score or not _shows(clean, mislabel, fault):
+        least = best.score
+        fault, right = _with_settled_segment(replace(found, problem=problem), mislabel, fault)
+        if at_first_sight(right.problem) < best.score or not _shows_at_its_ends(found.repaired, mislabel, fault):
             continue
-        better = explain(again)
-        close = [fit for fit in better[:3] if fit.score > fits[0].score + _price(fault, fits[0])]
-        if any(_is_explained(again, fit) for fit in close):
-            return fault, right, again, better
+        fits = tuple(explain(right.problem))
+        close = [fit for fit in fits[:3] if fit.score > best.score + _least_gain(fault, best)]
+        if any(_is_explained(right.problem, fit) for fit in close):
+            right = replace(right, faults=(*found.faults, fault))
+            return ExplainedLog(right, fits, is_healthy(right.problem, fits[0]))
     return None
 
 
-def _shows(clean, mislabel, fault):
+def _repaired(found, faults, noise=None):
+    """An identification anew, of the log as read with some faults put right."""
+    log = repaired(found.log, faults)
+    problem = identification_problem(log, found.ship, found.causes, noise)
+    return replace(found, faults=tuple(faults), repaired=log, problem=problem)
+
+
+def _relabelled(found, mislabel, fault):
+    """An identification anew, of its repaired log with a mislabel undone too."""
+    log = with_label(found.repaired, mislabel, fault.segments)
+    return replace(found, repaired=log, problem=identification_problem(log, found.ship, found.causes))
+
+
+def _with_settled_segment(found, mislabel, fault):
+    """A mislabel with its segment settled, and the identification with it put right.
+
+    `found` has the log without it put right, and the problem with it put right in its first segment.
+    """
+    right = replace(found, repaired=with_label(found.repaired, mislabel, fault.segments))
+    for _ in range(ROUNDS_OF_SEGMENT):
+        refined = with_refined_segment(found.repaired, mislabel, fault, right.problem)
+        if refined is fault:
+            break
+        fault, right = refined, _relabelled(found, mislabel, refined)
+    return fault, right
+
+
+def _shows_at_its_ends(log, mislabel, fault):
     """Whether another unit of the wind in a part of a log shows at its ends: what takes her wind away does not."""
     if mislabel not in WIND_LABELS or mislabel.scale is None:
         return True
-    speed = clean["wind_speed"].values
+    speed = log["wind_speed"].values
     known = np.isfinite(speed)
-    return leaps(clean["time"].values[known], speed[known], next(iter(fault.segments), None), 1.0 / mislabel.scale)
+    return leaps(log["time"].values[known], speed[known], next(iter(fault.segments), None), 1.0 / mislabel.scale)
 
 
-def _settled(clean, mislabel, fault, problem, model, catalogue):
-    """A fault of labels with its segment settled, the log with that put right, and its case."""
-    right = with_label(clean, mislabel, fault.segments)
-    for _ in range(_SETTLING):
-        moved = settled(clean, mislabel, fault, problem)
-        if moved is fault:
-            break
-        fault, right = moved, with_label(clean, mislabel, moved.segments)
-        problem = prepare(right, model, catalogue)
-    return fault, right, problem
-
-
-def _price(fault, fit):
-    """What a fault of the inputs' channels has to gain over a fit: little, if a wrong unit looks like a cause in it."""
+def _least_gain(fault, fit):
+    """What a fault of the inputs' channels must gain over a fit: little, if a wrong unit looks like a cause in it."""
     label, alike = mislabel_of(fault), {channel for one in fit.hypotheses for channel in one.effect.unit_of}
     is_unit = label is not None and label.scale is not None
-    return _UNIT if is_unit and alike & set(fault.channels) else _FAULT
+    return UNIT if is_unit and alike & set(fault.channels) else FAULT
 
 
 def _is_explained(problem, fit):
-    """Whether nothing without a name is left beside a fit."""
-    return len(fit.hypotheses) <= MOST and max(unexplained(problem, fit).values()) < UNMODELLED
+    """Whether no unmodelled error stands out beside a fit."""
+    return len(fit.hypotheses) <= MOST_CAUSES and max(unmodelled_gains(problem, fit).values()) < UNMODELLED

@@ -1,12 +1,16 @@
-"""Channels of thrusters and wind that are not what they are labelled: only the ship's answer can tell.
+"""Channels of thrusters and wind that are not what they are labelled: only the ship's response shows it.
 
 Each way in which they could be wrong is undone, over all the log, and the likelihood row by row compared with that of
-the log as it is: where the difference adds up most is about the segment in which they are wrong. Its ends are settled
-about a motion that is smoothed with it put right: there every wrong row tells.
+the log as it is: where the difference adds up most is about the segment in which they are wrong. Its ends are refined
+about a motion that is smoothed with it put right, on which every wrong row counts.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,25 +19,34 @@ from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, Mislabel, finding_of, negative, possible, undone
 from shipcosim.diagnose.log.rows import arrays_of
+from shipcosim.diagnose.log_faults.thresholds import (
+    FIRST_MOVE,
+    LEAST_ROW_GAIN,
+    PART_GAIN,
+    SEARCH_STEP,
+    SEGMENT_GAIN,
+    SHORTEST_INPUT,
+    WHOLE,
+)
 from shipcosim.diagnose.ship.inputs import record_of
 
-__all__ = ["best_run", "likelihood", "settled", "suspected", "where_best", "with_label"]
+if TYPE_CHECKING:
+    import xarray
 
-_SHORTEST = 60.0  # s
-_WHOLE = 0.85  # of the log
-_EVERY = 60.0  # s, between the places where an end of a segment is sought
-_FIRST_STEP = 32  # rows, by which it is then moved
-_WORTH = 5.0  # nats that another segment has to gain
-_PART = 15.0  # nats that a segment has to gain over the whole log
+    from shipcosim.diagnose.inference.fitting import IdentificationProblem
+    from shipcosim.diagnose.result import Finding
+    from shipcosim.diagnose.ship.inputs import Record
+
+__all__ = ["best_run", "likelihood", "suspected_inputs", "where_best", "with_label", "with_refined_segment"]
 
 
-def suspected(clean, problem):
-    """Inputs that could be wrong, likeliest first.
+def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> list[tuple[float, Mislabel, Finding]]:
+    """Channels of thrusters and wind that could be mislabelled, likeliest first.
 
     Parameters
     ----------
-    clean : xarray.Dataset
-        Repaired log.
+    log : xarray.Dataset
+        Repaired.
     problem : IdentificationProblem
         Of it.
 
@@ -43,21 +56,23 @@ def suspected(clean, problem):
         Gain in log-likelihood [nats], what would be wrong, and about where.
     """
     base, found = _by_row(problem, problem.record), []
-    for mislabel in _mislabels(clean, problem.model):
-        gain = _by_row(problem, record_of(with_label(clean, mislabel), problem.model)) - base
+    for mislabel in _mislabels(log, problem.model):
+        gain = _by_row(problem, record_of(with_label(log, mislabel), problem.model)) - base
         total, finding = where_best(gain, mislabel, problem.record)
-        if total > 10.0:
+        if total > LEAST_ROW_GAIN:
             found.append((total, mislabel, finding))
     return sorted(found, key=lambda entry: -entry[0])
 
 
-def settled(clean, mislabel, finding, problem):
+def with_refined_segment(
+    log: xarray.Dataset, mislabel: Mislabel, finding: Finding, problem: IdentificationProblem
+) -> Finding:
     """A finding with the ends of its segment where the log is likeliest.
 
     Parameters
     ----------
-    clean : xarray.Dataset
-        Repaired log, the finding not put right.
+    log : xarray.Dataset
+        Repaired, the finding not put right.
     mislabel : Mislabel
     finding : Finding
         With one segment, or throughout.
@@ -67,60 +82,67 @@ def settled(clean, mislabel, finding, problem):
     Returns
     -------
     Finding
-        The same one if no other segment is worth it.
+        The same one if no other segment gains enough.
     """
-    time, seen = problem.record.time, {}
-    least, last = round(_SHORTEST / problem.record.step), time.size - 1
+    time, known = problem.record.time, {}
+    least, last = round(SHORTEST_INPUT / problem.record.step), time.size - 1
 
     def segment(ends):
         return ((float(time[ends[0]]), float(time[ends[1]])),)
 
-    def worth(ends):
+    def likelihood_of(ends):
         if not 0 <= ends[0] <= ends[1] - least <= last - least:
             return -np.inf
-        if ends not in seen:
-            seen[ends] = likelihood(problem, record_of(with_label(clean, mislabel, segment(ends)), problem.model))
-        return seen[ends]
+        if ends not in known:
+            known[ends] = likelihood(problem, record_of(with_label(log, mislabel, segment(ends)), problem.model))
+        return known[ends]
 
     whole = (0, last)
-    first = ends = tuple(int(i) for i in np.searchsorted(time, finding.segments[0])) if finding.segments else whole
-    places = [*range(0, last, round(_EVERY / problem.record.step)), last]
+    first = tuple(int(i) for i in np.searchsorted(time, finding.segments[0])) if finding.segments else whole
+    ends = _likeliest_ends(likelihood_of, first, last, round(SEARCH_STEP / problem.record.step))
+    least_gain = PART_GAIN if first == whole else SEGMENT_GAIN
+    gained = likelihood_of(ends) >= likelihood_of(first) + least_gain
+    return replace(finding, segments=segment(ends)) if gained else finding
+
+
+def _likeliest_ends(likelihood_of, first, last, stride):
+    """First and last row of the likeliest segment: each end anywhere in coarse steps, then moved by halved steps."""
+    ends, places = first, [*range(0, last, stride), last]
     for _ in range(2):
         for i in (0, 1):
-            ends = max([ends, *(_moved(ends, i, place) for place in places)], key=worth)
-    step = _FIRST_STEP
+            ends = max([ends, *(_moved(ends, i, place) for place in places)], key=likelihood_of)
+    step = FIRST_MOVE
     while step:
         near = [_moved(ends, i, ends[i] + by) for i in (0, 1) for by in (-step, step)]
-        best = max(near, key=worth)
-        ends, step = (best, step) if worth(best) > worth(ends) else (ends, step // 2)
-    price = _PART if first == whole else _WORTH
-    return finding if worth(ends) < worth(first) + price else replace(finding, segments=segment(ends))
+        best = max(near, key=likelihood_of)
+        ends, step = (best, step) if likelihood_of(best) > likelihood_of(ends) else (ends, step // 2)
+    return ends
 
 
 def _moved(ends, i, place):
     return (place, ends[1]) if i == 0 else (ends[0], place)
 
 
-def likelihood(problem, record):
-    """Log-likelihood of a record about the motion of a case, up to a constant. [nats]"""
+def likelihood(problem: IdentificationProblem, record: Record) -> float:
+    """Log-likelihood of a record about the motion of a problem, up to a constant. [nats]"""
     found = innovations(linearise(problem.motion, record, problem.model, []), problem.noise, record)
     return float(gram(found).free)
 
 
-def _mislabels(clean, model):
+def _mislabels(log, model):
     """Every way in which channels of thrusters and wind could be wrong."""
     found = []
     for one, other in combinations(model.thrusters, 2):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "azimuth")]
-        pairs = [pair for pair in pairs if pair[0] in clean and pair[1] in clean]
+        pairs = [pair for pair in pairs if pair[0] in log and pair[1] in log]
         if _make(model, one) == _make(model, other):
             found += [_swapped(group) for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]]) if group]
     for name in model.thrusters:
-        found += [negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in clean]
-    if "wind_from" in clean:
-        motion = all(role in clean for role in ("heading", "surge", "sway"))
+        found += [negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in log]
+    if "wind_from" in log:
+        motion = all(role in log for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
-        found += possible(labels, clean)
+        found += possible(labels, log)
     return found
 
 
@@ -139,10 +161,10 @@ def _swapped(pairs):
     return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
 
 
-def with_label(clean, mislabel, segments=()):
-    """A repaired log with a fault of labels undone, in segments or everywhere."""
-    fixed = undone(arrays_of(clean), mislabel, segments)
-    return clean.assign({role: clean[role].copy(data=fixed[role]) for role in mislabel.channels})
+def with_label(log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[tuple[float, float]] = ()) -> xarray.Dataset:
+    """A repaired log with a mislabel undone, in segments [s] or everywhere."""
+    fixed = undone(arrays_of(log), mislabel, segments)
+    return log.assign({role: log[role].copy(data=fixed[role]) for role in mislabel.channels})
 
 
 def _by_row(problem, record):
@@ -155,15 +177,17 @@ def _by_row(problem, record):
     return -0.5 * ((left**2).sum(-1) + found.log_determinant + (theta**2).sum() / len(left))
 
 
-def where_best(gain, mislabel, record, shortest=_SHORTEST):
+def where_best(
+    gain: np.ndarray, mislabel: Mislabel, record: Record, shortest: float = SHORTEST_INPUT
+) -> tuple[float, Finding]:
     """Sum of the gains of rows where a mislabel explains most, and the finding of it there."""
     first, last, total = best_run(gain, round(shortest / record.step))
-    whole = last - first > _WHOLE * record.time.size
+    whole = last - first > WHOLE * record.time.size
     segment = None if whole else (float(record.time[first]), float(record.time[last]))
     return total, finding_of(mislabel, 0.99, segment)
 
 
-def best_run(gain, least):
+def best_run(gain: np.ndarray, least: int) -> tuple[int, int, float]:
     """First and last row of the run of at least `least` rows whose gains add up to most, and the sum."""
     total = np.concatenate([[0.0], np.cumsum(gain)])
     lowest, first, best = 0, 0, (0, 0, -np.inf)

@@ -1,10 +1,14 @@
-"""Channels of the navigation that are not what they are labelled, told by how the ship answers thrusters and wind.
+"""Mislabelled channels of the navigation, found from how the ship responds to thrusters and wind.
 
-A ship that hardly moves tells little by position against velocity, and at one heading a wrong sign of north is that of
-surge. With her own law of motion each label is as likely as the motion that it tells of.
+On a ship that hardly moves position against velocity says little, and at one heading a wrong sign of north is that of
+surge. By her equations of motion each label is as likely as the motion that it describes.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,45 +20,53 @@ from shipcosim.diagnose.log.mislabels import HEADING_LABELS, POSITION_LABELS, mi
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log.rows import arrays_of, inside
 from shipcosim.diagnose.log_faults.input_labels import where_best, with_label
+from shipcosim.diagnose.log_faults.thresholds import (
+    BETTER_LABEL,
+    CALM_JOLT,
+    CHANGED,
+    LABEL_GAIN,
+    LIKELY_LABELS,
+    SHORTEST_LABEL,
+)
 from shipcosim.diagnose.ship.inputs import CHANNELS, first_motion, record_of
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.inference.fitting import IdentificationProblem
+    from shipcosim.diagnose.result import Finding
 
 __all__ = ["Relabelled", "relabelled"]
 
 LABELS = (HEADING_LABELS[0], *POSITION_LABELS)
-LEAST_GAIN = 30.0  # nats of rows; healthy logs gain up to 7 in a stretch, faulty ones up to 20 by another label
-BETTER = 15.0  # nats more than what was found by position against velocity
-SHORTEST = 180.0  # [s]; along shorter stretches other causes look like labels
-MATERIAL = 0.7  # of the root mean square of channels, by which another frame must change them
-LIKELY = 4  # labels that are worth a closer look
-CALM = 0.2  # of the jolts that noise is first taken to have; under a wrong label they grow to cover it
 
 
 @dataclass(frozen=True)
 class Relabelled:
-    """Faults of a log with its navigation labelled as the ship's answer says.
+    """Faults of a log with its navigation labelled as the ship's response says.
 
     Attributes
     ----------
-    faults : list of Finding
-    stretch : float
+    faults : tuple of Finding
+    density : float
         Log-density of the log as it is over that of the log with its units put right, the same values in both. [nats]
     """
 
-    faults: list
-    stretch: float
+    faults: tuple[Finding, ...]
+    density: float
 
 
-def relabelled(log, faults, problem):
+def relabelled(log: xarray.Dataset, faults: Sequence[Finding], problem: IdentificationProblem) -> list[Relabelled]:
     """The likeliest labels of the navigation, where they are not those that the faults say.
 
-    Each in its likeliest stretch, and but for units throughout: row by row it is told with the noise of the log as it
-    is, which a wrong label throughout swells.
+    Each in its likeliest stretch, and but for units throughout: row by row it is judged with the noise of the log as it
+    is, which a wrong label throughout makes too large.
 
     Parameters
     ----------
     log : xarray.Dataset
         As read.
-    faults : list of Finding
+    faults : sequence of Finding
         As from `examine`.
     problem : IdentificationProblem
         Of the log with these faults repaired.
@@ -63,24 +75,30 @@ def relabelled(log, faults, problem):
     -------
     list of Relabelled
     """
-    told = [fault for fault in faults if mislabel_of(fault) in LABELS]
-    others = [fault for fault in faults if fault not in told]
+    found = [fault for fault in faults if mislabel_of(fault) in LABELS]
+    others = [fault for fault in faults if fault not in found]
     plain = repaired(log, others)
-    if len(told) > 1 or (not told and _is_clear(plain)):
+    if len(found) > 1 or (not found and _is_clear(plain)):
         return []
-    if told:
-        calm = CALM * first_noise(problem.record, problem.model.parts["hull"].length).jolt
+    if found:
+        calm = CALM_JOLT * first_noise(problem.record, problem.model.parts["hull"].length).jolt
         problem = replace(problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm)))
     base = _by_row(problem, record_of(plain, problem.model))
-    known = [mislabel_of(one) for one in told]
+    known = [mislabel_of(fault) for fault in found]
     labels = [label for label in possible(LABELS, plain) if label in known or _matters(plain, label)]
     gains = {label: _gain(plain, label, problem) - base for label in labels}
-    found = [where_best(gain, label, problem.record, SHORTEST) for label, gain in gains.items()]
-    so_far = sum(float(gains[mislabel_of(one)][inside(problem.record.time, one.segments)].sum()) for one in told)
-    likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > max(LEAST_GAIN, so_far + BETTER)]
-    tried = {(one.note, one.segments): one for part in likely[:LIKELY] for one in _stretches(part)}
-    less = sum(_stretch(one, problem) for one in told)
-    return [Relabelled([*others, one], _stretch(one, problem) - less) for one in tried.values()]
+    so_far = sum(float(gains[mislabel_of(one)][inside(problem.record.time, one.segments)].sum()) for one in found)
+    tried = _likely(gains, problem.record, max(LABEL_GAIN, so_far + BETTER_LABEL))
+    less = sum(_density(one, problem) for one in found)
+    return [Relabelled((*others, one), _density(one, problem) - less) for one in tried]
+
+
+def _likely(gains, record, least):
+    """Findings of the labels that gain most by their rows' gains, those above a least gain, in their stretches."""
+    found = [where_best(gain, label, record, SHORTEST_LABEL) for label, gain in gains.items()]
+    likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > least]
+    tried = {(one.note, one.segments): one for part in likely[:LIKELY_LABELS] for one in _stretches(part)}
+    return tried.values()
 
 
 def _stretches(found):
@@ -94,7 +112,7 @@ def _matters(plain, label):
     for role in label.channels:
         changed += np.nansum((right[role].values - plain[role].values) ** 2)
         size += np.nansum(plain[role].values ** 2)
-    return label.scale is not None or bool(changed > MATERIAL**2 * size)
+    return label.scale is not None or bool(changed > CHANGED**2 * size)
 
 
 def _is_clear(plain):
@@ -118,7 +136,7 @@ def _gain(plain, label, problem):
 
 
 def _by_row(problem, record):
-    """Log-likelihood of each row, about the motion that the record itself tells of."""
+    """Log-likelihood of each row, about the motion that the record itself describes."""
     motion = first_motion(record, problem.model)
     for _ in range(2):
         motion = innovations(linearise(motion, record, problem.model, []), problem.noise, record, motion).motion
@@ -126,7 +144,7 @@ def _by_row(problem, record):
     return -0.5 * ((found.white[..., 0] ** 2).sum(-1) + found.log_determinant)
 
 
-def _stretch(finding, problem):
+def _density(finding, problem):
     """Logarithm of the factors by which a finding changes the values of its channels."""
     scale = mislabel_of(finding).scale or 1.0
     places = [CHANNELS.index(role) for role in finding.channels]

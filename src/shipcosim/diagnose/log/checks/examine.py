@@ -14,14 +14,22 @@ from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_of, undone
+from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log.rows import inside, usable_rows
+from shipcosim.diagnose.stages import CheckedLog, ReadLog
 
 if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.result import Finding
 
-__all__ = ["examine"]
+__all__ = ["checked", "examine"]
+
+
+def checked(read: ReadLog) -> CheckedLog:
+    """A log with the faults that its own channels show, and repaired."""
+    faults = tuple(examine(read.log))
+    return CheckedLog(read.log, read.ship, read.causes, faults, repaired(read.log, faults))
 
 
 def examine(log: xarray.Dataset) -> list[Finding]:

@@ -1,0 +1,69 @@
+"""What a log could not have shown, whatever is the matter: causes for which it has too little excitation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
+from shipcosim.diagnose.inference.evidence import evidence, gram
+from shipcosim.diagnose.inference.fitting import Regressor, probes
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.search import without_causes
+from shipcosim.diagnose.inference.thresholds import TESTABLE
+from shipcosim.diagnose.log_faults.clock import is_testable
+from shipcosim.diagnose.stages import JudgedLog
+
+__all__ = ["not_testable", "untestable_causes"]
+
+
+def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
+    """Causes of the catalogue, and the clock, that a log could not have shown had they had their typical size."""
+    problem, found = log.problem, log.explained.identification
+    columns, groups = list(without_causes(log.fits).columns), []
+    for hypothesis in problem.hypotheses:
+        for group in probes(hypothesis):
+            groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
+            columns.extend(group)
+    products = gram(innovations(problem.base_of(columns), problem.noise, problem.record)).products
+    weak = not_testable(products, columns, groups)
+    clock = () if is_testable(problem) else ("clock",)
+    identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
+    everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
+    return tuple(sorted({*weak, *clock, *(everywhere - identifiable)}))
+
+
+def not_testable(
+    products: np.ndarray, columns: Sequence[Regressor], groups: Sequence[tuple[Hypothesis, list[int]]]
+) -> tuple[str, ...]:
+    """Causes that would have gained too little to be seen in a log, had they had their typical size.
+
+    Parameters
+    ----------
+    products : (1 + p, 1 + p) array
+        Inner products of the log, of the known numbers and of all hypotheses' first columns.
+    columns : sequence of p Regressor
+    groups : sequence of (Hypothesis, indices)
+
+    Returns
+    -------
+    tuple of str
+        Names of causes, none of whose places could have shown it.
+    """
+    gains: dict[str, float] = {}
+    blank = products.copy()
+    blank[0, :] = blank[:, 0] = 0.0
+    known = np.array([column.prior for column in columns])
+    for _, places in groups:
+        known[list(places)] = 0.0
+    for hypothesis, places in groups:
+        prior = known.copy()
+        prior[list(places)] = 1.0
+        taken = {path for i in places for path in columns[i].changes}
+        prior[[i for i, c in enumerate(columns) if i not in places and taken & set(c.changes)]] = 0.0
+        covariance = evidence(blank, prior)[2][np.ix_(places, places)]
+        information = float(np.max(0.5 * (1.0 / np.diag(covariance) - 1.0)))
+        gain = information - 0.5 * float(np.log1p(2.0 * information))
+        gains[hypothesis.cause] = max(gains.get(hypothesis.cause, -np.inf), gain)
+    return tuple(cause for cause, gain in sorted(gains.items()) if gain < TESTABLE)

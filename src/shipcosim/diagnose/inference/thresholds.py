@@ -1,0 +1,88 @@
+"""Thresholds by which causes are judged, each with its unit and what it was set on.
+
+Those of the verdict were chosen on developing logs of the independent truth (tests/bench/truth, seeds below 1000), and
+are measured on other seeds by the trial (docs/diagnosis-trial.md). "Assumed" is what nobody has measured.
+"""
+
+import numpy as np
+
+# The verdict
+
+ENOUGH = 5.0
+"""Log-evidence that a cause must gain over the log without it. [nats] 148 to 1, against some thirty hypotheses in all
+their places."""
+APART = 3.0
+"""Sets of causes closer than this cannot be told apart. [nats] 20 to 1: closer, the second would be right too often."""
+TESTABLE = 8.0
+"""What a cause of typical size would have to gain, or this log could not have shown it. [nats] `ENOUGH` for its name,
+and `APART` over the next."""
+UNMODELLED = 8.0
+"""An unmodelled error that gains more than this beside the best set means an unknown cause. [nats] Paid for the search
+over its periods; from part to part of the log, and beyond tolerances, always."""
+UNMODELLED_SHARE = 0.02
+"""The same as a share of what the causes gain, where that is more: the model of a large cause is never exact to the
+last per cent (developing logs)."""
+MOST_CAUSES = 2
+"""Causes at once that are named. Where a third is needed, an unknown one is likelier than three at once."""
+SHAPE_CHANCE = 0.01
+"""Probability of a shape as far from the known one, below which it is that of something else. Two logs of one of some
+forty developing ships pull at the headings like a wave drift of 1000 N without arm and surge."""
+DEVIATIONS = 3.0
+"""Standard deviations that an estimate must be off neutral (assumed)."""
+STEADY_SET_LOSS = 12.0
+"""Log-evidence that a set whose causes are equally large in all parts of the log may be below the best. [nats] What a
+few wrong rows gave a cause on developing logs."""
+
+# Gain on simulated healthy logs
+
+NULL_GAIN_WITHOUT_WIND = 40.0
+"""More that a cause has to gain where the log has no wind, which could be it. [nats] Assumed."""
+NULL_GAIN_UNKNOWN = 25.0
+"""Gain that a healthy log may reach where no simulated ship keeps to the log's track, as a craft that cannot go
+sideways. [nats] Assumed."""
+FAR_ABOVE_NULL = 100.0
+"""A gain above which no healthy logs are simulated. [nats] No healthy developing log came near."""
+LOST_TRACK = 10.0
+"""Squared innovations over their median among simulated healthy ships, above which the ship has lost the track. One
+small craft in fifty spun away."""
+
+# Unmodelled errors
+
+BASIS_FUNCTIONS = 8
+"""Basis functions over the log for a slow force."""
+PERIODS = 28
+"""Periods at which a sinusoidal force is sought, from 20 s to the length of the log."""
+SHORTEST_PERIOD = 20.0
+"""The shortest of them. [s]"""
+FORCE_SIZE = 1e-3
+"""Acceleration by a force that matters, the prior of unmodelled forces. [m/s2] 500 N on 500 t."""
+CHANNEL_SIZES = (1.0, 1.0, np.radians(1.0), 0.03, 0.03, np.radians(0.03))
+"""Error of a channel that matters, the prior of unmodelled errors of channels. [m, m, rad, m/s, m/s, rad/s] Assumed."""
+LENGTHS_PER_GYRADIUS = 4.0
+"""Lengths of a ship over her radius of gyration, to turn an acceleration into one in yaw."""
+SIZE_FROM_PART_TO_PART = 0.1
+"""Of a cause's size, by which its model may be wrong from part to part of the log. Assumed."""
+LEAST_LOG_P = -700.0
+"""Logarithm of the smallest p-value; smaller ones are 0 to the machine."""
+
+# The change point
+
+CHANGE_POINT_GAIN = 6.0
+"""What a change point must gain at first sight for a second look; twice that to be believed: 12 nats over none pay for
+the search over all times (developing logs). [nats]"""
+CHANGE_POINT_BLOCK = 60.0
+"""Blocks between which it is sought. [s]"""
+CHANGE_POINT_SKIPPED = 2
+"""Blocks after it that are left out: the filter still answers to the change."""
+CHANGE_POINT_MARGIN = 3
+"""Blocks at both ends of the log in which none is sought."""
+
+# Noise
+
+MOST_WALK = 3e-5
+"""Fastest random walk of the unexplained acceleration: some 400 N on Gunnerus in ten minutes. [m/s2.5] Left free, it
+swallowed every cause (prototypes)."""
+GUST_FACTOR = 10.0
+"""Times as fast may it walk where nobody knows the wind. Assumed."""
+TUNED_BESIDE = 3.0
+"""Gain of a cause at first sight, from which on noise is tuned beside it. [nats]"""

@@ -1,0 +1,85 @@
+"""Thresholds by which faults of a log are found from the ship's response, each with its unit and what it was set on.
+
+Developing logs are those of the independent truth (tests/bench/truth) with seeds below 1000. "Assumed" is what nobody
+has measured.
+"""
+
+# Evidence for a fault against causes
+
+FAULT = 15.0
+"""What a fault of the data must gain over the best causes without it. [nats] It takes the place of causes that explain
+the log too."""
+UNIT = 3.0
+"""The same for another unit over a cause that it looks like (`wind_scale`): a scale is free, so the log in knots is
+likelier than a wind load of exactly 1.94 squared. [nats]"""
+MOST_TRIED = 3
+"""Mislabels of thrusters and wind that are tried, the likeliest first."""
+MOST_INPUT_FAULTS = 2
+"""Faults of thrusters' and the wind's channels in one log. Assumed."""
+ROUNDS_OF_SEGMENT = 2
+"""Times that the segment of a mislabel is refined about the motion that it gives."""
+
+# Labels of thrusters and wind
+
+LEAST_ROW_GAIN = 10.0
+"""Log-likelihood over the rows of its segment from which on a mislabel is tried. [nats] Assumed."""
+SHORTEST_INPUT = 60.0
+"""Shortest segment in which an input is wrong. [s] Assumed."""
+WHOLE = 0.85
+"""Share of the log from which on a segment is taken as all of it. Assumed."""
+SEARCH_STEP = 60.0
+"""Time between the places where an end of a segment is sought first. [s]"""
+FIRST_MOVE = 32
+"""Rows by which an end is then moved, halved until it stays."""
+SEGMENT_GAIN = 5.0
+"""What another segment must gain over the one at hand. [nats] Assumed."""
+PART_GAIN = 15.0
+"""What a segment must gain over the whole log. [nats] Assumed."""
+
+# Labels of the navigation
+
+LABEL_GAIN = 30.0
+"""What a label must gain over the rows of its stretch. [nats] Healthy logs gained up to 7 in a stretch, faulty ones up
+to 20 by another label."""
+BETTER_LABEL = 15.0
+"""More than what position against velocity has said. [nats] The same logs."""
+SHORTEST_LABEL = 180.0
+"""Shortest stretch; along shorter ones other causes look like labels (developing logs). [s]"""
+CHANGED = 0.7
+"""Share of the root mean square of its channels that another frame must change. Assumed."""
+LIKELY_LABELS = 4
+"""Labels for which the noise is tuned anew."""
+CALM_JOLT = 0.2
+"""Share of the first guess of the jolts that the noise may have: under a wrong label jolts grow to cover it."""
+
+# The clock
+
+CLOCK_GAIN = 8.0
+"""What a wrong clock must gain after the cost of choosing its segments. [nats]"""
+OVER_CAUSE = 5.0
+"""More than the likeliest cause. [nats]"""
+CLOCK_SLAB = 0.25
+"""Prior standard deviation of ρ - 1, with ρ true seconds per logged second."""
+CLOCK_BLOCK = 12.0
+"""Blocks of which its segments consist. [s]"""
+SHORTEST_CLOCK = 60.0
+"""Shortest segment. [s]"""
+LARGEST_SHARE = 0.5
+"""Largest share of the log; what is longer is a scale, not a segment."""
+MOST_SEGMENTS = 2
+"""Segments of one clock."""
+PLAUSIBLE_RATES = (0.65, 1.5)
+"""ρ of a clock; outside it is noise (developing logs)."""
+SMALLEST_RATE = 0.08
+"""Of ρ - 1, below which it is no fault. Assumed."""
+RATE_UNSURE = 0.03
+"""Of ρ - 1, what the ends of segments leave open, as a standard deviation. Assumed."""
+ASPECT_APART = 0.15
+"""Of ρ - 1, by which what way, speed, heading and turning say may differ beyond noise. Assumed."""
+ASPECT_CHANCE = 0.01
+"""Probability that they differ more if the clock is wrong; the limit is 11.3. 28 of 30 developing logs with a wrong
+clock lay below 10.1; 17 of 19 in which a shoal, a wind shadow or a deviating compass looked like one, above 14."""
+TYPICAL_RATE = 0.2
+"""ρ - 1 of a wrong clock that a log should be able to show, for what it could not have shown."""
+TYPICAL_SEGMENT = 240.0
+"""Its length. [s]"""
