@@ -15,7 +15,7 @@ from shipcosim.diagnose.inference.linearisation import Regressor, advanced, line
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.null_distribution import healthy_records
 from shipcosim.diagnose.log.checks.examine import examine
-from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.model import Inputs, Motion, loads, motion_rates, ship_model_of
@@ -166,7 +166,7 @@ HIDDEN = {
 
 def found_in(log, ship, tmp_path):
     write_table(log, tmp_path / "log.csv")
-    return diagnose(tmp_path / "log.csv", ship().checked())[0]
+    return find_causes(tmp_path / "log.csv", ship().checked())
 
 
 @pytest.mark.slow

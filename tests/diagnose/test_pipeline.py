@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import write_table
 
@@ -23,20 +23,20 @@ LONG = "thrust_loss", "heading_bias", "mass", "two"
 
 @pytest.fixture(scope="module")
 def diagnosed(tmp_path_factory):
-    """Function from the name of a planted log to its diagnosis and details."""
+    """Function from the name of a planted log to its diagnosis."""
 
     @cache
     def of(name):
         path = tmp_path_factory.mktemp("log") / "log.csv"
         write_table(twin.logs()[name], path)
-        return diagnose(path, twin.system())
+        return find_causes(path, twin.system())
 
     return of
 
 
 @pytest.mark.parametrize("name", ["current", *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)])
 def test_planted_causes_are_named_with_their_parameters(name, diagnosed):
-    diagnosis, _ = diagnosed(name)
+    diagnosis = diagnosed(name)
     assert diagnosis.verdict == "named"
     found = {(finding.cause, finding.component): finding for finding in diagnosis.findings}
     assert set(found) == set(PARAMETERS[name])
@@ -50,29 +50,30 @@ def test_planted_causes_are_named_with_their_parameters(name, diagnosed):
 def test_a_healthy_log_is_consistent_and_progress_is_told_in_words(tmp_path):
     path, said = tmp_path / "log.csv", []
     write_table(twin.logs()["healthy"], path)
-    diagnosis, details = diagnose(path, twin.system(), progress=said.append)
+    diagnosis = find_causes(path, twin.system(), progress=said.append)
     assert len(said) >= 3 and all(" " in words for words in said)
     assert (diagnosis.verdict, diagnosis.findings, diagnosis.prescription) == ("consistent", (), None)
-    assert max(details.unmodelled.values()) <= 0.0 and details.fit.hypotheses == ()
+    assert max(diagnosis.basis.unmodelled.values()) <= 0.0 and diagnosis.basis.fit.hypotheses == ()
 
 
 def test_what_a_diagnosis_rests_on_comes_with_it(diagnosed):
-    diagnosis, details = diagnosed("current")
-    assert details.fit in details.fits and details.fit.label == "current"
-    assert details.log.sizes["time"] == details.clean.sizes["time"] == 361
+    diagnosis = diagnosed("current")
+    basis, found = diagnosis.basis, diagnosis.basis.explained.identification
+    assert basis.fit in basis.fits and basis.fit.label == "current"
+    assert found.log.sizes["time"] == found.repaired.sizes["time"] == 361
     kinds = {"slow", "with the heading", "periodic", "in a channel", "from part to part", "beyond tolerances"}
-    assert set(details.unmodelled) == kinds
+    assert set(basis.unmodelled) == kinds
     assert "current" not in diagnosis.not_testable
-    gain = details.fit.score - next(fit.score for fit in details.fits if not fit.hypotheses)
-    assert gain > 100.0 and details.chance == {}
+    gain = basis.fit.score - next(fit.score for fit in basis.fits if not fit.hypotheses)
+    assert gain > 100.0 and basis.null_gains == {}
 
 
 @pytest.mark.slow
 def test_without_wind_in_the_log_its_causes_are_not_testable_and_that_is_said(tmp_path):
     path = tmp_path / "log.csv"
     write_table(twin.logs()["heading_bias"].drop_vars("wind_speed"), path)
-    diagnosis, details = diagnose(path, twin.system())
-    assert any("No wind in the log" in remark for remark in details.problem.record.remarks)
+    diagnosis = find_causes(path, twin.system())
+    assert any("No wind in the log" in remark for remark in diagnosis.basis.problem.record.remarks)
     assert {"wind_scale", "wind_direction"} <= set(diagnosis.not_testable)
 
 
@@ -90,7 +91,7 @@ def test_a_parked_ship_can_show_little(tmp_path):
     still |= {role: 0.0 * log[role] + std * random.standard_normal(log.sizes["time"]) for role, std in noise.items()}
     path = tmp_path / "log.csv"
     write_table(log.assign(still), path)
-    diagnosis, _ = diagnose(path, twin.system())
+    diagnosis = find_causes(path, twin.system())
     assert not [finding for finding in diagnosis.findings if finding.kind == "physics"]
     assert {"mass", "drag", "crossflow", "thrust_loss", "velocity_scale"} <= set(diagnosis.not_testable)
 
@@ -99,4 +100,4 @@ def test_a_log_that_is_too_short_is_refused(tmp_path):
     path = tmp_path / "log.csv"
     write_table(twin.logs()["healthy"].isel(time=slice(60)), path)
     with pytest.raises(ShipcosimError, match="60 rows"):
-        diagnose(path, twin.system())
+        find_causes(path, twin.system())

@@ -17,7 +17,7 @@ from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.innovations import _process, _uncertain
 from shipcosim.diagnose.inference.linearisation import STATES
 from shipcosim.diagnose.inference.noise import waves_of
-from shipcosim.diagnose.inference.problem import prepare
+from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.search import explain
 from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, ship_model_of, shown
 from shipcosim.models.environment.wind_loads import apparent_wind
@@ -162,7 +162,7 @@ def logs(minutes=6.0, seed=0):
 def ready(log):
     """A log as a case."""
     with threadpool_limits(1):  # small matrices: threads would only wait for each other
-        return prepare(log, model(), read_catalogue())
+        return identification_problem(log, model(), read_catalogue())
 
 
 def explained(log):

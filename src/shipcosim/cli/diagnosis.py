@@ -70,7 +70,7 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
     system : str, optional
         As for `find_system`.
     channels, effects : path, optional
-        As for `shipcosim.diagnose.pipeline.diagnose`.
+        As for `shipcosim.diagnose.pipeline.find_causes`.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.results import staged
-    from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.diagnose.pipeline import find_causes
     from shipcosim.report.diagnosis.page import Story, write_diagnosis
     from shipcosim.ssp import read_system
 
@@ -96,12 +96,12 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
         link(LINKS[0])
         with _named_by(data):
             say = lambda doing: link(f"{LINKS[0]}: {doing}")  # noqa: E731
-            diagnosis, details = diagnose(data, ship, channels, effects, say)
+            diagnosis = find_causes(data, ship, channels, effects, say)
         link(LINKS[1])
-        story = _with_errors(Story(diagnosis, details, Path(data).name, ship))
+        story = _with_errors(Story(diagnosis, diagnosis.basis, Path(data).name, ship))
         with staged(folder) as stage:
             link(LINKS[2])
-            story = _extended(story, given, stage, _about(data, details), effects, fmus)
+            story = _extended(story, given, stage, _about(data, story.details), effects, fmus)
             link(LINKS[3])
             story = _simulated(story, given, effects, fmus, link)
             link(LINKS[4])
@@ -140,7 +140,7 @@ def _named_by(data):
 
 def _about(data, details):
     """What the extension says of the log: its name and fingerprint, first and last time."""
-    time = details.clean["time"].values
+    time = details.explained.identification.repaired["time"].values
     fingerprint = hashlib.sha256(Path(data).read_bytes()).hexdigest()
     return {"source": Path(data).name, "sha256": fingerprint, "span": (float(time[0]), float(time[-1]))}
 

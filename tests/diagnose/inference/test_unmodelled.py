@@ -8,19 +8,19 @@ from diagnose import twin
 from diagnose.twin import fits, problem
 from scipy.stats import chi2
 
-from shipcosim.diagnose.inference import unmodelled as nameless
-from shipcosim.diagnose.inference.unmodelled import unexplained
-from shipcosim.diagnose.inference.verdict import UNMODELLED
+from shipcosim.diagnose.inference import unmodelled
+from shipcosim.diagnose.inference.thresholds import UNMODELLED
+from shipcosim.diagnose.inference.unmodelled import unmodelled_gains
 
 
 def beside_the_best(log):
     here, found = twin.explained(log)
-    return unexplained(here, found[0])
+    return unmodelled_gains(here, found[0])
 
 
 @pytest.mark.parametrize("name", ["healthy", "mass", "tow", "two", "heading_bias"])
 def test_beside_the_right_cause_nothing_is_left(name):
-    assert max(unexplained(problem(name), fits(name)[0]).values()) < 1.0 < UNMODELLED
+    assert max(unmodelled_gains(problem(name), fits(name)[0]).values()) < 1.0 < UNMODELLED
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -49,11 +49,11 @@ def test_a_scale_of_the_yaw_rate_is_found_in_its_channel():
 
 def test_the_search_over_periods_is_paid_for(monkeypatch):
     """The same sinusoid sought four times scores ln 4 less than once."""
-    once = nameless._bases(problem("healthy"), fits("healthy")[0])["periodic"][:1]
+    once = unmodelled._bases(problem("healthy"), fits("healthy")[0])["periodic"][:1]
     scores = []
     for times in (1, 4):
-        monkeypatch.setattr(nameless, "_bases", lambda *_, times=times: {"periodic": times * once})
-        scores.append(unexplained(problem("healthy"), fits("healthy")[0])["periodic"])
+        monkeypatch.setattr(unmodelled, "_bases", lambda *_, times=times: {"periodic": times * once})
+        scores.append(unmodelled_gains(problem("healthy"), fits("healthy")[0])["periodic"])
     assert scores[0] - scores[1] == pytest.approx(np.log(4.0))
 
 
@@ -69,18 +69,18 @@ def fit_of_parts(sizes, known=400.0):
 
 
 def test_a_cause_that_is_as_large_in_each_part_is_steady():
-    assert nameless._unsteady(fit_of_parts([0.5] * 8)) == 0.0
-    assert nameless._unsteady(fit_of_parts([0.5, 0.53, 0.47, 0.5] * 2)) == 0.0
+    assert unmodelled._differs_by_part(fit_of_parts([0.5] * 8)) == 0.0
+    assert unmodelled._differs_by_part(fit_of_parts([0.5, 0.53, 0.47, 0.5] * 2)) == 0.0
 
 
 def test_a_cause_that_comes_and_goes_from_part_to_part_is_not():
-    assert nameless._unsteady(fit_of_parts([0.8, 0.2] * 4)) > UNMODELLED
+    assert unmodelled._differs_by_part(fit_of_parts([0.8, 0.2] * 4)) > UNMODELLED
 
 
 def test_what_a_p_value_can_say_at_most_is_bounded():
     """Chi-squared of 8 parts at 31.8, p = 1e-4: -log(-e p log p) = 5.99."""
     sizes = 0.5 + np.sqrt(chi2.isf(1e-4, 8) / 8.0 * (1.0 / 400.0 + 0.05**2)) * np.array([1.0, -1.0] * 4)
-    assert nameless._unsteady(fit_of_parts(sizes)) == pytest.approx(5.99, abs=0.01)
+    assert unmodelled._differs_by_part(fit_of_parts(sizes)) == pytest.approx(5.99, abs=0.01)
 
 
 def fit_of_numbers(theta, covariance):
@@ -94,17 +94,17 @@ def test_numbers_off_as_their_tolerances_say_are_no_surprise():
     seen, turned = random.standard_normal((60, 20)), np.diag(np.geomspace(1e-2, 3.0, 20))
     precision = turned @ seen.T @ seen @ turned / 30.0
     covariance = np.linalg.inv(np.eye(20) + precision)
-    unmodelled = 0
+    beyond = 0
     for _ in range(2000):
         pull = precision @ random.standard_normal(20) + np.linalg.cholesky(precision) @ random.standard_normal(20)
-        unmodelled += nameless._beyond(fit_of_numbers(covariance @ pull, covariance)) > UNMODELLED
-    assert unmodelled <= 2
+        beyond += unmodelled._beyond_tolerances(fit_of_numbers(covariance @ pull, covariance)) > UNMODELLED
+    assert beyond <= 2
 
 
 def test_numbers_far_beyond_their_tolerances_are_strange():
-    assert nameless._beyond(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20))) > UNMODELLED
-    assert nameless._beyond(fit_of_numbers([2.0, -2.0, *[0.5] * 18], 0.1 * np.eye(20))) < 1.0
+    assert unmodelled._beyond_tolerances(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20))) > UNMODELLED
+    assert unmodelled._beyond_tolerances(fit_of_numbers([2.0, -2.0, *[0.5] * 18], 0.1 * np.eye(20))) < 1.0
 
 
-def test_what_is_beyond_all_chance_is_strange_by_a_number():
-    assert UNMODELLED < nameless._beyond(fit_of_numbers([300.0] * 20, 0.1 * np.eye(20))) < 700.0
+def test_what_is_beyond_all_chance_counts_with_a_finite_number():
+    assert UNMODELLED < unmodelled._beyond_tolerances(fit_of_numbers([300.0] * 20, 0.1 * np.eye(20))) < 700.0

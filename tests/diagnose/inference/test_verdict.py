@@ -9,16 +9,8 @@ from diagnose import twin
 
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.fitting import Regressor
-from shipcosim.diagnose.inference.verdict import (
-    APART,
-    ENOUGH,
-    TESTABLE,
-    UNMODELLED,
-    admissible,
-    gained,
-    judge,
-    not_testable,
-)
+from shipcosim.diagnose.inference.thresholds import APART, ENOUGH, UNMODELLED
+from shipcosim.diagnose.inference.verdict import admissible, gained, judge
 
 EVERYONE = {hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), twin.model())}
 
@@ -52,8 +44,8 @@ def quiet(_):
     return {"slow": -5.0, "periodic": 1.0}
 
 
-def verdict(*fits, unmodelled=quiet, chance=None):
-    return judge([fit(0.0), *fits], unmodelled, chance)
+def verdict(*fits, unmodelled=quiet, null=None):
+    return judge([fit(0.0), *fits], unmodelled, null)
 
 
 def named(judgement):
@@ -128,9 +120,9 @@ def test_what_must_not_be_named(what, fitted):
 
 def test_what_healthy_logs_gain_too_is_not_named():
     fits = fit(12.0, "crossflow")
-    assert verdict(fits, chance={"crossflow": 5.0}).verdict == "named"
-    assert verdict(fits, chance={"crossflow": 9.0}).verdict == "consistent"
-    assert verdict(fits, chance={"crossflow": -9.0}).verdict == "named"
+    assert verdict(fits, null={"crossflow": 5.0}).verdict == "named"
+    assert verdict(fits, null={"crossflow": 9.0}).verdict == "consistent"
+    assert verdict(fits, null={"crossflow": -9.0}).verdict == "named"
 
 
 def test_an_error_without_a_name_makes_it_unknown_and_the_causes_candidates():
@@ -163,24 +155,6 @@ def test_gain_of_a_cause_is_over_the_best_set_without_it():
     assert admissible(fits[3], fits, {}) and not admissible(fits[3], fits, {"drag": 8.0})
 
 
-def test_a_cause_is_testable_if_its_typical_size_would_have_gained_enough():
-    """One column of information g: a size of one typical size gains g/2 less Occam's share."""
-    places = {"mass": 1, "drag": 2}
-    columns = [Regressor({f"vessel.{path}": 1.0}) for path in ("lift", "mass_scale", "drag_scale")]
-    products = np.diag([1.0, 5.0, 40.0, 4.0])
-    groups = [(EVERYONE[label], [at]) for label, at in places.items()]
-    assert 0.5 * 40.0 - 0.5 * np.log(41.0) > TESTABLE > 2.0
-    assert not_testable(None, products, columns, groups) == ("drag",)
-
-
-def test_a_cause_that_looks_like_a_known_number_is_not_testable():
-    columns = [Regressor({"vessel.lift": 1.0}), Regressor({"vessel.mass_scale": 1.0})]
-    products = np.diag([1.0, 40.0, 40.0])
-    assert not_testable(None, products, columns, [(EVERYONE["mass"], [1])]) == ()
-    products[1, 2] = products[2, 1] = 39.9
-    assert not_testable(None, products, columns, [(EVERYONE["mass"], [1])]) == ("mass",)
-
-
 def test_a_cause_that_differs_from_part_to_part_gives_way_if_it_gains_little_and_is_unknown_if_much():
     def unmodelled(of):
         return {"slow": -5.0, "from part to part": 2.0 * UNMODELLED if of.hypotheses else 0.0}
@@ -189,7 +163,7 @@ def test_a_cause_that_differs_from_part_to_part_gives_way_if_it_gains_little_and
     assert verdict(fit(40.0, "mass"), unmodelled=unmodelled).verdict == "unknown"
 
 
-def test_what_a_cause_too_small_to_matter_explains_is_no_error_without_a_name():
+def test_what_a_cause_too_small_to_matter_explains_is_no_unmodelled_error():
     def unmodelled(of):
         return {"slow": 20.0 if not of.hypotheses else -5.0}
 

@@ -8,7 +8,7 @@ from diagnose import twin
 
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults import clock as timing
-from shipcosim.diagnose.log_faults.clock import clock_by_answer, is_testable, with_rate
+from shipcosim.diagnose.log_faults.clock import clock_by_response, is_testable, with_rate
 from shipcosim.diagnose.result import Estimate, Finding
 
 FIRST, LAST, RATE = 150.0, 300.0, 1.3
@@ -28,12 +28,12 @@ def hurried(log):
 
 def test_a_right_clock_is_not_suspected():
     log = twin.logs()["healthy"]
-    assert clock_by_answer(twin.ready(log)) is None
+    assert clock_by_response(twin.ready(log)) is None
 
 
 def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
     log = hurried(twin.logs()["healthy"])
-    finding = clock_by_answer(twin.ready(log))
+    finding = clock_by_response(twin.ready(log))
     assert (finding.cause, finding.channels) == ("clock", ("time",))
     ((first, last),) = finding.segments
     assert abs(first - FIRST) < 20.0 and abs(last - LAST) < 20.0
@@ -60,7 +60,7 @@ def test_a_compass_that_deviates_with_the_heading_is_no_clock():
     problem = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
     gain, finding = timing._most_likely(timing._blocks(problem, timing._edges(problem), problem.known(())))
     assert gain > 30.0 and finding.cause == "clock"
-    assert not timing._is_said_by_all(problem, finding, problem.known(())) and clock_by_answer(problem) is None
+    assert not timing._all_aspects_agree(problem, finding, problem.known(())) and clock_by_response(problem) is None
 
 
 def test_thrusters_that_push_less_for_a_while_are_no_clock():
@@ -70,6 +70,6 @@ def test_thrusters_that_push_less_for_a_while_are_no_clock():
     told = {role: ("time", np.where(here, 1.25, 1.0) * log[role].values) for role in log.data_vars if "_rpm" in role}
     clock = Finding("clock", None, "data", 0.98, {"rate": Estimate(0.8, 0.02, "1")}, ((FIRST, LAST),), ("time",))
     problem = twin.ready(log.assign(told))
-    assert not timing._is_said_by_all(problem, clock, problem.known(()))
+    assert not timing._all_aspects_agree(problem, clock, problem.known(()))
     slow, told = twin.ready(hurried(log)), {"rate": Estimate(RATE, 0.02, "1")}
-    assert timing._is_said_by_all(slow, replace(clock, parameters=told), slow.known(()))
+    assert timing._all_aspects_agree(slow, replace(clock, parameters=told), slow.known(()))

@@ -8,6 +8,7 @@ from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log_faults.corrections import with_right_wind
 from shipcosim.diagnose.log_faults.input_labels import with_label
+from shipcosim.diagnose.stages import Identification
 
 FROM_NORTH, OVER_GROUND_FROM_NORTH = WIND_LABELS[1], WIND_LABELS[3]
 
@@ -36,8 +37,9 @@ def test_a_wind_told_to_be_counted_from_north_is_over_ground_too_where_the_ship_
     log = hidden(twin.logs()["healthy"])
     told = finding_of(FROM_NORTH, 0.99)
     clean = with_label(log, FROM_NORTH)
-    problem = twin.ready(clean)
-    (found,), clean, problem = with_right_wind(log, [told], clean, problem, twin.model(), read_catalogue())
+    given = Identification(log, twin.model(), read_catalogue(), (told,), clean, twin.ready(clean))
+    right = with_right_wind(given)
+    (found,) = right.faults
     assert (found.note, found.channels, found.segments) == (label.sentence, label.channels, ())
-    right = twin.logs()["healthy"]
-    np.testing.assert_allclose(clean["wind_speed"], right["wind_speed"], atol=1e-9)
+    healthy = twin.logs()["healthy"]
+    np.testing.assert_allclose(right.repaired["wind_speed"], healthy["wind_speed"], atol=1e-9)

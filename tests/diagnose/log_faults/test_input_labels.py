@@ -7,7 +7,7 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
-from shipcosim.diagnose.log_faults.input_labels import best_run, settled, suspected, with_label
+from shipcosim.diagnose.log_faults.input_labels import best_run, suspected_inputs, with_label, with_refined_segment
 
 KNOTS = next(label for label in WIND_LABELS if "in kn," in label.sentence)
 FIRST, LAST = 120.0, 260.0
@@ -22,7 +22,7 @@ def changed(channels, part=True):
 
 
 def best(log):
-    _, mislabel, finding = suspected(log, twin.ready(log))[0]
+    _, mislabel, finding = suspected_inputs(log, twin.ready(log))[0]
     return finding, with_label(log, mislabel, finding.segments)
 
 
@@ -40,10 +40,10 @@ def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
 def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
     """From ends that are half a minute off, about the motion that the log tells of with those."""
     log = changed({"tunnel_rpm": -twin.logs()["healthy"]["tunnel_rpm"].values})
-    _, mislabel, finding = suspected(log, twin.ready(log))[0]
+    _, mislabel, finding = suspected_inputs(log, twin.ready(log))[0]
     finding = replace(finding, segments=((FIRST + 25.0, LAST - 30.0),))
     for _ in range(2):
-        finding = settled(log, mislabel, finding, twin.ready(with_label(log, mislabel, finding.segments)))
+        finding = with_refined_segment(log, mislabel, finding, twin.ready(with_label(log, mislabel, finding.segments)))
     ((first, last),) = finding.segments
     assert abs(first - FIRST) <= 4.0 and abs(last - LAST) <= 4.0
 
@@ -52,7 +52,7 @@ def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
 def test_what_is_told_throughout_is_settled_to_the_part_where_it_is_so(part):
     log = changed({"wind_speed": 3600.0 / 1852.0 * twin.logs()["healthy"]["wind_speed"].values}, part)
     told = finding_of(KNOTS, 0.99)
-    found = settled(log, KNOTS, told, twin.ready(with_label(log, KNOTS)))
+    found = with_refined_segment(log, KNOTS, told, twin.ready(with_label(log, KNOTS)))
     np.testing.assert_allclose(found.segments, [(FIRST, LAST)] if part else np.zeros(0), atol=10.0)
 
 
@@ -76,7 +76,7 @@ def test_swapped_twins_are_found_by_their_channels():
 
 @pytest.mark.parametrize("name", ["healthy", "thrust_loss"])
 def test_right_channels_are_not_suspected(name):
-    assert suspected(twin.logs()[name], twin.ready(twin.logs()[name])) == []
+    assert suspected_inputs(twin.logs()[name], twin.ready(twin.logs()[name])) == []
 
 
 def test_thebest_run_is_the_one_of_all_runs_that_adds_up_to_most():

@@ -39,7 +39,7 @@ def test_units_stretch_the_density_of_their_channels():
     better, *_ = relabelled(log, [swap], loud)
     assert better.faults[0].note == "surge and sway are in kn, not m/s"
     rows = 2 * np.isfinite(healthy["surge"].values).sum()
-    np.testing.assert_allclose(better.stretch, -rows * np.log(3600.0 / 1852.0), rtol=1e-6)
+    np.testing.assert_allclose(better.density, -rows * np.log(3600.0 / 1852.0), rtol=1e-6)
 
 
 def test_near_north_earth_fixed_is_body_fixed_and_no_fault():

@@ -11,8 +11,8 @@ from diagnose import boat, twin
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
-from shipcosim.diagnose.inference.problem import prepare
-from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.diagnose.inference.problem import identification_problem
+from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship import model as plant_module
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
@@ -171,8 +171,8 @@ def missed(model, record, motion, name, by):
 @pytest.mark.parametrize("name", ["thrust_loss", "azimuth_offset"])
 def test_our_azimuth_as_a_black_box_gets_the_same_diagnosis(name, strange_azimuths, tmp_path):
     write_table(twin.logs()[name], tmp_path / "log.csv")
-    diagnosis, details = diagnose(tmp_path / "log.csv", twin.system())
-    assert details.problem.model.third_party
+    diagnosis = find_causes(tmp_path / "log.csv", twin.system())
+    assert diagnosis.basis.problem.model.third_party
     (finding,) = diagnosis.findings
     (path, truth), *_ = twin.PLANTED[name].items()
     assert f"{finding.component}.{finding.cause}" == path
@@ -185,12 +185,12 @@ def test_our_azimuth_as_a_black_box_gets_the_same_diagnosis(name, strange_azimut
 def diagnosed(**factors):
     path = Path(mkdtemp(prefix="shipcosim-")) / "log.csv"
     write_table(logged(20.0, 0, **factors), path)
-    return diagnose(path, boat.structure().checked())
+    return find_causes(path, boat.structure().checked())
 
 
 @pytest.mark.slow
 def test_the_boats_weak_propeller_is_named_with_its_loss():
-    diagnosis, _ = diagnosed(left=0.75)
+    diagnosis = diagnosed(left=0.75)
     (finding,) = diagnosis.findings
     loss = finding.parameters["loss"]
     assert (diagnosis.verdict, finding.label) == ("named", "thrust_loss of left")
@@ -199,7 +199,7 @@ def test_the_boats_weak_propeller_is_named_with_its_loss():
 
 @pytest.mark.slow
 def test_the_healthy_boat_is_consistent():
-    assert diagnosed()[0].verdict == "consistent"
+    assert diagnosed().verdict == "consistent"
 
 
 @pytest.mark.slow
@@ -207,7 +207,7 @@ def test_swapped_propellers_are_a_fault_of_the_log(tmp_path):
     log = logged(20.0)
     log = log.assign(left_rpm=log.right_rpm, right_rpm=log.left_rpm)
     write_table(log, tmp_path / "log.csv")
-    diagnosis, _ = diagnose(tmp_path / "log.csv", boat.structure().checked())
+    diagnosis = find_causes(tmp_path / "log.csv", boat.structure().checked())
     (finding,) = diagnosis.findings
     assert (finding.cause, finding.channels) == ("channel_swap", ("left_rpm", "right_rpm"))
 
@@ -217,10 +217,12 @@ def test_the_extended_boat_replays_with_less_error(tmp_path):
     from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
     from shipcosim.diagnose.validation.gain import compare
 
-    diagnosis, details = diagnosed(left=0.75)
+    diagnosis = diagnosed(left=0.75)
     extension = extend(boat.structure(), diagnosis.findings, tmp_path)
     extended = Replayed(sc.read(extension.ssp).checked(), extension.signals)
-    errors = simulated(compare(details.problem, details.fit), Replayed(boat.structure().checked()), extended)
+    errors = simulated(
+        compare(diagnosis.basis.problem, diagnosis.basis.fit), Replayed(boat.structure().checked()), extended
+    )
     rms = np.sqrt((errors["position"].sel(horizon=60.0) ** 2).mean("segment"))
     assert rms.sel(model="extended") < 0.25 * rms.sel(model="plain")
     assert errors["difference"].sel(replayed="plain", horizon=60.0).mean() < 0.2
@@ -288,7 +290,7 @@ def test_what_nobody_logs_keeps_its_start_value_and_that_is_said(strange_azimuth
 
 
 def test_a_case_of_the_boat_is_prepared_with_her_laws():
-    problem = prepare(logged(), ship_model_of(boat.structure().checked()), read_catalogue())
+    problem = identification_problem(logged(), ship_model_of(boat.structure().checked()), read_catalogue())
     assert all(one.law for one in problem.model.third_party.values())
     assert {"left.gain", "left.rpm_offset", "left.thrust_loss"} <= set(problem.model.tolerances)
 

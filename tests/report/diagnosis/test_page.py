@@ -10,7 +10,7 @@ import xarray as xr
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre, library
-from shipcosim.diagnose.pipeline import diagnose
+from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.result import Candidate, Diagnosis, ExperimentDesign, Finding
 from shipcosim.diagnose.validation.gain import baseline, compare, gain, rms
 from shipcosim.diagnose.validation.missing_force import missing_force
@@ -31,7 +31,8 @@ def story(root, tmp_path_factory):
     path = tmp_path_factory.mktemp("log") / "lossy.csv"
     draw("trial", 3000, among=["thrust_loss"], minutes=12).save(path)
     system = read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)])
-    diagnosis, details = diagnose(path, system)
+    diagnosis = find_causes(path, system)
+    details = diagnosis.basis
     case, fit = details.problem, details.fit
     comparison = compare(case, fit)
     diagnosis = replace(diagnosis, baseline=baseline(comparison.errors), gain=gain(comparison.errors))

@@ -10,7 +10,7 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.noise import explained
 from shipcosim.diagnose.inference.search import without_causes
-from shipcosim.diagnose.inference.verdict import ENOUGH, UNMODELLED
+from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
 from shipcosim.report.diagnosis.data import TIME, line, panel, rounded
 from shipcosim.report.diagnosis.numbers import plain, span
 from shipcosim.report.diagnosis.words import title

@@ -32,8 +32,8 @@ class Story:
     Attributes
     ----------
     diagnosis : Diagnosis
-    details : Details
-        Of the same run of `diagnose`.
+    details : JudgedLog
+        What it rests on.
     source : str
         Name of the log.
     system : System
@@ -83,7 +83,7 @@ class Story:
     @property
     def handled(self):
         """What is ordinary in a log and was handled without being a fault."""
-        log = self.details.log
+        log = self.details.explained.identification.log
         unused = ", ".join(map(str, log.attrs.get("unused_columns", ())))
         return [*remarks(log), *([f"Columns without a role are not used: {unused}."] if unused else [])]
 
@@ -183,7 +183,7 @@ def key_figures(diagnosis):
 
 
 def _facts(story):
-    log = story.details.log
+    log = story.details.explained.identification.log
     time = log["time"].values
     span = f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"
     step = f"{story.details.problem.record.step:g} s"

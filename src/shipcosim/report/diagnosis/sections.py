@@ -26,7 +26,12 @@ def data_section(story, figures):
         if faults
         else "Position, velocity, heading and rate of turn agree with each other, and so do the clocks."
     )
-    panels = [track_panel(details.clean), *log_panels(details.log, details.clean, story.diagnosis.findings)]
+    panels = [
+        track_panel(details.explained.identification.repaired),
+        *log_panels(
+            details.explained.identification.log, details.explained.identification.repaired, story.diagnosis.findings
+        ),
+    ]
     head = ["Fault", "Channels", "Where", "What", "Done about it"]
     return parts.section(
         "log",
@@ -121,7 +126,7 @@ def _stands_out(story):
     details = story.details
     rows = []
     for hypothesis in details.fit.hypotheses:
-        chance = details.chance.get(hypothesis.label)
+        chance = details.null_gains.get(hypothesis.label)
         by_chance = "far above what healthy ships show" if chance is None else f"up to {plain(chance, 2)} nats"
         rows.append(
             (
