@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 __all__ = ["identification_problem", "identified", "unidentifiable"]
 
 
-
 def identified(checked: CheckedLog) -> Identification:
     """A checked log as an identification problem; its ship gets surrogates of third-party FMUs for this log."""
     problem = identification_problem(checked.repaired, checked.ship, checked.causes)
