@@ -89,7 +89,7 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     return f"There is: {shown}." + (f" Did you mean '{close[0]}'?" if close else "")
 
 
-def it_has(name, known):
+def it_has(name: str, known: Iterable[str]) -> str:
     """Remedy for a name that something does not have.
 
     Examples

@@ -8,7 +8,7 @@ import shipcosim
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 SYSTEMS = (".ssp", ".ssd", ".xml")
-IN_EVERY_FMU = ("models", "fmi")  # folders of this package whose code travels in FMUs
+IN_EVERY_FMU = ("models", "angles.py", "fmi", "units.py")  # of this package: what travels in FMUs, what builds them
 
 
 def find_project(start: str | os.PathLike[str]) -> Path | None:
@@ -113,7 +113,7 @@ def build_stale(project: Path) -> Path:
         Folder with the FMUs.
     """
     package = Path(shipcosim.__file__).parent
-    shared = max(_newest(package / room) for room in IN_EVERY_FMU)
+    shared = max(_newest(package / part) for part in IN_EVERY_FMU)
     for name, folder in _fmus(project).items():
         fmu = built_fmus(project) / f"{name}.fmu"
         if not fmu.is_file() or fmu.stat().st_mtime < max(shared, _newest(folder)):
@@ -144,5 +144,7 @@ def _pack(folder: Path, out: Path) -> Path:
     return target
 
 
-def _newest(folder: Path) -> float:
-    return max((path.stat().st_mtime for path in folder.rglob("*") if path.suffix != ".pyc"), default=0.0)
+def _newest(path: Path) -> float:
+    """Time of the last change of a file, or of the files in a folder."""
+    files = path.rglob("*") if path.is_dir() else [path]
+    return max((file.stat().st_mtime for file in files if file.suffix != ".pyc"), default=0.0)
