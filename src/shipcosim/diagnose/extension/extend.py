@@ -1,24 +1,21 @@
 """The named causes as part of the system: values in extended.ssv, and in extended.ssp what the system did not have."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-from shipcosim.diagnose.extension.connection_edits import put_on_connections
-from shipcosim.diagnose.extension.structure_edits import (
-    Estimated,
-    StructureEdits,
-    add_current,
-    add_force,
-    add_instruments,
-    add_slipstreams,
-    rewire,
-)
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.extension.connections import connect_neighbours, put_on_connections, rewire
+from shipcosim.diagnose.extension.draft import Estimated, ExtensionDraft, converted
+from shipcosim.diagnose.extension.insertions import add_current, add_force, add_instruments
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
+from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnections
+from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.series import conversion
 from shipcosim.ssp import SystemStructure, read, write_ssv
 
-_FORCES = {"drift": "drift_force", "tow": "earth_force"}
+__all__ = ["Extension", "extend"]
+
 _SHOWN = {"north": "x", "east": "y", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
 
 
@@ -55,7 +52,14 @@ class Extension:
     remarks: tuple[str, ...] = ()
 
 
-def extend(system, findings, folder, *, log_attributes=None, catalogue=None):
+def extend(
+    system: str | Path | SystemStructure,
+    findings: Iterable[Finding],
+    folder: str | Path,
+    *,
+    log_attributes: Mapping[str, Any] | None = None,
+    catalogue: Mapping[str, Cause] | None = None,
+) -> Extension:
     """Write a system that has the named causes of the physics in it, and only those.
 
     Parameters
@@ -82,29 +86,29 @@ def extend(system, findings, folder, *, log_attributes=None, catalogue=None):
         If the system has errors or no ship, an FMU to insert is not there, or something cannot be written.
     """
     structure = system.copy() if isinstance(system, SystemStructure) else read(system)
-    edits = StructureEdits(structure, _ship(structure), log_attributes or {})
+    draft = ExtensionDraft(structure, _ship(structure), log_attributes or {})
     catalogue = catalogue or read_catalogue()
     findings = [finding for finding in findings if finding.kind == "physics"]
     with structure.changes():
         for finding in findings:
-            _carry(edits, finding, catalogue)
+            _carry(draft, finding, catalogue)
     ssp, ssv = Path(folder) / "extended.ssp", Path(folder) / "extended.ssv"
-    write_ssv(ssv, "extended", edits.values.values())
+    write_ssv(ssv, "extended", draft.values.values())
     structure.bind(ssv)
     structure.write(ssp)
     return Extension(
         ssp,
         ssv,
-        {name: value.value for name, value in edits.values.items()},
-        tuple(edits.inserted),
-        {role: f"{edits.shows}.{name}" + edits.suffix for role, name in _SHOWN.items()},
-        edits.errors,
-        edits.lag,
-        tuple(edits.remarks),
+        {name: value.value for name, value in draft.values.items()},
+        tuple(draft.inserted),
+        {role: f"{draft.shows}.{name}" + draft.suffix for role, name in _SHOWN.items()},
+        draft.errors,
+        draft.lag,
+        tuple(draft.remarks),
     )
 
 
-def _ship(structure):
+def _ship(structure: SystemStructure) -> str:
     """Name of the component that all forces act on."""
     needed = {"tau_X_1", "tau_Y_1", "tau_N_1", "psi", "current_north", "current_east"}
     ships = [name for name, part in structure.checked().components.items() if needed <= set(part.fmu.variables)]
@@ -115,67 +119,97 @@ def _ship(structure):
     return ships[0]
 
 
-def _carry(edits, finding, catalogue):
+def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Cause]) -> None:
     """Put one finding into the system."""
-    if finding.cause == "connection":
-        rewire(edits, finding.component)
+    fault = read_faults().get(finding.cause)
+    if fault is not None and fault.rewires:
+        rewire(draft, str(finding.component))
         return
     if finding.cause not in catalogue:
-        edits.remark(finding, "it is not in the catalogue")
+        draft.remark(finding, "it is not in the catalogue")
         return
-    known = catalogue[finding.cause].parameters
-    numbers = {}
-    for name, estimate in finding.parameters.items():
-        patterns = known[name].of if name in known else ()
-        for path in (path for pattern in patterns for path in _paths(edits, pattern, finding)):
-            place, _, number = path.rpartition(".")
-            numbers.setdefault(place, {})[number] = estimate
-    around = {place: numbers.pop(place, {}) for place in ("water", "instruments")}
-    with_onset = _surround(edits, finding, around["water"])
-    add_instruments(
-        edits, finding, {name: _in(e, edits.unit_of_error(name)) for name, e in around["instruments"].items()}
-    )
-    for place, values in numbers.items():
-        for number, estimate in values.items():
-            if not put_on_connections(edits, finding, place, number, estimate):
-                edits.put_parameter(finding, place, number, estimate)
-    if finding.cause == "thruster_interaction":
-        add_slipstreams(edits, finding, [place for place, values in numbers.items() if "interaction_loss" in values])
+    cause = catalogue[finding.cause]
+    numbers = _numbers(draft, finding, cause)
+    with_onset = False
+    for rule in _rules(cause, numbers):
+        own = {parameter: numbers.pop(number) for number, parameter in rule.parameters.items() if number in numbers}
+        with_onset |= _insert(draft, finding, rule, own)
+        if rule.neighbour_inputs:
+            connect_neighbours(draft, finding, rule, dict.fromkeys(_place(number) for number in numbers))
+        if rule.by == "log":
+            draft.remark(finding, "it is one of the log, not of the ship: shift the channels")
+            numbers.clear()
+    for number, estimate in numbers.items():
+        _put_parameter(draft, finding, number, estimate, cause)
     if finding.onset is not None and not with_onset:
-        edits.remark(finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start")
+        draft.remark(finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start")
 
 
-def _surround(edits, finding, water):
-    """Put currents and forces into the system; whether their onset went along."""
-    if {"current_north", "current_east"} & set(water):
-        ends = _pair(water, "current_north", "current_east", "m/s")
-        add_current(edits, finding, *(((None, None), ends) if finding.onset is not None else (ends, None)))
-    if any(name.endswith(("_start", "_end")) for name in water):
-        ends = [_pair(water, f"north_{end}", f"east_{end}", "m/s") for end in ("start", "end")]
-        add_current(edits, finding, *ends)
-    for prefix, fmu in _FORCES.items():
-        own = {name.removeprefix(f"{prefix}_"): e for name, e in water.items() if name.startswith(f"{prefix}_")}
-        if own:
-            vector = _pair(own, "north", "east", "N")
-            others = {name: e for name, e in own.items() if name not in ("north", "east")}
-            add_force(edits, finding, fmu, *vector, others)
-    return bool(water)
+def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str, Estimate]:
+    """Numbers of the ship that a finding has estimates for."""
+    found = {}
+    for name, estimate in finding.parameters.items():
+        for pattern in cause.parameters[name].of if name in cause.parameters else ():
+            found |= dict.fromkeys(_paths(draft, pattern, finding), estimate)
+    return found
 
 
-def _pair(numbers, north, east, unit):
-    """North and east of a vector; one that is not given is none."""
-    return tuple(_in(numbers[name], unit) if name in numbers else Estimated(0.0, 0.0) for name in (north, east))
+def _rules(cause: Cause, numbers: Mapping[str, Estimate]) -> list[ExtensionRule]:
+    """How the system gets a cause: as its file says, else as causes of ours on the same numbers."""
+    if cause.extension is not None:
+        return [cause.extension]
+    ours = [one.extension for one in read_catalogue().values() if one.extension is not None]
+    return [rule for rule in ours if set(rule.parameters) & set(numbers)]
 
 
-def _in(estimate, unit):
-    factor, offset = conversion(estimate.unit, unit)
-    return Estimated(factor * estimate.estimate + offset, abs(factor) * estimate.std)
+def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: Mapping[str, Estimate]) -> bool:
+    """Put what a rule inserts into the system; whether the onset of the cause went along."""
+    if not own or rule.by in ("parameters", "log"):
+        return False
+    if rule.by == "instruments":
+        add_instruments(draft, finding, rule, own)
+        return False
+    if rule.by == "force":
+        add_force(draft, finding, rule, own)
+    elif rule.by == "current":
+        steady = _vector(own, "north", "east")
+        add_current(draft, finding, *(((None, None), steady) if finding.onset is not None else (steady, None)))
+    else:
+        add_current(draft, finding, *(_vector(own, f"north_{end}", f"east_{end}") for end in ("start", "end")))
+    return True
 
 
-def _paths(edits, pattern, finding):
+def _vector(estimates: Mapping[str, Estimate], north: str, east: str) -> tuple[Estimated, Estimated]:
+    """North and east of a velocity; one that is not given is none. [m/s]"""
+    pair = [converted(estimates[name], "m/s") if name in estimates else Estimated(0.0, 0.0) for name in (north, east)]
+    return pair[0], pair[1]
+
+
+def _put_parameter(draft: ExtensionDraft, finding: Finding, number: str, estimate: Estimate, cause: Cause) -> None:
+    """Put a number into the component that has it: as a parameter, else on its connections."""
+    place, name = _place(number), number.rpartition(".")[2]
+    parts = draft.structure.checked().components
+    rule = _on_connections(cause).get(name)
+    if rule is not None and place in parts and name not in parts[place].fmu.variables:
+        put_on_connections(draft, finding, place, estimate, rule)
+    else:
+        draft.put_parameter(finding, place, name, estimate)
+
+
+def _on_connections(cause: Cause) -> dict[str, OnConnections]:
+    """By number of a thruster: how connections carry it, as the cause's file says or one of ours."""
+    parameters = [parameter for one in (*read_catalogue().values(), cause) for parameter in one.parameters.values()]
+    return {of.rpartition(".")[2]: one.on_connections for one in parameters if one.on_connections for of in one.of}
+
+
+def _place(number: str) -> str:
+    return number.rpartition(".")[0]
+
+
+def _paths(draft: ExtensionDraft, pattern: str, finding: Finding) -> list[str]:
     """Numbers of the ship that a pattern of the catalogue means."""
     if pattern.startswith("vessel."):
-        return [f"{edits.ship}.{pattern.removeprefix('vessel.')}"]
+        return [f"{draft.ship}.{pattern.removeprefix('vessel.')}"]
     if "{azimuths}" in pattern:
-        return [pattern.replace("{azimuths}", name) for name in edits.thrusters("azimuth_in")]
+        return [pattern.replace("{azimuths}", name) for name in draft.thrusters("azimuth_in")]
     return [pattern.replace("{thruster}", finding.component or "")]

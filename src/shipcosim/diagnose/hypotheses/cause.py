@@ -8,7 +8,7 @@ from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, model_validator
 
-__all__ = ["FACTS", "Cause", "CauseParameter", "Extension", "Fault", "OnConnections", "placeholders"]
+__all__ = ["FACTS", "Cause", "CauseParameter", "ExtensionRule", "Fault", "OnConnections", "placeholders"]
 
 FACTS = ("astern_share", "speed", "surge", "surge_acceleration", "sway", "wind_speed", "yaw_rate")
 """What `why_not_testable` can say of a log: root mean squares of the motion, the mean wind, the share astern."""
@@ -64,7 +64,7 @@ class CauseParameter(_Strict):
     on_connections: OnConnections | None = None
 
 
-class Extension(_Strict):
+class ExtensionRule(_Strict):
     """How an extended system has a cause whose numbers are not parameters of its components.
 
     Attributes
@@ -140,7 +140,7 @@ class Cause(_Strict):
         sought, and acts with an unknown size beside every other cause.
     unit_of : list of str
         Channels in a wrong unit that look like this cause; the wrong unit is preferred.
-    extension : Extension, optional
+    extension : ExtensionRule, optional
         Without it the cause is in the extended system as a cause of ours on the same numbers, else by parameters.
     parameters : dict of str to CauseParameter
     """
@@ -161,7 +161,7 @@ class Cause(_Strict):
     special: str | None = None
     without_wind: Literal["sought", "left out", "allowed for"] = "sought"
     unit_of: list[str] = []
-    extension: Extension | None = None
+    extension: ExtensionRule | None = None
     parameters: dict[str, CauseParameter]
 
     @model_validator(mode="after")

@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.hull import HullParameters
 
-__all__ = ["NONLINEAR", "Instruments", "Water", "drift_arm_of", "hat_functions", "share_of", "stern_of", "swell_of"]
+__all__ = ["NONLINEAR", "Instruments", "Water", "hat_functions", "share_of", "swell_of", "water_of"]
 
 NONLINEAR = frozenset({"instruments.wind_lag"})
 """Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them anew."""
@@ -15,16 +15,6 @@ _NEUTRAL = "neutral"
 _SWELLS = 8
 _STERN = -17.0  # m, of the lengthened Gunnerus
 _DRIFT_ARM = -1.5  # m, of the same
-
-
-def stern_of(length):
-    """Where a line is made fast on a ship of some length, forward of the origin: the stern, assumed. [m]"""
-    return _STERN if length == HullParameters().length else -0.5 * length
-
-
-def drift_arm_of(length):
-    """Yaw moment of the wave drift at quartering over the force on the beam, for a ship of some length. [m]"""
-    return _DRIFT_ARM * length / HullParameters().length
 
 
 def _swell(k):
@@ -86,6 +76,13 @@ class Instruments:
     wind_lag: float = quantity(
         1.25, "s", "half the time over which the wind sensor averages", "2 to 3 s", tolerance=0.3
     )
+
+
+def water_of(length: float) -> Water:
+    """What surrounds a ship of some length [m] while nothing acts: a line would be made fast at her stern, assumed."""
+    ours = HullParameters().length
+    stern = _STERN if length == ours else -0.5 * length
+    return Water(tow_x=stern, drift_yaw_arm=_DRIFT_ARM * length / ours)
 
 
 def share_of(time, span):

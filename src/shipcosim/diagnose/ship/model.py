@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.angles import wrap
-from shipcosim.diagnose.ship.environment import Instruments, Water, drift_arm_of, share_of, stern_of, swell_of
+from shipcosim.diagnose.ship.environment import Instruments, Water, share_of, swell_of, water_of
 from shipcosim.diagnose.ship.third_party_fmu import drives_of, part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed, thruster_loads
 from shipcosim.diagnose.ship.tolerances import tolerances_of
@@ -206,8 +206,7 @@ def ship_model_of(system):
     if problems := list(filter(None, (problem_of(system, name, ship.name, one) for name, one in third_party.items()))):
         raise ShipcosimError(problems)
     ours = [name for name in parts if isinstance(parts[name], _OURS)]
-    length = parts["hull"].length
-    water = Water(tow_x=stern_of(length), drift_yaw_arm=drift_arm_of(length))
+    water = water_of(parts["hull"].length)
     neighbours = neighbours_of(system, parts)
     parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
     found = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}

@@ -1,0 +1,178 @@
+"""Components that the extended system gets where it lacks a cause: forces, a current, instruments."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from math import atan2, hypot
+
+from shipcosim.diagnose.extension.draft import Estimated, ExtensionDraft, converted
+from shipcosim.diagnose.hypotheses.cause import ExtensionRule
+from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.ship.environment import water_of
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.ship.instruments import InstrumentParameters
+
+__all__ = ["RAMP", "add_current", "add_force", "add_instruments"]
+
+RAMP = 30.0
+"""Time over which something grows after its onset, assumed. [s]"""
+
+_Vector = tuple[Estimated | None, Estimated | None]
+
+
+def add_force(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, Estimate]) -> None:
+    """Insert an FMU whose loads are added to those on the ship.
+
+    Parameters
+    ----------
+    draft : ExtensionDraft
+        Changed.
+    finding : Finding
+    rule : ExtensionRule
+    estimates : dict of str to Estimate
+        By parameter of the FMU.
+    """
+    name = draft.insert(rule.insert, finding.cause)
+    if not draft.load(name):
+        draft.drop(name)
+        draft.remark(finding, f"'{draft.ship}' has no free load input, so it is not carried")
+        return
+    for into, output in rule.inputs.items():
+        draft.structure.connect(f"{draft.ship}.{output}", f"{name}.{into}")
+    zero = Estimate(0.0, 0.0, _unit(draft, name, rule.zero[0])) if rule.zero else None
+    for parameter, estimate in (dict.fromkeys(rule.zero, zero) | dict(estimates)).items():
+        draft.put_parameter(finding, name, parameter, estimate)
+    water = water_of(draft.structure.parameters[f"{draft.ship}.length"])
+    numbers = {parameter: number.rpartition(".")[2] for number, parameter in rule.parameters.items()}
+    for parameter, why in rule.assumed.items():
+        if parameter not in estimates:
+            given = Estimated(getattr(water, numbers[parameter]), None)
+            draft.put(finding, f"{name}.{parameter}", given, _unit(draft, name, parameter), note=why)
+    if finding.onset is not None and rule.onset:
+        start, growth = rule.onset
+        draft.put(finding, f"{name}.{start}", Estimated(finding.onset, None), "s")
+        draft.put(finding, f"{name}.{growth}", Estimated(RAMP, None), "s", note="assumed")
+
+
+def _unit(draft: ExtensionDraft, component: str, parameter: str) -> str:
+    return draft.structure.components[component].fmu.variables[parameter].unit or "1"
+
+
+def add_instruments(
+    draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, Estimate]
+) -> None:
+    """Put instruments with some errors between the ship and her log.
+
+    Parameters
+    ----------
+    draft : ExtensionDraft
+        Changed.
+    finding : Finding
+    rule : ExtensionRule
+    estimates : dict of str to Estimate
+        By field of `InstrumentParameters`.
+    """
+    if not draft.suffix:
+        draft.shows, draft.suffix = draft.insert("instruments", "instruments"), "_meas"
+        for name in Motion._fields:
+            draft.structure.connect(f"{draft.ship}.{name}", f"{draft.shows}.{name}")
+    units = {item.name: item.metadata["unit"] for item in fields(InstrumentParameters)}
+    for name, estimate in estimates.items():
+        given = converted(estimate, units[name])
+        draft.put(finding, f"{draft.shows}.{name}", given, units[name])
+        if name == "lag":
+            draft.lag = given.value
+        else:
+            draft.errors[name] = given.value
+
+
+def add_current(draft: ExtensionDraft, finding: Finding, start: _Vector, end: _Vector | None = None) -> None:
+    """Make the water move.
+
+    Parameters
+    ----------
+    draft : ExtensionDraft
+        Changed.
+    finding : Finding
+        One with an onset gets a current that grows from then on.
+    start : tuple of two Estimated
+        North and east, steady without an `end`, else at the log's first row; of None at an onset: none. [m/s]
+    end : tuple of two Estimated, optional
+        At the log's last row, or after the onset. [m/s]
+    """
+    source = _water(draft)
+    if draft.moved:
+        draft.remark(finding, "the water moves already by another finding, so it is not carried")
+        return
+    draft.moved = True
+    if end is None:
+        _steady(draft, finding, source, *start)
+        return
+    if source is None:
+        source = _environment(draft)
+    onset = start == (None, None)
+    span = (finding.onset, finding.onset + RAMP) if onset else draft.log.get("span")
+    if span is None:
+        span = draft.structure.start_time, draft.structure.stop_time or 600.0
+        draft.remark(finding, f"the log's span is not known; it varies from {span[0]:g} to {span[1]:g} s")
+    _add_varying(draft, finding, source, {"start": start, "end": end}, span)
+
+
+def _add_varying(
+    draft: ExtensionDraft, finding: Finding, source: str, ends: dict[str, _Vector], span: tuple[float, float]
+) -> None:
+    """Insert a current that varies between its ends over a span of time."""
+    name = draft.insert("varying_current", "varying_current")
+    for output in ("current_speed", "current_to"):
+        draft.release(f"{source}.{output}")
+        draft.structure.connect(f"{name}.{output}", f"{source}.{output}")
+    for label, vector in ends.items():
+        for axis, given in zip(("north", "east"), vector, strict=True):
+            if given is not None:
+                draft.put(finding, f"{name}.{axis}_{label}", given, "m/s")
+    for label, time in zip(("start", "end"), span, strict=True):
+        draft.put(finding, f"{name}.time_{label}", Estimated(time, None), "s", note="of the log")
+
+
+def _water(draft: ExtensionDraft) -> str | None:
+    """Component that moves the ship's water and takes its speed and direction; None where there is none such."""
+    feeding = {connection.target: connection.source for connection in draft.structure.checked().connections}
+    source, _ = feeding.get((draft.ship, "current_north"), (None, ""))
+    variables = draft.structure.components[source].fmu.variables if source else {}
+    return source if {"current_speed", "current_to"} <= set(variables) else None
+
+
+def _environment(draft: ExtensionDraft) -> str:
+    """Insert an environment that only moves the water."""
+    name = draft.insert("environment", "water")
+    for axis in ("north", "east"):
+        draft.release(f"{draft.ship}.current_{axis}")
+        draft.structure.connect(f"{name}.current_{axis}", f"{draft.ship}.current_{axis}")
+    return name
+
+
+def _steady(draft: ExtensionDraft, finding: Finding, source: str | None, north: Estimated, east: Estimated) -> None:
+    """Give the water one velocity, where the system takes it."""
+    if source is None:
+        for axis, given in (("north", north), ("east", east)):
+            _start(draft, finding, draft.ship, f"current_{axis}", given, "m/s")
+        return
+    speed = hypot(north.value, east.value)
+    along = hypot(north.value * north.std, east.value * east.std) / (speed or 1.0)
+    across = hypot(east.value * north.std, north.value * east.std) / (speed * speed or 1.0)
+    _start(draft, finding, source, "current_speed", Estimated(speed, along), "m/s")
+    _start(draft, finding, source, "current_to", Estimated(atan2(east.value, north.value), across), "rad")
+
+
+def _start(draft: ExtensionDraft, finding: Finding, component: str, name: str, given: Estimated, unit: str) -> None:
+    """Start value of an input: at the system's own input where that feeds it, else at the component."""
+    system, target = draft.structure.checked(), (component, name)
+    feeding = next((c for c in system.connections if c.target == target), None)
+    outer = feeding is not None and feeding.source[0] is None and feeding.mapping is None and feeding.factor != 0.0
+    if not outer:
+        draft.release(f"{component}.{name}")
+        draft.put(finding, f"{component}.{name}", given, unit)
+        return
+    signal = system.inputs[feeding.source[1]]
+    value = (given.value - feeding.offset) / feeding.factor
+    draft.put(finding, signal.name, Estimated(value, given.std / abs(feeding.factor)), signal.unit)
+    draft.remark(finding, f"a table that feeds the input '{signal.name}' overrides it")
