@@ -1,6 +1,8 @@
 """The base class of every FMU of this project."""
 
 import functools
+from collections.abc import Callable
+from typing import Any
 
 from shipcosim.fmi.shell import Fmi2Slave
 from shipcosim.fmi.variables import leave_start_values, variables_of
@@ -48,7 +50,7 @@ class Fmu(Fmi2Slave):
     version = ""
     default_step_size = 0.05
 
-    def __init_subclass__(cls, **kwargs):
+    def __init_subclass__(cls, **kwargs: Any) -> None:
         if "__init__" in vars(cls):
             raise TypeError(f"{cls.__name__} has an __init__: an FMU makes its state in start(self)")
         cls.variables, cls.groups = variables_of(cls)
@@ -60,7 +62,7 @@ class Fmu(Fmi2Slave):
             cls.start = _with_fresh_groups(cls.start)
         super().__init_subclass__(**kwargs)
 
-    def start(self):
+    def start(self) -> None:
         """Set state and outputs for the start from parameters and inputs.
 
         The host may call it several times while components agree on their first values, so it must not depend on
@@ -68,7 +70,7 @@ class Fmu(Fmi2Slave):
         """
         _drop_groups(self)
 
-    def step(self, t, h):
+    def step(self, t: float, h: float) -> None:
         """Advance from `t` to `t + h`: read inputs, write outputs.
 
         Parameters
@@ -81,15 +83,15 @@ class Fmu(Fmi2Slave):
         raise NotImplementedError(f"{type(self).__name__} has no step(self, t, h)")
 
 
-def _drop_groups(fmu):
+def _drop_groups(fmu: Fmu) -> None:
     """Forget the dataclasses of parameters: the next access makes them of the present values."""
     for group in fmu.groups:
         fmu.__dict__.pop(group.name, None)
 
 
-def _with_fresh_groups(start):
+def _with_fresh_groups(start: Callable[[Any], None]) -> Any:
     @functools.wraps(start)
-    def fresh(self):
+    def fresh(self: Fmu) -> None:
         _drop_groups(self)
         start(self)
 

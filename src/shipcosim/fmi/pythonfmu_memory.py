@@ -3,7 +3,7 @@
 import ctypes
 
 
-def keep(*objects):
+def keep(*objects: object) -> None:
     """Add to each object a reference that nobody owns, for one that the binary gives up without owning it.
 
     It does so with the namespace of the entry module for every instance; and with class, instance and messages for

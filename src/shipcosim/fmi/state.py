@@ -2,6 +2,8 @@
 
 import io
 import pickle
+from collections.abc import Set
+from typing import Any
 
 NUMPY = {
     "numpy": {"ndarray", "dtype"},
@@ -25,11 +27,11 @@ PLAIN = {
 class _Unpickler(pickle.Unpickler):
     """Makes plain data, NumPy's arrays and generators, and classes of the FMU's own packages; nothing else."""
 
-    def __init__(self, data, packages):
+    def __init__(self, data: bytes, packages: Set[str]):
         super().__init__(io.BytesIO(data))
         self.packages = packages
 
-    def find_class(self, module, name):
+    def find_class(self, module: str, name: str) -> Any:
         if name in NUMPY.get(module, ()) or name in PLAIN.get(module, ()):
             return super().find_class(module, name)
         if module.partition(".")[0] in self.packages:
@@ -41,7 +43,7 @@ class _Unpickler(pickle.Unpickler):
         )
 
 
-def to_bytes(state, label, packages):
+def to_bytes(state: Any, label: str, packages: Set[str]) -> bytes:
     """Bytes of a state, sure to be readable by `from_bytes`.
 
     Parameters
@@ -67,7 +69,7 @@ def to_bytes(state, label, packages):
     return data
 
 
-def from_bytes(data, label, packages):
+def from_bytes(data: bytes, label: str, packages: Set[str]) -> Any:
     """The state that `to_bytes` stored; see there.
 
     Raises

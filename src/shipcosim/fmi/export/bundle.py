@@ -4,11 +4,13 @@ import ast
 import hashlib
 import re
 import sys
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
 
+Import = ast.Import | ast.ImportFrom
 SHIPCOSIM = Path(__file__).resolve().parents[2]
 ROOT = b'"""What this FMU needs of shipcosim."""\n'
 CARRIED_BY_HOST = {"numpy"} | set(sys.stdlib_module_names)
@@ -22,14 +24,14 @@ class Module:
     path: Path
     source: bytes
     tree: ast.Module
-    imports: list = field(default_factory=list)
+    imports: list[Import] = field(default_factory=list)
 
     @property
-    def is_package(self):
+    def is_package(self) -> bool:
         return self.path.name == "__init__.py"
 
     @property
-    def archive_path(self):
+    def archive_path(self) -> str:
         """Path below the private package."""
         path = self.name.replace(".", "/")
         return f"{path}/__init__.py" if self.is_package else f"{path}.py"
@@ -45,7 +47,7 @@ class Bundle:
     files: dict[str, bytes]
 
 
-def bundle(script):
+def bundle(script: Path) -> Bundle:
     """Collect and rename what a script needs.
 
     Parameters
@@ -107,7 +109,7 @@ finally:
 '''
 
 
-def entry_module(bundled, cls):
+def entry_module(bundled: Bundle, cls: str) -> bytes:
     """Source of the module that the binary imports, which holds nothing but the class."""
     paths = (path.removesuffix(".py").removesuffix("/__init__") for path in sorted(bundled.files))
     modules = ", ".join(path.replace("/", ".") for path in paths)
@@ -115,7 +117,7 @@ def entry_module(bundled, cls):
     return text.encode()
 
 
-def _collect(script):
+def _collect(script: Path) -> dict[str, Module]:
     """All modules that the script reaches by imports, sorted by name."""
     found, waiting, problems = {}, [(script.stem, script)], []
     while waiting:
@@ -144,7 +146,7 @@ def _collect(script):
     return dict(sorted(found.items()))
 
 
-def _read(name, path):
+def _read(name: str, path: Path) -> Module:
     if name == "shipcosim":  # its own `__init__` would lead to the whole package
         return Module(name, path, ROOT, ast.parse(ROOT))
     try:
@@ -159,7 +161,7 @@ def _read(name, path):
         ) from None
 
 
-def _locate(name, folder):
+def _locate(name: str, folder: Path) -> list[tuple[str, Path]]:
     """Modules to read for a dotted name, its packages included; empty if it is not ours.
 
     For "shipcosim.models.core.maths" that is three; what is a name inside a module rather than a module is left out.
@@ -175,7 +177,7 @@ def _locate(name, folder):
     return found
 
 
-def _imports(module):
+def _imports(module: Module) -> Iterator[tuple[Import, str, bool]]:
     """(statement, dotted name, whether it runs when the module is imported) for each import in a module."""
     for node, always in _running(module.tree, True):
         if isinstance(node, ast.Import):
@@ -185,16 +187,16 @@ def _imports(module):
             yield from ((node, f"{base}.{alias.name}", always) for alias in node.names)
 
 
-def _absolute(node, module):
+def _absolute(node: ast.ImportFrom, module: Module) -> str:
     """Full name of what "from ... import" names."""
     if not node.level:
-        return node.module
+        return node.module or ""
     package = module.name.split(".")
     package = package[: len(package) - node.level + module.is_package]
     return ".".join([*package, node.module] if node.module else package)
 
 
-def _running(node, always):
+def _running(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
     """All nodes below one, and whether they run on import; what never runs in an FMU is left out."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.If) and ast.unparse(child.test).startswith(
@@ -206,14 +208,14 @@ def _running(node, always):
         yield from _running(child, always and not optional)
 
 
-def _renamed(module, package, modules):
+def _renamed(module: Module, package: str, modules: Mapping[str, Module]) -> bytes:
     """Source with its absolute imports of bundled modules leading into the package, line for line as it was."""
     lines = module.source.splitlines(keepends=True)
     statements = {(node.lineno, node.col_offset): node for node in module.imports}
     for _, node in sorted(statements.items(), reverse=True):
         if isinstance(node, ast.ImportFrom) and node.level:
             continue
-        first, last = node.lineno - 1, node.end_lineno - 1
+        first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
         before, after = lines[first][: node.col_offset], lines[last][node.end_col_offset :]
         old = b"".join([*lines[first:last], lines[last][: node.end_col_offset]])[node.col_offset :].decode()
         new = (
@@ -223,11 +225,11 @@ def _renamed(module, package, modules):
     return b"".join(lines)
 
 
-def _renamed_from(old, package):
+def _renamed_from(old: str, package: str) -> str:
     return re.sub(r"^(from[\s\\]+)", rf"\g<1>{package}.", old)
 
 
-def _renamed_import(node, package, modules):
+def _renamed_import(node: ast.Import, package: str, modules: Mapping[str, Module]) -> str:
     names = []
     for alias in node.names:
         root = alias.name.partition(".")[0]
@@ -237,4 +239,4 @@ def _renamed_import(node, package, modules):
             names.append(f"{package}.{alias.name} as {alias.asname}")
         else:
             names += [f"{package}.{alias.name}"] * (root != alias.name) + [f"{package}.{root} as {root}"]
-    return f"import {', '.join(names)}" + " \\\n" * (node.end_lineno - node.lineno)
+    return f"import {', '.join(names)}" + " \\\n" * ((node.end_lineno or node.lineno) - node.lineno)
