@@ -4,8 +4,9 @@ from shipcosim.ssp.check import check_file, check_system
 from shipcosim.ssp.edit.opening import new, read
 from shipcosim.ssp.edit.system_structure import SystemStructure
 from shipcosim.ssp.edit.write import pack, parameter, write_ssv
-from shipcosim.ssp.flatten.system import Component, Signal, System, with_values
-from shipcosim.ssp.flatten.wiring import Connection
+from shipcosim.ssp.flatten.connections import Connection
+from shipcosim.ssp.flatten.system import Component, Signal, System
+from shipcosim.ssp.flatten.with_values import with_values
 from shipcosim.ssp.fmu.description import FmuDescription, Variable, read_fmu
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text

@@ -1,7 +1,7 @@
 """A system read from any file that describes one: an SSP in its three forms, or an OspSystemStructure.xml."""
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp.flatten.system import assemble_package
+from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.xml.document import Findings

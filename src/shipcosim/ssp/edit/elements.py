@@ -10,7 +10,7 @@ from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.names import attached, find_connector, find_element, split_owner, walk
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.structure import FMU
-from shipcosim.ssp.xml.document import children, local
+from shipcosim.ssp.xml.document import children, local, parent_of
 from shipcosim.ssp.xml.markup import add, add_osp, drop, ensure
 
 
@@ -92,10 +92,10 @@ def rename(draft: Draft, old: str, new: str) -> None:
     """Rename an element or a system's connector; see `SystemStructure.rename`."""
     is_element = old in _elements(draft)
     named = element_named(draft, old) if is_element else _connector_named(draft, old)
-    listed = named.getparent()
-    if local(listed.getparent()) == "Component":
+    listed, short = parent_of(named), named.get("name", "")
+    if local(parent_of(listed)) == "Component":
         raise draft.error(old, "It is named by the FMU.", "Connectors of systems can be renamed.")
-    full = old.removesuffix(named.get("name")) + new
+    full = old.removesuffix(short) + new
     if full in _elements(draft) or any(part.get("name") == new for part in listed if part is not named):
         raise draft.error(full, "The name is taken.", "Names must differ.")
     for connection, attribute in attached(draft.system, old, is_element):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.ssp.flatten.connectors import SOURCES_OUTSIDE
+from shipcosim.ssp.flatten.ports import SOURCES_OUTSIDE
 from shipcosim.ssp.read.structure import KIND_NAMES
 from shipcosim.ssp.xml.document import child, children, local
 

@@ -5,13 +5,15 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
+from lxml import etree
+
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.system_structure import SystemStructure
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.read.package import SYSTEM_STRUCTURE, Package, open_package
 from shipcosim.ssp.read.parameters import has_root
-from shipcosim.ssp.xml.document import Document, Findings, child, parse
+from shipcosim.ssp.xml.document import Document, Findings, child, children
 
 EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"
   version="1.0" name="">
@@ -67,8 +69,8 @@ def new(name: str) -> SystemStructure:
     SystemStructure
     """
     folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
-    root = parse(EMPTY.encode(), name, Findings())
-    for element in (root, child(root, "ssd:System")):
+    root = etree.fromstring(EMPTY.encode())
+    for element in (root, *children(root, "ssd:System")):
         element.set("name", name)
     package = Package(Path(folder.name), name, unpacked=folder)
     document = Document(f"{name}/{SYSTEM_STRUCTURE}", root, package.folder)

@@ -8,7 +8,7 @@ from lxml import etree
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.parameter_sets import write_value
-from shipcosim.ssp.flatten.system import assemble_package
+from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.xml.archive import write_archive

@@ -1,127 +1,118 @@
-"""Connection elements made into wires: which connectors are meant, and which way the value goes."""
+"""Connections from variable to variable, through whatever systems and dictionaries lie between."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass
 
-from shipcosim.errors import it_has, suggestion
-from shipcosim.ssp.flatten.connectors import FREE, SOURCES_INSIDE, SOURCES_OUTSIDE, Key, Wire, variable_port
-from shipcosim.ssp.read.structure import KIND_NAMES, signal
-
-FEEDS = {
-    "parameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
-    "structuralParameter": ("structuralParameter", "constant"),
-    "calculatedParameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
-    "constant": ("constant",),
-}
-"""Kinds that may feed a kind, where not all may. SSP 2.0, table of allowed connections."""
+from shipcosim.ssp.flatten.conversions import Flow, advance
+from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.ports import Key, Port, Wire
+from shipcosim.ssp.xml.document import Findings
+from shipcosim.ssp.xml.values import Value
 
 
-class End(NamedTuple):
-    """One end of a connection: the element (None: the system itself), the connector, and the port that this means."""
+@dataclass(frozen=True)
+class Connection:
+    """What a component's variable or an output of the system gets, and from where.
 
-    element: str | None
-    name: str
-    key: Key
-
-    def __str__(self):
-        return signal(self.element, self.name)
-
-    def gives(self, kind):
-        """Whether a connector of this kind gives a value here: an element's output does, and a system's own input."""
-        return (kind in SOURCES_OUTSIDE) == (self.element is not None)
-
-
-def wire_of(link, system, path, tree):
-    """Wire of a connection.
+    Values: ``target = factor * mapping.get(source, source) + offset``; factor and offset for a real target alone.
+    Several connections into one target add up, in their order: a Sum of OSP. SSP has none.
 
     Parameters
     ----------
-    link : Link
-        As written.
-    system : SystemElement
-        That it is in.
-    path : tuple of str
-        Of the system.
-    tree : Tree
-        With the ports of the system and its elements; takes what is wrong, and ports that only the FMU knew.
+    source : tuple of (str or None, str)
+        Component and variable; None and the name for an input of the outermost system.
+    target : tuple of (str or None, str)
+        Component and variable; None and the name for an output of the outermost system.
+    factor, offset : float
+        Unit conversions and linear transformations on the way, together.
+    mapping : mapping or None
+        Discrete values that change on the way: by number for enumerations.
+    initial : bool
+        Whether the target is a parameter: the value goes over once, at the start.
+    place : str
+        Where its last part stands, for messages.
+    """
+
+    source: tuple[str | None, str]
+    target: tuple[str | None, str]
+    factor: float = 1.0
+    offset: float = 0.0
+    mapping: Mapping[Value, Value] | None = None
+    initial: bool = False
+    place: str = ""
+
+
+def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
+    """Connections of a hierarchy.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Ports and wires.
+    findings : Findings
+        Takes what is wrong.
 
     Returns
     -------
-    Wire, or None with an error
+    tuple of Connection
     """
-    ends = [
-        End(element, name, Key(path if element is None else (*path, element), name))
-        for element, name in ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
-    ]
-    exist = [_exists(end, ends, link, system, tree) for end in ends]
-    if not all(exist):
-        return None
-    kinds = {end: tree.ports[end.key].kind for end in ends}
-    if any(kind not in KIND_NAMES for kind in kinds.values()):
-        return None  # the schema has said so
-    source, target = _directed(ends, kinds, link, tree.findings)
-    if source is None:
-        return None
-    return Wire(source.key, target.key, link.transformation, link.suppress_unit_conversion, link.place)
+    incoming = _incoming(tree, findings)
+    connections = []
+    for key, port in tree.ports.items():
+        if key in incoming and _is_end(key, port):
+            wires = _way(key, incoming, findings)
+            if wires and (source := _source(wires[0].source, tree)) is not None:
+                connections.append(_connection(wires, source, tree, findings))
+    return tuple(connections)
 
 
-def _directed(ends, kinds, link, findings):
-    """Source and target, or twice None with an error."""
-    start, end = ends
-    for source, target in ((start, end), (end, start)):
-        gives = kinds[source] in FREE or source.gives(kinds[source])
-        takes = kinds[target] in FREE or not target.gives(kinds[target])
-        feeding = FEEDS.get(kinds[target], KIND_NAMES)
-        if gives and takes and kinds[source] not in (*FREE, *feeding):
-            found = f"{source} ({kinds[source]}) cannot feed {target} ({kinds[target]})."
-            findings.error(link.place, found, f"Feed it from one of: {', '.join(feeding)}.")
-            return None, None
-        if gives and takes:
-            return source, target
-    which = (
-        "give a value, and neither takes one" if start.gives(kinds[start]) else "take a value, and neither gives one"
-    )
-    found = f"{start} ({kinds[start]}) and {end} ({kinds[end]}): both {which}."
-    findings.error(link.place, found, "Connect an output to an input.")
-    return None, None
+def _incoming(tree: Hierarchy, findings: Findings) -> dict[Key, Wire]:
+    """The wire into each port."""
+    incoming = {}
+    for wire in tree.wires:
+        if wire.target in incoming:
+            first = incoming[wire.target]
+            found = f"A second connection into {wire.target}. It gets {first.source} already ({first.place})."
+            findings.error(wire.place, found, "Remove one of them.")
+        else:
+            incoming[wire.target] = wire
+    return incoming
 
 
-def _exists(end, ends, link, system, tree):
-    """Whether an end's port exists; an error says what does, unless its FMU is missing anyway."""
-    if end.key in tree.ports:
-        return True
-    names = [part.name for part in system.elements]
-    if end.element is not None and end.element not in names:
-        found = f"There is no element '{end.element}' in {system.name}."
-        tree.findings.error(link.place, found, suggestion(end.element, names))
-        return False
-    component, fmu = tree.components.get(end.key.path, (None, None))
-    if fmu is not None and end.name in fmu.variables:
-        return _undeclared(end, fmu, link, tree)
-    if component is None or fmu is not None:
-        wanted, known = _wanted(end, ends, fmu, tree)
-        owner = end.element or system.name
-        tree.findings.error(link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, known))
-    return False
+def _is_end(key: Key, port: Port) -> bool:
+    """Whether a value that arrives here is used here, rather than passed on."""
+    return port.owner == "component" or (port.owner == "system" and key.path == ())
 
 
-def _undeclared(end, fmu, link, tree):
-    port = variable_port(fmu.variables[end.name], fmu, link.place)
-    tree.ports[end.key] = port
-    found = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
-    tree.findings.remark(link.place, found, f'Add <Connector name="{end.name}" kind="{port.kind}"/>.')
-    return True
+def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wire]:
+    """Wires that lead to a port, first one first; empty where they go in a circle."""
+    wires, seen = [], set()
+    while key in incoming:
+        seen.add(key)
+        wires.append(incoming[key])
+        key = incoming[key].source
+        if key in seen:
+            findings.error(wires[0].place, "The connections go in a circle without a component.", "Remove one of them.")
+            return []
+    return wires[::-1]
 
 
-def _wanted(end, ends, fmu, tree):
-    """What a connection seeks at an end that does not exist, by its other end, and the names that would do."""
-    other = ends[0] if end is ends[1] else ends[1]
-    seeks_source = end is ends[0]
-    if other.key in tree.ports:
-        seeks_source = not other.gives(tree.ports[other.key].kind)
-    kinds = SOURCES_OUTSIDE if seeks_source == (end.element is not None) else SOURCES_INSIDE
-    have = {key.name: port.kind for key, port in tree.ports.items() if key.path == end.key.path}
-    have |= {} if fmu is None else {name: variable.causality for name, variable in fmu.variables.items()}
-    for wanted in kinds:
-        if known := [name for name, kind in have.items() if kind == wanted]:
-            return wanted, known
-    return "connector", list(have)
+def _source(key: Key, tree: Hierarchy) -> tuple[str | None, str] | None:
+    """Component (None: the outermost system) and name of a source; None where values end in nothing."""
+    port = tree.ports[key]
+    if port.owner == "component":
+        return ".".join(key.path), key.name
+    return (None, key.name) if port.owner == "system" and key.path == () else None
+
+
+def _connection(wires: list[Wire], source: tuple[str | None, str], tree: Hierarchy, findings: Findings) -> Connection:
+    first, last = tree.ports[wires[0].source], tree.ports[wires[-1].target]
+    flow = Flow(first.type, first.variable_unit or first.unit, first.items)
+    for wire in wires:
+        what = wire.place, (str(wire.source), str(wire.target))
+        flow = advance(flow, wire, tree.ports[wire.target], what, findings)
+    flow = flow.in_unit(last.variable_unit or last.unit)
+    key = wires[-1].target
+    target = (".".join(key.path) if last.owner == "component" else None, key.name)
+    initial = last.owner == "component" and last.kind in ("parameter", "structuralParameter")
+    return Connection(source, target, flow.factor, flow.offset, flow.mapping, initial, wires[-1].place)

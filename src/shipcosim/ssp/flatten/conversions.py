@@ -4,6 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from shipcosim.errors import it_has
+from shipcosim.ssp.flatten.ports import Port, Setting, Wire
+from shipcosim.ssp.read.parameters import Transformation
+from shipcosim.ssp.xml.document import Findings
+from shipcosim.ssp.xml.values import Value
 from shipcosim.units import Unit, conversion, relation
 
 TAKES = {
@@ -12,6 +16,9 @@ TAKES = {
     "Enumeration": ("Enumeration", "Integer"),
 }
 """Types that a type takes without loss; all others take their own alone."""
+
+Items = Mapping[str, int]
+"""Items of an enumeration: values by name."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +41,12 @@ class Flow:
 
     type: str | None
     unit: Unit | None = None
-    items: Mapping = field(default_factory=dict)
+    items: Items = field(default_factory=dict)
     factor: float = 1.0
     offset: float = 0.0
-    mapping: Mapping | None = None
+    mapping: Mapping[Value, Value] | None = None
 
-    def __call__(self, value):
+    def __call__(self, value: Value) -> Value:
         """Target's value of a source's value."""
         if self.mapping is not None:
             value = self.mapping.get(value, value)
@@ -47,18 +54,20 @@ class Flow:
             return self.factor * value + self.offset
         return value
 
-    def scaled(self, factor, offset):
+    def scaled(self, factor: float, offset: float) -> "Flow":
         """With one more linear step behind it."""
         return replace(self, factor=factor * self.factor, offset=factor * self.offset + offset)
 
-    def in_unit(self, unit):
+    def in_unit(self, unit: Unit | None) -> "Flow":
         """Converted to a unit; unchanged where the unit is not known."""
         if unit is None:
             return self
         return replace(self.scaled(*conversion(self.unit, unit)), unit=unit)
 
 
-def advance(flow, wire, port, what, findings):
+def advance(
+    flow: Flow, wire: Wire | Setting, port: Port, what: tuple[str, tuple[str, str]], findings: Findings
+) -> Flow:
     """Flow behind a wire or a mapping entry.
 
     Units are converted as late as possible, so that what comes back to its unit comes back to its value.
@@ -71,10 +80,14 @@ def advance(flow, wire, port, what, findings):
         Has `transformation` and `suppress_unit_conversion`.
     port : Port
         Where it leads.
-    what : tuple of two str
-        Place and the names of source and target, for messages.
+    what : tuple of str and tuple of two str
+        Place, and the names of source and target, for messages.
     findings : Findings
         Takes what is wrong.
+
+    Returns
+    -------
+    Flow
     """
     place, names = what
     if port.type is not None and flow.type is not None and flow.type not in TAKES.get(port.type, (port.type,)):
@@ -96,7 +109,7 @@ def advance(flow, wire, port, what, findings):
     return flow
 
 
-def _compare_units(flow, port, place, names, findings):
+def _compare_units(flow: Flow, port: Port, place: str, names: tuple[str, str], findings: Findings) -> None:
     if flow.unit is None or port.unit is None:
         return
     related = relation(flow.unit, port.unit)
@@ -110,7 +123,7 @@ def _compare_units(flow, port, place, names, findings):
         findings.remark(place, f"{found}: taken as equal kinds, with 1 rad = 1.")
 
 
-def _mapped(flow, transformation, port, place, findings):
+def _mapped(flow: Flow, transformation: Transformation, port: Port, place: str, findings: Findings) -> Flow:
     kind = transformation.kind
     allowed = {"Boolean": ("Boolean",), "Integer": ("Integer", "Enumeration"), "Enumeration": ("Enumeration",)}[kind]
     if flow.type not in (*allowed, None) or port.type not in (*allowed, None):
@@ -128,7 +141,7 @@ def _mapped(flow, transformation, port, place, findings):
     return replace(flow, mapping={**table, **after})
 
 
-def _by_number(table, source, target, place, findings):
+def _by_number(table: Mapping, source: Items, target: Items, place: str, findings: Findings) -> dict[int, int]:
     """Table of numbers from a table of item names."""
     for name, items in [(name, source) for name in table] + [(name, target) for name in table.values()]:
         if name not in items:
@@ -136,7 +149,7 @@ def _by_number(table, source, target, place, findings):
     return {source[a]: target[b] for a, b in table.items() if a in source and b in target}
 
 
-def _check_numbers(table, source, target, place, findings):
+def _check_numbers(table: Mapping, source: Items, target: Items, place: str, findings: Findings) -> None:
     """What a mapping by numbers makes of a source's items must be items of the target."""
     made = {table.get(value, value) for value in (source.values() or table)}
     if lost := sorted(made - set(target.values())):
@@ -144,7 +157,9 @@ def _check_numbers(table, source, target, place, findings):
         findings.error(place, found, f"It has: {', '.join(f'{name} ({value})' for name, value in target.items())}.")
 
 
-def _items_checked(flow, port, transformation, place, findings):
+def _items_checked(
+    flow: Flow, port: Port, transformation: Transformation | None, place: str, findings: Findings
+) -> Flow:
     """Two enumerations must agree in what their numbers mean, unless a mapping says otherwise."""
     if not flow.items or not port.items or transformation is not None:
         return flow

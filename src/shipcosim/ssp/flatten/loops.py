@@ -1,9 +1,11 @@
 """Algebraic loops of a system: links and direct feedthrough that lead back to where they start."""
 
 from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from shipcosim.errors import Problem
+from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.feedthrough import feedthrough
 
 MOST_STARTS = 50
@@ -12,9 +14,16 @@ MOST_TRIED = 50
 """Components of which it is tried whether they break a loop."""
 
 
+Node = tuple[str, str | None]
+"""Component and variable; None stands for all inputs of a component whose FMU says nothing of its outputs."""
+
+Edge = tuple[Node, Node]
+"""A value goes from the first to the second: a connection, or direct feedthrough of a component."""
+
+
 @dataclass(frozen=True)
 class Loop:
-    """A loop, or several that share variables.
+    """An algebraic loop, or several that share variables.
 
     Parameters
     ----------
@@ -30,14 +39,14 @@ class Loop:
         Each of them alone would break it, if its outputs followed its inputs a step later.
     """
 
-    links: list
+    links: list[Edge]
     others: int
-    components: list
-    silent: list
-    breaking: list
+    components: list[str]
+    silent: list[str]
+    breaking: list[str]
 
 
-def find_loops(system, at_start=False):
+def find_loops(system: System, at_start: bool = False) -> list[Loop]:
     """Loops of a checked system.
 
     Parameters
@@ -63,7 +72,7 @@ def find_loops(system, at_start=False):
     return [_loop(part, edges, links, stated, list(system.components)) for part in _strong(_graph(edges), edges)]
 
 
-def loop_problems(system):
+def loop_problems(system: System) -> Iterator[Problem]:
     """A remark on each loop of the run, and on each that is one at the start alone; with what it does and breaks it."""
     running = find_loops(system)
     for loop in running:
@@ -78,7 +87,7 @@ def loop_problems(system):
             yield _problem(system, loop, "An algebraic loop at the start", does)
 
 
-def _problem(system, loop, kind, does):
+def _problem(system: System, loop: Loop, kind: str, does: str) -> Problem:
     shown = ", ".join(f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links)
     found = f"{kind}, outputs that follow inputs at once: {shown}."
     if loop.others:
@@ -89,7 +98,7 @@ def _problem(system, loop, kind, does):
     return Problem(f"{system.file}: {', '.join(loop.components)}", found, _remedy(loop), "remark")
 
 
-def _remedy(loop):
+def _remedy(loop: Loop) -> str:
     says = 'over a step, which its FMU says in its ModelStructure (dependencies="")'
     if len(loop.breaking) > 1:
         return f"Broken where one of these holds its outputs {says}: {', '.join(loop.breaking)}."
@@ -99,8 +108,8 @@ def _remedy(loop):
     return f"Broken where enough of them hold theirs {says}.{more}"
 
 
-def _inside(name, links, stated):
-    """Edges from inputs to outputs of a component; outputs that it says nothing of hang on a knot of all inputs."""
+def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) -> Iterator[Edge]:
+    """Edges from inputs to outputs of a component; an output that its FMU says nothing of follows all inputs."""
     inputs = {target for _, target in links if target[0] == name}
     knot = name, None
     yield from ((end, knot) for end in sorted(inputs))
@@ -121,13 +130,13 @@ def _loop(part, edges, links, stated, names):
     return Loop(way, len(inside) - len(way), components, silent, breaking)
 
 
-def _breaks(name, edges):
+def _breaks(name: str, edges: list[Edge]) -> bool:
     """Whether nothing goes round any more without what goes on inside a component."""
     rest = [edge for edge in edges if not edge[0][0] == edge[1][0] == name]
     return not _strong(_graph(rest), rest)
 
 
-def _shortest(links, edges):
+def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
     """Links of the shortest way round."""
     graph, ways, known = _graph(edges), [], set(links)
     for source, target in links[:MOST_STARTS]:
@@ -146,7 +155,7 @@ def _shortest(links, edges):
     return min(ways, key=len)
 
 
-def _graph(edges):
+def _graph(edges: Iterable[tuple]) -> dict:
     graph = defaultdict(list)
     for source, target in edges:
         graph[source].append(target)
@@ -154,8 +163,8 @@ def _graph(edges):
     return dict(graph)
 
 
-def _strong(graph, edges):
-    """Sets of nodes that can all be reached from each other over at least one edge (Kosaraju, without recursion)."""
+def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
+    """Strongly connected components with at least one edge inside, by Kosaraju's algorithm, without recursion."""
     done, order = set(), []
     for start in graph:
         stack = [(start, iter(graph[start]))] if start not in done else []

@@ -6,20 +6,28 @@ out, then sets given for this run; at one level in the order of the file. Later 
 
 import re
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import replace
 from difflib import get_close_matches
 
 from shipcosim.errors import it_has, suggestion
-from shipcosim.ssp.flatten.connectors import SOURCES_INSIDE, Key, variable_port
 from shipcosim.ssp.flatten.conversions import Flow, advance
+from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.ports import SOURCES_INSIDE, Key, Port, Setting, Wire, variable_port
+from shipcosim.ssp.fmu.description import Variable
+from shipcosim.ssp.xml.document import Findings
+from shipcosim.ssp.xml.values import Value
+
+Arrival = tuple[Value, Flow, "Wire | Setting", Key]
+"""A value on its way: as it started, what has happened to it, the step that it takes next, and where that leads."""
 
 
 class Settings:
-    """Applies a tree's settings.
+    """Values that parameter sets give to the variables of a hierarchy's components.
 
     Parameters
     ----------
-    tree : Tree
+    tree : Hierarchy
         With its ports, wires and settings.
     findings : Findings
         Takes what is wrong.
@@ -34,7 +42,7 @@ class Settings:
         For the outermost system's own connectors, in the connector's unit.
     """
 
-    def __init__(self, tree, findings):
+    def __init__(self, tree: Hierarchy, findings: Findings):
         self.tree, self.findings = tree, findings
         self.start, self.tolerances, self.system_start = defaultdict(dict), defaultdict(dict), {}
         self.tolerance = None  # of the value that is being delivered
@@ -43,7 +51,7 @@ class Settings:
             self.outgoing[wire.source].append(wire)
         self.named = self._names()
 
-    def _names(self):
+    def _names(self) -> dict[str, list[Key]]:
         """Ports by their full name; names need not be unique where element names have dots, then all are meant."""
         named = defaultdict(list)
         for path, (_, fmu) in self.tree.components.items():
@@ -54,7 +62,7 @@ class Settings:
                 named[".".join((*key.path, key.name))].append(key)
         return named
 
-    def apply(self):
+    def apply(self) -> None:
         """Bring every value to its variables."""
         for setting in self.tree.settings:
             keys = self.named.get(".".join((*setting.path, setting.name)), ())
@@ -66,7 +74,7 @@ class Settings:
             for key in keys:
                 self._deliver(value.value, flow, setting, key, value.place)
 
-    def _deliver(self, value, flow, step, key, place):
+    def _deliver(self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str) -> None:
         """Take a value over one step to a port, and on from there; once to each port, also where wires go round."""
         ahead, seen = [(value, flow, step, key)], set()
         while ahead:
@@ -75,7 +83,7 @@ class Settings:
                 seen.add(key)
                 ahead += self._arrive(*arriving, key, place)
 
-    def _arrive(self, value, flow, step, key, place):
+    def _arrive(self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str) -> Iterable[Arrival]:
         """What goes on from a port that a value has come to: (value, flow, wire, next port) each."""
         port = self._port(key)
         if flow.type == "Enumeration" and isinstance(value, str):
@@ -93,13 +101,15 @@ class Settings:
             self.system_start[key.name] = flow.in_unit(port.unit)(value)
         return [(value, flow, wire, wire.target) for wire in self.outgoing[key]]
 
-    def _port(self, key):
+    def _port(self, key: Key) -> Port:
         if key in self.tree.ports:
             return self.tree.ports[key]
         _, fmu = self.tree.components[key.path]
         return variable_port(fmu.variables[key.name], fmu, "")
 
-    def _number(self, value, flow, step, port, place):
+    def _number(
+        self, value: str, flow: Flow, step: Wire | Setting, port: Port, place: str
+    ) -> tuple[Value | None, Flow, Wire | Setting]:
         """Number of an enumeration's item, at the first port that knows its items; a mapping of names comes before.
 
         None with an error where there is no such item.
@@ -113,7 +123,7 @@ class Settings:
         step = replace(step, transformation=None)
         return port.items.get(name), replace(flow, items=port.items), step
 
-    def _start(self, value, flow, key, port, place):
+    def _start(self, value: Value, flow: Flow, key: Key, port: Port, place: str) -> None:
         variable = port.variable
         if variable is None:
             return  # its FMU is missing, which is an error already
@@ -128,7 +138,7 @@ class Settings:
             if self.tolerance is not None:
                 self.tolerances[key.path][key.name] = abs(convert(value + self.tolerance) - convert(value))
 
-    def _unknown(self, setting):
+    def _unknown(self, setting: Setting) -> None:
         """A set may hold more than is used here, as the standard says; but what looks like a slip is an error."""
         place, name = setting.value.place, setting.name
         element, known = self._nearest(setting)
@@ -143,7 +153,7 @@ class Settings:
         else:
             self.findings.remark(place, f"There is no element '{first}' in this system; the value is not used.")
 
-    def _nearest(self, setting):
+    def _nearest(self, setting: Setting) -> tuple[str | None, list[str]]:
         """Element that a name means, by the longest path that exists, and the names that can be set in it."""
         start = "".join(f"{part}." for part in setting.path)
         names = [name.removeprefix(start) for name in self.named if name.startswith(start)]
@@ -169,7 +179,7 @@ def _differ_in_number(one, other):
     return re.sub(r"\d+", "", one).strip("_") == re.sub(r"\d+", "", other).strip("_")
 
 
-def check_bounds(value, variable, place, name, findings):
+def check_bounds(value: Value, variable: Variable, place: str, name: str, findings: Findings) -> bool:
     """Whether a value is one that a variable can have, with an error if not."""
     if variable.items and value not in variable.items.values():
         findings.error(place, f"{name} cannot be {value}.", f"Items: {dict(variable.items)}.")

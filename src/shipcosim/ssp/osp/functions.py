@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from shipcosim.errors import it_has
-from shipcosim.ssp.flatten.wiring import Connection
+from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.xml.document import local
 
 

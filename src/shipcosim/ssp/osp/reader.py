@@ -9,11 +9,13 @@ from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
 from shipcosim.errors import it_has, suggestion
-from shipcosim.ssp.flatten.connectors import Setting
-from shipcosim.ssp.flatten.hierarchy import Tree
+from shipcosim.ssp.flatten.assemble import components_of, parameter_sets, remark_unconnected
+from shipcosim.ssp.flatten.bindings import apply_set
+from shipcosim.ssp.flatten.connections import Connection
+from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.ports import Setting
 from shipcosim.ssp.flatten.start_values import Settings
-from shipcosim.ssp.flatten.system import System, components_of, parameter_sets, remark_unconnected
-from shipcosim.ssp.flatten.wiring import Connection
+from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.arrays import resized, sizes_wanted, without_arrays
 from shipcosim.ssp.fmu.description import describe_fmu
 from shipcosim.ssp.osp.functions import Wiring, read_function
@@ -88,7 +90,7 @@ class _Reader:
 
     def __init__(self, document, fmus, findings, sizes=None):
         self.document, self.searched, self.findings, self.sizes = document, fmus, findings, sizes or {}
-        self.tree, self._described, self._groups = Tree(findings), {}, {}
+        self.tree, self._described, self._groups = Hierarchy(findings), {}, {}
         self.functions, self.connections, self._fed = {}, [], {}
 
     def system(self, sets):
@@ -98,7 +100,7 @@ class _Reader:
             self._function(element)
         self._connect()
         for values in sets:
-            self.tree.bind(values)
+            apply_set(self.tree, values)
         settings = Settings(self.tree, self.findings)
         settings.apply()
         components = components_of(self.tree, settings)

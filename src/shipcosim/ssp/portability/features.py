@@ -10,7 +10,7 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from shipcosim.ssp.flatten.connectors import Key
+from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.osp.groups import file_names
 from shipcosim.ssp.portability.subject import elements_of
 from shipcosim.ssp.read.structure import FMU, STEP_SIZES, DictionaryReference, SystemElement

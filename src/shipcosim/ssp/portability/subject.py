@@ -5,9 +5,11 @@ from functools import cached_property
 
 from lxml import etree
 
-from shipcosim.ssp.flatten.connectors import Key
-from shipcosim.ssp.flatten.hierarchy import Tree
-from shipcosim.ssp.flatten.system import System, assemble_package
+from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.ports import Key
+from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.read.package import Package, open_package
 from shipcosim.ssp.read.parameters import read_parameter_set
 from shipcosim.ssp.read.structure import ComponentElement, Structure, read_structure
@@ -31,7 +33,7 @@ class Subject:
     document: Document | None
     structure: Structure | None
     package: Package | None
-    tree: Tree | None
+    tree: Hierarchy | None
     system: System
     osp: Document | None = None
 
@@ -111,8 +113,8 @@ def subject_of(path, fmus=()):
     structure = None if document is None else read_structure(document, findings)
     if structure is None:
         return None
-    tree = Tree(findings)
-    tree.grow(structure, package)
+    tree = Hierarchy(findings)
+    take_in(tree, structure, package)
     system = assemble_package(package, (), str(path), findings)
     return None if findings.errors else Subject(document, structure, package, tree, system)
 

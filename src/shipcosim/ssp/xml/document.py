@@ -133,6 +133,20 @@ def local(element):
     return etree.QName(element).localname if isinstance(element.tag, str) else ""
 
 
+def parent_of(element: etree._Element) -> etree._Element:
+    """Element that an element lies in.
+
+    Raises
+    ------
+    ValueError
+        If it is the outermost one.
+    """
+    parent = element.getparent()
+    if parent is None:
+        raise ValueError(f"<{local(element)}> is the outermost element")
+    return parent
+
+
 def is_true(text):
     """Truth of an xs:boolean attribute; a missing one is false."""
     return (text or "").strip() in ("true", "1")

@@ -1,6 +1,7 @@
 """Types and values of variables as SSP and FMI write them."""
 
 import math
+from typing import Any
 
 KINDS = {
     "Real": "Real",
@@ -16,8 +17,8 @@ KINDS = {
 }
 """Kind of each type name of FMI 2.0, FMI 3.0 and SSP: what can be connected and converted alike."""
 
-Value = float | int | bool | str | bytes
-"""Of a parameter or start value; an enumeration's value is the name of its item."""
+Value = Any
+"""A value of a variable: float, int, bool, str or bytes, as its kind says; of an enumeration the name of its item."""
 
 SSP_1_TYPES = ("Real", "Integer", "Boolean", "String", "Enumeration", "Binary")
 """Types of SSP 1.0; the kinds of all others (FMI 3.0) are among them, but for clocks."""

@@ -4,33 +4,38 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from shipcosim.ssp.fmu.description import Variable
+from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.read.parameters import ParameterValue, Transformation
 from shipcosim.units import Unit, find_unit
 
 SOURCES_OUTSIDE = ("output", "calculatedParameter", "local", "constant")
+"""Kinds of an element's connectors that give a value to what is around the element."""
+
 SOURCES_INSIDE = ("input", "parameter", "structuralParameter")
+"""Kinds of a system's connectors that give a value to what is inside the system."""
+
 FREE = ("inout", "unspecified")
+"""Kinds that do not say which way the value goes."""
 
 
 class Key(NamedTuple):
-    """Which port: names of the elements around it from the outermost system's inside, and its own."""
+    """Name of a port: the names of the elements that it is in, without the outermost system's, and its own."""
 
     path: tuple[str, ...]
     name: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         return ".".join((*filter(None, self.path), self.name))
 
 
 @dataclass(frozen=True)
 class Port:
-    """A connector at its place.
+    """A connector at its place in the hierarchy.
 
     Parameters
     ----------
     kind, type, unit, items
-        As in Connector, with what the FMU says filled in.
+        As in Connector; what the SSD leaves open is taken from the FMU.
     owner : str
         ``"component"``, ``"system"``, ``"reference"`` or ``"dictionary"``.
     variable : Variable or None
@@ -45,7 +50,7 @@ class Port:
     type: str | None
     owner: str
     unit: Unit | None = None
-    items: Mapping = field(default_factory=dict)
+    items: Mapping[str, int] = field(default_factory=dict)
     variable: Variable | None = None
     variable_unit: Unit | None = None
     description: str = ""
@@ -54,7 +59,19 @@ class Port:
 
 @dataclass(frozen=True)
 class Wire:
-    """A connection in the direction that values go."""
+    """A connection in the direction in which values go.
+
+    Parameters
+    ----------
+    source, target : Key
+        The ports that it joins.
+    transformation : Transformation or None
+        Of the value on its way.
+    suppress_unit_conversion : bool
+        Leave the value as it is even if units differ.
+    place : str
+        Where it stands, for messages.
+    """
 
     source: Key
     target: Key
@@ -67,7 +84,18 @@ class Wire:
 class Setting:
     """A value for a name within a system or component; settings come in the order in which they are applied.
 
-    `near` says whether the set was bound to a component itself, so that all its names should be known.
+    Parameters
+    ----------
+    path : tuple of str
+        Place of the system or component.
+    name : str
+        Of the parameter, seen from there.
+    value : ParameterValue
+        As the parameter set has it.
+    transformation, suppress_unit_conversion
+        Of the parameter mapping that renamed it.
+    near : bool
+        Whether the set was bound to a component itself, so that all its names should be known.
     """
 
     path: tuple[str, ...]
@@ -78,7 +106,7 @@ class Setting:
     near: bool = False
 
 
-def variable_port(variable, fmu, place):
+def variable_port(variable: Variable, fmu: FmuDescription, place: str) -> Port:
     """Port of an FMU's variable as the FMU describes it."""
     unit = find_unit(variable.unit, fmu.units)
     fields = (variable.causality, variable.kind, "component", unit, variable.items, variable, unit)

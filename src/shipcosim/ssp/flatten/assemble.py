@@ -1,0 +1,146 @@
+"""From a package to a system ready to run: its hierarchy made flat, values brought to their variables, all checked."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from os import PathLike
+
+from shipcosim.ssp.flatten.bindings import apply_set
+from shipcosim.ssp.flatten.connections import Connection, connect
+from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.outer_signals import OuterSignals
+from shipcosim.ssp.flatten.ports import Key
+from shipcosim.ssp.flatten.start_values import Settings
+from shipcosim.ssp.flatten.system import Component, System
+from shipcosim.ssp.flatten.walk import take_in
+from shipcosim.ssp.fmu.arrays import RESIZE, resized, sizes_wanted
+from shipcosim.ssp.read.package import Package
+from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets, read_parameter_set
+from shipcosim.ssp.read.structure import Experiment, Structure, read_structure
+from shipcosim.ssp.xml.document import Findings, read_document
+
+
+def assemble_package(
+    package: Package, parameters: ParameterSets, file: str, findings: Findings, described: dict | None = None
+) -> System | None:
+    """System of a package, None or incomplete where there are errors.
+
+    Parameters
+    ----------
+    package : Package
+        Where the files are.
+    parameters : path or ParameterSet, or iterable of them
+        Applied over those of the system.
+    file : str
+        The system's name for messages.
+    findings : Findings
+        Takes what is wrong.
+    described : dict, optional
+        Keeps descriptions of FMUs from one call to the next.
+    """
+    document = package.document(findings)
+    structure = None if document is None else read_structure(document, findings)
+    if structure is None:
+        return None
+    sets = list(parameter_sets(parameters, findings))
+    before = len(findings.problems)
+
+    def flat(sizes: Mapping[str, Mapping[str, int]]) -> System:
+        tree = Hierarchy(findings, described, sizes)
+        take_in(tree, structure, package)
+        for values in sets:
+            apply_set(tree, values)
+        return _system(tree, structure, file, findings)
+
+    system = flat({})
+    if any(found for component in system.components.values() for found in resized(component)):
+        findings.back_to(before)
+        system = flat(sizes_wanted(system.components))
+    return system
+
+
+def parameter_sets(parameters: ParameterSets, findings: Findings) -> Iterator[ParameterSet]:
+    """Sets given for this run, read where they are paths."""
+    if isinstance(parameters, (str, PathLike, ParameterSet)):
+        parameters = (parameters,)
+    for given in parameters:
+        if isinstance(given, ParameterSet):
+            yield given
+        elif (document := read_document(given, str(given), findings)) is not None:
+            yield read_parameter_set(document, findings)
+
+
+def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings) -> System:
+    connections = connect(tree, findings)
+    settings = Settings(tree, findings)
+    settings.apply()
+    components = components_of(tree, settings)
+    _check_names(tree, findings)
+    for component in components.values():
+        for found in resized(component):
+            findings.error(component.name, found, RESIZE)
+    remark_unconnected(components, connections, findings)
+    name = structure.name or structure.system.name
+    if findings.errors:
+        return System(name, file, components)
+    signals = OuterSignals(tree, components, connections, settings.system_start)
+    return System(
+        name=name,
+        file=file,
+        components=components,
+        connections=tuple(c for c in connections if not _is_given(c, tree)),
+        given=tuple(c for c in connections if _is_given(c, tree)),
+        inputs=signals.of("input"),
+        outputs=signals.of("output", "local", "calculatedParameter", "constant"),
+        parameters=signals.of("parameter", "structuralParameter"),
+        experiment=_experiment(structure),
+        remarks=tuple(dict.fromkeys(findings.remarks)),
+        _packages=tuple(tree.library.packages),
+    )
+
+
+def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:
+    """Components of a hierarchy by full name, with their start values; those whose FMU cannot be read are left out."""
+    return {
+        ".".join(path): Component(
+            ".".join(path),
+            fmu,
+            dict(settings.start[path]),
+            element.step_size,
+            element.implementation,
+            dict(settings.tolerances[path]),
+        )
+        for path, (element, fmu) in tree.components.items()
+        if fmu is not None
+    }
+
+
+def _is_given(connection: Connection, tree: Hierarchy) -> bool:
+    """Whether a connection only hands in a parameter of the outermost system, whose value is among the start values."""
+    owner, name = connection.source
+    return owner is None and tree.ports[Key((), name)].kind in ("parameter", "structuralParameter")
+
+
+def _experiment(structure: Structure) -> Experiment:
+    experiment = structure.experiment
+    return replace(experiment, step_size=experiment.step_size or structure.system.annotated_step_size)
+
+
+def _check_names(tree: Hierarchy, findings: Findings) -> None:
+    """Two components can end up with one full name where names have dots; results could not tell them apart."""
+    seen = {}
+    for path, (element, _) in tree.components.items():
+        name = ".".join(path)
+        if name in seen:
+            findings.error(element.place, f"Two components have the full name '{name}'.", "Rename one of them.")
+        seen[name] = element
+
+
+def remark_unconnected(
+    components: Mapping[str, Component], connections: Iterable[Connection], findings: Findings
+) -> None:
+    """Note which inputs nothing feeds."""
+    connected = {connection.target for connection in connections}
+    for component in components.values():
+        free = [name for name in component.fmu.named("input") if (component.name, name) not in connected]
+        if free:
+            findings.remark(component.name, f"Unconnected inputs keep their start value: {', '.join(free)}.")

@@ -1,0 +1,82 @@
+"""Parameter bindings: the values that they set, under the names that prefixes and mappings give them."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from shipcosim.errors import it_has
+from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
+from shipcosim.ssp.flatten.ports import Setting
+from shipcosim.ssp.fmu.arrays import element_values
+from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.read.parameters import MappingEntry, ParameterSet
+from shipcosim.ssp.read.structure import Binding
+
+
+def take_bindings(
+    tree: Hierarchy,
+    bindings: Iterable[Binding],
+    path: ElementPath,
+    place: Surroundings,
+    near: bool = False,
+    fmu: FmuDescription | None = None,
+) -> None:
+    """Collect the values that an element's bindings set.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Takes what is found and what is wrong.
+    bindings : iterable of Binding
+        In the order in which they are applied.
+    path : tuple of str
+        Place of the element.
+    place : Surroundings
+        What addresses in the bindings start from.
+    near : bool
+        Whether the element is a component, all of whose names should be known.
+    fmu : FmuDescription, optional
+        Of the component; it can hold parameter sets itself.
+    """
+    for binding in bindings:
+        document = tree.library.content(binding.values, place, fmu)
+        if document is None:
+            continue
+        values = tree.library.parameter_set(document)
+        mapping = None
+        if binding.mapping is not None:
+            content = tree.library.content(binding.mapping, place, fmu)
+            mapping = () if content is None else tree.library.mapping(content)
+        if mapping is None:
+            tree.settings += _settings(tree, values, path, binding.prefix, near)
+        else:
+            tree.settings += _mapped(tree, values, path, binding.prefix, mapping)
+
+
+def apply_set(tree: Hierarchy, values: ParameterSet) -> None:
+    """Set the values of a parameter set on the outermost system, over everything set before."""
+    tree.settings += _settings(tree, values, (), "", False)
+
+
+def _settings(tree: Hierarchy, values: ParameterSet, path: ElementPath, prefix: str, near: bool) -> list[Setting]:
+    return [
+        Setting(path, prefix + one.name, one, near=near)
+        for value in values.values
+        for one in element_values(value, tree.findings)
+    ]
+
+
+def _mapped(
+    tree: Hierarchy, values: ParameterSet, path: ElementPath, prefix: str, mapping: Iterable[MappingEntry]
+) -> list[Setting]:
+    """Values under the names that a parameter mapping gives them; those that it does not name are not used."""
+    by_name = {prefix + value.name: value for value in values.values}
+    settings = []
+    for entry in mapping:
+        if entry.source not in by_name:
+            found = f"The parameter set '{values.name}' has no '{entry.source}'."
+            tree.findings.error(entry.place, found, it_has(entry.source, by_name))
+            continue
+        how = (entry.transformation, entry.suppress_unit_conversion)
+        renamed = replace(by_name[entry.source], name=entry.target)
+        settings += [Setting(path, one.name, one, *how, near=True) for one in element_values(renamed, tree.findings)]
+    return settings

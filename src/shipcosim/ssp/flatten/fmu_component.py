@@ -1,0 +1,100 @@
+"""A component that is an FMU: its connectors, held against the variables of its FMU."""
+
+from dataclasses import replace
+
+from shipcosim.errors import it_has
+from shipcosim.ssp.flatten.bindings import take_bindings
+from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
+from shipcosim.ssp.flatten.ports import Key, Port, variable_port
+from shipcosim.ssp.fmu.arrays import element_connectors, without_arrays
+from shipcosim.ssp.fmu.description import FmuDescription, Variable
+from shipcosim.ssp.read.structure import KIND_NAMES, ComponentElement, Connector
+from shipcosim.ssp.xml.document import Findings
+from shipcosim.units import find_unit, relation
+
+CAUSALITIES = {"calculatedParameter": "calculated parameter", "structuralParameter": "structural parameter"}
+"""Kinds of connectors that are two words."""
+
+
+def take_fmu(tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings) -> None:
+    """Collect a component with its FMU, the ports of its connectors and the values that are bound to it.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Takes what is found and what is wrong.
+    element : ComponentElement
+        The component.
+    path : tuple of str
+        Its place.
+    place : Surroundings
+        What is around it.
+    """
+    fmu = _fmu_of(tree, element, path, place)
+    tree.components[path] = element, fmu
+    tree.arrays[path] = {} if fmu is None else dict(fmu.arrays)
+    connectors, declared = element_connectors(element.connectors, tree.arrays[path], tree.findings)
+    tree.arrays[path] |= declared
+    for connector in connectors:
+        tree.ports[Key(path, connector.name)] = _port(connector, fmu, tree.findings)
+    if fmu is not None:
+        _check_implementation(element, fmu, tree.findings)
+    take_bindings(tree, element.bindings, path, place, near=True, fmu=fmu)
+
+
+def _fmu_of(
+    tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
+) -> FmuDescription | None:
+    if element.source is None:
+        tree.findings.error(element.place, "It has no source: there is nothing to run.", "Name an FMU or a system.")
+        return None
+    file = tree.library.file(element, element.source, place)
+    fmu = tree.library.fmu(file, place.package) if file else None
+    return fmu and without_arrays(fmu, element.place, tree.findings, tree.sizes.get(".".join(path)))
+
+
+def _check_implementation(element: ComponentElement, fmu: FmuDescription, findings: Findings) -> None:
+    """Note where an FMU does not offer what is asked of it: co-simulation, model exchange or either."""
+    wanted = element.implementation
+    forms = ("CoSimulation", "ModelExchange") if wanted == "any" else (wanted,)
+    if not any(form in fmu.interfaces for form in forms):
+        remedy = f"It offers {', '.join(fmu.interfaces)}."
+        findings.error(element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy)
+
+
+def _port(connector: Connector, fmu: FmuDescription | None, findings: Findings) -> Port:
+    """Port of a component's connector, checked against the FMU."""
+    variable = None if fmu is None else fmu.variables.get(connector.name)
+    if fmu is None or variable is None:
+        if fmu is not None:
+            found = f"{fmu.path.name} has no {CAUSALITIES.get(connector.kind, connector.kind)} '{connector.name}'."
+            known = fmu.named(connector.kind) or list(fmu.variables)
+            findings.error(connector.place, found, it_has(connector.name, known))
+        fields = (connector.kind, connector.type, "component", connector.unit, connector.items)
+        return Port(*fields, place=connector.place)
+    _compare(connector, variable, fmu, findings)
+    port = variable_port(variable, fmu, connector.place)
+    description = connector.description or variable.description
+    unit, items = connector.unit or port.unit, connector.items or port.items
+    return replace(port, unit=unit, items=items, description=description)
+
+
+def _compare(connector: Connector, variable: Variable, fmu: FmuDescription, findings: Findings) -> None:
+    """Note where a connector is of another kind, type or unit than its variable."""
+    name, place = fmu.path.name, connector.place
+    if connector.kind in KIND_NAMES and connector.kind != variable.causality:
+        found = f"The connector is of kind {connector.kind}, the variable in {name} of causality {variable.causality}."
+        findings.error(place, found, f'Write kind="{variable.causality}".')
+    if connector.type not in (None, variable.kind):
+        found = f"The connector is of type {connector.type}, but in {name} the variable is {variable.type}."
+        findings.error(place, found, f"Write <{variable.type}>, or leave the type out.")
+    own = find_unit(variable.unit, fmu.units)
+    if own is None or connector.unit is None:
+        return
+    related = relation(connector.unit, own)
+    found = f"The connector is in {connector.unit.name}, the variable in {name} in {own.name}"
+    if related == "incompatible":
+        findings.error(place, f"{found}; these cannot be converted.", f'Write unit="{own.name}".')
+    elif related != "same":
+        how = "not converted, a definition is missing" if related == "unknown" else "values are converted"
+        findings.remark(place, f"{found}: {how}.")

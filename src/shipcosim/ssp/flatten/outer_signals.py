@@ -1,0 +1,70 @@
+"""Connectors of the outermost system as signals: type, unit and start value, some from what they are connected to."""
+
+from collections.abc import Iterable, Mapping
+
+from shipcosim.ssp.flatten.connections import Connection
+from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.ports import Key
+from shipcosim.ssp.flatten.system import Component, Signal
+from shipcosim.ssp.fmu.description import Variable
+from shipcosim.ssp.xml.values import Value
+
+
+class OuterSignals:
+    """Connectors of the outermost system, with what follows from what they are connected to.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Has the connectors as ports.
+    components : mapping of str to Component
+        By full name.
+    connections : iterable of Connection
+        Between variables and the connectors.
+    start : mapping of str to value
+        Values set on the connectors, in their units.
+    """
+
+    def __init__(
+        self,
+        tree: Hierarchy,
+        components: Mapping[str, Component],
+        connections: Iterable[Connection],
+        start: Mapping[str, Value],
+    ):
+        self.tree, self.components, self.start = tree, components, start
+        self.connections = tuple(connections)
+
+    def of(self, *kinds: str) -> dict[str, Signal]:
+        """Signals of these kinds of connector, by name."""
+        keys = [key for key, port in self.tree.ports.items() if key.path == () and port.owner == "system"]
+        return {key.name: self._signal(key) for key in keys if self.tree.ports[key].kind in kinds}
+
+    def _signal(self, key: Key) -> Signal:
+        port = self.tree.ports[key]
+        ends = self._ends(key)
+        unit = port.unit.name if port.unit else next((end.unit for end, _ in ends if end.unit), None)
+        start = self.start.get(key.name)
+        if start is None and port.kind == "input":
+            start = self._derived(ends)
+        kind = port.type or next((end.kind for end, _ in ends), None)
+        return Signal(key.name, kind, unit, port.description, start, port.items)
+
+    def _ends(self, key: Key) -> list[tuple[Variable, Connection]]:
+        """Variables at the other ends of a connector's connections, with the connections."""
+        near = (None, key.name)
+        pairs = [(c.target, c) for c in self.connections if c.source == near]
+        pairs += [(c.source, c) for c in self.connections if c.target == near]
+        return [(self.components[name].fmu.variables[variable], c) for (name, variable), c in pairs if name]
+
+    def _derived(self, ends: list[tuple[Variable, Connection]]) -> Value | None:
+        """Start of an input that none is set for: what the variables behind it start with, where they agree."""
+        starts = set()
+        for _, connection in ends:
+            name, variable = connection.target
+            value = self.components[name].start_value(variable)
+            if value is None or connection.mapping is not None or connection.factor == 0.0:
+                return None
+            linear = (connection.factor, connection.offset) != (1.0, 0.0)
+            starts.add((value - connection.offset) / connection.factor if linear else value)
+        return starts.pop() if len(starts) == 1 else None

@@ -1,0 +1,151 @@
+"""The way through the nested elements of an SSD, which collects them in a Hierarchy."""
+
+from dataclasses import replace
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp.flatten.bindings import take_bindings
+from shipcosim.ssp.flatten.dictionaries import dictionaries_of, join_dictionaries, take_reference
+from shipcosim.ssp.flatten.fmu_component import take_fmu
+from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
+from shipcosim.ssp.flatten.ports import Key, Port
+from shipcosim.ssp.flatten.wires import wire_of
+from shipcosim.ssp.fmu.arrays import element_connectors, element_links
+from shipcosim.ssp.read.package import Package
+from shipcosim.ssp.read.structure import (
+    FMU,
+    SSD,
+    SSP,
+    Binding,
+    ComponentElement,
+    DictionaryReference,
+    Link,
+    Structure,
+    SystemElement,
+)
+
+MOST_SYSTEMS = 10_000  # a few files that include each other can describe more than any memory holds
+
+OuterBindings = tuple[tuple[tuple[Binding, ...], Surroundings], ...]
+"""Parameter bindings of a component that is a system of its own, with the surroundings that their addresses are in."""
+
+
+def take_in(tree: Hierarchy, structure: Structure, package: Package) -> None:
+    """Collect the outermost system of an SSD and everything in it.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Takes what is found and what is wrong.
+    structure : Structure
+        The SSD.
+    package : Package
+        Where its files are.
+
+    Raises
+    ------
+    ShipcosimError
+        If it has more systems than any memory holds.
+    """
+    tree.library.packages.append(package)
+    system = structure.system
+    _take_system(tree, system, (), Surroundings(structure, package, (), (system.place,)), ())
+    join_dictionaries(tree)
+
+
+def _take_system(
+    tree: Hierarchy, element: SystemElement, path: ElementPath, place: Surroundings, outer_bindings: OuterBindings
+) -> None:
+    tree.systems[path] = element
+    if len(tree.systems) > MOST_SYSTEMS:
+        too_many = Problem(element.place, f"There are more than {MOST_SYSTEMS} systems.", "Take some away.")
+        raise ShipcosimError([*dict.fromkeys(tree.findings.errors), too_many])
+    place = replace(place, dictionaries=(dictionaries_of(tree, element, path, place), *place.dictionaries))
+    _take_connectors(tree, element, path)
+    for part in element.elements:
+        inner = (*path, part.name)
+        if isinstance(part, SystemElement):
+            _take_system(tree, part, inner, place, ())
+        elif isinstance(part, DictionaryReference):
+            take_reference(tree, part, inner, place)
+        else:
+            _take_component(tree, part, inner, place)
+    for link in element.links:
+        _take_connection(tree, link, element, path)
+    take_bindings(tree, element.bindings, path, place)
+    for bindings, outer in outer_bindings:
+        take_bindings(tree, bindings, path, outer)
+
+
+def _take_connectors(tree: Hierarchy, element: SystemElement, path: ElementPath) -> None:
+    connectors, tree.arrays[path] = element_connectors(element.connectors, {}, tree.findings)
+    for connector in connectors:
+        fields = (connector.kind, connector.type, "system", connector.unit, connector.items)
+        port = Port(*fields, description=connector.description, place=connector.place)
+        tree.ports[Key(path, connector.name)] = port
+
+
+def _take_connection(tree: Hierarchy, link: Link, element: SystemElement, path: ElementPath) -> None:
+    """Wires of a connection, one for each element where it joins arrays."""
+    ends = ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
+    owners = [tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in ends]
+    start, end = (known.get(name, ()) for known, (_, name) in zip(owners, ends, strict=True))
+    for single in element_links(link, start, end, tree.findings):
+        wire = wire_of(single, element, path, tree)
+        tree.wires += [] if wire is None else [wire]
+
+
+def _take_component(tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings) -> None:
+    if element.type in (SSD, SSP):
+        _take_other_file(tree, element, path, place)
+    elif element.type == FMU:
+        take_fmu(tree, element, path, place)
+    else:
+        remedy = f"Known are {FMU}, {SSD}, {SSP}."
+        tree.findings.error(element.place, f"Components of type '{element.type}' are not known.", remedy)
+        tree.components[path] = element, None
+
+
+def _take_other_file(tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings) -> None:
+    """A component that is a system in another file or elsewhere in this one counts as if it stood here."""
+    found = _system_of(tree, element, place)
+    if found is not None and found[1].place in place.around:
+        tree.findings.error(element.place, f"'{element.source}' contains itself.", "Break the circle.")
+        found = None
+    if found is None:
+        tree.components[path] = element, None
+        return
+    structure, system, package = found
+    inner = Surroundings(structure, package, place.dictionaries, (*place.around, system.place))
+    _take_system(tree, system, path, inner, ((element.bindings, place),))
+
+
+def _system_of(
+    tree: Hierarchy, element: ComponentElement, place: Surroundings
+) -> tuple[Structure, SystemElement, Package] | None:
+    """System that a component stands for, with its SSD and package, or None with an error."""
+    uri, _, fragment = (element.source or "").partition("#")
+    if not uri:
+        system = _with_id(place.structure.system, fragment)
+        if system is None:
+            tree.findings.error(element.place, f"No system in this file has the id '{fragment}'.", "Give it one.")
+        return system and (place.structure, system, place.package)
+    file = tree.library.file(element, uri, place)
+    if file is None:
+        return None
+    package, name = place.package, file
+    if element.type == SSP:
+        shown = place.package.show(file)
+        address = f"{file}#{fragment}" if fragment else file
+        package = tree.library.package(address, place.package.fmus, shown)
+        if package is None:
+            return None
+        name = package.folder / package.ssd
+    structure = tree.library.structure(package, name)
+    return structure and (structure, structure.system, package)
+
+
+def _with_id(system: SystemElement, wanted: str) -> SystemElement | None:
+    if system.id == wanted:
+        return system
+    inner = (_with_id(part, wanted) for part in system.elements if isinstance(part, SystemElement))
+    return next((found for found in inner if found is not None), None)

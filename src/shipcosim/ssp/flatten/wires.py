@@ -1,0 +1,133 @@
+"""Connection elements made into wires: which connectors are meant, and which way the value goes."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from shipcosim.errors import it_has, suggestion
+from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy
+from shipcosim.ssp.flatten.ports import FREE, SOURCES_INSIDE, SOURCES_OUTSIDE, Key, Wire, variable_port
+from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.read.structure import KIND_NAMES, Link, SystemElement, signal
+from shipcosim.ssp.xml.document import Findings
+
+FEEDS = {
+    "parameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
+    "structuralParameter": ("structuralParameter", "constant"),
+    "calculatedParameter": ("parameter", "structuralParameter", "calculatedParameter", "constant"),
+    "constant": ("constant",),
+}
+"""Kinds that may feed a kind, where not all may. SSP 2.0, table of allowed connections."""
+
+
+class End(NamedTuple):
+    """One end of a connection: the element (None: the system itself), the connector, and the port that this means."""
+
+    element: str | None
+    name: str
+    key: Key
+
+    def __str__(self) -> str:
+        return signal(self.element, self.name)
+
+    def gives(self, kind: str) -> bool:
+        """Whether a connector of this kind gives a value here: an element's output does, and a system's own input."""
+        return (kind in SOURCES_OUTSIDE) == (self.element is not None)
+
+
+def wire_of(link: Link, system: SystemElement, path: ElementPath, tree: Hierarchy) -> Wire | None:
+    """Wire of a connection.
+
+    Parameters
+    ----------
+    link : Link
+        As written.
+    system : SystemElement
+        That it is in.
+    path : tuple of str
+        Of the system.
+    tree : Hierarchy
+        With the ports of the system and its elements; takes what is wrong, and ports that only the FMU knew.
+
+    Returns
+    -------
+    Wire, or None with an error
+    """
+    ends = [
+        End(element, name, Key(path if element is None else (*path, element), name))
+        for element, name in ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
+    ]
+    exist = [_exists(end, ends, link, system, tree) for end in ends]
+    if not all(exist):
+        return None
+    kinds = {end: tree.ports[end.key].kind for end in ends}
+    if any(kind not in KIND_NAMES for kind in kinds.values()):
+        return None  # the schema has said so
+    directed = _directed(ends, kinds, link, tree.findings)
+    if directed is None:
+        return None
+    source, target = directed
+    return Wire(source.key, target.key, link.transformation, link.suppress_unit_conversion, link.place)
+
+
+def _directed(ends: list[End], kinds: Mapping[End, str], link: Link, findings: Findings) -> tuple[End, End] | None:
+    """Source and target, or None with an error."""
+    start, end = ends
+    for source, target in ((start, end), (end, start)):
+        gives = kinds[source] in FREE or source.gives(kinds[source])
+        takes = kinds[target] in FREE or not target.gives(kinds[target])
+        feeding = FEEDS.get(kinds[target], KIND_NAMES)
+        if gives and takes and kinds[source] not in (*FREE, *feeding):
+            found = f"{source} ({kinds[source]}) cannot feed {target} ({kinds[target]})."
+            findings.error(link.place, found, f"Feed it from one of: {', '.join(feeding)}.")
+            return None
+        if gives and takes:
+            return source, target
+    which = (
+        "give a value, and neither takes one" if start.gives(kinds[start]) else "take a value, and neither gives one"
+    )
+    found = f"{start} ({kinds[start]}) and {end} ({kinds[end]}): both {which}."
+    findings.error(link.place, found, "Connect an output to an input.")
+    return None
+
+
+def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: Hierarchy) -> bool:
+    """Whether an end's port exists; an error says what does, unless its FMU is missing anyway."""
+    if end.key in tree.ports:
+        return True
+    names = [part.name for part in system.elements]
+    if end.element is not None and end.element not in names:
+        found = f"There is no element '{end.element}' in {system.name}."
+        tree.findings.error(link.place, found, suggestion(end.element, names))
+        return False
+    component, fmu = tree.components.get(end.key.path, (None, None))
+    if fmu is not None and end.name in fmu.variables:
+        return _undeclared(end, fmu, link, tree)
+    if component is None or fmu is not None:
+        wanted, known = _wanted(end, ends, fmu, tree)
+        owner = end.element or system.name
+        tree.findings.error(link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, known))
+    return False
+
+
+def _undeclared(end: End, fmu: FmuDescription, link: Link, tree: Hierarchy) -> bool:
+    """Add the port of a variable that only the FMU declares, with a remark."""
+    port = variable_port(fmu.variables[end.name], fmu, link.place)
+    tree.ports[end.key] = port
+    found = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
+    tree.findings.remark(link.place, found, f'Add <Connector name="{end.name}" kind="{port.kind}"/>.')
+    return True
+
+
+def _wanted(end: End, ends: list[End], fmu: FmuDescription | None, tree: Hierarchy) -> tuple[str, list[str]]:
+    """Kind of connector that is missing at an end, as the other end says, and the names of this kind that there are."""
+    other = ends[0] if end is ends[1] else ends[1]
+    seeks_source = end is ends[0]
+    if other.key in tree.ports:
+        seeks_source = not other.gives(tree.ports[other.key].kind)
+    kinds = SOURCES_OUTSIDE if seeks_source == (end.element is not None) else SOURCES_INSIDE
+    have = {key.name: port.kind for key, port in tree.ports.items() if key.path == end.key.path}
+    have |= {} if fmu is None else {name: variable.causality for name, variable in fmu.variables.items()}
+    for wanted in kinds:
+        if known := [name for name, kind in have.items() if kind == wanted]:
+            return wanted, known
+    return "connector", list(have)

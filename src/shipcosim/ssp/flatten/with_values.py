@@ -1,0 +1,101 @@
+"""A system with other start values, each checked against the variable or connector that it is for."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import isfinite
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp.flatten.start_values import check_bounds
+from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.xml.document import Findings
+from shipcosim.ssp.xml.values import Value
+
+
+def with_values(system: System, values: Mapping[str, Value], where: str = "") -> System:
+    """System with other start values, e.g. from a scenario or the command line.
+
+    Parameters
+    ----------
+    system : System
+        As read.
+    values : mapping of str to value
+        By signal (``"vessel.mass"``), in the FMU's unit; items of enumerations by name or number.
+    where : str
+        Where the values come from, for messages.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ShipcosimError
+        With every name that does not exist and every value that does not fit.
+    """
+    findings = Findings()
+    starts = {name: dict(component.start) for name, component in system.components.items()}
+    inputs, feeding = dict(system.inputs), {connection.target: connection.source for connection in system.connections}
+    for signal, value in values.items():
+        place = f"{where}: {signal}" if where else signal
+        try:
+            component, name = system.split(signal, place)
+        except ShipcosimError as error:
+            findings.problems += error.problems
+            continue
+        if (component, name) in feeding:
+            source = ".".join(filter(None, feeding[component, name]))
+            remedy = "Set what feeds it, or hold it with an event (override)."
+            findings.error(place, f"It is connected: {source} gives its value.", remedy)
+        elif component is not None:
+            _set(starts[component], system.components[component].fmu.variables[name], value, place, findings)
+        elif name in inputs:
+            if _fits(value, inputs[name], inputs[name].type, place, findings):
+                inputs[name] = replace(inputs[name], start=value)
+        else:
+            findings.error(place, "It is no input of the system.", f"Inputs: {', '.join(inputs) or 'none'}.")
+    if findings.errors:
+        raise ShipcosimError(findings.errors)
+    components = {name: replace(component, start=starts[name]) for name, component in system.components.items()}
+    return replace(system, components=components, inputs=inputs)
+
+
+PYTHON = {"Real": (int, float), "Integer": (int,), "Boolean": (bool,), "String": (str,), "Enumeration": (int,)}
+WANTED = {
+    "Real": "Give a number, with a decimal point",
+    "Integer": "Give a whole number",
+    "Boolean": "Give true or false",
+}
+LARGEST = 2**31  # FMI's integers have 32 bits
+
+
+def _set(start, variable, value, place, findings):
+    """Put a value for a variable into `start`, checked and in the variable's type."""
+    if variable.items and isinstance(value, str):
+        value = variable.items.get(value, value)
+    if not _fits(value, variable, variable.kind, place, findings):
+        return
+    if not variable.settable:
+        found = f"It is of causality {variable.causality}, a value that the FMU calculates."
+        findings.error(place, found, "Set parameters and inputs.")
+    elif check_bounds(value, variable, place, variable.name, findings):
+        start[variable.name] = float(value) if variable.kind == "Real" else value
+
+
+def _fits(value, owner, kind, place, findings):
+    """Whether a value is of a kind, with an error if not; `owner` has the items of an enumeration."""
+    right = kind is None or isinstance(value, PYTHON.get(kind, (bytes,)))
+    if not right or (isinstance(value, bool) and kind not in ("Boolean", None)):
+        remedy = f"Items: {', '.join(owner.items)}." if owner.items else _wanted(kind, owner.unit)
+        findings.error(place, f"{value!r} is no {kind}.", remedy)
+        return False
+    if isinstance(value, float) and not isfinite(value):
+        findings.error(place, f"{value} is not a finite number.", _wanted("Real", owner.unit))
+        return False
+    if kind == "Integer" and not -LARGEST <= value < LARGEST:
+        findings.error(place, f"{value} is too large for an Integer.", f"Give one from {-LARGEST} to {LARGEST - 1}.")
+        return False
+    return True
+
+
+def _wanted(kind, unit):
+    return f"{WANTED[kind]}{f', in {unit}' if kind == 'Real' and unit else ''}." if kind in WANTED else ""
