@@ -42,7 +42,7 @@ class Driven:
             [v for v in fmu.variables.values() if v.causality == causality and v.kind == "Real"]
             for causality in ("input", "output")
         )
-        self.slave = instances.of(Component(name, fmu))
+        self.slave = instances.instance_of(Component(name, fmu))
         changed = NOT_NEUTRAL.get(fmu.path.stem, {})
         set_start_values(self.slave, [(fmu.variables[key], value) for key, value in changed.items()])
         self.starts = np.array([variable.start for variable in self.inputs])

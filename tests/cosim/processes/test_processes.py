@@ -16,7 +16,7 @@ import pytest
 from shipcosim.cosim import RunError, RunOptions, simulate
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.processes.parent import Isolated
-from shipcosim.cosim.slaves.fmi2 import SlaveError
+from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import ShipcosimError
 from shipcosim.fmi.export.builder import build_fmu
 
@@ -285,7 +285,7 @@ def test_a_start_value_that_is_refused_is_said_where_it_was_set(make_system):
     system = make_system({"slow": "lag"})
     component = system.components["slow"]
     with Isolated(system, LIMIT) as instances:
-        slave = instances.of(component)
+        slave = instances.instance_of(component)
         with pytest.raises(SlaveError, match="slow at t = 0 s: parameter 'time_constant' was set to nan"):
             set_start_values(slave, [(component.fmu.variables["time_constant"], float("nan"))])
 

@@ -134,8 +134,8 @@ def test_fmi3_state_is_stored_and_restored(tanks, make_scenario, tmp_path):
 
 def test_an_fmu_that_cannot_be_reset_is_made_anew(tanks):
     with Instances() as instances:
-        first = instances.of(tanks.components["a"])
-        again = instances.of(tanks.components["a"])
+        first = instances.instance_of(tanks.components["a"])
+        again = instances.instance_of(tanks.components["a"])
         assert again is not first
         again.enter_initialisation(0.0, 1.0)
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from shipcosim.cosim import RunError, simulate
-from shipcosim.cosim.slaves import fmi2 as slave
+from shipcosim.cosim.slaves import library_slave
 from shipcosim.cosim.slaves.instances import Instances
 
 
 @pytest.fixture
 def through_binary(monkeypatch):
     """Function that has all calls go through the binaries from then on."""
-    return lambda: monkeypatch.setattr(slave, "object_of", lambda folder, name: None)
+    return lambda: monkeypatch.setattr(library_slave, "python_object_of", lambda folder, name: None)
 
 
 PARTS = {
@@ -68,10 +68,10 @@ def test_same_remarks(make_system, make_scenario, through_binary):
 def test_components_of_one_fmu_have_an_object_each(make_system):
     system = make_system({name: "gain" for name in ("a", "b")})
     with Instances() as instances:
-        slaves = [instances.of(component) for component in system.components.values()]
+        slaves = [instances.instance_of(component) for component in system.components.values()]
         targets = [slave._direct._target for slave in slaves]
         assert [target.instance_name for target in targets] == ["a", "b"]
-        again = instances.of(system.components["a"])
+        again = instances.instance_of(system.components["a"])
         again.enter_initialisation(0.0, 1.0)
         variable = system.components["a"].fmu.variables["factor"]
         buffer = np.array([7.0])
@@ -82,4 +82,4 @@ def test_components_of_one_fmu_have_an_object_each(make_system):
 def test_other_python_fmus_go_through_their_binary(pythonfmu_system):
     system = pythonfmu_system("1.0")
     with Instances() as instances:
-        assert all(instances.of(component)._direct is None for component in system.components.values())
+        assert all(instances.instance_of(component)._direct is None for component in system.components.values())

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from shipcosim.cosim import RunError, RunOptions, repeat, simulate
 from shipcosim.cosim.master.run import Journey
 from shipcosim.cosim.master.time_grid import span_of
-from shipcosim.cosim.slaves.form import form_of
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component, Connection, System, read_fmu
@@ -239,7 +239,7 @@ def test_models_and_slaves_of_all_versions_run_together(model, make_scenario):
     fmus = [model("decay", version) for version in VERSIONS] + [model("decay", "1.0", ("CoSimulation",))]
     parts = {f"m{k}": Component(f"m{k}", read_fmu(fmu), {"k": 1.0}) for k, fmu in enumerate(fmus)}
     lines = tuple(Connection((f"m{k}", "x"), (f"m{k + 1}", "u")) for k in range(3))
-    assert [form_of(part) for part in parts.values()] == ["ModelExchange"] * 3 + ["CoSimulation"]
+    assert [interface_type_of(part) for part in parts.values()] == ["ModelExchange"] * 3 + ["CoSimulation"]
     table = simulate(System("chain", "chain.ssd", parts, lines), make_scenario(2.0, 0.002))
     t = table["time"].values
 

@@ -45,7 +45,7 @@ def assert_foretold(host, path, recorded):
         assert said & VERDICTS[recorded], said
 
 
-def form_of(case):
+def interface_type_of(case):
     """How a case is written down as a folder or, where it can only be of SSP 2.0, an archive."""
     return "folder, 1.0" if "1.0" in case.versions else "ssp, 2.0"
 
@@ -62,7 +62,7 @@ def page(root):
 @pytest.mark.parametrize("name", recording.rows())
 def test_what_a_tool_did_with_a_feature_is_foretold(name, page, tmp_path):
     case = conformance.cases()["connection" if name in FORMED else name]
-    path = conformance.write(case, tmp_path, FORMED[name][2] if name in FORMED else form_of(case))
+    path = conformance.write(case, tmp_path, FORMED[name][2] if name in FORMED else interface_type_of(case))
     if any(problem.severity == "error" for problem in check_file(path)):
         assert page["shipcosim"].get(recording.rows()[name][1]) != RIGHT  # nothing is foretold of what cannot be read
         return
@@ -112,12 +112,12 @@ def tried(host, tmp_path_factory):
 
 @pytest.mark.parametrize("name", OWN)
 def test_what_a_tool_does_with_a_feature_is_foretold(name, host, tried, tmp_path):
-    assert_foretold(host, conformance.write(OWN[name], tmp_path, form_of(OWN[name])), tried[name])
+    assert_foretold(host, conformance.write(OWN[name], tmp_path, interface_type_of(OWN[name])), tried[name])
 
 
 def test_every_feature_is_in_some_system_that_was_tried(tmp_path):
     cases = [*OWN.values(), *conformance.cases().values()]
-    paths = [conformance.write(case, tmp_path / str(k), form_of(case)) for k, case in enumerate(cases)]
+    paths = [conformance.write(case, tmp_path / str(k), interface_type_of(case)) for k, case in enumerate(cases)]
     paths += [conformance.write(conformance.cases()["connection"], tmp_path / n, f[2]) for n, f in FORMED.items()]
     remedies = {problem.remedy for path in paths for host in HOSTS for problem in check_for(host, path)}
     seen = {feature.name for feature in FEATURES if feature.remedy in remedies}

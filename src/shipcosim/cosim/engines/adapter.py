@@ -24,8 +24,8 @@ from shipcosim.cosim.master.plan import WIDE, label, make_plan
 from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.run import Interrupted, RunError
 from shipcosim.cosim.master.time_grid import span_of
-from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES
-from shipcosim.cosim.slaves.form import form_of
+from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
@@ -253,7 +253,7 @@ def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | 
     """
     problems = list(others)
     for component in job.system.components.values():
-        if form_of(component) == "ModelExchange":
+        if interface_type_of(component) == "ModelExchange":
             found = f"runs as model exchange, which {engine} does not do."
             problems.append(Problem(component.name, found, "The engine fmpy does."))
         if wide := [v.name for v in component.fmu.variables.values() if v.type in WIDE]:

@@ -11,7 +11,7 @@ from time import perf_counter
 
 import numpy as np
 
-from shipcosim.cosim.slaves.fmi2 import SlaveError
+from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem
 from shipcosim.scenario import whole_steps
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shipcosim.cosim.master.signals import Exchange
-from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES, FAILED, Slave, SlaveError
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES, FAILED, Slave, SlaveError
 
 
 @dataclass

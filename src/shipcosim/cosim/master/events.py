@@ -13,7 +13,7 @@ import numpy as np
 from shipcosim.cosim.master.plan import End, Plan
 from shipcosim.cosim.master.signals import Changes
 from shipcosim.cosim.master.time_grid import Span
-from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.scenario import Scenario, whole_steps
 
 

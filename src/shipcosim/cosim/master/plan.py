@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 from math import lcm
 
 from shipcosim.cosim.master.signals import Wire
-from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES
-from shipcosim.cosim.slaves.form import form_of, lacks_form
+from shipcosim.cosim.slaves.interface_type import interface_type_of, missing_interface_type
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.ssp import Connection, System, Variable
@@ -162,8 +162,8 @@ def _kinds(system):
 
 def _component_problems(component, base, duration):
     step = component.step_size
-    if form_of(component) is None:
-        yield Problem(component.name, *lacks_form(component))
+    if interface_type_of(component) is None:
+        yield Problem(component.name, *missing_interface_type(component))
     if step is not None and not whole_steps(step, base):
         yield Problem(component.name, f"its step of {step:g} s is no multiple of the step size {base:g} s.")
     elif step is not None and whole_steps(duration, step) is None:

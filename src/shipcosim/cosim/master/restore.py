@@ -5,8 +5,8 @@ from shipcosim.cosim.master.events import in_force_after, target_of
 from shipcosim.cosim.master.plan import label
 from shipcosim.cosim.master.result import hashes, start_values
 from shipcosim.cosim.master.snapshot import Snapshot
-from shipcosim.cosim.slaves.fmi2 import SlaveError
-from shipcosim.cosim.slaves.form import form_of
+from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError
 
 ABILITIES = ("canGetAndSetFMUstate", "canSerializeFMUstate"), ("canGetAndSetFMUState", "canSerializeFMUState")
@@ -18,7 +18,7 @@ def check_storable(system):
     problems = []
     for component in system.components.values():
         fmu = component.fmu
-        if form_of(component) == "ModelExchange":
+        if interface_type_of(component) == "ModelExchange":
             found = "it runs as model exchange, and the solver's state cannot be stored."
             problems.append(Problem(component.name, found, "Run the system without storing it."))
             continue

@@ -9,7 +9,7 @@ import numpy as np
 
 from shipcosim import __version__
 from shipcosim.cosim.master.plan import Plan, label
-from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 

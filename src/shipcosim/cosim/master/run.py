@@ -23,9 +23,9 @@ from shipcosim.cosim.master.snapshot import Snapshot, opened, writer
 from shipcosim.cosim.master.string_connections import Handover, Text
 from shipcosim.cosim.master.time_grid import Span, span_of
 from shipcosim.cosim.processes.parent import Isolated
-from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES, SlaveError
-from shipcosim.cosim.slaves.form import form_of
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES, SlaveError
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
@@ -222,7 +222,7 @@ def _parts(plan, exchanges, instances, check_interrupt, base):
         check_interrupt()
         fmu, name = component.fmu, component.name
         try:
-            slave = instances.of(component)
+            slave = instances.instance_of(component)
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
@@ -237,7 +237,7 @@ def _parts(plan, exchanges, instances, check_interrupt, base):
 def _fixed_step(component, step):
     """The step, for an FMU that can take no other one."""
     is_free = component.fmu.capability("canHandleVariableCommunicationStepSize")
-    return None if is_free or form_of(component) == "ModelExchange" else step
+    return None if is_free or interface_type_of(component) == "ModelExchange" else step
 
 
 def _texts(plan, parts):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.cosim.slaves.fmi2 import BUFFER_TYPES, Slave
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES, Slave
 from shipcosim.ssp import Variable
 
 

@@ -11,8 +11,8 @@ import sys
 
 import numpy as np
 
-from shipcosim.cosim.slaves.fmi2 import SlaveError
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.slave import SlaveError
 
 DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does not outlive the run
 
@@ -77,7 +77,7 @@ class Desk:
 
     def make(self, component):
         """Instantiate the FMU."""
-        self._slave = self._instances.of(component)
+        self._slave = self._instances.instance_of(component)
 
     def call(self, method, *arguments):
         """Call a method of the slave."""

@@ -17,7 +17,7 @@ from time import monotonic
 import numpy as np
 
 from shipcosim.cosim.processes.child import receive, send
-from shipcosim.cosim.slaves.fmi2 import OK, Slave, SlaveError
+from shipcosim.cosim.slaves.slave import OK, Slave, SlaveError
 
 START = "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.processes.child import serve; serve()"
 GREETING = 60.0  # s, for a process to start
@@ -57,7 +57,7 @@ class Isolated:
     def __exit__(self, *_):
         self._stack.close()
 
-    def of(self, component):
+    def instance_of(self, component):
         """Instance of a component's FMU in which nothing has been set yet. Raises SlaveError if it cannot be made."""
         return Remote(component, self._workers[component.name])
 

@@ -55,12 +55,13 @@ class Cvode:
 
     def __init__(self, n: int, derivatives: Callable, n_roots: int, roots: Callable, tolerance: float):
         self._n, self._derivatives, self._roots, self._tolerance = n, derivatives, roots, tolerance
-        self._error, self._said, self._memory = None, "", None
+        self._error: Exception | None = None
+        self._message, self._memory = b"", None
         self._context = SUNContext()
         SUNContext_Create(SUN_COMM_NULL, byref(self._context))
-        self._hear = SUNErrHandlerFn(self._listen)
+        self._error_handler = SUNErrHandlerFn(self._keep_message)
         sundials_core.SUNContext_ClearErrHandlers(self._context)  # the one that is there prints
-        SUNContext_PushErrHandler(self._context, self._hear, None)
+        SUNContext_PushErrHandler(self._context, self._error_handler, None)
         self._x, self._absolute = (N_VNew_Serial(max(n, 1), self._context) for _ in range(2))
         self.states = np.ctypeslib.as_array(NV_DATA_S(self._x), (max(n, 1),))
         self._tolerances = np.ctypeslib.as_array(NV_DATA_S(self._absolute), (max(n, 1),))
@@ -94,7 +95,7 @@ class Cvode:
     def close(self) -> None:
         """Free the solver's memory."""
         if self._memory is not None:
-            self.states = self._tolerances = None
+            self.states = self._tolerances = np.empty(0)  # the memory that they show is freed
             lib.CVodeFree(byref(c_void_p(self._memory)))
             self._memory = None
             _free_solver(self._solver)
@@ -124,7 +125,7 @@ class Cvode:
             error, self._error = self._error, None
             raise error
         if flag < 0:
-            raise SolverError(f"CVode: {self._said or f'code {flag}'}")
+            raise SolverError(f"CVode: {self._message.decode(errors='replace') or f'code {flag}'}")
 
-    def _listen(self, line, function, file, message, code, data, context):
-        self._said = (message or b"").decode(errors="replace")
+    def _keep_message(self, line, function, file, message, code, data, context):
+        self._message = message or b""

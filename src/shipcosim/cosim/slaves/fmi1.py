@@ -1,4 +1,4 @@
-"""One running instance of an FMU of FMI 1.0, for co-simulation or for model exchange.
+"""FMUs of FMI 1.0 for co-simulation and for model exchange.
 
 FMI 1.0 has no initialisation mode: an FMU is initialised with its start values, and inputs that are connected get what
 feeds them right after that.
@@ -10,22 +10,25 @@ from collections.abc import Callable, Sequence
 from ctypes import byref, c_char, c_double, c_int, c_size_t
 from functools import partial
 from math import inf
+from typing import Any
 
 import numpy as np
 
-from shipcosim.cosim.slaves.fmi2 import FAILED, FATAL, OK, Slave, SlaveError, references
-from shipcosim.cosim.slaves.model_exchange import CONTINUOUS, EVENT, ModelExchange, Update
+from shipcosim.cosim.slaves.library_slave import LibrarySlave, references
+from shipcosim.cosim.slaves.model_exchange import CONTINUOUS, EVENT, EventUpdate, ModelExchange
+from shipcosim.cosim.slaves.slave import FAILED, FATAL, OK, SlaveError
+from shipcosim.ssp import Variable
 
 TRUE, FALSE = b"\x01", b"\x00"
 
 
-class Slave1(Slave):
+class Slave1(LibrarySlave):
     """An instance of an FMU of FMI 1.0 for co-simulation."""
 
     _prefix = "fmi1"
     _terminate = "TerminateSlave"
 
-    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         if kind == "Long":
             return self._long_setter(variables, buffer)
@@ -37,7 +40,7 @@ class Slave1(Slave):
 
         return set_all
 
-    def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         if kind == "Long":
             return self._long_getter(variables, buffer)
@@ -66,7 +69,7 @@ class Slave1(Slave):
     def reset(self) -> None:
         """Bring the instance back to where it was when it was made."""
         self.call("ResetSlave")
-        self.messages.clear()
+        self._messages.clear()
 
     def terminate(self) -> None:
         """End the simulation."""
@@ -81,7 +84,7 @@ class Slave1(Slave):
         return own, signs, partial(self._function(verb + kind), self.component, *arguments)
 
     @staticmethod
-    def _load(**arguments):
+    def _load(**arguments) -> Any:
         from fmpy.fmi1 import FMU1Slave
 
         slave = FMU1Slave(**arguments)
@@ -142,7 +145,7 @@ class Model1(ModelExchange, Slave1):
         info = self._event_info()
         self.call("EventUpdate", FALSE, byref(info))
         next_event = info.nextEventTime if info.upcomingTimeEvent != FALSE else inf
-        return Update(info.iterationConverged == FALSE, info.terminateSimulation != FALSE, next_event)
+        return EventUpdate(info.iterationConverged == FALSE, info.terminateSimulation != FALSE, next_event)
 
     @staticmethod
     def _event_info():
@@ -151,7 +154,7 @@ class Model1(ModelExchange, Slave1):
         return fmi1EventInfo()
 
     @staticmethod
-    def _load(**arguments):
+    def _load(**arguments) -> Any:
         from fmpy.fmi1 import FMU1Model
 
         return FMU1Model(**arguments)

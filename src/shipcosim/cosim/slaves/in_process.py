@@ -13,10 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-OK, FATAL = 0, 4
+from shipcosim.cosim.slaves.slave import FATAL, OK
+from shipcosim.ssp import Variable
 
 
-def object_of(folder: Path, name: str):
+def python_object_of(folder: Path, name: str):
     """The object behind the instance made last of an unpacked FMU, or None where it has none of our shell's.
 
     The module that an FMU of ours enters by has a name unique to its content, so it does not matter from which folder
@@ -30,22 +31,22 @@ def object_of(folder: Path, name: str):
     return made if ours else None
 
 
-class Direct:
+class DirectCalls:
     """Prepared calls to the object behind an instance, in the form of those to a binary.
 
     Parameters
     ----------
     target : Fmi2Slave of an FMU's own copy of the shell
         The object.
-    tell : callable
+    log : callable
         Takes (status, text) of what it logs.
     """
 
-    def __init__(self, target, tell: Callable[[int, str], None]):
-        self._target, self._tell = target, tell
+    def __init__(self, target, log: Callable[[int, str], None]):
+        self._target, self._log = target, log
 
-    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
-        """See `Slave2.setter`."""
+    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+        """See `Slave.setter`."""
         if kind == "Real":
             return self._reals_setter(_references(variables), buffer)
         method, references = getattr(self._target, f"set_{kind.lower()}"), _references(variables)
@@ -60,8 +61,8 @@ class Direct:
 
         return set_all
 
-    def getter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
-        """See `Slave2.getter`."""
+    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+        """See `Slave.getter`."""
         if kind == "Real":
             return self._reals_getter(_references(variables), buffer)
         method, references = getattr(self._target, f"get_{kind.lower()}"), _references(variables)
@@ -101,7 +102,7 @@ class Direct:
         return get_all
 
     def stepper(self) -> Callable[[float, float], int]:
-        """See `Slave2.stepper`."""
+        """See `Slave.stepper`."""
         target, do_step = self._target, self._target.do_step
 
         def step(time, step_size):
@@ -110,18 +111,18 @@ class Direct:
             except Exception as error:
                 return self._failed(error)
             if target.messages:
-                self._hand_over()
+                self._pass_on_messages()
             return OK
 
         return step
 
-    def _hand_over(self):
+    def _pass_on_messages(self):
         for message in self._target.messages:
-            self._tell(message.status, message.msg.replace("%%", "%"))
+            self._log(message.status, message.msg.replace("%%", "%"))
         self._target.messages.clear()
 
     def _failed(self, error):
-        self._tell(FATAL, str(error))
+        self._log(FATAL, str(error))
         return FATAL
 
 

@@ -1,19 +1,21 @@
 """The FMUs of a system, loaded once and used for any number of runs."""
 
 from contextlib import ExitStack
+from typing import Self
 
-from shipcosim.cosim.slaves.create import slave_of
-from shipcosim.cosim.slaves.fmi2 import Slave, SlaveError
-from shipcosim.cosim.slaves.unpacked import Unpacked
+from shipcosim.cosim.slaves.make import make_slave
+from shipcosim.cosim.slaves.slave import Slave, SlaveError
+from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.ssp import Component
 
 
 class Instances:
-    """Instances of FMUs by component; a ``with`` statement frees them and removes what was unpacked."""
+    """Instances of FMUs by component; leaving a ``with`` statement frees them and removes what was unpacked."""
 
-    def __enter__(self):
-        self._slaves, self._stack = {}, ExitStack()
-        self._unpacked = self._stack.enter_context(Unpacked())
+    def __enter__(self) -> Self:
+        self._slaves: dict[str, LibrarySlave] = {}
+        self._stack = ExitStack()
+        self._unpacked = self._stack.enter_context(UnpackedFmus())
         return self
 
     def __exit__(self, *_):
@@ -21,7 +23,7 @@ class Instances:
             self._free(name)
         self._stack.close()
 
-    def of(self, component: Component) -> Slave:
+    def instance_of(self, component: Component) -> Slave:
         """Instance of a component's FMU in which nothing has been set yet.
 
         From the second time on it is the same one, reset; an FMU that cannot be reset is instantiated anew.
@@ -38,7 +40,7 @@ class Instances:
                 return self._slaves[name]
             except SlaveError:
                 self._free(name)
-        self._slaves[name] = slave_of(component, self._unpacked.folder(fmu.path))
+        self._slaves[name] = make_slave(component, self._unpacked.folder(fmu.path))
         return self._slaves[name]
 
     def _free(self, name):

@@ -7,21 +7,29 @@ over a step of the master. One that has changed is handed over in event mode, si
 Reference: FMI 2.0.4 and FMI 3.0.1, section 3 of each.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from ctypes import POINTER, byref, c_bool, c_double, c_int, c_size_t
 from math import inf
-from typing import NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from shipcosim.cosim.slaves.fmi2 import DISCARD, OK, Slave2, SlaveError
+from shipcosim.cosim.slaves.fmi2 import Slave2
 from shipcosim.cosim.slaves.fmi3 import Slave3
-from shipcosim.ssp import FmuDescription
+from shipcosim.cosim.slaves.library_slave import LibrarySlave
+from shipcosim.cosim.slaves.slave import DISCARD, OK, SlaveError
+from shipcosim.ssp import FmuDescription, Variable
 from shipcosim.ssp.xml.document import is_true
+
+if TYPE_CHECKING:
+    from shipcosim.cosim.slaves.cvode import Cvode
 
 TOLERANCE = 1e-8
 """Relative tolerance of the solver in each of its steps, where the default experiment of the FMU has none."""
-MOST_UPDATES = 1000
+MOST_ITERATIONS = 1000
 MOST_EVENTS = 10_000
 """Largest number of updates in one event, and of events in one step of the master."""
 MOST_STATES = 5000
@@ -31,15 +39,25 @@ CLOSE = 1e-12
 EVENT, CONTINUOUS = "event mode", "continuous-time mode"
 
 
-class Update(NamedTuple):
-    """What an FMU says after an update of its discrete states."""
+class EventUpdate(NamedTuple):
+    """What an FMU says after an update of its discrete states.
 
-    again: bool
-    ends: bool
+    Parameters
+    ----------
+    needs_update : bool
+        Whether the discrete states have to be updated once more.
+    terminates : bool
+        Whether the FMU asks to end the simulation.
+    next_event : float
+        Time of its next event; infinite where it knows none. [s]
+    """
+
+    needs_update: bool
+    terminates: bool
     next_event: float
 
 
-class ModelExchange:
+class ModelExchange(LibrarySlave):
     """What slaves of all versions of FMI share; comes before the version's own slave among the bases.
 
     Parameters
@@ -54,13 +72,15 @@ class ModelExchange:
 
     DERIVATIVES, NOMINALS = "GetDerivatives", "GetNominalsOfContinuousStates"
 
-    def __init__(self, name, folder, fmu: FmuDescription):
+    def __init__(self, name: str, folder: Path, fmu: FmuDescription):
         self._description = fmu
-        self._traits = fmu.interfaces["ModelExchange"]
-        self._mode = self._solver = None
+        self._capabilities = fmu.interfaces["ModelExchange"]
+        self._mode: str | None = None
+        self._solver: Cvode | None = None
+        self._next_event, self._is_event_done = inf, False
         super().__init__(name, folder, fmu.identifier("ModelExchange"), fmu.token)
 
-    def setter(self, kind: str, variables: Sequence, buffer: np.ndarray) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer where they have changed; returns the status."""
         set_all, last = super().setter(kind, variables, buffer), None
 
@@ -71,7 +91,7 @@ class ModelExchange:
                 return OK
             if self._mode == CONTINUOUS:
                 self._enter_event_mode()
-            self._is_settled, last = False, values
+            self._is_event_done, last = False, values
             return set_all()
 
         return set_changed
@@ -82,9 +102,9 @@ class ModelExchange:
 
         def step(time, step_size):
             try:
-                self._advance(time, time + step_size)
+                self._integrate_to(time, time + step_size)
             except SolverError as error:
-                raise SlaveError(f"{self.last_words()} {error} At t = {self._time:.9g} s.".strip()) from None
+                raise SlaveError(f"{self.last_messages()} {error} At t = {self._time:.9g} s.".strip()) from None
             return OK
 
         return step
@@ -99,9 +119,9 @@ class ModelExchange:
             raise SlaveError(f"It has {self._n} continuous states; at most {MOST_STATES} are integrated.")
         tolerance = self._description.experiment.get("tolerance", TOLERANCE)
         self._close_solver()
-        self._solver = Cvode(self._n, self._derivatives, self._n_indicators, self._indicators, tolerance)
-        self._states = self._solver.states.ctypes.data_as(POINTER(c_double))
-        self._settle()
+        self._solver = solver = Cvode(self._n, self._derivatives, self._n_indicators, self._indicators, tolerance)
+        self._states = solver.states.ctypes.data_as(POINTER(c_double))
+        self._iterate_event()
 
     def reset(self) -> None:
         """Bring the instance back to where it was when it was made."""
@@ -119,52 +139,54 @@ class ModelExchange:
             self._solver.close()
             self._solver = None
 
-    def _advance(self, time, end):
+    def _integrate_to(self, time, end):
         """Integrate to a time, through all events on the way."""
         near, n_events = CLOSE * max(abs(end), end - time), 0
         if self._mode == EVENT:
             self._time = time
-            self._go_on()
+            self._enter_continuous_time()
         while True:
             if self._next_event > self._time + near:
                 if self._time >= end - near:
                     return
-                if not self._integrate(min(end, self._next_event), near):
+                if not self._solver_step(min(end, self._next_event), near):
                     continue
             self._enter_event_mode()
-            self._settle()
-            self._go_on()
+            self._iterate_event()
+            self._enter_continuous_time()
             n_events += 1
             if n_events > MOST_EVENTS:
                 raise SlaveError(f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s.")
 
-    def _integrate(self, stop, near):
+    def _solver_step(self, stop, near):
         """Make one step of the solver; whether there is a state or step event where it ends."""
+        assert self._solver is not None  # since the initialisation
         reached, has_root = self._solver.step(stop)
         self._time = stop if abs(reached - stop) <= near else reached
-        self._move(self._time, self._states)
+        self._set_time_and_states(self._time, self._states)
         return self._completed_step() or has_root
 
-    def _settle(self):
-        """Update the discrete states until they no longer change."""
-        for _ in range(MOST_UPDATES):
-            again, ends, self._next_event = self._update_discrete_states()
-            if ends:
+    def _iterate_event(self):
+        """Event iteration: update the discrete states until they no longer change."""
+        for _ in range(MOST_ITERATIONS):
+            needs_update, terminates, self._next_event = self._update_discrete_states()
+            if terminates:
                 raise SlaveError("It asks to end the simulation.")
-            if not again:
-                self._is_settled = True
+            if not needs_update:
+                self._is_event_done = True
                 return
-        raise SlaveError(f"An event does not settle: discrete states still change after {MOST_UPDATES} updates.")
+        raise SlaveError(f"An event does not settle: discrete states still change after {MOST_ITERATIONS} updates.")
 
-    def _go_on(self):
+    def _enter_continuous_time(self):
         """Continue in continuous time, from the states and nominal values that the FMU now has."""
-        if not self._is_settled:
-            self._settle()
+        if not self._is_event_done:
+            self._iterate_event()
         self._leave_event_mode()
         nominals = np.ones(self._n)
         if self._n:
             self.call("GetContinuousStates", self._states, self._n)
             self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
+        assert self._solver is not None  # since the initialisation
         self._solver.start(self._time, nominals)
 
     def _enter_event_mode(self):
@@ -179,20 +201,31 @@ class ModelExchange:
         self.call("ExitInitializationMode")
         self._mode = EVENT
 
+    def _sizes(self) -> tuple[int, int]:
+        """Numbers of continuous states and of event indicators."""
+        raise NotImplementedError
+
+    def _completed_step(self) -> bool:
+        """Tell the FMU that a solver step is done; whether it asks for an event."""
+        raise NotImplementedError
+
+    def _update_discrete_states(self) -> EventUpdate:
+        raise NotImplementedError
+
     def _derivatives(self, time, states, derivatives):
-        self._move(time, states)
-        return self._evaluated(self.DERIVATIVES, derivatives, self._n)
+        self._set_time_and_states(time, states)
+        return self._status_for_solver(self.DERIVATIVES, derivatives, self._n)
 
     def _indicators(self, time, states, values):
-        self._move(time, states)
-        return self._evaluated("GetEventIndicators", values, self._n_indicators)
+        self._set_time_and_states(time, states)
+        return self._status_for_solver("GetEventIndicators", values, self._n_indicators)
 
-    def _move(self, time, states):
+    def _set_time_and_states(self, time, states):
         self.call("SetTime", time)
         if self._n:
             self.call("SetContinuousStates", states, self._n)
 
-    def _evaluated(self, function, values, n):
+    def _status_for_solver(self, function, values, n):
         """Status for the solver: where an FMU discards, a smaller step is tried."""
         from shipcosim.cosim.slaves.cvode import RECOVERABLE
 
@@ -207,7 +240,7 @@ class Model2(ModelExchange, Slave2):
     """An instance of an FMU of FMI 2.0 for model exchange."""
 
     @staticmethod
-    def _load(**arguments):
+    def _load(**arguments) -> Any:
         from fmpy.fmi2 import FMU2Model
 
         return FMU2Model(**arguments)
@@ -216,11 +249,11 @@ class Model2(ModelExchange, Slave2):
         return self._description.n_states, self._description.n_event_indicators
 
     def _completed_step(self):
-        if is_true(self._traits.get("completedIntegratorStepNotNeeded")):
+        if is_true(self._capabilities.get("completedIntegratorStepNotNeeded")):
             return False
-        event, ends = c_int(), c_int()
-        self.call("CompletedIntegratorStep", 1, byref(event), byref(ends))
-        if ends.value:
+        event, terminates = c_int(), c_int()
+        self.call("CompletedIntegratorStep", 1, byref(event), byref(terminates))
+        if terminates.value:
             raise SlaveError("It asks to end the simulation.")
         return event.value != 0
 
@@ -230,7 +263,7 @@ class Model2(ModelExchange, Slave2):
         info = fmi2EventInfo()
         self.call("NewDiscreteStates", byref(info))
         next_event = info.nextEventTime if info.nextEventTimeDefined else inf
-        return Update(info.newDiscreteStatesNeeded != 0, info.terminateSimulation != 0, next_event)
+        return EventUpdate(info.newDiscreteStatesNeeded != 0, info.terminateSimulation != 0, next_event)
 
 
 class Model3(ModelExchange, Slave3):
@@ -239,7 +272,7 @@ class Model3(ModelExchange, Slave3):
     DERIVATIVES = "GetContinuousStateDerivatives"
 
     @staticmethod
-    def _load(**arguments):
+    def _load(**arguments) -> Any:
         from fmpy.fmi3 import FMU3Model
 
         return FMU3Model(**arguments)
@@ -248,18 +281,18 @@ class Model3(ModelExchange, Slave3):
         sizes = c_size_t(), c_size_t()
         for function, size in zip(("GetNumberOfContinuousStates", "GetNumberOfEventIndicators"), sizes, strict=True):
             self.call(function, byref(size))
-        return tuple(size.value for size in sizes)
+        return sizes[0].value, sizes[1].value
 
     def _completed_step(self):
-        if not is_true(self._traits.get("needsCompletedIntegratorStep")):
+        if not is_true(self._capabilities.get("needsCompletedIntegratorStep")):
             return False
-        event, ends = c_bool(), c_bool()
-        self.call("CompletedIntegratorStep", True, byref(event), byref(ends))
-        if ends.value:
+        event, terminates = c_bool(), c_bool()
+        self.call("CompletedIntegratorStep", True, byref(event), byref(terminates))
+        if terminates.value:
             raise SlaveError("It asks to end the simulation.")
         return event.value
 
     def _update_discrete_states(self):
-        again, ends, nominals, values, defined, time = *(c_bool() for _ in range(5)), c_double()
-        self.call("UpdateDiscreteStates", *map(byref, (again, ends, nominals, values, defined, time)))
-        return Update(again.value, ends.value, time.value if defined.value else inf)
+        needed, terminates, nominals, values, defined, time = *(c_bool() for _ in range(5)), c_double()
+        self.call("UpdateDiscreteStates", *map(byref, (needed, terminates, nominals, values, defined, time)))
+        return EventUpdate(needed.value, terminates.value, time.value if defined.value else inf)

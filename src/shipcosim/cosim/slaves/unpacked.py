@@ -1,4 +1,4 @@
-"""FMUs unpacked for a run, and the traces that Python FMUs leave in this process.
+"""FMUs unpacked for a run, and the imports that Python FMUs leave behind in this process.
 
 PythonFMU puts each FMU's resources on the one `sys.path` and imports from there. Without care a second FMU with a
 module of the same name runs the first one's code.
@@ -8,14 +8,15 @@ import os
 import sys
 import tempfile
 from pathlib import Path
+from typing import Self
 
 from shipcosim.ssp import unpack
 
 
-class Unpacked:
+class UnpackedFmus:
     """A folder with FMUs, which a ``with`` statement removes in the end, together with the modules imported from it."""
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         self._temporary = tempfile.TemporaryDirectory(prefix="shipcosim-", ignore_cleanup_errors=True)
         self._root = Path(self._temporary.name).resolve()
         self._folders = {}
@@ -32,11 +33,11 @@ class Unpacked:
         if fmu not in self._folders:
             self._folders[fmu] = self._root / str(len(self._folders))
             unpack(fmu, self._folders[fmu])
-        self._make_room(self._folders[fmu])
+        self._forget_namesakes(self._folders[fmu])
         return self._folders[fmu]
 
-    def _make_room(self, folder):
-        """Forget modules of other FMUs that have the name of one in this FMU; who has imported them keeps them."""
+    def _forget_namesakes(self, folder):
+        """Forget modules of other FMUs that are named like one in this FMU; who has imported them keeps them."""
         own = {path.stem for path in (folder / "resources").glob("*")}
         for name in self._imported(self._root) - self._imported(folder):
             if name.partition(".")[0] in own:

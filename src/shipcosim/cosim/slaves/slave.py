@@ -1,0 +1,95 @@
+"""What the master needs of an FMU's instance, whatever its version of FMI and wherever it runs.
+
+Exchanging values is prepared once: `setter` and `getter` bind value references and a NumPy buffer to the function of
+the FMU's library, and what they return is called in every step. Buffers hold Real as float64, Integer (and
+Enumeration) and Boolean as int32, whatever the FMU's own types are; Long is Integer in 64 bits, for systems with an FMU
+of FMI 3.0 that needs them.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from shipcosim.ssp import Variable
+
+BUFFER_TYPES = {"Integer": np.int32, "Boolean": np.int32, "Long": np.int64, "Real": np.float64}
+"""Kinds of exchanged values, in an order in which each may follow those before it."""
+
+STATUS = ["ok", "warning", "discard", "error", "fatal", "pending"]
+OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
+FAILED = DISCARD
+"""Status from which on a call has not done its work."""
+
+
+class SlaveError(Exception):
+    """A call to an FMU failed. The text is what the FMU said about it."""
+
+
+class Slave:
+    """One instance of an FMU: the interface that the master uses.
+
+    Attributes
+    ----------
+    name : str
+        Name of the component.
+    """
+
+    name: str
+
+    @property
+    def messages(self) -> list[tuple[int, str]]:
+        """What the FMU logged beyond status "ok": (status, text)."""
+        raise NotImplementedError
+
+    def remarks(self) -> list[str]:
+        """Warnings that the FMU logged, with its name before them."""
+        texts = [text for status, text in self.messages if status == WARNING]
+        return [text if text.startswith(self.name) else f"{self.name}: {text}" for text in texts]
+
+    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        raise NotImplementedError
+
+    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        raise NotImplementedError
+
+    def stepper(self) -> Callable[[float, float], int]:
+        """Prepared call that advances from a time by a step size, both in s, and returns the status."""
+        raise NotImplementedError
+
+    def call(self, function: str, *arguments) -> None:
+        """Call a function of the FMU by its name without prefix, e.g. ``"Terminate"``."""
+        raise NotImplementedError
+
+    def check(self, function: str, status: int) -> None:
+        """Raise SlaveError if the status says that the function failed."""
+        raise NotImplementedError
+
+    def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
+        """Values of String variables, or in FMI 3.0 of Binary ones."""
+        raise NotImplementedError
+
+    def set_strings(self, variables: Sequence[Variable], values: Sequence) -> None:
+        """Set String variables, or in FMI 3.0 Binary ones."""
+        raise NotImplementedError
+
+    def enter_initialisation(self, start_time: float, stop_time: float) -> None:
+        """Enter the initialisation mode for a run between two times. [s, s]"""
+        raise NotImplementedError
+
+    def exit_initialisation(self) -> None:
+        """Leave the initialisation mode."""
+        raise NotImplementedError
+
+    def state(self) -> bytes:
+        """FMU state, serialised; `restore` of any instance of this FMU takes it, in another process too."""
+        raise NotImplementedError
+
+    def restore(self, data: bytes) -> None:
+        """Bring the instance into a state from `state`."""
+        raise NotImplementedError
+
+    def terminate(self) -> None:
+        """End the simulation. That an FMU fails to is no matter any more."""
+        raise NotImplementedError
