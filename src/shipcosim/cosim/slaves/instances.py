@@ -3,8 +3,9 @@
 from contextlib import ExitStack
 from typing import Self
 
+from shipcosim.cosim.slaves.library_slave import LibrarySlave
 from shipcosim.cosim.slaves.make import make_slave
-from shipcosim.cosim.slaves.slave import Slave, SlaveError
+from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.ssp import Component
 
@@ -23,7 +24,7 @@ class Instances:
             self._free(name)
         self._stack.close()
 
-    def instance_of(self, component: Component) -> Slave:
+    def instance_of(self, component: Component) -> LibrarySlave:
         """Instance of a component's FMU in which nothing has been set yet.
 
         From the second time on it is the same one, reset; an FMU that cannot be reset is instantiated anew.
