@@ -14,7 +14,7 @@ MAY_IMPORT = {
     "series": {"errors", "units"},
     "fmi": {"models", "errors", "units"},
     "ssp": {"series", "errors", "units"},
-    "scenario": {"series", "ssp", "errors", "units", "angles"},
+    "scenario": {"series", "errors", "units", "angles"},
     "cosim": {"series", "ssp", "scenario", "fmi", "errors", "options", "units"},
     "diagnose": {"errors", "angles", "options", "units", "models", "series", "ssp", "scenario", "cosim"},
     "report": {
@@ -162,3 +162,15 @@ def test_fmus_import_the_shell_the_models_and_angles_only(root):
         for module, _ in imported(file):
             is_ours = module.split(".")[0] == "shipcosim"
             assert not is_ours or module.split(".")[1] in {"fmi", "models", "angles"}, f"{file.name}: {module}"
+
+
+def test_the_page_states_the_same_table(root):
+    page = (root / "docs" / "dataflow.md").read_text(encoding="utf-8")
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in page.splitlines() if line.startswith("| `")
+    ]
+    stated = {name.strip("` "): row[2] for row in rows if len(row) == 4 for name in row[0].split(", ")}
+    assert set(stated) - {"fmus/*"} == set(MAY_IMPORT)
+    for name, imports in MAY_IMPORT.items():
+        if stated[name] != "all of these":
+            assert {room for room in stated[name].split(", ") if room != "-"} == imports, name
