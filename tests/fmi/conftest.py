@@ -192,7 +192,8 @@ def own_shipcosim(tmp_path, monkeypatch):
         copy = tmp_path / version / "shipcosim"
         shutil.copytree(bundle.SHIPCOSIM, copy, ignore=shutil.ignore_patterns("__pycache__"))
         for name, text in models.items():
-            next((copy / "models").rglob(f"{name}.py")).write_text(text)
+            known = (copy / "models").rglob(f"{name}.py")
+            next(known, copy / "models" / f"{name}.py").write_text(text)
         monkeypatch.setattr(bundle, "SHIPCOSIM", copy)
 
     return replace
