@@ -3,7 +3,8 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
-from shipcosim.models.environment.waves import components, drift_table, mean_drift
+from shipcosim.models.environment.wave_loads import drift_table, mean_drift
+from shipcosim.models.environment.waves import components
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.dead_reckoning import predict
 from shipcosim.models.ship.hull import HullParameters

@@ -4,7 +4,9 @@ from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import tidy_time
-from shipcosim.models.environment import waves
+from shipcosim.models.environment.wave_loads import drift_table
+from shipcosim.models.environment.wave_motion import wave_response
+from shipcosim.models.environment.waves import components
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters, at_present, step
@@ -115,13 +117,11 @@ class Vessel(Fmu):
 
     def _meet_waves(self, t):
         ship, hull = self.state, self.hull
-        load, motion = waves.wave_response(
+        load, motion = wave_response(
             t,
             *ship[:5],
-            waves.components(
-                self.wave_height, self.wave_period, self.wave_from, self.wave_peak_enhancement, self.wave_seed
-            ),
-            waves.drift_table(self.drift.drift_table),
+            components(self.wave_height, self.wave_period, self.wave_from, self.wave_peak_enhancement, self.wave_seed),
+            drift_table(self.drift.drift_table),
             length=hull.length,
             breadth=hull.breadth,
             draught=hull.draught,

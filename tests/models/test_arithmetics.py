@@ -20,7 +20,7 @@ from shipcosim.models.control import observer, reference
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.environment import current, gusts, waves
+from shipcosim.models.environment import current, gusts, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning as prediction
@@ -36,7 +36,7 @@ LOSSY = replace(PORT, **LOSSES)
 TUNNEL = thruster.TunnelParameters()
 ERRORS = dict(heading_bias=0.05, lever_x=3.0, lever_y=-1.0, velocity_scale=1.1)
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
-DRIFT = waves.drift_table(vessel.DriftParameters().drift_table)
+DRIFT = wave_loads.drift_table(vessel.DriftParameters().drift_table)
 BOX = dict(length=33.9, breadth=9.6, draught=2.7)
 XS, YS = (-1.0, 0.0, 0.5, 2.0), (3.0, -1.0, 4.0, 4.0)
 EVEN = interpolation.even_table(np.linspace(-1.0, 1.0, 4), np.array(YS), np.array(XS))
@@ -183,10 +183,10 @@ CASES = [
     Case(gusts.gust, [(8.0,), (12.0,)], lambda mean: (7.0, mean, 3)),
     Case(gusts.gust_std, [(8.0,), (12.0,)]),
     Case(waves.elevation, PAIRS, lambda x, y: (7.0, x, y, SEA)),
-    Case(waves.drift, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT)),
-    Case(waves.mean_drift, ANGLES, lambda psi: (psi, SEA, DRIFT)),
-    Case(waves.motion, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA), BOX),
-    Case(waves.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
+    Case(wave_loads.drift, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT)),
+    Case(wave_loads.mean_drift, ANGLES, lambda psi: (psi, SEA, DRIFT)),
+    Case(wave_motion.first_order_motion, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA), BOX),
+    Case(wave_motion.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
     Case(reference.critically_damped, [(2.0, -0.3, 0.01)], lambda *e: (13.0, *e), dict(frequency=0.05)),
     Case(reference.step, LOOP, of_reference, dict(h=0.05, parameters=reference.ReferenceParameters(speed_max=0.3))),
     Case(observer.step, LOOP, of_observer, OBSERVER),
@@ -253,6 +253,7 @@ def test_gradients_are_finite_even_at_rest(case):
 def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
     covered |= {maths.library_of}  # tells the arithmetics apart
+    covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
     missing = [f"{name}.{function.__name__}" for name, function in promising() if function not in covered]
     assert not missing
 

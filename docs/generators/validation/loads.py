@@ -6,7 +6,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from common import MODEL, REFERENCE, THIRD, hull_of, save, table
 
-from shipcosim.models.environment.waves import OMEGA_DRIFT_MAX, components, drift, drift_table, jonswap, mean_drift
+from shipcosim.models.environment.wave_loads import OMEGA_DRIFT_MAX, drift, drift_table, mean_drift
+from shipcosim.models.environment.waves import components, jonswap
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 from shipcosim.models.ship.load_tables import DRIFT_33M9
 from shipcosim.models.ships import parameters

@@ -19,8 +19,9 @@ from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.control.reference import ReferenceParameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
-from shipcosim.models.environment import waves
+from shipcosim.models.environment import wave_loads, waves
 from shipcosim.models.environment import weather as environment
+from shipcosim.models.environment.wave_motion import wave_response
 from shipcosim.models.environment.weather import EnvironmentParameters
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.propulsion import drive, thruster
@@ -99,7 +100,7 @@ class Design(NamedTuple):
     """What is computed once per run."""
 
     sea: waves.Waves
-    drift: waves.DriftTable
+    drift: wave_loads.DriftTable
     observer: observer.Design
     allocation: allocation.Design
 
@@ -127,7 +128,7 @@ def design(system, variations):
     )
     return Design(
         sea,
-        waves.drift_table(system.drift.drift_table),
+        wave_loads.drift_table(system.drift.drift_table),
         observer.design(system.ship, system.observer),
         allocation.design(system.allocation),
     )
@@ -284,11 +285,11 @@ def _show(t, ship, air, current, system, design, sampled=True):
     x, y, psi, u, v, _ = ship
     hull, motion = system.hull, None
     if sampled:
-        drift, motion = waves.wave_response(
+        drift, motion = wave_response(
             t, x, y, psi, u, v, design.sea, design.drift, length=hull.length, breadth=hull.breadth, draught=hull.draught
         )
     else:
-        drift = waves.drift(t, x, y, psi, design.sea, design.drift)
+        drift = wave_loads.drift(t, x, y, psi, design.sea, design.drift)
     return Show(drift, motion, apparent_wind(psi, u, v, *air), vessel.through_water(psi, u, v, *current))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 
-from shipcosim.models.environment import waves
+from shipcosim.models.environment import wave_loads, waves
 from shipcosim.models.environment.earth_fixed_loads import drift_force, earth_force, onset
 from shipcosim.models.ship.load_tables import DRIFT_33M9
 
@@ -62,18 +62,18 @@ def test_no_waves_no_drift():
 def test_drift_law_is_that_of_the_ships_table_in_seas_of_any_direction(period):
     """Waves that travel north; worst over all headings, of the force on the beam: 11, 12 % and 0.36 m."""
     sea = waves.components(0.5, period, pi, 3.3, 1)
-    table = np.array(waves.mean_drift(AROUND, sea, waves.drift_table(DRIFT_33M9)))
-    A = waves.mean_drift(-0.5 * pi, sea, waves.drift_table(DRIFT_33M9))[1]
+    table = np.array(wave_loads.mean_drift(AROUND, sea, wave_loads.drift_table(DRIFT_33M9)))
+    A = wave_loads.mean_drift(-0.5 * pi, sea, wave_loads.drift_table(DRIFT_33M9))[1]
     off = np.abs(np.array(drift_force(AROUND, A, 0.0)) - table).max(axis=1) / A
     assert np.all(off < (0.11, 0.12, 0.36)), off
 
 
 def test_a_fitted_sway_power_of_the_ships_table_is_a_little_less_than_that_of_short_waves():
     """For each peak period, with the factor that goes with it."""
-    table, powers = waves.drift_table(DRIFT_33M9), []
+    table, powers = wave_loads.drift_table(DRIFT_33M9), []
     for period in (4.0, 4.5, 5.0, 5.5, 6.0, 7.0):
         sea = waves.components(0.5, period, pi, 3.3, 1)
-        Y = np.array(waves.mean_drift(AROUND, sea, table))[1] / waves.mean_drift(-0.5 * pi, sea, table)[1]
+        Y = np.array(wave_loads.mean_drift(AROUND, sea, table))[1] / wave_loads.mean_drift(-0.5 * pi, sea, table)[1]
         law = curve_fit(lambda psi, A, p: A * drift_force(psi, 1.0, 0.0, sway_power=p)[1], AROUND, Y, p0=(1.0, 2.0))[0]
         powers.append(law[1])
     assert (min(powers), max(powers)) == pytest.approx((1.67, 1.75), abs=0.01)

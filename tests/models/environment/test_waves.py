@@ -1,4 +1,4 @@
-"""Waves against closed forms, direct sums and integrals."""
+"""Waves, wave loads and wave motion against closed forms, direct sums and integrals."""
 
 from math import pi, radians
 
@@ -6,19 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from shipcosim.models.environment.waves import (
-    COMPONENTS,
-    GRAVITY,
-    Waves,
-    components,
-    drift,
-    drift_table,
-    elevation,
-    jonswap,
-    mean_drift,
-    motion,
-    wave_response,
-)
+from shipcosim.models.environment.wave_loads import drift, drift_table, mean_drift
+from shipcosim.models.environment.wave_motion import first_order_motion, wave_response
+from shipcosim.models.environment.waves import COMPONENTS, GRAVITY, Waves, components, elevation, jonswap
 
 SHIP = dict(length=33.9, breadth=9.6, draught=2.7)
 # X = 1000 cos, Y = 5000 sin, N = 40 000 sin of twice the heading, all growing linearly with frequency; every 10 deg
@@ -156,7 +146,7 @@ def test_a_ship_in_very_long_waves_follows_the_water():
     slope = 1.5 * wave.wavenumber[0] * np.sin(radians(40.0)) * np.cos(radians(40.0))
     for t in (0.0, 20.0, 55.0):
         s, c = np.sin(0.05 * t + 0.8), np.cos(0.05 * t + 0.8)
-        x, y, psi, u, v, r = motion(t, 0.0, 0.0, radians(10.0), wave, **SHIP)
+        x, y, psi, u, v, r = first_order_motion(t, 0.0, 0.0, radians(10.0), wave, **SHIP)
         assert_allclose([x, y], [1.5 * s * np.cos(radians(50.0)), 1.5 * s * np.sin(radians(50.0))], rtol=1e-3)
         assert_allclose([u, v], np.array([np.cos(radians(40.0)), np.sin(radians(40.0))]) * 0.075 * c, rtol=1e-3)
         assert_allclose([psi, r], [-slope * c, 0.05 * slope * s], rtol=1e-3)  # turned as a line of water particles
@@ -171,7 +161,7 @@ def test_first_order_motion_is_the_waters_averaged_over_the_waterplane(degrees):
     c, s = np.cos(radians(degrees)), np.sin(radians(degrees))
     angle = omega * t + phase - k * (ahead * c + aside * s)
     water = a * np.exp(-k * 2.7 / 2.0) * np.sin(angle)
-    x, y, psi, *_ = motion(t, 0.0, 0.0, 0.0, regular(a, omega, radians(degrees), phase), **SHIP)
+    x, y, psi, *_ = first_order_motion(t, 0.0, 0.0, 0.0, regular(a, omega, radians(degrees), phase), **SHIP)
     assert_allclose([x, y], [np.mean(water) * c, np.mean(water) * s], rtol=1e-4, atol=1e-9)
     along_keel = a * np.exp(-k * 2.7 / 2.0) * np.sin(omega * t + phase - k * 33.9 * cells * c) * s
     # at the beam the limit q -> 0 is replaced by a value 1e-6 away
@@ -184,7 +174,7 @@ def test_rates_of_first_order_motion_are_its_derivative_on_a_moving_ship():
 
     def at(t):
         x, y = 3.0 + (c * u - s * v) * t, 5.0 + (s * u + c * v) * t
-        return np.array(motion(t, x, y, psi, sea, u=u, v=v, **SHIP))
+        return np.array(first_order_motion(t, x, y, psi, sea, u=u, v=v, **SHIP))
 
     north, east, psi_dot = ((at(9.0 + h) - at(9.0 - h)) / (2.0 * h))[:3]
     assert_allclose(at(9.0)[3:], [c * north + s * east, -s * north + c * east, psi_dot], rtol=1e-6)
@@ -194,7 +184,7 @@ def test_response_is_drift_and_motion():
     sea = components(0.5, 6.0, 0.3, 3.3, 1)
     loads, motions = wave_response(8.0, 1.0, 2.0, 0.7, 0.4, 0.1, sea, TABLE, **SHIP)
     assert loads == drift(8.0, 1.0, 2.0, 0.7, sea, TABLE)
-    assert motions == motion(8.0, 1.0, 2.0, 0.7, sea, u=0.4, v=0.1, **SHIP)
+    assert motions == first_order_motion(8.0, 1.0, 2.0, 0.7, sea, u=0.4, v=0.1, **SHIP)
 
 
 STATES = np.array([[0.0, 3.0, -8.0], [1.0, -4.0, 20.0], [0.2, 3.0, -3.1], [0.5, 0.0, -0.3], [0.1, 0.0, 0.2]])

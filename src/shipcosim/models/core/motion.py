@@ -22,3 +22,7 @@ class Motion(NamedTuple):
     u: Arithmetic
     v: Arithmetic
     r: Arithmetic
+
+
+Load = tuple[Arithmetic, Arithmetic, Arithmetic]
+"""Load τ = (X, Y, N) on a ship in body axes: force forward, to starboard, and yaw moment. [N, N, N.m]"""

@@ -1,0 +1,158 @@
+"""First-order wave motion of a ship, superposed on the low-frequency motion."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from shipcosim.models.core.maths import Arithmetic, exp, sin, sincos, where
+from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.environment.sinusoids import column, total
+from shipcosim.models.environment.wave_loads import DriftTable, drift_at
+from shipcosim.models.environment.waves import Waves, phase_angle, waves_like
+
+_ALMOST_ZERO = 1e-6
+
+
+def first_order_motion(
+    t: Arithmetic,
+    x: Arithmetic,
+    y: Arithmetic,
+    psi: Arithmetic,
+    waves: Waves,
+    *,
+    length: Arithmetic,
+    breadth: Arithmetic,
+    draught: Arithmetic,
+    u: Arithmetic = 0.0,
+    v: Arithmetic = 0.0,
+) -> Motion:
+    """First-order wave motion of a ship: the water's horizontal motion averaged over waterplane and half the draught.
+
+    With q = k L cos(beta)/2, p = k B sin(beta)/2, A = a exp(-k T/2) sin(q)/q sin(p)/p the ship is displaced along
+    the direction of the waves by sum A sin(theta), and turned by
+
+        psi_wave = -sum a exp(-k T/2) sin(beta) (6/L) (sin q - q cos q)/q^2 cos(theta)
+
+    which is the slope of the straight line that fits the sideways displacement of the water along the length best
+    (least squares). Rates use the frequency of encounter; the yaw rate of the ship is neglected in them.
+
+    Parameters
+    ----------
+    t : float or (m,) array
+        Time. [s]
+    x, y, psi : float or (m,) array or tensor
+        Position and heading of the low-frequency ship. [m, m, rad]
+    waves : Waves
+        The sea. [m, rad/s, rad/m, rad]
+    length, breadth, draught : float or (m,) array
+        Waterline length L and breadth B, draught T. [m]
+    u, v : like x
+        Velocity of the low-frequency ship over ground in body axes. [m/s]
+
+    Returns
+    -------
+    Motion, like x
+        x_wave, y_wave (north, east), psi_wave, and their rates in body axes u_wave, v_wave, r_wave.
+        [m, m, rad, m/s, m/s, rad/s]
+
+    References
+    ----------
+    Assumed, grade D: no motion transfer functions are at hand (nominal model of R/V Gunnerus, waves).
+    """
+    if waves.calm:
+        return Motion(*(x - x,) * 6)
+    waves = waves_like(waves, x, y, psi)
+    s, c = sincos(phase_angle(t, x, y, waves))
+    return _motion(c, s, psi, u, v, waves, length, breadth, draught)
+
+
+def wave_response(
+    t: Arithmetic,
+    x: Arithmetic,
+    y: Arithmetic,
+    psi: Arithmetic,
+    u: Arithmetic,
+    v: Arithmetic,
+    waves: Waves,
+    table: DriftTable,
+    *,
+    length: Arithmetic,
+    breadth: Arithmetic,
+    draught: Arithmetic,
+) -> tuple[Load, Motion]:
+    """Drift load and first-order motion together, from one computation of the phase angles.
+
+    Parameters
+    ----------
+    t : float or (m,) array
+        Time. [s]
+    x, y, psi : float or (m,) array or tensor
+        Position and heading of the (low-frequency) ship. [m, m, rad]
+    u, v : like x
+        Velocity over ground in body axes, from which the frequency of encounter follows. [m/s]
+    waves : Waves
+        The sea. [m, rad/s, rad/m, rad]
+    table : DriftTable
+        Drift coefficients. [N/m2, N/m2, N.m/m2]
+    length, breadth, draught : float or (m,) array
+        Waterline length and breadth, draught. [m]
+
+    Returns
+    -------
+    load : tuple of three, like x
+        Drift load as `wave_loads.drift` gives it. [N, N, N.m]
+    motion : Motion, like x
+        As `first_order_motion` gives it. [m, m, rad, m/s, m/s, rad/s]
+
+    References
+    ----------
+    As `wave_loads.drift` and `first_order_motion`.
+    """
+    if waves.calm:
+        zero = x - x
+        return (zero, zero, zero), Motion(*(zero,) * 6)
+    waves = waves_like(waves, x, y, psi)
+    s, c = sincos(phase_angle(t, x, y, waves))
+    return drift_at(c, s, psi, waves, table), _motion(c, s, psi, u, v, waves, length, breadth, draught)
+
+
+def _motion(c, s, psi, u, v, waves, length, breadth, draught):
+    """`first_order_motion` at known phase angles, of which c and s are cosine and sine."""
+    across, ahead = sincos(waves.direction - psi)
+    some_across, some_ahead = _not_zero(across), _not_zero(ahead)
+    half_length, half_breadth, spread, turned = _hull_in(waves, length, breadth, draught)
+    q = half_length * column(some_ahead)
+    sin_q, cos_q = sincos(q)
+    shift, turn = spread * sin_q * sin(half_breadth * column(some_across)), turned * (sin_q - q * cos_q)
+    encounter = waves.omega - waves.wavenumber * column(u * ahead + v * across)
+    per_shift, per_turn = 1.0 / (some_ahead * some_across), 6.0 / length * across / (some_ahead * some_ahead)
+    along, along_dot = per_shift * total(shift, s), per_shift * total(shift, encounter * c)
+    psi_wave, r_wave = -per_turn * total(turn, c), per_turn * total(turn, encounter * s)
+    east, north = sincos(waves.direction)
+    return Motion(along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave)
+
+
+def _hull_in(waves, length, breadth, draught):
+    """Per component k L/2, k B/2, and a exp(-k T/2) over their product and over the square of k L/2.
+
+    They depend on hull and sea alone, so they are computed once for both.
+    """
+    if isinstance(waves.omega, np.ndarray) and isinstance(length, float):
+        return _cached_hull(waves, length, breadth, draught)
+    return _hull(waves, length, breadth, draught)
+
+
+def _hull(waves, length, breadth, draught):
+    """As `_hull_in`."""
+    k = waves.wavenumber
+    half_length, half_breadth = k * column(0.5 * length), k * column(0.5 * breadth)
+    amplitude = waves.amplitude * exp(k * column(-0.5 * draught))
+    return half_length, half_breadth, amplitude / (half_length * half_breadth), amplitude / half_length**2
+
+
+_cached_hull = lru_cache(maxsize=8)(_hull)
+
+
+def _not_zero(x):
+    """x kept away from 0, where sin(x)/x and its like have limits; small enough for them, large enough to divide by."""
+    return where(abs(x) < _ALMOST_ZERO, _ALMOST_ZERO, x)
