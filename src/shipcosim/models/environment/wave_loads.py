@@ -63,7 +63,7 @@ def drift_table(text: str) -> DriftTable:
 
     References
     ----------
-    Nominal model of R/V Gunnerus, waves: sense of the headings, symmetry, omitted frequencies.
+    Nominal model, waves: sense of the headings, symmetry, omitted frequencies.
     """
     rows = [row for row in parse(text) if row[0] <= OMEGA_DRIFT_MAX]
     loads = {row[:2]: row[2:] for row in rows if len(row) == 5}

@@ -57,7 +57,7 @@ def first_order_motion(
 
     References
     ----------
-    Assumed, grade D: no motion transfer functions are at hand (nominal model of R/V Gunnerus, waves).
+    Assumed, grade D: no motion transfer functions are at hand (nominal model, waves).
     """
     if waves.calm:
         return Motion(*(x - x,) * 6)

@@ -124,7 +124,7 @@ def components(
 
     References
     ----------
-    Nominal model of R/V Gunnerus, waves: equal-energy bins with random frequencies and phases.
+    Nominal model, waves: equal-energy bins with random frequencies and phases.
 
     Examples
     --------
