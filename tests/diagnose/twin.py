@@ -19,7 +19,8 @@ from shipcosim.diagnose.inference.linearisation import STATES
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.search import explain
-from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, ship_model_of, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, ship_model_of
 from shipcosim.models.environment.wind_loads import apparent_wind
 from shipcosim.models.ship import instruments
 from shipcosim.series import make_table
@@ -126,7 +127,7 @@ def sailed(problems, minutes=6.0, seed=0, push=None):
         rates = motion_rates(middle, inputs, ship, extra)
         motion = Motion(*(value + FINE * rate for value, rate in zip(motion, rates, strict=True)))
         motion = motion._replace(u=motion.u + jolts[k, 0], v=motion.v + jolts[k, 1], r=motion.r + jolts[k, 2])
-    seen = np.stack(shown(Motion(*np.moveaxis(np.stack(rows), 1, 0)), ship))[:, :: round(1 / FINE)]
+    seen = np.stack(readings(Motion(*np.moveaxis(np.stack(rows), 1, 0)), ship))[:, :: round(1 / FINE)]
     noise = WHITE[:, None] * random.standard_normal((6, seen.shape[1]))
     table = _table(time, seen + noise[..., None], np.stack(winds), units)
     return {name: table(i) for i, name in enumerate(problems)}

@@ -8,7 +8,8 @@ import torch
 
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.pipeline import find_causes
-from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates
 from shipcosim.diagnose.validation.gain import compare, gain
 from shipcosim.diagnose.validation.predictions import missing
 from shipcosim.diagnose.validation.split import in_rows
@@ -51,7 +52,7 @@ def missed(problem, comparison):
     network = trained(problem, plain, comparison.train)
     last = in_rows(plain.record)[-1]
     found = predicted(plain, comparison.rows, network, last)
-    return missing(shown(found, plain.model), comparison.seen, comparison.rows + last)["position"]
+    return missing(readings(found, plain.model), comparison.seen, comparison.rows + last)["position"]
 
 
 def features(motion, inputs):

@@ -17,7 +17,8 @@ from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Motion, motion_rates, ship_model_of, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Motion, motion_rates, ship_model_of
 from trial.tools import system
 
 SMOOTH = 4.0  # s, standard deviation of the Gaussian that measurements and model are smoothed with
@@ -67,7 +68,7 @@ def problem_of(path):
 def missing_acceleration(problem, values):
     """Measured minus modelled acceleration over `scale`, of the rows where all is known, one axis after the other."""
     model, seen, h = problem.model.with_values(values), problem.motion, problem.record.step
-    motion = Motion(*(2.0 * value - other for value, other in zip(seen, shown(seen, model), strict=True)))
+    motion = Motion(*(2.0 * value - other for value, other in zip(seen, readings(seen, model), strict=True)))
     here = Motion(*(value[:-1] for value in motion))
     modelled = motion_rates(here, problem.record.inputs(model), model)
     known = problem.record.known[:-1]

@@ -21,7 +21,8 @@ from shipcosim.diagnose.inference.innovations import (
 )
 from shipcosim.diagnose.inference.linearisation import STATES, Linear, Regressor, advanced, linearise, rows_first
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Motion, motion_rates, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Motion, motion_rates
 
 NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]), 2.0 * twin.WHITE[3:], 1.1)
 WRONG = {
@@ -130,7 +131,7 @@ def test_the_first_column_is_by_how_much_the_ship_misses_the_motion():
     np.testing.assert_allclose(
         linear.driven[:, :6, 0], rows_first(advanced(start_of_steps(motion), record, model)) - rows_first(ahead)
     )
-    np.testing.assert_allclose(linear.seen[..., 0], record.measured - rows_first(shown(motion, model)))
+    np.testing.assert_allclose(linear.seen[..., 0], record.measured - rows_first(readings(motion, model)))
 
 
 @pytest.mark.parametrize("column", range(6))
@@ -154,7 +155,7 @@ def test_what_an_instrument_shows_is_the_difference_of_what_is_shown(column):
     record, model, motion, linear = about()
     ((path, size),) = COLUMNS[column].items()
     up, down = (
-        rows_first(shown(motion, model.with_values({path: model.get(path) + sign * 0.01 * size})))
+        rows_first(readings(motion, model.with_values({path: model.get(path) + sign * 0.01 * size})))
         for sign in (1.0, -1.0)
     )
     close(linear.seen[..., 1 + column], (up - down) / 0.02, positions=0.01, velocities=0.01)
@@ -164,7 +165,9 @@ def test_what_an_instrument_shows_is_the_difference_of_what_is_shown(column):
 @pytest.mark.parametrize("state", Motion._fields)
 def test_output_is_the_derivative_of_what_is_shown_and_of_slow_errors(state):
     record, model, motion, linear = about()
-    up, down = (rows_first(shown(motion._replace(**{state: getattr(motion, state) + s}), model)) for s in (1e-5, -1e-5))
+    up, down = (
+        rows_first(readings(motion._replace(**{state: getattr(motion, state) + s}), model)) for s in (1e-5, -1e-5)
+    )
     i = Motion._fields.index(state)
     np.testing.assert_allclose(linear.output[..., i], (up - down) / 2e-5, atol=2e-3)
     np.testing.assert_array_equal(linear.output[:, :3, 9:12], np.broadcast_to(np.eye(3), (motion.x.size, 3, 3)))
@@ -174,7 +177,7 @@ def test_output_is_the_derivative_of_what_is_shown_and_of_slow_errors(state):
 def test_waves_move_the_ship_in_her_own_axes():
     """A place 1 m ahead is seen along the heading; their velocity as it is."""
     _, model, motion, linear = about()
-    psi = np.asarray(shown(motion, model).psi)
+    psi = np.asarray(readings(motion, model).psi)
     np.testing.assert_allclose(linear.output[:, :3, 12], np.stack([np.cos(psi), np.sin(psi), 0.0 * psi], axis=-1))
     np.testing.assert_allclose(linear.output[:, :3, 13], np.stack([-np.sin(psi), np.cos(psi), 0.0 * psi], axis=-1))
     np.testing.assert_array_equal(linear.output[:, 3:, 15:], np.broadcast_to(np.eye(3), (psi.size, 3, 3)))

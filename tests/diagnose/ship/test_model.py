@@ -8,7 +8,8 @@ import pytest
 from diagnose import twin
 
 from shipcosim.cosim import RunOptions, simulate
-from shipcosim.diagnose.ship.model import Inputs, Motion, current_at, loads, motion_rates, ship_model_of, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Inputs, Motion, current_at, loads, motion_rates, ship_model_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.propulsion.thruster import AzimuthParameters
@@ -172,7 +173,7 @@ def test_a_vane_turned_to_starboard_makes_the_ship_feel_the_wind_further_to_port
 def test_a_heading_measured_too_large_turns_the_velocity_to_port():
     """3 deg too much, 1 m/s ahead to the east: logged heading 93 deg, velocity over ground still east."""
     model = twin.model().with_values({"instruments.heading_bias": radians(3.0)})
-    seen = shown(Motion(0.0, 0.0, pi / 2, 1.0, 0.0, 0.0), model)
+    seen = readings(Motion(0.0, 0.0, pi / 2, 1.0, 0.0, 0.0), model)
     assert degrees(seen.psi) == pytest.approx(93.0)
     assert (seen.u, seen.v) == pytest.approx((cos(radians(3.0)), -sin(radians(3.0))))
     over_ground = seen.u * np.exp(1j * seen.psi) + seen.v * 1j * np.exp(1j * seen.psi)
@@ -186,15 +187,17 @@ def test_position_and_velocity_are_both_of_the_antenna():
     psi = 0.5 + 0.3 * np.sin(0.1 * t)
     r = 0.03 * np.cos(0.1 * t)
     ship = Motion(0.8 * t, 0.2 * t, psi, *to_body(psi, 0.8, 0.2), r)
-    seen = shown(ship, model)
+    seen = readings(ship, model)
     rate = np.gradient(seen.x + 1j * seen.y, t)[1:-1]
     np.testing.assert_allclose(rate, ((seen.u + 1j * seen.v) * np.exp(1j * seen.psi))[1:-1], atol=1e-7)
-    ahead = shown(Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), model)
+    ahead = readings(Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), model)
     assert (ahead.x, ahead.y) == (5.0, -2.0)  # heading north: forward is north, to starboard is east
 
 
 def test_velocity_is_logged_over_true():
-    seen = shown(Motion(0.0, 0.0, 0.3, 2.0, -1.0, 0.1), twin.model().with_values({"instruments.velocity_scale": 1.1}))
+    seen = readings(
+        Motion(0.0, 0.0, 0.3, 2.0, -1.0, 0.1), twin.model().with_values({"instruments.velocity_scale": 1.1})
+    )
     assert (seen.u, seen.v, seen.r) == pytest.approx((2.2, -1.1, 0.1))
 
 

@@ -12,7 +12,8 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem, probes
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import beside, linearise, rows_first
 from shipcosim.diagnose.result import ExperimentDesign
-from shipcosim.diagnose.ship.model import Motion, current_at, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Motion, with_steady_current
 from shipcosim.diagnose.ship.track_keeping import Dp, sailed
 
 CLEAR = 10.0
@@ -101,7 +102,7 @@ def separations(problem, fits, manoeuvres):
     ends = [rows_of(one, records[0].step) for one in manoeuvres]
     found = {pair: np.full(len(manoeuvres), np.inf) for pair in combinations(range(len(fits)), 2)}
     for a, (motion, record) in enumerate(zip(motions, records, strict=True)):
-        record = replace(record, measured=_shown(motion, models[a]))
+        record = replace(record, measured=_readings(motion, models[a]))
         right = linearise(motion, record, models[a], [])
         tolerated = linearise(motion, record, _in_true_wind(problem.model), known)
         for b in range(len(fits)):
@@ -114,8 +115,8 @@ def separations(problem, fits, manoeuvres):
     return found
 
 
-def _shown(motion, model):
-    return np.moveaxis(rows_first(shown(motion, model)), 0, -2)
+def _readings(motion, model):
+    return np.moveaxis(rows_first(readings(motion, model)), 0, -2)
 
 
 def _in_true_wind(model):
@@ -206,7 +207,7 @@ def _sailings(problem, models, manoeuvres):
 
 def _abreast(models, time, many):
     """One ship model with the numbers of several as arrays, each repeated: ships that sail side by side."""
-    models = [_with_steady_current(model, time) for model in models]
+    models = [with_steady_current(model, time) for model in models]
     values = {}
     for name, part in models[0].parts.items():
         place = models[0].vessel if name in ("hull", "wind") else name
@@ -215,14 +216,6 @@ def _abreast(models, time, many):
             if len(set(each)) > 1:
                 values[f"{place}.{item.name}"] = np.repeat(each, many)
     return models[0].with_values(values)
-
-
-def _with_steady_current(model, time):
-    """The ship in the current of a time, as one that does not vary."""
-    north, east = (float(value) for value in current_at(np.array(time), model))
-    zero = {item.name: 0.0 for item in fields(model.parts["water"]) if item.name.endswith(("_start", "_end"))}
-    zero |= {"trend_north": 0.0, "trend_east": 0.0, "current_north": north, "current_east": east}
-    return model.with_values({f"water.{name}": value for name, value in zero.items()})
 
 
 def _through(motion, track, manoeuvres, dp):
@@ -260,7 +253,7 @@ def testability(model, hypotheses, noise, manoeuvres, wind=None):
     dp = Dp(model, step_for(model))
     track, record, held = planned(manoeuvres, dp, (0.0, 0.0, 0.0, 0.0), wind)
     motion, units = sailed(model, len(manoeuvres), track, record, dp, held=held)
-    record = replace(record, units=units, measured=_shown(motion, model))
+    record = replace(record, units=units, measured=_readings(motion, model))
     known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).known(())
     groups = [(hypothesis, group) for hypothesis in hypotheses for group in probes(hypothesis)]
     columns = known + [column for _, group in groups for column in group]

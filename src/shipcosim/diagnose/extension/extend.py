@@ -171,7 +171,7 @@ def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: M
         return False
     if rule.by == "force":
         add_force(draft, finding, rule, own)
-    elif rule.by == "current":
+    elif rule.by == "steady current":
         steady = _vector(own, "north", "east")
         add_current(draft, finding, *(((None, None), steady) if finding.onset is not None else (steady, None)))
     else:

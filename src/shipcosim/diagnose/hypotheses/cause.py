@@ -69,11 +69,11 @@ class ExtensionRule(_Strict):
 
     Attributes
     ----------
-    by : "parameters", "force", "current", "varying current", "instruments" or "log"
+    by : "parameters", "force", "steady current", "varying current", "instruments" or "log"
         ``"parameters"``: of the components that the numbers name. ``"force"``: the FMU `insert`, whose loads are
-        added to those on the ship. ``"current"``, ``"varying current"``: the velocity of the water, steady or by its
-        values at the log's first and last row. ``"instruments"``: errors of instruments between the ship and the
-        log. ``"log"``: not at all, since the log is to be corrected.
+        added to those on the ship. ``"steady current"``, ``"varying current"``: the velocity of the water, as one
+        value or by those at the log's first and last row. ``"instruments"``: errors of instruments between the ship
+        and the log. ``"log"``: not at all, since the log is to be corrected.
     parameters : dict of str to str
         By number of the ship: the parameter that takes it, of the inserted FMU or of the instruments, or the
         component of the current (``north``, ``east``, ``north_start``, ...).
@@ -93,7 +93,7 @@ class ExtensionRule(_Strict):
         Parameters of a thruster that say where its neighbour is, forward and to starboard.
     """
 
-    by: Literal["parameters", "force", "current", "varying current", "instruments", "log"] = "parameters"
+    by: Literal["parameters", "force", "steady current", "varying current", "instruments", "log"] = "parameters"
     parameters: dict[str, str] = {}
     insert: str = ""
     inputs: dict[str, str] = {}

@@ -9,7 +9,7 @@ from shipcosim.diagnose.inference.evidence import evidence, gram
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import Regressor, beside, linearise
 from shipcosim.diagnose.inference.noise import explained
-from shipcosim.diagnose.ship.environment import NONLINEAR
+from shipcosim.diagnose.ship.instruments import NONLINEAR
 
 DIRECTIONS = 12
 ROUNDS = 5

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.diagnose.ship.model import Motion, loads, motion_rates, rates_apart, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Motion, loads, motion_rates, rates_apart
 from shipcosim.models.core.integrate import rk4
 
 __all__ = [
@@ -161,7 +162,7 @@ def linearise(motion, record, model, regressors: Sequence[Regressor]) -> Linear:
     lead = record.measured.shape[:-2]
     n, p = record.time.size, len(regressors)
     start = Motion(*(value[..., :-1] for value in motion))
-    base, seen = advanced(start, record, model), shown(motion, model)
+    base, seen = advanced(start, record, model), readings(motion, model)
     driven, out = np.empty((n - 1, *lead, 6, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
     driven[..., 0] = rows_first(base) - rows_first(Motion(*(value[..., 1:] for value in motion)))
     missed = np.moveaxis(record.measured, -2, 0) - rows_first(seen)
@@ -185,7 +186,7 @@ def linearise(motion, record, model, regressors: Sequence[Regressor]) -> Linear:
             for slope, apart in zip(slopes[j], rates_apart(down, up, middle, inputs, like), strict=True):
                 slope[...] = apart
         else:
-            out[..., 1 + j] = rows_first(_apart(shown(motion, up), shown(motion, down))) / (2.0 * shares[j])
+            out[..., 1 + j] = rows_first(_apart(readings(motion, up), readings(motion, down))) / (2.0 * shares[j])
     driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
     driven[~record.known[:-1]] = 0.0
     out *= whole[..., None]
@@ -246,7 +247,7 @@ def _output(motion, seen, model):
     H[..., 0, 0] = H[..., 1, 1] = 1.0
     for name, small in _SMALL.items():
         i = Motion._fields.index(name)
-        other = shown(motion._replace(**{name: getattr(motion, name) + small}), model)
+        other = readings(motion._replace(**{name: getattr(motion, name) + small}), model)
         H[..., i] = (rows_first(other) - rows) / small
     H[..., range(3), range(9, 12)] = 1.0
     c, s = np.cos(rows[..., 2]), np.sin(rows[..., 2])

@@ -20,7 +20,8 @@ from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.thresholds import LOST_TRACK
 from shipcosim.diagnose.ship.inputs import Record, first_motion
-from shipcosim.diagnose.ship.model import Motion, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Motion
 from shipcosim.diagnose.ship.track_keeping import Dp, sailed
 
 if TYPE_CHECKING:
@@ -115,7 +116,7 @@ def _drawn(model, count, rng):
 def _logged(motion, units, model, problem, rng):
     """The log of the ships' motion, with the noise of the log: white, of waves, and slow in position and heading."""
     record, (count, n) = problem.record, motion.x.shape
-    measured = np.stack([value.T for value in shown(motion, problem.model)], axis=-1)  # (n, m, 6)
+    measured = np.stack([value.T for value in readings(motion, problem.model)], axis=-1)  # (n, m, 6)
     measured += rng.standard_normal(measured.shape) * np.asarray(problem.noise.white)
     measured += _shown_waves(waves_of(problem.noise, record.step, (n, count), rng), motion.psi.T)
     keep = np.exp(-record.step / SLOW_TIME)

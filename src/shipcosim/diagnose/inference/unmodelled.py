@@ -22,7 +22,7 @@ from shipcosim.diagnose.inference.thresholds import (
     UNMODELLED,
 )
 from shipcosim.diagnose.ship.environment import hat_functions
-from shipcosim.diagnose.ship.model import shown
+from shipcosim.diagnose.ship.instruments import readings
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
@@ -143,7 +143,7 @@ def _each_axis(shapes):
 
 def _channels(problem, fit):
     """What a channel shows too much: (n, 6, p), as many columns for each channel in turn."""
-    time, motion = problem.record.time, np.stack(shown(fit.motion, fit.model), axis=-1)
+    time, motion = problem.record.time, np.stack(readings(fit.motion, fit.model), axis=-1)
     share = (time - time[0]) / (time[-1] - time[0])
     found = np.zeros((time.size, 6, 6, 3))
     for i, size in enumerate(CHANNEL_SIZES):

@@ -7,10 +7,8 @@ import numpy as np
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.hull import HullParameters
 
-__all__ = ["NONLINEAR", "Instruments", "Water", "hat_functions", "share_of", "swell_of", "water_of"]
+__all__ = ["Water", "hat_functions", "share_of", "swell_of", "water_of"]
 
-NONLINEAR = frozenset({"instruments.wind_lag"})
-"""Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them anew."""
 _NEUTRAL = "neutral"
 _SWELLS = 8
 _STERN = -17.0  # m, of the lengthened Gunnerus
@@ -61,21 +59,6 @@ class Water:
     tow_north: float = quantity(0.0, "N", "pull of a line towards north", _NEUTRAL)
     tow_east: float = quantity(0.0, "N", "pull of a line towards east", _NEUTRAL)
     tow_x: float = quantity(_STERN, "m", "where the line is made fast", "the stern")
-
-
-@dataclass(frozen=True)
-class Instruments:
-    """What is between the ship and her log."""
-
-    heading_bias: float = quantity(0.0, "rad", "measured heading minus the true one", _NEUTRAL)
-    lever_x: float = quantity(0.0, "m", "antenna forward of the origin", _NEUTRAL)
-    lever_y: float = quantity(0.0, "m", "antenna to starboard of the origin", _NEUTRAL)
-    velocity_scale: float = quantity(1.0, "1", "logged over true velocity", _NEUTRAL)
-    navigation_lag: float = quantity(0.0, "s", "by how much the navigation's channels are late", _NEUTRAL)
-    thruster_lag: float = quantity(0.0, "s", "by how much the thrusters' channels are late", _NEUTRAL)
-    wind_lag: float = quantity(
-        1.25, "s", "half the time over which the wind sensor averages", "2 to 3 s", tolerance=0.3
-    )
 
 
 def water_of(length: float) -> Water:

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.angles import wrap
-from shipcosim.diagnose.ship.environment import Instruments, Water, share_of, swell_of, water_of
+from shipcosim.diagnose.ship.environment import share_of, swell_of, water_of
+from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.third_party_fmu import drives_of, part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed, thruster_loads
 from shipcosim.diagnose.ship.tolerances import tolerances_of
@@ -25,22 +26,19 @@ from shipcosim.models.environment.current import varying_current
 from shipcosim.models.environment.earth_fixed_loads import drift_force, earth_force
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
-from shipcosim.models.ship import instruments
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
 
 __all__ = [
     "Inputs",
-    "Instruments",
     "Motion",
     "ShipModel",
-    "Water",
     "current_at",
     "loads",
     "motion_rates",
     "ship_model_of",
     "rates_apart",
-    "shown",
+    "with_steady_current",
 ]
 
 _OURS = (AzimuthParameters, TunnelParameters)
@@ -238,6 +236,13 @@ def current_at(time, model):
     return north, east
 
 
+def with_steady_current(model: ShipModel, time: float) -> ShipModel:
+    """The ship in the current of a time [s], as one that does not vary."""
+    north, east = (float(value) for value in current_at(np.array(time), model))
+    steady = dict.fromkeys(_CURRENT, 0.0) | {"current_north": north, "current_east": east}
+    return model.with_values({f"water.{name}": value for name, value in steady.items()})
+
+
 def _current_along(psi, time, model):
     """Velocity of the water in the ship's axes. [m/s]"""
     if not any(acts(getattr(model.parts["water"], name)) for name in _CURRENT):
@@ -366,23 +371,3 @@ def rates_apart(one, other, motion, inputs, like):
     X, Y, N = (sum(a[axis] - b[axis] for a, b in pairs) for axis in range(3))
     i11, i22, i26, i62, i66 = hull.inverse_mass
     return i11 * X, i22 * Y + i26 * N, i62 * Y + i66 * N
-
-
-def shown(motion, model):
-    """What the instruments show of a motion, without noise, heading not wrapped.
-
-    Position and velocity are the antenna's; surge and sway are its velocity over ground resolved with the measured
-    heading.
-
-    Parameters
-    ----------
-    motion : Motion
-    model : ShipModel
-
-    Returns
-    -------
-    Motion
-    """
-    i = model.parts["instruments"]
-    errors = {name: getattr(i, name) for name in ("heading_bias", "lever_x", "lever_y", "velocity_scale")}
-    return Motion(*instruments.shown(*motion, **errors))._replace(psi=motion.psi + i.heading_bias)

@@ -6,7 +6,8 @@ from math import ceil
 import numpy as np
 
 from shipcosim.cosim import replay
-from shipcosim.diagnose.ship.model import Motion, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Motion
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
 from shipcosim.diagnose.validation.predictions import missing, predicted
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
@@ -86,7 +87,7 @@ def in_array_form(predictor, rows):
     """What a model predicts the log to show after the horizons, (horizons, s) arrays."""
     motion = Motion(*(value[rows] for value in predictor.motion))
     found = predicted(motion, rows, predictor.record, predictor.model, in_rows(predictor.record))
-    return shown(found, predictor.model)
+    return readings(found, predictor.model)
 
 
 def replayed(one, predictor, rows, *, step_size=STEP, progress=None):
@@ -134,7 +135,7 @@ def replayed(one, predictor, rows, *, step_size=STEP, progress=None):
     time, channels = found["time"].values, [found[name].values for name in signals]
     channels[2] = np.unwrap(channels[2], axis=1)
     motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
-    return motion if one.signals else shown(motion, predictor.model)
+    return motion if one.signals else readings(motion, predictor.model)
 
 
 _STATE = ("x", "y", "psi", "u", "v", "r")

@@ -8,7 +8,8 @@ import xarray
 
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.linearisation import linearise
-from shipcosim.diagnose.ship.model import Motion, shown
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.model import Motion
 from shipcosim.diagnose.validation.predictions import (
     earth_fixed,
     missing,
@@ -182,7 +183,7 @@ class _Model:
         earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
         horizons = in_rows(self.record)
         found = predicted(motion, rows, self.record, self.model, horizons, force, earth=earth, fades=fades)
-        return missing(shown(found, self.model), seen, (rows + np.array(horizons)[:, None])[:, None, None])
+        return missing(readings(found, self.model), seen, (rows + np.array(horizons)[:, None])[:, None, None])
 
 
 def _observed(problem, about_fit, motion, seen, ship_models):

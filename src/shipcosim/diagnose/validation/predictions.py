@@ -7,11 +7,10 @@ import numpy as np
 
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
-from shipcosim.diagnose.ship.model import Motion, shown
+from shipcosim.diagnose.ship.instruments import LAGS, readings, true_motion
+from shipcosim.diagnose.ship.model import Motion
 from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.ship.instruments import motion_of
 
-_LAGS = ("instruments.navigation_lag", "instruments.thruster_lag", "instruments.wind_lag")
 _FASTEST, _FASTEST_TURN = 20.0, 0.5  # m/s, rad/s
 _FORCE = slice(6, 9)
 _FREE = 3.0  # times the jolts, and seconds in which the force changes: the model moves the reference by some 2 cm then
@@ -64,15 +63,8 @@ def replayable(record, model, seen):
     if record.wind is not None:
         wind = _one_more(inputs.wind_speed), _one_more(inputs.wind_from)
         wind = wind if model.wind_is_true else _true_wind(*wind, true_motion(seen, model))
-    model = replace(model.with_values(dict.fromkeys(_LAGS, 0.0)), wind_is_true=wind is not None)
+    model = replace(model.with_values(dict.fromkeys(LAGS, 0.0)), wind_is_true=wind is not None)
     return replace(record, units=units, wind=wind), model
-
-
-def true_motion(seen, model):
-    """The motion of which a ship model's instruments show this; headings unwrapped as they were."""
-    i = model.parts["instruments"]
-    errors = {name: getattr(i, name) for name in ("heading_bias", "lever_x", "lever_y", "velocity_scale")}
-    return Motion(*motion_of(*seen, **errors))._replace(psi=seen.psi - i.heading_bias)
 
 
 def _one_more(series):
@@ -117,7 +109,7 @@ def restarted(linear, motion, record, model):
     driven = np.zeros((*linear.driven.shape[:-1], 1))
     driven[:, :6, 0] = rows_first(ahead) - rows_first(Motion(*(value[1:] for value in motion)))
     driven *= record.known[:-1, None, None]
-    seen = np.where(linear.whole, record.measured - rows_first(shown(motion, model)), 0.0)
+    seen = np.where(linear.whole, record.measured - rows_first(readings(motion, model)), 0.0)
     return linear._replace(driven=driven, seen=seen[..., None])
 
 
@@ -140,7 +132,7 @@ def reference(linear, motion, noise, record, model):
         (n,) arrays.
     """
     jolt = _FREE * noise.jolt
-    return shown(innovations(linear, replace(noise, jolt=jolt, walk=jolt / _FREE), record, motion).motion, model)
+    return readings(innovations(linear, replace(noise, jolt=jolt, walk=jolt / _FREE), record, motion).motion, model)
 
 
 def stacked(problems):

@@ -1,0 +1,74 @@
+"""What is between the ship and her log: errors and lags of her instruments, neutral unless a cause acts."""
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.parameters import quantity
+from shipcosim.models.ship import instruments
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["LAGS", "NONLINEAR", "Instruments", "readings", "true_motion"]
+
+
+@dataclass(frozen=True)
+class Instruments:
+    """Errors of the instruments and lags of the log's channels."""
+
+    heading_bias: float = quantity(0.0, "rad", "measured heading minus the true one", "neutral")
+    lever_x: float = quantity(0.0, "m", "antenna forward of the origin", "neutral")
+    lever_y: float = quantity(0.0, "m", "antenna to starboard of the origin", "neutral")
+    velocity_scale: float = quantity(1.0, "1", "logged over true velocity", "neutral")
+    navigation_lag: float = quantity(0.0, "s", "by how much the navigation's channels are late", "neutral")
+    thruster_lag: float = quantity(0.0, "s", "by how much the thrusters' channels are late", "neutral")
+    wind_lag: float = quantity(
+        1.25, "s", "half the time over which the wind sensor averages", "2 to 3 s", tolerance=0.3
+    )
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """All but the lags."""
+        return {item.name: getattr(self, item.name) for item in fields(self) if not item.name.endswith("_lag")}
+
+
+LAGS = tuple(f"instruments.{item.name}" for item in fields(Instruments) if item.name.endswith("_lag"))
+"""By how much channels are late: paths of these numbers."""
+NONLINEAR = frozenset({"instruments.wind_lag"})
+"""Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them anew."""
+
+
+def readings(motion: Motion, model: "ShipModel") -> Motion:
+    """What the instruments show of a motion, without noise and lag, heading not wrapped.
+
+    Position and velocity are the antenna's; surge and sway are its velocity over ground resolved with the measured
+    heading.
+
+    Parameters
+    ----------
+    motion : Motion
+    model : ShipModel
+
+    Returns
+    -------
+    Motion
+    """
+    own = model.parts["instruments"]
+    return Motion(*instruments.shown(*motion, **own.errors))._replace(psi=motion.psi + own.heading_bias)
+
+
+def true_motion(seen: Motion, model: "ShipModel") -> Motion:
+    """The motion of which the instruments show this; headings unwrapped as they were.
+
+    Parameters
+    ----------
+    seen : Motion
+    model : ShipModel
+
+    Returns
+    -------
+    Motion
+    """
+    own = model.parts["instruments"]
+    return Motion(*instruments.motion_of(*seen, **own.errors))._replace(psi=seen.psi - own.heading_bias)
