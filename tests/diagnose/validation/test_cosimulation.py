@@ -145,7 +145,7 @@ def test_parameters_by_a_set_of_values_do_as_an_extension(ship_model, log, syste
 
 def test_wind_over_ground_meets_the_moving_ship_as_logged(ship_model, log):
     model = predictor(log, ship_model)
-    inputs = model.record.inputs(model.ship_model)
+    inputs = model.record.inputs(model.model)
     north, east = (-inputs.wind_speed * part(inputs.wind_from) for part in (np.cos, np.sin))
     ship = Motion(*(value[:-1] for value in model.motion))
     speed, direction = apparent_wind(ship.psi, ship.u, ship.v, north, east)
