@@ -5,9 +5,15 @@ cause that is present has θ ~ N(0, 1) in units of its typical size (slab). So s
 cause.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.innovations import Innovations
 
 __all__ = ["Gram", "evidence", "gram"]
 
@@ -29,12 +35,12 @@ class Gram:
     log_determinant: np.ndarray
 
     @property
-    def free(self):
+    def free(self) -> np.ndarray:
         """Log-likelihood of the log without any parameter, up to a constant."""
         return -0.5 * (self.products[..., 0, 0] + self.log_determinant)
 
 
-def gram(found, parts=8):
+def gram(found: Innovations, parts: int = 8) -> Gram:
     """Inner products of innovations.
 
     Parameters
@@ -57,7 +63,9 @@ def gram(found, parts=8):
     return Gram(blocks.sum(0), blocks, found.log_determinant.sum(0))
 
 
-def evidence(products, prior, centre=None):
+def evidence(
+    products: np.ndarray, prior: np.ndarray, centre: np.ndarray | None = None
+) -> tuple[float, np.ndarray, np.ndarray]:
     """Log-evidence of a prior over that of θ = 0, and the posterior.
 
     Parameters

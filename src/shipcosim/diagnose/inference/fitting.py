@@ -1,7 +1,10 @@
 """Which causes explain a log: how a set of them is fitted, and what each further one would gain beside it."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +13,18 @@ from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import Regressor, beside, linearise
 from shipcosim.diagnose.inference.noise import explained
 from shipcosim.diagnose.ship.instruments import NONLINEAR
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
+    from shipcosim.diagnose.inference.evidence import Gram
+    from shipcosim.diagnose.inference.innovations import Noise
+    from shipcosim.diagnose.inference.linearisation import Linear
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.models.core.motion import Motion
+
+Gain = tuple[float, "Hypothesis", dict[str, float]]
+"""Gain in log-evidence of a hypothesis, and first values of its parameters."""
 
 DIRECTIONS = 12
 ROUNDS = 5
@@ -32,30 +47,38 @@ class IdentificationProblem:
     base : Linear, optional
         About the ship without a cause, with the columns of `basis`.
     known_of : tuple of Hypothesis, optional
-        Suspects whose numbers are known within a tolerance, where those are more than `hypotheses`.
+        Hypotheses whose numbers are known within a tolerance, where those are more than `hypotheses`.
     """
 
-    record: Any
-    model: Any
-    hypotheses: tuple
-    noise: Any
-    motion: Any
-    base: Any = None
-    known_of: tuple = ()
+    record: Record
+    model: ShipModel
+    hypotheses: tuple[Hypothesis, ...]
+    noise: Noise
+    motion: Motion
+    base: Linear | None = None
+    known_of: tuple[Hypothesis, ...] = ()
 
     @property
-    def basis(self):
+    def basis(self) -> list[Regressor]:
         """All known numbers, and what every hypothesis is first sought by."""
         return self.known(()) + [column for s in self.hypotheses for group in probes(s) for column in group]
 
-    def base_of(self, columns):
+    @property
+    def linear(self) -> Linear:
+        """The linear problem about the ship without a cause; only `prepared` problems have it."""
+        if self.base is None:
+            raise ValueError("the problem is not prepared")
+        return self.base
+
+    def base_of(self, columns: Iterable[Regressor]) -> Linear:
         """The problem about the ship without a cause, with these columns of the basis."""
         places = {_key(column): i for i, column in enumerate(self.basis, start=1)}
         wanted = [0, *(places[_key(column)] for column in columns)]
-        return self.base._replace(driven=self.base.driven[..., wanted], seen=self.base.seen[..., wanted])
+        linear = self.linear
+        return linear._replace(driven=linear.driven[..., wanted], seen=linear.seen[..., wanted])
 
-    def known(self, hypotheses):
-        """Columns of the numbers that are known within a tolerance, except those that these hypotheses turn."""
+    def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
+        """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
         taken = {path for hypothesis in hypotheses for parameter in hypothesis.parameters for path in parameter.paths}
         taken |= {path for hypothesis in hypotheses for path in hypothesis.effect.replaces}
         everyone = self.known_of or self.hypotheses
@@ -92,31 +115,31 @@ class Fit:
     motion : Motion
     """
 
-    hypotheses: tuple
-    values: dict
-    std: dict
+    hypotheses: tuple[Hypothesis, ...]
+    values: dict[str, float]
+    std: dict[str, float]
     score: float
-    columns: list
-    linear: Any
-    products: Any
-    theta: Any
-    covariance: Any
-    centre: Any
-    model: Any
-    motion: Any
+    columns: list[Regressor]
+    linear: Linear
+    products: Gram
+    theta: np.ndarray
+    covariance: np.ndarray
+    centre: np.ndarray
+    model: ShipModel
+    motion: Motion
 
     @property
-    def label(self):
+    def label(self) -> str:
         return " + ".join(hypothesis.label for hypothesis in self.hypotheses) or "nothing"
 
     @property
-    def left(self):
+    def left(self) -> np.ndarray:
         """θ that the columns still have to explain about this fit's ship: those of known numbers."""
         return self.theta - self.centre
 
 
-def prepared(problem, rounds=3):
-    """The case with its base: every column of the basis, about the motion smoothed without a cause."""
+def prepared(problem: IdentificationProblem, rounds: int = 3) -> IdentificationProblem:
+    """The problem with its base: every column of the basis, about the motion smoothed without a cause."""
     motion = problem.motion
     for _ in range(rounds):
         alone = linearise(motion, problem.record, problem.model, [])
@@ -125,7 +148,7 @@ def prepared(problem, rounds=3):
     return replace(problem, motion=motion, base=base)
 
 
-def _smoothed(linear, white, problem, motion):
+def _smoothed(linear: Linear, white: np.ndarray, problem: IdentificationProblem, motion: Motion) -> Motion:
     """The motion to linearise about next: that of the ship as the problem has her, as far as she can follow the log.
 
     Where she cannot, the measurements rule: jolts are as much larger as the innovations' mean square is. Otherwise a
@@ -134,14 +157,20 @@ def _smoothed(linear, white, problem, motion):
     misfit = (white**2).sum((0, -1)) / linear.whole.sum((0, -1))
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
     noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
-    return innovations(linear, noise, problem.record, motion).motion
+    smooth = innovations(linear, noise, problem.record, motion).motion
+    return motion if smooth is None else smooth
 
 
-def _key(column):
+def _key(column: Regressor) -> tuple[tuple[str, float], ...]:
     return tuple(sorted(column.changes.items()))
 
 
-def fitted(problem, hypotheses=(), values=None, rounds=ROUNDS):
+def fitted(
+    problem: IdentificationProblem,
+    hypotheses: Sequence[Hypothesis] = (),
+    values: Mapping[str, float] | None = None,
+    rounds: int = ROUNDS,
+) -> Fit:
     """Fit the parameters of some causes, with all known numbers within their tolerances.
 
     Parameters
@@ -157,34 +186,43 @@ def fitted(problem, hypotheses=(), values=None, rounds=ROUNDS):
     -------
     Fit
     """
-    values, about, motion, fit = _bounded(hypotheses, values or {}), {}, problem.motion, None
+    values, about, motion, last = _bounded(hypotheses, values or {}), {}, problem.motion, None
     columns = problem.known(hypotheses) + _own(problem, hypotheses)
     for _ in range(rounds):
         model = problem.model.with_values(values | about)
         linear = linearise(motion, problem.record, model, columns)
-        last, fit = fit, _posterior(problem, hypotheses, values, columns, linear, model, motion)
+        fit = _posterior(problem, hypotheses, values, columns, linear, model, motion)
         motion, values, about = fit.motion, _next(fit), _about(fit)
         moved = [
             abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for s in hypotheses for k in s.parameters
         ]
         if max(moved, default=0.0) < 0.02 and last and abs(fit.score - last.score) < 1.0:
             break
+        last = fit
     return fit
 
 
-def _own(problem, hypotheses):
+def _own(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
     """Columns of hypotheses, what is only known within a tolerance about them first."""
     about = [path for hypothesis in hypotheses for path in hypothesis.effect.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
     return found + [_regressor(one, parameter) for one in hypotheses for parameter in one.parameters]
 
 
-def _regressor(hypothesis, parameter):
+def _regressor(hypothesis: Hypothesis, parameter: HypothesisParameter) -> Regressor:
     """The regressor of a parameter of a hypothesis."""
     return Regressor(dict.fromkeys(parameter.paths, parameter.typical), vector=hypothesis.vector_of(parameter))
 
 
-def _posterior(problem, hypotheses, values, columns, linear, model, motion):
+def _posterior(
+    problem: IdentificationProblem,
+    hypotheses: Sequence[Hypothesis],
+    values: Mapping[str, float],
+    columns: list[Regressor],
+    linear: Linear,
+    model: ShipModel,
+    motion: Motion,
+) -> Fit:
     """The fit about some values."""
     filtered = innovations(linear, problem.noise, problem.record)
     products, centre = gram(filtered), _centre(columns, model, problem.model)
@@ -203,7 +241,7 @@ def _posterior(problem, hypotheses, values, columns, linear, model, motion):
     return Fit(tuple(hypotheses), values, std, score, *rest)
 
 
-def _next(fit):
+def _next(fit: Fit) -> dict[str, float]:
     """Values of the numbers at the posterior's mean, within their bounds."""
     parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
     found = dict(fit.values)
@@ -212,7 +250,7 @@ def _next(fit):
     return _bounded(fit.hypotheses, found)
 
 
-def _bounded(hypotheses, values):
+def _bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> dict[str, float]:
     """Values with the numbers that some hypotheses turn within their bounds."""
     bounds = {
         path: parameter.bounds
@@ -223,7 +261,7 @@ def _bounded(hypotheses, values):
     return {path: float(np.clip(v, *bounds[path])) if path in bounds else v for path, v in values.items()}
 
 
-def _about(fit):
+def _about(fit: Fit) -> dict[str, float]:
     """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
     wanted = NONLINEAR | {path for hypothesis in fit.hypotheses for path in hypothesis.effect.companions}
     found = {}
@@ -233,7 +271,7 @@ def _about(fit):
     return found
 
 
-def weighed(problem, fit):
+def weighed(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
     """Gain in log-evidence of each hypothesis beside a fit, linearised once.
 
     Parameters
@@ -253,7 +291,13 @@ def weighed(problem, fit):
     return gains(products, fit.columns, fit.centre, wanted, fit.model)
 
 
-def gains(products, columns, centre, wanted, model):
+def gains(
+    products: np.ndarray,
+    columns: Sequence[Regressor],
+    centre: np.ndarray,
+    wanted: Sequence[Hypothesis],
+    model: ShipModel,
+) -> list[Gain]:
     """Gain in log-evidence of hypotheses, from the inner products of the log with some columns and with their probes.
 
     Parameters
@@ -295,7 +339,7 @@ def gains(products, columns, centre, wanted, model):
     return sorted(found, key=lambda entry: -entry[0])
 
 
-def _together(tries, hypothesis):
+def _together(tries: list[tuple[float, dict[str, float]]], hypothesis: Hypothesis) -> tuple[float, dict[str, float]]:
     """Evidence of a hypothesis over all its directions, and the values of the best."""
     scores = np.array([score for score, _ in tries])
     best = int(scores.argmax())
@@ -307,7 +351,7 @@ def _together(tries, hypothesis):
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
 
 
-def _one_way(first, last):
+def _one_way(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Ends of a current; one of next to nothing lies along the other: its own direction is chance, and stays."""
     sizes = np.linalg.norm(first), np.linalg.norm(last)
     if sizes[0] < _SLOW * sizes[1]:
@@ -317,7 +361,7 @@ def _one_way(first, last):
     return first, last
 
 
-def probes(hypothesis):
+def probes(hypothesis: Hypothesis) -> list[list[Regressor]]:
     """Groups of columns by which a hypothesis is first sought."""
     parameters = hypothesis.parameters
     if hypothesis.effect.law == "linear":
@@ -329,7 +373,7 @@ def probes(hypothesis):
     return [[Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]
 
 
-def _centre(columns, model, neutral):
+def _centre(columns: Sequence[Regressor], model: ShipModel, neutral: ShipModel) -> np.ndarray:
     """θ of the ship model that the columns were linearised about; 0 for known numbers."""
     found = np.zeros(len(columns))
     for i, column in enumerate(columns):

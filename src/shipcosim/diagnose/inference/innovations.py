@@ -1,7 +1,9 @@
 """Whitened innovations of the linear problem: the noise of a log, and the filter that is built of it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -9,6 +11,10 @@ from shipcosim.diagnose.inference import kalman
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
 from shipcosim.diagnose.ship.model import Motion
 from shipcosim.models.control.observer import wave_transition
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.linearisation import Linear
+    from shipcosim.diagnose.ship.inputs import Record
 
 __all__ = ["WAVE_DAMPING", "Innovations", "Noise", "innovations", "log_likelihoods", "oscillation"]
 
@@ -60,12 +66,12 @@ class Innovations(NamedTuple):
 
     white: np.ndarray
     log_determinant: np.ndarray
-    filtered: Any = None
-    motion: Any = None
-    slow: Any = None
+    filtered: np.ndarray | None = None
+    motion: Motion | None = None
+    slow: np.ndarray | None = None
 
 
-def innovations(linear, noise, record, motion=None):
+def innovations(linear: Linear, noise: Noise, record: Record, motion: Motion | None = None) -> Innovations:
     """Filter every column, and smooth the first if `motion` is given.
 
     Parameters
@@ -88,18 +94,20 @@ def innovations(linear, noise, record, motion=None):
     R = np.where(_by_log(linear.whole, lead, 1), white**2, np.inf)
     R = np.require(np.broadcast_to(R, (len(R), len(W), 6)), requirements=["C", "W"])
     known, wanted = np.asarray(record.known), motion is not None
-    *weights, log_determinant, covariances = kalman.weights(A, W, H, R, Q, P, known, _lost(), wanted)
-    white, states = kalman.whitened(A, W, B, H, Z, *weights)
-    of_logs = [values.reshape(-1, *lead, *values.shape[2:]) for values in (white, log_determinant, states)]
+    gain, root, log_determinant, covariances = kalman.weights(A, W, H, R, Q, P, known, _lost(), wanted)
+    white, states = kalman.whitened(A, W, B, H, Z, gain, root)
+    white_of_logs, log_determinant, filtered = (
+        values.reshape(-1, *lead, *values.shape[2:]) for values in (white, log_determinant, states)
+    )
     if motion is None:
-        return Innovations(*of_logs)
-    found = kalman.smoothed(A, W, H, white[..., 0].copy(), *weights, states, covariances)
+        return Innovations(white_of_logs, log_determinant, filtered)
+    found = kalman.smoothed(A, W, H, white[..., 0].copy(), gain, root, states, covariances)
     found = np.moveaxis(found.reshape(-1, *lead, STATES), 0, -2)
     smooth = Motion(*(value + found[..., i] for i, value in enumerate(motion)))
-    return Innovations(*of_logs, smooth, found[..., 6:])
+    return Innovations(white_of_logs, log_determinant, filtered, smooth, found[..., 6:])
 
 
-def log_likelihoods(linear, noises, record):
+def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray:
     """Log-likelihood of the first column of a problem of one log under several noises, up to a constant.
 
     Parameters
@@ -121,7 +129,7 @@ def log_likelihoods(linear, noises, record):
     return kalman.log_likelihoods(linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, known, _lost())
 
 
-def _by_log(values, lead, tail):
+def _by_log(values: np.ndarray, lead: tuple[int, ...], tail: int) -> np.ndarray:
     """(n, ..., *tail) array, whose middle axes broadcast to those of the logs, as (n, m or 1, *tail) array."""
     shape = values.shape[values.ndim - tail :]
     own = values.shape[1 : values.ndim - tail]
@@ -132,13 +140,13 @@ def _by_log(values, lead, tail):
     return np.require(values, requirements=["C", "W"]).reshape(len(values), -1, *shape)
 
 
-def _of_logs(values, lead):
+def _of_logs(values: np.ndarray, lead: tuple[int, ...]) -> np.ndarray:
     """(..., 18, 18) array that broadcasts to the logs, as (m, 18, 18) array."""
     values = np.broadcast_to(values, (*lead, STATES, STATES))
     return np.require(values, requirements=["C", "W"]).reshape(-1, STATES, STATES)
 
 
-def oscillation(noise, h):
+def oscillation(noise: Noise, h: float) -> tuple[tuple[Any, Any, Any, Any], tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """First-order waves over a step.
 
     Returns
@@ -153,7 +161,7 @@ def oscillation(noise, h):
     return (a, b, c, d), added
 
 
-def _waves_ahead(noise, h):
+def _waves_ahead(noise: Noise, h: float) -> np.ndarray:
     """What the waves have of a transition, (..., 18, 18)."""
     a, b, c, d = oscillation(noise, h)[0]
     W = np.zeros((*a.shape[:-1], STATES, STATES))
@@ -162,7 +170,7 @@ def _waves_ahead(noise, h):
     return W
 
 
-def _process(noise, h):
+def _process(noise: Noise, h: float) -> np.ndarray:
     """Covariance of what happens over a step."""
     jolt, walk = np.asarray(noise.jolt) ** 2 * h, np.asarray(noise.walk) ** 2 * h
     place = jolt * h * h / 3.0 + 1e-10
@@ -175,13 +183,13 @@ def _process(noise, h):
     return Q
 
 
-def _waves(noise):
+def _waves(noise: Noise) -> tuple[np.ndarray, np.ndarray]:
     """Variance of the place and of the velocity of wave motion."""
     speed = np.asarray(noise.wave) ** 2
     return speed / np.asarray(noise.wave_frequency)[..., None] ** 2, speed
 
 
-def _uncertain(noise):
+def _uncertain(noise: Noise) -> np.ndarray:
     """Covariance at the first row."""
     walk = np.asarray(noise.walk) ** 2 * 600.0
     white = np.broadcast_to(np.asarray(noise.white) ** 2, (*walk.shape[:-1], 6))
@@ -190,6 +198,6 @@ def _uncertain(noise):
     return first[..., None] * np.eye(STATES)
 
 
-def _lost():
+def _lost() -> np.ndarray:
     """What is added where nobody knows what drove the ship over a step."""
     return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, *[0.0] * 12])

@@ -14,7 +14,17 @@ _compiled = njit(cache=True, error_model="numpy")
 
 
 @_compiled
-def weights(A, W, H, R, Q, P, known, lost, keep):
+def weights(
+    A: np.ndarray,
+    W: np.ndarray,
+    H: np.ndarray,
+    R: np.ndarray,
+    Q: np.ndarray,
+    P: np.ndarray,
+    known: np.ndarray,
+    lost: np.ndarray,
+    keep: bool,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Gains of the filter.
 
     Parameters
@@ -76,7 +86,9 @@ def weights(A, W, H, R, Q, P, known, lost, keep):
 
 
 @_compiled
-def whitened(A, W, B, H, Z, gain, root):
+def whitened(
+    A: np.ndarray, W: np.ndarray, B: np.ndarray, H: np.ndarray, Z: np.ndarray, gain: np.ndarray, root: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Whitened innovations of every column, and the state of the first.
 
     Parameters
@@ -118,7 +130,16 @@ def whitened(A, W, B, H, Z, gain, root):
 
 
 @_compiled
-def smoothed(A, W, H, white, gain, root, states, covariances):
+def smoothed(
+    A: np.ndarray,
+    W: np.ndarray,
+    H: np.ndarray,
+    white: np.ndarray,
+    gain: np.ndarray,
+    root: np.ndarray,
+    states: np.ndarray,
+    covariances: np.ndarray,
+) -> np.ndarray:
     """Smoothed state of one column, by the adjoint form of Bryson and Frazier (1963): no matrix is inverted.
 
     Parameters
@@ -147,7 +168,19 @@ def smoothed(A, W, H, white, gain, root, states, covariances):
 
 
 @_compiled
-def log_likelihoods(A, W, b, H, z, whole, R, Q, P, known, lost):
+def log_likelihoods(
+    A: np.ndarray,
+    W: np.ndarray,
+    b: np.ndarray,
+    H: np.ndarray,
+    z: np.ndarray,
+    whole: np.ndarray,
+    R: np.ndarray,
+    Q: np.ndarray,
+    P: np.ndarray,
+    known: np.ndarray,
+    lost: np.ndarray,
+) -> np.ndarray:
     """Log-likelihood of one log under several noises, side by side, up to a constant.
 
     Outputs are taken one after the other, which comes to the same: no matrix is inverted.

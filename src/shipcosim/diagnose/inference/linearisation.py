@@ -4,15 +4,21 @@ About a motion near the measured one the ship is a linear system that varies in 
 rows of a log and over several logs; only the filter goes from row to row.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.ship.instruments import readings
 from shipcosim.diagnose.ship.model import Motion, loads, motion_rates, rates_apart
 from shipcosim.models.core.integrate import rk4
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import Inputs, ShipModel
 
 __all__ = [
     "SLOW_STD",
@@ -80,14 +86,14 @@ class Linear(NamedTuple):
     whole: np.ndarray
 
 
-def with_columns(linear, driven, seen):
+def with_columns(linear: Linear, driven: np.ndarray, seen: np.ndarray) -> Linear:
     """The problem with further columns behind its own, (n-1, ..., 6, p) and (n, ..., 6, p) arrays."""
     return linear._replace(
         driven=np.concatenate([linear.driven, driven], axis=-1), seen=np.concatenate([linear.seen, seen], axis=-1)
     )
 
 
-def beside(linear, extra):
+def beside(linear: Linear, extra: Linear) -> Linear:
     """A problem with the columns of another behind its own."""
     return with_columns(linear, extra.driven[..., 1:], extra.seen[..., 1:])
 
@@ -95,7 +101,7 @@ def beside(linear, extra):
 _FASTEST = {"u": 100.0, "v": 100.0, "r": 10.0}  # m/s, rad/s: what runs away under a wrong label stays a number
 
 
-def advanced(motion, record, model):
+def advanced(motion: Motion, record: Record, model: ShipModel) -> Motion:
     """The motion one row later, from each row but the last, by a Runge-Kutta step or, for a small ship, several.
 
     Parameters
@@ -118,7 +124,9 @@ def advanced(motion, record, model):
     return motion
 
 
-def runge_kutta(motion, h, inputs, model, load=lambda psi: (0.0, 0.0, 0.0)):
+def runge_kutta(
+    motion: Motion, h: float, inputs: Sequence[Inputs], model: ShipModel, load: Any = lambda psi: (0.0, 0.0, 0.0)
+) -> Motion:
     """The motion a step of h later.
 
     Parameters
@@ -144,7 +152,7 @@ def runge_kutta(motion, h, inputs, model, load=lambda psi: (0.0, 0.0, 0.0)):
     return Motion(*rk4(rates, motion, h, ((0,), (1,), (2,))))
 
 
-def linearise(motion, record, model, regressors: Sequence[Regressor]) -> Linear:
+def linearise(motion: Motion, record: Record, model: ShipModel, regressors: Sequence[Regressor]) -> Linear:
     """The linear problem about a motion.
 
     Parameters
@@ -193,7 +201,7 @@ def linearise(motion, record, model, regressors: Sequence[Regressor]) -> Linear:
     return Linear(transition, driven, _output(motion, seen, model), out, whole)
 
 
-def _step_share(regressor: Regressor, model) -> float:
+def _step_share(regressor: Regressor, model: ShipModel) -> float:
     """Share of a regressor's size for differences; they must not turn round a vector that is short."""
     length = float(np.hypot(*(model.get(path) for path in regressor.vector))) if regressor.vector else 0.0
     if not length:
@@ -202,12 +210,12 @@ def _step_share(regressor: Regressor, model) -> float:
     return min(_SHARE, max(_SHARE * length / size, 1e-4))
 
 
-def _apart(one, other):
+def _apart(one: Motion, other: Motion) -> Motion:
     """One motion minus another."""
     return Motion(*(a - b for a, b in zip(one, other, strict=True)))
 
 
-def rows_first(motion):
+def rows_first(motion: Motion) -> np.ndarray:
     """(..., n) arrays of a motion as (n, ..., 6)."""
     shape = np.broadcast_shapes(*(np.shape(value) for value in motion))
     stacked = np.stack([np.broadcast_to(value, shape) for value in motion], axis=-1)
@@ -217,7 +225,7 @@ def rows_first(motion):
 _SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
 
 
-def _transition(middle, inputs, like, record):
+def _transition(middle: Motion, inputs: Inputs, like: tuple[ShipModel, Any], record: Record) -> np.ndarray:
     """Transition over a step, of second order about its middle, where `like` has the ship and her loads.
 
     For a small ship that of a part of the step, doubled until it is whole.
@@ -241,7 +249,7 @@ def _transition(middle, inputs, like, record):
     return A
 
 
-def _output(motion, seen, model):
+def _output(motion: Motion, seen: Motion, model: ShipModel) -> np.ndarray:
     rows = rows_first(seen)
     H = np.zeros((*rows.shape, STATES))
     H[..., 0, 0] = H[..., 1, 1] = 1.0

@@ -1,11 +1,17 @@
 """How noisy a log is: levels of its channels and of what jolts the ship, by maximum likelihood."""
 
+from __future__ import annotations
+
 from dataclasses import fields, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.inference.innovations import Noise, log_likelihoods, oscillation
 from shipcosim.diagnose.inference.linearisation import Linear
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Record
 
 __all__ = ["explained", "first_noise", "tuned", "waves_of"]
 
@@ -30,7 +36,7 @@ _LONGEST = 0.8
 _SHARES = np.array([1.0, 0.5, 0.2, 0.0])  # of a move, that are tried
 
 
-def first_noise(record, length):
+def first_noise(record: Record, length: float) -> Noise:
     """Noise to start from: channels by their differences from row to row, the rest by the size of the ship.
 
     Parameters
@@ -44,7 +50,7 @@ def first_noise(record, length):
     Noise
     """
     third = np.diff(record.measured, 3, axis=-2)
-    silent = ~np.isfinite(third).any(axis=-2, keepdims=True)
+    silent = ~np.any(np.isfinite(third), axis=-2, keepdims=True)
     white = np.sqrt(np.nanmedian(np.where(silent, 0.0, third**2), axis=-2) / 0.455 / 20.0)
     least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])
     white = np.where(silent[..., 0, :], 1.0, np.maximum(white, least))
@@ -53,7 +59,9 @@ def first_noise(record, length):
     return Noise(white, jolt, walk, 0.7 * white[..., 3:], np.ones(white.shape[:-1]))
 
 
-def tuned(noise, linear, record, theta, *, most_walk, rounds=4):
+def tuned(
+    noise: Noise, linear: Linear, record: Record, theta: np.ndarray, *, most_walk: np.ndarray, rounds: int = 4
+) -> Noise:
     """The noise under which what is left of a log is likeliest.
 
     Parameters
@@ -94,7 +102,7 @@ def tuned(noise, linear, record, theta, *, most_walk, rounds=4):
     return noise
 
 
-def _begun(noise, left, record):
+def _begun(noise: Noise, left: Linear, record: Record) -> Noise:
     """The noise with the frequency of waves, and their share in the noise of the velocities, that suit a log best."""
     rows = [(frequency, *levels) for frequency in _FREQUENCIES for levels in _LEVELS]
     frequency, white, wave = np.array(rows).T
@@ -104,12 +112,12 @@ def _begun(noise, left, record):
     return _of(tries, log_likelihoods(left, tries, record).argmax())
 
 
-def _of(noise, which):
+def _of(noise: Noise, which: int | np.integer) -> Noise:
     """One of several."""
     return Noise(*(getattr(noise, part.name)[which] for part in fields(Noise)))
 
 
-def waves_of(noise, h, shape, rng):
+def waves_of(noise: Noise, h: float, shape: tuple[int, int], rng: np.random.Generator) -> np.ndarray:
     """First-order wave motion, drawn: place and velocity in the ship's axes.
 
     Parameters
@@ -140,7 +148,7 @@ def waves_of(noise, h, shape, rng):
     return found
 
 
-def explained(linear, theta):
+def explained(linear: Linear, theta: np.ndarray) -> Linear:
     """The problem with only its first column, from which the effect of θ is taken out."""
     weights = np.concatenate([[1.0], -np.asarray(theta)])
     return Linear(
@@ -148,7 +156,7 @@ def explained(linear, theta):
     )
 
 
-def _scaled(noise, steps):
+def _scaled(noise: Noise, steps: np.ndarray) -> Noise:
     """Noise for each row of steps, which are in natural logarithms of the groups."""
     names = [part.name for part in fields(Noise)]
     parts = {name: np.repeat(np.asarray(getattr(noise, name))[None], len(steps), axis=0) for name in names}

@@ -66,7 +66,7 @@ def null_gains(
         record = _some(records, slice(first, first + batch))
         here = prepared(replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1)
         columns = problem.known(())
-        for products in gram(innovations(here.base, problem.noise, record)).products:
+        for products in gram(innovations(here.linear, problem.noise, record)).products:
             squares.append(products[0, 0])
             for gain, hypothesis, _ in gains(products, columns, np.zeros(len(columns)), wanted, problem.model):
                 found[hypothesis.label].append(gain)

@@ -1,10 +1,19 @@
 """The sets of causes that explain a log best: each is weighed, the likely ones are fitted, others sought beside."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from shipcosim.diagnose.inference.fitting import fitted, weighed
 from shipcosim.diagnose.inference.unmodelled import is_healthy
 from shipcosim.diagnose.stages import ExplainedLog, Identification
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
 __all__ = ["at_first_sight", "explain", "names", "with_causes", "without_causes"]
 
@@ -17,7 +26,9 @@ def with_causes(found: Identification) -> ExplainedLog:
     return ExplainedLog(found, fits, is_healthy(found.problem, fits[0]))
 
 
-def explain(problem, *, most=3, likely=6, near=12.0, enough=5.0):
+def explain(
+    problem: IdentificationProblem, *, most: int = 3, likely: int = 6, near: float = 12.0, enough: float = 5.0
+) -> list[Fit]:
     """The sets of causes that explain a log best.
 
     Parameters
@@ -66,29 +77,29 @@ def explain(problem, *, most=3, likely=6, near=12.0, enough=5.0):
     return sorted(fits.values(), key=lambda fit: -fit.score)
 
 
-def _strained(fit):
+def _strained(fit: Fit) -> set[str]:
     """Numbers that a fit has far from what is known of them: what they do may be bent there, as a lag's."""
     known = zip(fit.columns, fit.theta, strict=True)
     return {path for column, theta in known if abs(theta) > STRAIN for path in column.changes}
 
 
-def at_first_sight(problem):
+def at_first_sight(problem: IdentificationProblem) -> float:
     """Evidence of a log with its likeliest cause, linearised once."""
     nothing = fitted(problem)
     return nothing.score + max(weighed(problem, nothing)[0][0], 0.0)
 
 
-def without_causes(fits):
+def without_causes(fits: Iterable[Fit]) -> Fit:
     """The fit without a cause among others."""
     return next(fit for fit in fits if not fit.hypotheses)
 
 
-def names(hypotheses):
+def names(hypotheses: Iterable[Hypothesis]) -> frozenset[str]:
     """Labels of hypotheses, in no order."""
     return frozenset(hypothesis.label for hypothesis in hypotheses)
 
 
-def _simplify(problem, fits):
+def _simplify(problem: IdentificationProblem, fits: dict[frozenset[str], Fit]) -> None:
     """Fit the best set again without each of its causes, and with simpler ones instead, from the values that it has."""
     while True:
         best = max(fits.values(), key=lambda fit: fit.score)

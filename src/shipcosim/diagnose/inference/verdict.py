@@ -218,7 +218,7 @@ def _candidates(chances):
             key = hypothesis.cause, hypothesis.component
             found[key] = found.get(key, 0.0) + float(chance)
     ranked = sorted(found.items(), key=lambda entry: -entry[1])
-    return tuple(Candidate(*key, min(chance, 0.99)) for key, chance in ranked if chance > 1e-3)
+    return tuple(Candidate(cause, of, min(chance, 0.99)) for (cause, of), chance in ranked if chance > 1e-3)
 
 
 def _finding(hypothesis, fit, candidates):

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
-Arithmetic = float | np.ndarray | Any
-"""A number in the arithmetic of its user: Python float, NumPy array or torch tensor (Any: torch is optional)."""
+Arithmetic = Any
+"""A number in the arithmetic of its user: Python float, NumPy array or torch tensor. No type has the operators of all
+three and leaves torch optional, hence Any."""
 
 pi = math.pi
 _TINY = 1e-30
