@@ -72,7 +72,7 @@ def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem]
 
 def variables_in(file: str) -> list[tuple[str, ...]]:
     """An FMU's variables as rows of text: name, causality, type, unit, start, description; none for other files."""
-    from shipcosim.ssp.fmu.description import describe_fmu
+    from shipcosim.ssp.fmu.reader import describe_fmu
     from shipcosim.ssp.xml.document import Findings
     from shipcosim.ssp.xml.values import text_of
 

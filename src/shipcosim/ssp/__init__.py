@@ -7,7 +7,8 @@ from shipcosim.ssp.edit.write import pack, parameter, write_ssv
 from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.flatten.system import Component, Signal, System
 from shipcosim.ssp.flatten.with_values import with_values
-from shipcosim.ssp.fmu.description import FmuDescription, Variable, read_fmu
+from shipcosim.ssp.fmu.description import FmuDescription, Variable
+from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
 from shipcosim.ssp.reading import read_system

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shipcosim.errors import Problem
 from shipcosim.ssp.flatten.loops import loop_problems
-from shipcosim.ssp.fmu.description import describe_fmu
+from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.read.parameters import read_dictionary, read_mapping, read_parameter_set
 from shipcosim.ssp.reading import assemble
 from shipcosim.ssp.xml.document import Findings, read_document

@@ -10,7 +10,7 @@ from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, whole_steps
 from shipcosim.ssp import Connection, System, Variable
-from shipcosim.ssp.fmu.arrays import RESIZE, resized
+from shipcosim.ssp.flatten.array_sizes import RESIZE, resized
 
 KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "Real": "Real"}
 """Arrays that values of a type travel in."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.xml.definitions import define_enumeration, define_unit

@@ -12,7 +12,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.parameter_sets import Sets
 from shipcosim.ssp.edit.write import write_file
 from shipcosim.ssp.flatten.assemble import assemble_package
-from shipcosim.ssp.fmu.description import describe_fmu
+from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.read.package import SYSTEM_STRUCTURE
 from shipcosim.ssp.read.structure import FMU
 from shipcosim.ssp.xml.archive import write_archive

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.errors import suggestion
 from shipcosim.ssp.edit.connectors import declare_variable

@@ -1,6 +1,6 @@
 """Default experiment of an SSD: start and stop, and the base step size, which the standard leaves to annotations."""
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.xml.annotations import step_sizes
 from shipcosim.ssp.xml.document import child, local

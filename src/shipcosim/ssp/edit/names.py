@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp.flatten.ports import SOURCES_OUTSIDE

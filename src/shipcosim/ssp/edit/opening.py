@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.draft import Draft

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.edit.names import walk
 from shipcosim.ssp.read.parameters import TOLERANCE

@@ -12,7 +12,7 @@ from shipcosim.errors import suggestion
 from shipcosim.ssp.edit import bindings, connections, elements
 from shipcosim.ssp.edit.connectors import declare
 from shipcosim.ssp.edit.system_contents import SystemContents
-from shipcosim.ssp.fmu.description import read_fmu
+from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.read.structure import KIND_NAMES
 from shipcosim.ssp.xml.definitions import read_units
 from shipcosim.ssp.xml.document import children

@@ -4,7 +4,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.parameter_sets import write_value

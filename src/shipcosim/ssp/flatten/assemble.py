@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 
+from shipcosim.ssp.flatten.array_sizes import RESIZE, resized, sizes_wanted
 from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.connections import Connection, connect
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
@@ -12,10 +13,10 @@ from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.flatten.start_values import Settings
 from shipcosim.ssp.flatten.system import Component, System
 from shipcosim.ssp.flatten.walk import take_in
-from shipcosim.ssp.fmu.arrays import RESIZE, resized, sizes_wanted
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets, read_parameter_set
-from shipcosim.ssp.read.structure import Experiment, Structure, read_structure
+from shipcosim.ssp.read.structure import Experiment, Structure
+from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Findings, read_document
 
 

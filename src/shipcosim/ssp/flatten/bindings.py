@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from shipcosim.errors import it_has
+from shipcosim.ssp.flatten.array_elements import element_values
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Setting
-from shipcosim.ssp.fmu.arrays import element_values
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.parameters import MappingEntry, ParameterSet
 from shipcosim.ssp.read.structure import Binding

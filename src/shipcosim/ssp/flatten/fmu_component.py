@@ -3,10 +3,11 @@
 from dataclasses import replace
 
 from shipcosim.errors import it_has
+from shipcosim.ssp.flatten.array_elements import element_connectors
 from shipcosim.ssp.flatten.bindings import take_bindings
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Key, Port, variable_port
-from shipcosim.ssp.fmu.arrays import element_connectors, without_arrays
+from shipcosim.ssp.fmu.arrays import without_arrays
 from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.read.structure import KIND_NAMES, ComponentElement, Connector
 from shipcosim.ssp.xml.document import Findings

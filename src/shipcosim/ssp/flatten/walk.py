@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp.flatten.array_elements import element_connectors, element_links
 from shipcosim.ssp.flatten.bindings import take_bindings
 from shipcosim.ssp.flatten.dictionaries import dictionaries_of, join_dictionaries, take_reference
 from shipcosim.ssp.flatten.fmu_component import take_fmu
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Key, Port
 from shipcosim.ssp.flatten.wires import wire_of
-from shipcosim.ssp.fmu.arrays import element_connectors, element_links
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.structure import (
     FMU,

@@ -3,12 +3,17 @@
 Reference: FMI 1.0 co-simulation, section 3.3 (DirectDependency); FMI 2.0.4, section 2.2.8; FMI 3.0.1, section 2.4.8.
 """
 
+from collections.abc import Iterable, Mapping
+
+import lxml.etree as etree
+
 from shipcosim.errors import ShipcosimError
+from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.xml.archive import read_entry
-from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, local, parse
+from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, local, parse, parts_of
 
 
-def feedthrough(fmu, at_start=False):
+def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozenset[str]]:
     """Inputs that outputs follow at once.
 
     Parameters
@@ -31,10 +36,10 @@ def feedthrough(fmu, at_start=False):
     root = None if data is None else parse(data, fmu.path.name, Findings(), utf8=False)
     if root is None:
         return {}
-    variables = [part for group in root if local(group) == "ModelVariables" for part in group if local(part)]
+    variables = parts_of(root, "ModelVariables")
     if root.get("fmiVersion", "").startswith("1"):
         return _direct(variables)
-    structure = [part for group in root if local(group) == "ModelStructure" for part in group if local(part)]
+    structure = parts_of(root, "ModelStructure")
     if root.get("fmiVersion", "").startswith("3"):
         key, names = "valueReference", {part.get("valueReference"): part.get("name") for part in variables}
         listed = {tag: [part for part in structure if local(part) == tag] for tag in ("Output", "InitialUnknown")}
@@ -49,7 +54,7 @@ def feedthrough(fmu, at_start=False):
     return known | _stated(listed["InitialUnknown"], key, names)
 
 
-def _stated(outputs, key, names):
+def _stated(outputs: Iterable[etree._Element], key: str, names: Mapping) -> dict[str, frozenset[str]]:
     """Outputs that have an attribute `dependencies`, which can be empty."""
     return {
         names[part.get(key)]: frozenset(names[one] for one in part.get("dependencies").split() if one in names)
@@ -58,7 +63,7 @@ def _stated(outputs, key, names):
     }
 
 
-def _direct(variables):
+def _direct(variables: Iterable[etree._Element]) -> dict[str, frozenset[str]]:
     """Outputs of FMI 1.0 that have a list of their direct dependencies."""
     found = {}
     for variable in variables:

@@ -3,10 +3,14 @@
 Reference: FMI 1.0.1 for co-simulation, section 3.3; FMI 1.0.1 for model exchange, section 3.
 """
 
+from typing import Any
+
+import lxml.etree as etree
+
 from shipcosim.ssp.xml.document import is_true, local
 
 
-def interfaces_of(root):
+def interfaces_of(root: etree._Element) -> dict[str, dict[str, str]]:
     """Attributes of the one form that an FMU has: co-simulation with an Implementation, model exchange without."""
     attributes = {"modelIdentifier": root.get("modelIdentifier", "")}
     implementation = next((part for part in root if local(part) == "Implementation"), None)
@@ -20,7 +24,7 @@ def interfaces_of(root):
     return {"CoSimulation": attributes}
 
 
-def traits_of(element, typed, kind):
+def traits_of(element: etree._Element, typed: etree._Element, kind: str) -> dict[str, Any]:
     """Causality, variability and initial of a variable."""
     causality, variability = element.get("causality", "internal"), element.get("variability", "continuous")
     if variability == "parameter":
@@ -37,12 +41,12 @@ def traits_of(element, typed, kind):
     }
 
 
-def is_negated(element):
+def is_negated(element: etree._Element) -> bool:
     """Whether a variable is the negative of the one whose value reference it shares."""
     return element.get("alias") == "negatedAlias"
 
 
-def items_of(declaration):
+def items_of(declaration: etree._Element | None) -> dict[str, int]:
     """Items of an enumeration, numbered from its least value on, which is 1 where nothing else is given."""
     if declaration is None:
         return {}

@@ -9,6 +9,7 @@ from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
 from shipcosim.errors import it_has, suggestion
+from shipcosim.ssp.flatten.array_sizes import resized, sizes_wanted
 from shipcosim.ssp.flatten.assemble import components_of, parameter_sets, remark_unconnected
 from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.connections import Connection
@@ -16,8 +17,8 @@ from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.ports import Setting
 from shipcosim.ssp.flatten.start_values import Settings
 from shipcosim.ssp.flatten.system import System
-from shipcosim.ssp.fmu.arrays import resized, sizes_wanted, without_arrays
-from shipcosim.ssp.fmu.description import describe_fmu
+from shipcosim.ssp.fmu.arrays import without_arrays
+from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.osp.functions import Wiring, read_function
 from shipcosim.ssp.osp.groups import file_names, read_groups
 from shipcosim.ssp.osp.schema import NAMESPACE, validate_osp

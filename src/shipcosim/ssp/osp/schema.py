@@ -5,7 +5,7 @@ libcosim (tried: libcosimpy 0.0.6) checks a file against its own schema first an
 
 from functools import cache
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.xml.schemas import report_schema
 

@@ -8,12 +8,13 @@ from collections import defaultdict
 from math import isclose
 from urllib.parse import unquote
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.osp.groups import file_names
 from shipcosim.ssp.portability.subject import elements_of
-from shipcosim.ssp.read.structure import FMU, STEP_SIZES, DictionaryReference, SystemElement
+from shipcosim.ssp.read.structure import FMU, DictionaryReference, SystemElement
+from shipcosim.ssp.xml.annotations import STEP_SIZES
 from shipcosim.ssp.xml.document import NAMESPACES, child, children, local
 from shipcosim.ssp.xml.markup import OSP_TYPE
 from shipcosim.ssp.xml.values import KINDS, SSP_1_TYPES

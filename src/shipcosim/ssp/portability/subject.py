@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
@@ -12,7 +12,8 @@ from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.read.package import Package, open_package
 from shipcosim.ssp.read.parameters import read_parameter_set
-from shipcosim.ssp.read.structure import ComponentElement, Structure, read_structure
+from shipcosim.ssp.read.structure import ComponentElement, Structure
+from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Document, Findings, local
 
 

@@ -1,20 +1,51 @@
-"""What a tree reads: each file, set and description once, however often a system uses it; its faults are noted once."""
+"""Files of a system: each is read once, however often the system uses it, and its faults are noted once."""
 
-from shipcosim.ssp.fmu.description import describe_fmu
-from shipcosim.ssp.read.package import open_package, read_in_component
-from shipcosim.ssp.read.parameters import read_dictionary, read_mapping, read_parameter_set
-from shipcosim.ssp.read.structure import read_structure
+from collections.abc import Callable, Hashable, Iterable
+from pathlib import Path
+from typing import Any, Protocol
+
+from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.fmu.reader import describe_fmu
+from shipcosim.ssp.read.package import Package, open_package, read_in_component
+from shipcosim.ssp.read.parameters import (
+    DictionaryEntry,
+    MappingEntry,
+    ParameterSet,
+    read_dictionary,
+    read_mapping,
+    read_parameter_set,
+)
+from shipcosim.ssp.read.structure import Source, Structure
+from shipcosim.ssp.read.structure_reader import read_structure
+from shipcosim.ssp.xml.document import Document, Findings
+
+
+class Addressing(Protocol):
+    """An element with an address in it; `place` says where it stands, for messages."""
+
+    @property
+    def place(self) -> str: ...
+
+
+class InPackage(Protocol):
+    """Where an address stands: the package, and the folder in it that relative addresses start from."""
+
+    @property
+    def package(self) -> Package: ...
+
+    @property
+    def folder(self) -> Path: ...
 
 
 class Library:
-    """Reads and keeps.
+    """Reads the files that a system refers to, and keeps what it has read.
 
     Parameters
     ----------
     findings : Findings
         Takes what is wrong.
     described : dict, optional
-        Keeps descriptions of FMUs without fault for other trees.
+        Keeps descriptions of FMUs without fault for other libraries.
 
     Attributes
     ----------
@@ -22,44 +53,44 @@ class Library:
         Opened on the way.
     """
 
-    def __init__(self, findings, described=None):
-        self.findings, self.packages = findings, []
+    def __init__(self, findings: Findings, described: dict | None = None):
+        self.findings, self.packages = findings, list[Package]()
         self._described = {} if described is None else described
-        self._kept = {}
+        self._kept: dict[Hashable, Any] = {}
 
-    def _once(self, key, make):
+    def _once(self, key: Hashable, make: Callable[[], Any]) -> Any:
         if key not in self._kept:
             self._kept[key] = make()
         return self._kept[key]
 
-    def file(self, owner, uri, place):
-        """File that an element's address means, or None; `owner`, which has a place, stays as long as the tree."""
+    def file(self, owner: Addressing, uri: str, place: InPackage) -> Path | None:
+        """File that an element's address means, or None; the element must live as long as the library."""
         at = "at", place.package.folder, place.folder, uri
         if self._kept.get(at) is None:  # what is missing is said of each owner, once
             self._kept[at] = self._once((id(owner), uri), lambda: self._located(owner, uri, place))
         return self._kept[at]
 
-    def _located(self, owner, uri, place):
+    def _located(self, owner: Addressing, uri: str, place: InPackage) -> Path | None:
         return place.package.locate(uri, place.folder, owner.place, self.findings)
 
-    def package(self, address, fmus, shown):
+    def package(self, address: str | Path, fmus: Iterable[Path], shown: str) -> Package | None:
         """Package at an address, or None."""
         return self._once(("package", address), lambda: self._opened(address, fmus, shown))
 
-    def _opened(self, address, fmus, shown):
+    def _opened(self, address: str | Path, fmus: Iterable[Path], shown: str) -> Package | None:
         package = open_package(address, self.findings, fmus, shown)
         self.packages += [] if package is None else [package]
         return package
 
-    def structure(self, package, file):
+    def structure(self, package: Package, file: Path) -> Structure | None:
         """Structure of an SSD, or None."""
         return self._once(("structure", file), lambda: self._structure(package, file))
 
-    def _structure(self, package, file):
+    def _structure(self, package: Package, file: Path) -> Structure | None:
         document = package.read(file, self.findings)
         return None if document is None else read_structure(document, self.findings)
 
-    def content(self, source, place, fmu=None):
+    def content(self, source: Source, place: InPackage, fmu: FmuDescription | None = None) -> Document | None:
         """Document that a source means, inline or in a file, or None."""
         if source.inline is not None or source.uri is None:
             return source.inline
@@ -68,26 +99,26 @@ class Library:
         file = self.file(source, source.uri, place)
         return None if file is None else self._once(("file", file), lambda: place.package.read(file, self.findings))
 
-    def _inside(self, fmu, source):
+    def _inside(self, fmu: FmuDescription, source: Source) -> Document | None:
         return read_in_component(fmu, source.uri, source.place, self.findings)
 
-    def parameter_set(self, document):
+    def parameter_set(self, document: Document) -> ParameterSet:
         """Parameter set of a document."""
         return self._once(("set", id(document.root)), lambda: read_parameter_set(document, self.findings))
 
-    def mapping(self, document):
+    def mapping(self, document: Document) -> tuple[MappingEntry, ...]:
         """Entries of a parameter mapping."""
         return self._once(("mapping", id(document.root)), lambda: read_mapping(document, self.findings))
 
-    def dictionary(self, document):
+    def dictionary(self, document: Document) -> dict[str, DictionaryEntry]:
         """Entries of a signal dictionary by name."""
         return self._once(("dictionary", id(document.root)), lambda: read_dictionary(document, self.findings))
 
-    def fmu(self, file, package):
+    def fmu(self, file: Path, package: Package) -> FmuDescription | None:
         """Description of an FMU, or None."""
         return self._once(("fmu", file), lambda: self._description(file, package))
 
-    def _description(self, file, package):
+    def _description(self, file: Path, package: Package) -> FmuDescription | None:
         key = file, file.stat().st_mtime_ns
         if key not in self._described:
             before = len(self.findings.problems)

@@ -1,20 +1,23 @@
 """Where a system's files are: a .ssp (unpacked on the side), a folder, or a .ssd with its neighbours."""
 
 import tempfile
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from os import PathLike
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from shipcosim.errors import ShipcosimError, it_has, suggestion
+from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.xml.archive import read_entry, unpack
-from shipcosim.ssp.xml.document import LARGEST_FILE, Document, parse, read_document
+from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, parse, read_document
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
 
 
 @dataclass(frozen=True)
 class Package:
-    """Files that belong together; nothing outside `folder` and `fmus` is read.
+    """An SSP: files that belong together. Nothing outside `folder` and `fmus` is read.
 
     Parameters
     ----------
@@ -39,28 +42,28 @@ class Package:
     ssd: str = SYSTEM_STRUCTURE
     fmus: tuple[Path, ...] = ()
     unpacked: tempfile.TemporaryDirectory | None = field(default=None, repr=False, compare=False)
-    held: dict = field(default_factory=dict, repr=False, compare=False)
-    located: dict = field(default_factory=dict, repr=False, compare=False)
+    held: dict[Path, Document | Path] = field(default_factory=dict, repr=False, compare=False)
+    located: dict[str, Path] = field(default_factory=dict, repr=False, compare=False)
 
-    def show(self, path):
+    def show(self, path: str | PathLike[str]) -> str:
         """Name of a file of the package as the user knows it."""
         path, folder = Path(path).resolve(), self.folder.resolve()
         return f"{self.shown}/{path.relative_to(folder).as_posix()}" if path.is_relative_to(folder) else str(path)
 
-    def __getstate__(self):
+    def __getstate__(self) -> dict:
         # a copy in another process uses the files, and does not remove them
         return self.__dict__ | {"unpacked": None, "held": {}}
 
-    def document(self, findings):
+    def document(self, findings: Findings) -> Document | None:
         """The SSD, or None where it cannot be read."""
         return self.read(self.folder / self.ssd, findings)
 
-    def read(self, path, findings):
+    def read(self, path: str | PathLike[str], findings: Findings) -> Document | None:
         """Document of one of the package's files."""
         held = self.held.get(Path(path).resolve())
         return held if isinstance(held, Document) else read_document(path, self.show(path), findings)
 
-    def locate(self, uri, base, place, findings):
+    def locate(self, uri: str, base: Path, place: str, findings: Findings) -> Path | None:
         """File that a relative address means, or None with an error.
 
         Parameters
@@ -80,7 +83,7 @@ class Package:
             findings.error(place, f"'{uri[:80]}' is no usable address: {error}.")
             return None
 
-    def _located(self, uri, base, place, findings):
+    def _located(self, uri: str, base: Path, place: str, findings: Findings) -> Path | None:
         parts = urlsplit(uri)
         if parts.scheme or parts.netloc or uri.startswith("/") or not parts.path:
             remedy = "Addresses are relative to the SSD, e.g. resources/name.fmu."
@@ -105,18 +108,23 @@ class Package:
         self.located[name.relative_to(folder).as_posix()] = found
         return found
 
-    def _is_there(self, path):
+    def _is_there(self, path: Path) -> bool:
         held = self.held.get(path, path)
         return isinstance(held, Document) or held.is_file()
 
-    def _present(self, path):
+    def _present(self, path: Path) -> str:
         folders = [path.parent, *(self.fmus if path.suffix == ".fmu" else ())]
         files = [file for folder in folders if folder.is_dir() for file in folder.glob(f"*{path.suffix}")]
         there = {file.name for file in files if file.is_file()}
         return f"In {' and '.join(map(str, folders))} there{suggestion(path.name, there).removeprefix('There')}"
 
 
-def open_package(path, findings, fmus=(), shown=None):
+def open_package(
+    path: str | PathLike[str],
+    findings: Findings,
+    fmus: Iterable[str | PathLike[str]] = (),
+    shown: str | None = None,
+) -> Package | None:
     """Package of a path, or None with an error.
 
     Parameters
@@ -153,7 +161,7 @@ def open_package(path, findings, fmus=(), shown=None):
     return package
 
 
-def read_in_component(fmu, uri, place, findings):
+def read_in_component(fmu: FmuDescription, uri: str, place: str, findings: Findings) -> Document | None:
     """Document inside an FMU (``sourceBase="component"``), or None with an error."""
     name = unquote(uri)
     try:

@@ -7,10 +7,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 
+import lxml.etree as etree
+
+from shipcosim.ssp.read.attributes import attribute
 from shipcosim.ssp.xml.definitions import read_enumerations, read_units
-from shipcosim.ssp.xml.document import NAMESPACES, children, is_true, local, qualified, reporting
+from shipcosim.ssp.xml.document import NAMESPACES, Document, Findings, children, is_true, local, qualified, reporting
 from shipcosim.ssp.xml.validation import validate
-from shipcosim.ssp.xml.values import KINDS, read_value
+from shipcosim.ssp.xml.values import KINDS, Value, read_value
 from shipcosim.units import Unit, find_unit
 
 TOLERANCE = "shipcosim.tolerance"
@@ -25,7 +28,7 @@ MAPPINGS = {
 
 @dataclass(frozen=True)
 class Transformation:
-    """What a connection or a mapping does to a value.
+    """Transformation of a value by a connection or by an entry of a parameter mapping.
 
     Parameters
     ----------
@@ -40,7 +43,7 @@ class Transformation:
     kind: str = "Linear"
     factor: float = 1.0
     offset: float = 0.0
-    table: Mapping = field(default_factory=dict)
+    table: Mapping[Value, Value] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class ParameterValue:
 
     name: str
     kind: str
-    value: object
+    value: Value
     unit: Unit | None = None
     description: str = ""
     place: str = ""
@@ -79,7 +82,7 @@ class ParameterValue:
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """A named set of values; `file` for messages."""
+    """A parameter set (SSV): a name, values, and the file that it stands in, for messages."""
 
     name: str
     values: tuple[ParameterValue, ...]
@@ -92,7 +95,19 @@ ParameterSets = str | PathLike[str] | ParameterSet | Iterable[str | PathLike[str
 
 @dataclass(frozen=True)
 class MappingEntry:
-    """Which parameter of a set goes where, and how."""
+    """An entry of a parameter mapping (SSM): a parameter of the set, and the one of the element that gets its value.
+
+    Parameters
+    ----------
+    source, target : str
+        Names in the parameter set and in the element.
+    transformation : Transformation or None
+        Of the value.
+    suppress_unit_conversion : bool
+        Leave the value as it is even if units differ.
+    place : str
+        Where it stands, for messages.
+    """
 
     source: str
     target: str
@@ -103,16 +118,28 @@ class MappingEntry:
 
 @dataclass(frozen=True)
 class DictionaryEntry:
-    """A signal of a dictionary: a type as a connector's."""
+    """An entry of a signal dictionary (SSB): a signal's name and type.
+
+    Parameters
+    ----------
+    name : str
+        Unique within the dictionary.
+    kind : str
+        Real, Integer, Boolean, String, Enumeration or Binary.
+    unit : Unit or None
+        Of a Real.
+    items : mapping of str to int
+        Of an Enumeration.
+    """
 
     name: str
     kind: str
     unit: Unit | None = None
-    items: Mapping = field(default_factory=dict)
+    items: Mapping[str, int] = field(default_factory=dict)
 
 
-def has_root(document, tag, findings):
-    """Whether a document is what it should be, with an error if not."""
+def has_root(document: Document, tag: str, findings: Findings) -> bool:
+    """Whether the outermost element of a document is the one of this tag, with an error if not."""
     if document.root.tag == qualified(tag):
         return True
     found = f"Its outermost element is <{local(document.root)}>."
@@ -121,7 +148,7 @@ def has_root(document, tag, findings):
     return False
 
 
-def read_parameter_set(document, findings):
+def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
     """Values of an SSV document.
 
     Parameters
@@ -155,7 +182,9 @@ def read_parameter_set(document, findings):
     return ParameterSet(root.get("name", ""), tuple(values.values()), document.file)
 
 
-def _parameter(document, element, units, findings):
+def _parameter(
+    document: Document, element: etree._Element, units: Mapping[str, Unit], findings: Findings
+) -> ParameterValue | None:
     name = element.get("name", "")
     typed = next((part for part in element if local(part) in KINDS), None)
     if typed is None or not name:
@@ -174,19 +203,19 @@ def _parameter(document, element, units, findings):
     return ParameterValue(name, kind, value, unit, description, document.place(element, name), tolerance, sizes)
 
 
-def _values(kind, typed):
+def _values(kind: str, typed: etree._Element) -> tuple[Value, ...]:
     """Values of an array: a list in one attribute, or elements of their own for what may hold blanks."""
     listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
     return tuple(read_value(kind, text) for text in listed or typed.get("value", "").split())
 
 
-def _text(typed):
+def _text(typed: etree._Element) -> str:
     """Text of a single value, which may stand in an element of its own in SSP 2.0."""
     listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
     return listed[0] if len(listed) == 1 and typed.get("value") is None else typed.get("value", "")
 
 
-def tolerance_of(element):
+def tolerance_of(element: etree._Element) -> float | None:
     """Tolerance in our annotation of a Parameter element, or None."""
     for annotation in children(element, "ssv:Annotations", "ssc:Annotation"):
         if annotation.get("type") == TOLERANCE and len(annotation):
@@ -194,7 +223,7 @@ def tolerance_of(element):
     return None
 
 
-def read_mapping(document, findings):
+def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, ...]:
     """Entries of an SSM document, as a tuple of MappingEntry."""
     if not has_root(document, "ssm:ParameterMapping", findings):
         return ()
@@ -215,39 +244,36 @@ def read_mapping(document, findings):
     return tuple(entries.values())
 
 
-def read_transformation(document, element, findings):
+def read_transformation(document: Document, element: etree._Element, findings: Findings) -> Transformation | None:
     """Transformation that an element (connection or mapping entry) contains, or None."""
     for part in element:
         if local(part) == "LinearTransformation":
-            numbers = [_attribute(document, part, name, "Real", findings) for name in ("factor", "offset")]
+            numbers = [_attribute_of(document, part, name, "Real", findings) for name in ("factor", "offset")]
             return Transformation(factor=1.0 if numbers[0] is None else numbers[0], offset=numbers[1] or 0.0)
         if local(part) in MAPPINGS:
             return _table(document, part, MAPPINGS[local(part)], findings)
     return None
 
 
-def _table(document, element, kind, findings):
+def _table(document: Document, element: etree._Element, kind: str, findings: Findings) -> Transformation:
     table = {}
     for entry in children(element, "ssc:MapEntry"):
-        source, target = (_attribute(document, entry, name, kind, findings) for name in ("source", "target"))
+        source, target = (_attribute_of(document, entry, name, kind, findings) for name in ("source", "target"))
         if source is None or target is None:
-            continue  # the schema or `_attribute` has said so
+            continue  # an error already
         if source in table:
             findings.error(document.place(entry), f"The value '{source}' is mapped twice.", "Keep one of the entries.")
         table[source] = target
     return Transformation(kind=kind, table=table)
 
 
-def _attribute(document, element, name, kind, findings):
-    """Value of an attribute; None where it is missing or, with an error, makes no sense."""
-    value = None
-    if element.get(name) is not None:
-        with reporting(document, element, findings, f"{local(element)}, {name}"):
-            value = read_value(kind, element.get(name))
-    return value
+def _attribute_of(
+    document: Document, element: etree._Element, name: str, kind: str, findings: Findings
+) -> Value | None:
+    return attribute(document, element, name, kind, findings, f"{local(element)}, {name}")
 
 
-def read_dictionary(document, findings):
+def read_dictionary(document: Document, findings: Findings) -> dict[str, DictionaryEntry]:
     """Entries of an SSB document by name."""
     if not has_root(document, "ssb:SignalDictionary", findings):
         return {}

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.xml.document import children, local
 from shipcosim.ssp.xml.markup import add, ensure, free_name

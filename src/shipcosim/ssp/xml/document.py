@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.errors import Problem
 
@@ -131,6 +131,11 @@ def children(element, *path):
 def local(element):
     """Name of an element without its namespace; empty for comments and the like."""
     return etree.QName(element).localname if isinstance(element.tag, str) else ""
+
+
+def parts_of(root: etree._Element, name: str) -> list[etree._Element]:
+    """Elements within all children of a local name, whatever their namespace; comments left out."""
+    return [part for group in root if local(group) == name for part in group if local(part)]
 
 
 def parent_of(element: etree._Element) -> etree._Element:

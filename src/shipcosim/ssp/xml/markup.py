@@ -6,7 +6,7 @@ Elements are put where the schema wants them and indented like their neighbours.
 from collections.abc import Container
 from copy import deepcopy
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.xml.document import NAMESPACES, child, children, local, qualified
 

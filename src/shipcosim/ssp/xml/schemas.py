@@ -5,7 +5,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-from lxml import etree
+import lxml.etree as etree
 
 from shipcosim.ssp.xml.document import remedy_for
 

@@ -1,6 +1,7 @@
 """Types and values of variables as SSP and FMI write them."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 KINDS = {
@@ -26,7 +27,7 @@ SSP_1_TYPES = ("Real", "Integer", "Boolean", "String", "Enumeration", "Binary")
 BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
-def read_value(kind, text):
+def read_value(kind: str, text: str) -> Value:
     """Value from the text of an attribute.
 
     Parameters
@@ -63,7 +64,7 @@ def read_value(kind, text):
     return text
 
 
-def _number(convert, text, name):
+def _number(convert: Callable[[str], float], text: str, name: str) -> float:
     try:
         value = convert(text.replace("_", "x"))  # Python would take "1_000" for a number, XML does not
     except ValueError:
@@ -73,7 +74,7 @@ def _number(convert, text, name):
     return value
 
 
-def text_of(value):
+def text_of(value: Value) -> str:
     """Text of a value, which `read_value` makes the same value of.
 
     Examples

@@ -1,0 +1,126 @@
+"""Connectors, connections and values of arrays made into those of their elements.
+
+A connection joins two arrays of one shape element by element, or, with indices at an end, single elements.
+
+Reference: SSP 2.0, sections on Dimension and Connection.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from math import prod
+
+from shipcosim.ssp.fmu.arrays import MOST_ELEMENTS, element_names, shape_text
+from shipcosim.ssp.read.parameters import ParameterValue
+from shipcosim.ssp.read.structure import Connector, Link
+from shipcosim.ssp.xml.document import Findings
+
+Dimensions = tuple[int, ...]
+"""Sizes of an array; empty for a scalar."""
+
+
+def element_connectors(
+    connectors: Iterable[Connector], arrays: Mapping[str, Dimensions], findings: Findings
+) -> tuple[list[Connector], dict[str, Dimensions]]:
+    """Connectors with elements in place of arrays.
+
+    Parameters
+    ----------
+    connectors : iterable of Connector
+        As written.
+    arrays : mapping of str to tuple of int
+        Dimensions of the arrays, where the FMU knows them.
+    findings : Findings
+        Takes what does not fit.
+
+    Returns
+    -------
+    (list of Connector, dict of str to tuple of int)
+        And the dimensions of the arrays among them.
+    """
+    found, known = [], {}
+    for connector in connectors:
+        written = connector.dimensions
+        dimensions = arrays.get(connector.name, written)
+        if dimensions and None not in dimensions and (min(dimensions) < 1 or prod(dimensions) > MOST_ELEMENTS):
+            remedy = f"Arrays have from 1 to {MOST_ELEMENTS} elements."
+            findings.error(connector.place, f"The connector is {shape_text(dimensions)}.", remedy)
+        elif written and (None in dimensions or not _fits(written, dimensions)):
+            shown = "x".join("?" if size is None else str(size) for size in written)
+            remedy = f"Write {shape_text(arrays[connector.name])}." if connector.name in arrays else "Give its sizes."
+            findings.error(connector.place, f"The connector is an array of {shown}.", remedy)
+        elif dimensions:
+            known[connector.name] = dimensions
+            names = element_names(connector.name, dimensions)
+            found += [replace(connector, name=name, dimensions=()) for name in names]
+        else:
+            found.append(connector)
+    return found, known
+
+
+def _fits(written: tuple[int | None, ...], dimensions: tuple[int | None, ...]) -> bool:
+    pairs = zip(written, dimensions, strict=False)
+    return len(written) == len(dimensions) and all(size in (None, right) for size, right in pairs)
+
+
+def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Findings) -> list[Link]:
+    """Connections of the elements that a connection joins.
+
+    Parameters
+    ----------
+    link : Link
+        As written.
+    start, end : tuple of int
+        Dimensions of the two connectors; empty for scalars.
+    findings : Findings
+        Takes what does not fit.
+
+    Returns
+    -------
+    list of Link
+    """
+    if not (start or end or link.start_indices or link.end_indices):
+        return [link]
+    names = [
+        _end_names(name, indices, dimensions, link, findings)
+        for name, indices, dimensions in (
+            (link.start_connector, link.start_indices, start),
+            (link.end_connector, link.end_indices, end),
+        )
+    ]
+    if None in names:
+        return []
+    shapes = [() if link.start_indices else start, () if link.end_indices else end]
+    if shapes[0] != shapes[1]:
+        found = f"{shape_text(shapes[0])} cannot be connected to {shape_text(shapes[1])}."
+        findings.error(link.place, found, "Both must have the same shape; startIndices and endIndices name an element.")
+        return []
+    bare = replace(link, start_indices=(), end_indices=())
+    return [replace(bare, start_connector=a, end_connector=b) for a, b in zip(*names, strict=True)]
+
+
+def _end_names(
+    name: str, indices: tuple[int, ...], dimensions: Dimensions, link: Link, findings: Findings
+) -> list[str] | None:
+    """Names of the elements at one end, or None."""
+    if not indices:
+        return element_names(name, dimensions) if dimensions else [name]
+    inside = [1 <= index <= size for index, size in zip(indices, dimensions, strict=False)]
+    if len(indices) != len(dimensions) or not all(inside):
+        shown = ",".join(map(str, indices))
+        findings.error(
+            link.place, f"{name}[{shown}] does not exist: {name} is {shape_text(dimensions)}.", "Count from 1."
+        )
+        return None
+    return [f"{name}[{','.join(map(str, indices))}]"]
+
+
+def element_values(value: ParameterValue, findings: Findings) -> list[ParameterValue]:
+    """Parameter values of the elements, where a parameter is an array; else the value itself."""
+    if not value.dimensions:
+        return [value]
+    if min(value.dimensions) < 1 or prod(value.dimensions) != len(value.value):
+        found = f"{value.name} is {shape_text(value.dimensions)}, but has {len(value.value)} values."
+        findings.error(value.place, found, f"Give {prod(value.dimensions)}.")
+        return []
+    pairs = zip(element_names(value.name, value.dimensions), value.value, strict=True)
+    return [replace(value, name=name, value=one, dimensions=()) for name, one in pairs]

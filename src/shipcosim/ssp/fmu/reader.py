@@ -1,0 +1,128 @@
+"""FMUs read: their modelDescription.xml becomes an FmuDescription. No binary is ever loaded here.
+
+Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
+"""
+
+from os import PathLike
+from pathlib import Path
+
+import lxml.etree as etree
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.fmu.fmi1 import interfaces_of
+from shipcosim.ssp.fmu.variables import read_variables
+from shipcosim.ssp.xml.archive import entries, read_entry
+from shipcosim.ssp.xml.definitions import read_units
+from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, local, parse, parts_of
+from shipcosim.ssp.xml.validation import validate
+
+
+def read_fmu(path: str | PathLike[str], shown: str | None = None) -> FmuDescription:
+    """Read the description of an FMU without running any of it.
+
+    Parameters
+    ----------
+    path : path
+        The .fmu.
+    shown : str, optional
+        Its name in messages, where it is not `path`.
+
+    Returns
+    -------
+    FmuDescription
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is wrong with it.
+    """
+    findings = Findings()
+    fmu = describe_fmu(path, findings, shown)
+    if fmu is None or findings.errors:
+        raise ShipcosimError(findings.errors)
+    return fmu
+
+
+def describe_fmu(path: str | PathLike[str], findings: Findings, shown: str | None = None) -> FmuDescription | None:
+    """Description of an FMU, or None where nothing can be read; what is wrong is collected.
+
+    Parameters
+    ----------
+    path : path
+        The .fmu.
+    findings : Findings
+        Takes what is wrong.
+    shown : str, optional
+        Its name in messages, where it is not `path`.
+    """
+    shown = shown or str(path)
+    try:
+        data = read_entry(path, "modelDescription.xml", LARGEST_FILE, shown)
+        names = entries(path, shown)
+    except ShipcosimError as error:
+        findings.problems += error.problems
+        return None
+    if data is None:
+        findings.error(shown, "The archive has no modelDescription.xml.", "It is no FMU; export it again.")
+        return None
+    file = f"{shown}/modelDescription.xml"
+    root = parse(data, file, findings, utf8=False)
+    if root is None or not _is_fmi(root, file, findings):
+        return None
+    version = root.get("fmiVersion", "")[:1]
+    before = len(findings.problems)
+    validate(root, f"fmi{version}", file, findings)
+    if len(findings.problems) > before:
+        return None  # a description that breaks its schema is not worth guessing at
+    return _description(Document(file, root), Path(path), names, findings)
+
+
+def _is_fmi(root: etree._Element, file: str, findings: Findings) -> bool:
+    version = root.get("fmiVersion", "")
+    if local(root) != "fmiModelDescription":
+        findings.error(file, f"Its outermost element is <{local(root)}>.", "Right would be <fmiModelDescription>.")
+        return False
+    if not version.startswith(("1.", "2.", "3.")):
+        found = f"FMI version '{version}'."
+        findings.error(file, found, "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them.")
+        return False
+    return True
+
+
+def _description(document: Document, path: Path, names: list[str], findings: Findings) -> FmuDescription:
+    root = document.root
+    version = f"{root.get('fmiVersion', '')[:1]}.0"
+    platforms = {parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"}
+    return FmuDescription(
+        path=path,
+        fmi_version=version,
+        model_name=root.get("modelName", ""),
+        token=root.get("guid") or root.get("instantiationToken", ""),
+        variables=read_variables(document, findings),
+        description=root.get("description", ""),
+        generation_tool=root.get("generationTool", ""),
+        interfaces=interfaces_of(root) if version == "1.0" else _interfaces(root),
+        units=read_units(parts_of(root, "UnitDefinitions")),
+        platforms=tuple(sorted(platforms)),
+        experiment=_experiment(root),
+        n_states=_n_states(root),
+        n_event_indicators=int(root.get("numberOfEventIndicators") or 0),
+    )
+
+
+def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
+    known = ("CoSimulation", "ModelExchange", "ScheduledExecution")
+    return {local(part): dict(part.attrib) for part in root if local(part) in known}
+
+
+def _n_states(root: etree._Element) -> int:
+    """Number of continuous states: given in FMI 1.0, that of the listed derivatives in FMI 2.0."""
+    groups = [group for group in parts_of(root, "ModelStructure") if local(group) == "Derivatives"]
+    derivatives = [part for group in groups for part in group]
+    return int(root.get("numberOfContinuousStates") or 0) or len([part for part in derivatives if local(part)])
+
+
+def _experiment(root: etree._Element) -> dict[str, float]:
+    given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
+    return {name: float(text) for name, text in given.items()}

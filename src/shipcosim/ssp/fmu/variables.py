@@ -1,0 +1,145 @@
+"""Variables of an FMU read, whichever version of FMI describes them."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import lxml.etree as etree
+
+from shipcosim.ssp.fmu.description import Variable
+from shipcosim.ssp.fmu.fmi1 import is_negated, items_of, traits_of
+from shipcosim.ssp.xml.document import Document, Findings, local, parts_of
+from shipcosim.ssp.xml.values import KINDS, Value, read_value
+
+Sizes = Mapping[str, tuple[str, str | None]]
+"""Name and start value of the variables by value reference, for dimensions of arrays that are given by one of them."""
+
+
+def read_variables(document: Document, findings: Findings) -> dict[str, Variable]:
+    """Variables of a model description by name; aliases of FMI 3.0 are variables of their own.
+
+    FMI 1.0 and 2.0 put the type into a child element, FMI 3.0 makes it the element itself.
+
+    Parameters
+    ----------
+    document : Document
+        The modelDescription.xml.
+    findings : Findings
+        Takes what is wrong.
+    """
+    types = {part.get("name"): part for part in parts_of(document.root, "TypeDefinitions")}
+    elements = [part for part in parts_of(document.root, "ModelVariables") if _type_element(part) is not None]
+    sizes = {part.get("valueReference"): (part.get("name"), part.get("start")) for part in elements}
+    is_first = document.root.get("fmiVersion", "").startswith("1.")
+    variables = {}
+    for element in elements:
+        for name, description in _names(element):
+            if name in variables:
+                findings.error(document.place(element, name), "A second variable has this name.", "Names must differ.")
+            try:
+                variables[name] = _variable(element, name, description, types, sizes, is_first)
+            except ValueError as error:
+                findings.error(document.place(element, name), str(error))
+    return variables
+
+
+def _names(element: etree._Element) -> Iterator[tuple[str, str]]:
+    yield element.get("name"), element.get("description", "")
+    for alias in (part for part in element if local(part) == "Alias"):
+        yield alias.get("name"), alias.get("description", "")
+
+
+def _type_element(element: etree._Element) -> etree._Element | None:
+    """The element that carries type, unit, start and bounds."""
+    if local(element) != "ScalarVariable":
+        return element if local(element) in KINDS else None
+    return next((part for part in element if local(part) in KINDS), None)
+
+
+def _variable(
+    element: etree._Element,
+    name: str,
+    description: str,
+    types: Mapping[str, etree._Element],
+    sizes: Sizes,
+    is_first: bool,
+) -> Variable:
+    typed = _type_element(element)
+    declared = types.get(typed.get("declaredType"))
+    kind = KINDS[local(typed)]
+    written = [part for part in element if local(part) == "Dimension"]
+    dimensions = tuple(_size(part, sizes) for part in written)
+    traits = traits_of(element, typed, kind) if is_first else _traits(element, kind)
+    return Variable(
+        name=name,
+        value_reference=int(element.get("valueReference")),
+        type=local(typed),
+        **traits,
+        unit=_attribute(typed, declared, "unit"),
+        start=_start(typed, kind, dimensions),
+        minimum=_bound(typed, declared, kind, "min"),
+        maximum=_bound(typed, declared, kind, "max"),
+        description=description,
+        items=_items(declared, is_first) if kind == "Enumeration" else {},
+        dimensions=dimensions,
+        sizes=tuple(_size_as_written(part, sizes) for part in written),
+        negated=is_first and is_negated(element),
+    )
+
+
+def _traits(element: etree._Element, kind: str) -> dict[str, Any]:
+    return {
+        "causality": element.get("causality", "local"),
+        "variability": element.get("variability", "continuous" if kind == "Real" else "discrete"),
+        "initial": element.get("initial"),
+    }
+
+
+def _size(dimension: etree._Element, sizes: Sizes) -> int:
+    """Size of one dimension of an array: given as such, or the start value of a structural parameter."""
+    text = dimension.get("start") or sizes.get(dimension.get("valueReference"), (None, None))[1]
+    if text is None:
+        raise ValueError("The size of a dimension is neither given nor that of a variable with a start value.")
+    return read_value("Integer", text)
+
+
+def _size_as_written(dimension: etree._Element, sizes: Sizes) -> int | str:
+    text = dimension.get("start")
+    return sizes[dimension.get("valueReference")][0] if text is None else read_value("Integer", text)
+
+
+def _declaration(declared: etree._Element | None) -> etree._Element | None:
+    """The element of a declared type that carries the attributes, which FMI 1.0 and 2.0 nest in another one."""
+    if declared is None or local(declared) not in ("SimpleType", "Type"):
+        return declared
+    return next((part for part in declared if local(part).removesuffix("Type") in KINDS), None)
+
+
+def _attribute(typed: etree._Element, declared: etree._Element | None, name: str) -> str | None:
+    declaration = _declaration(declared)
+    return typed.get(name) or (declaration.get(name) if declaration is not None else None)
+
+
+def _bound(typed: etree._Element, declared: etree._Element | None, kind: str, name: str) -> float | None:
+    text = _attribute(typed, declared, name)
+    return None if text is None or kind not in ("Real", "Integer", "Enumeration") else float(text)
+
+
+def _items(declared: etree._Element | None, is_first: bool) -> dict[str, int]:
+    declaration = _declaration(declared)
+    if is_first:
+        return items_of(declaration)
+    found = [] if declaration is None else [part for part in declaration if local(part) == "Item"]
+    return {item.get("name"): int(item.get("value")) for item in found}
+
+
+def _start(typed: etree._Element, kind: str, dimensions: tuple[int, ...]) -> Value | None:
+    kind = "Integer" if kind == "Enumeration" else kind
+    nested = [part.get("value") for part in typed if local(part) == "Start"]
+    if nested:
+        values = tuple(read_value(kind, text) for text in nested)
+        return values if dimensions else values[0]
+    if typed.get("start") is None:
+        return None
+    if dimensions:
+        return tuple(read_value(kind, text) for text in typed.get("start").split())
+    return read_value(kind, typed.get("start"))
