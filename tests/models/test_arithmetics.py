@@ -20,7 +20,7 @@ from shipcosim.models.control import observer, reference
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.environment import current, gusts, wave_loads, wave_motion, waves
+from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning as prediction
@@ -254,6 +254,7 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
     covered |= {maths.library_of}  # tells the arithmetics apart
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
+    covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}
     missing = [f"{name}.{function.__name__}" for name, function in promising() if function not in covered]
     assert not missing
 

@@ -1,10 +1,16 @@
-"""Frames: north-east-down and body (x forward, y to starboard), in the horizontal plane."""
+"""Kinematics in the horizontal plane: north-east-down and body frame (x forward, y to starboard), rigid-body motion.
 
-from shipcosim.models.core.maths import sincos
+References
+----------
+Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 2.
+"""
+
+from shipcosim.models.core.maths import Arithmetic, sincos
+from shipcosim.models.core.motion import Load
 
 
-def to_ned(psi, forward, starboard):
-    """A vector given in body axes, in north and east.
+def to_ned(psi: Arithmetic, forward: Arithmetic, starboard: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
+    """Components in north and east of a vector given in body axes, R(ψ) of the horizontal plane.
 
     Parameters
     ----------
@@ -16,14 +22,14 @@ def to_ned(psi, forward, starboard):
     Returns
     -------
     tuple of two, like psi
-        North and east components. [same unit]
+        North and east components. [the unit of forward]
     """
     s, c = sincos(psi)
     return c * forward - s * starboard, s * forward + c * starboard
 
 
-def to_body(psi, north, east):
-    """A vector given in north and east, in body axes.
+def to_body(psi: Arithmetic, north: Arithmetic, east: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
+    """Components in body axes of a vector given in north and east, R(ψ)ᵀ of the horizontal plane.
 
     Parameters
     ----------
@@ -35,7 +41,7 @@ def to_body(psi, north, east):
     Returns
     -------
     tuple of two, like psi
-        Components forward and to starboard. [same unit]
+        Components forward and to starboard. [the unit of north]
 
     Examples
     --------
@@ -48,7 +54,7 @@ def to_body(psi, north, east):
     return c * north + s * east, c * east - s * north
 
 
-def eta_dot(psi, u, v, r):
+def eta_dot(psi: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
     """Rate of position and heading, η̇ = R(ψ) ν.
 
     Parameters
@@ -56,17 +62,12 @@ def eta_dot(psi, u, v, r):
     psi : float or (...) array or tensor
         Heading. [rad]
     u, v, r : like psi
-        Body velocity. [m/s, m/s, rad/s]
+        Velocity in body axes. [m/s, m/s, rad/s]
 
     Returns
     -------
     tuple of three, like psi
         Rates of x, y, psi. [m/s, m/s, rad/s]
-
-    References
-    ----------
-    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control,
-    2nd ed., Wiley, 2021, ch. 2.
 
     Examples
     --------
@@ -80,7 +81,9 @@ def eta_dot(psi, u, v, r):
     return x_dot, y_dot, r
 
 
-def velocity_at(x, y, u, v, r):
+def velocity_at(
+    x: Arithmetic, y: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic
+) -> tuple[Arithmetic, Arithmetic]:
     """Velocity of a point fixed to the ship.
 
     Parameters
@@ -98,8 +101,8 @@ def velocity_at(x, y, u, v, r):
     return u - y * r, v + x * r
 
 
-def load_at(x, y, X, Y):
-    """A force at a point fixed to the ship as load about the origin.
+def load_at(x: Arithmetic, y: Arithmetic, X: Arithmetic, Y: Arithmetic) -> Load:
+    """Load about the origin of a force that acts at a point fixed to the ship.
 
     Parameters
     ----------
@@ -111,6 +114,6 @@ def load_at(x, y, X, Y):
     Returns
     -------
     tuple of three, like x
-        Load about the origin. [N, N, N.m]
+        X, Y, N about the origin. [N, N, N.m]
     """
     return X, Y, x * Y - y * X

@@ -10,6 +10,7 @@ Definitions of elementary functions.
 
 import math
 import sys
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ _TINY = 1e-30
 _FEW = 256  # elements, below which a call of NumPy costs more than what it computes
 
 
-def library_of(*values: Arithmetic) -> Any:
+def library_of(*values: Arithmetic) -> ModuleType:
     """The library that computes with some values: torch where one of them is a tensor, NumPy elsewhere.
 
     Parameters
@@ -34,7 +35,7 @@ def library_of(*values: Arithmetic) -> Any:
     Returns
     -------
     module
-        ``numpy`` or ``torch``.
+        numpy or torch.
     """
     torch = sys.modules.get("torch")
     if torch is not None and any(isinstance(value, torch.Tensor) for value in values):

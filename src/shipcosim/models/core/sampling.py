@@ -1,17 +1,25 @@
-"""Own clocks and own noise: what a component samples and draws depends on time and seed, never on the step size."""
+"""Sampling and random numbers of components: they depend on time and seed, never on the step size.
 
+References
+----------
+Definition. Sample times by integer counts: nominal model, sensors.
+"""
+
+from collections.abc import Sequence
 from functools import lru_cache
 from math import floor
 from zlib import crc32
 
 import numpy as np
 
+from shipcosim.models.core.maths import Arithmetic
+
 _BLOCK = 256
 _TOLERANCE = 1e-6  # of a period: the time of a master that adds up its steps falls short by 5e-10 s in 1100 s
 
 
-def samples_due(t, period):
-    """How many samples are due at time t: sample k is due from k * period on, the first at 0.
+def samples_due(t: float, period: float) -> int:
+    """Number of samples that are due at time t: sample k is due from k times the period on, the first at 0.
 
     Parameters
     ----------
@@ -23,7 +31,7 @@ def samples_due(t, period):
     Returns
     -------
     int
-        Number of samples due in [0, t].
+        Number of samples due in [0, t]. [1]
 
     Examples
     --------
@@ -33,8 +41,8 @@ def samples_due(t, period):
     return floor(t / period + _TOLERANCE) + 1
 
 
-def tidy_time(t):
-    """Time to 10 ns, so that it does not matter how a master comes by it: one that adds up its steps drifts.
+def tidy_time(t: float) -> float:
+    """Time rounded to 10 ns, so that a master that adds up its steps gives the same as one that multiplies.
 
     Parameters
     ----------
@@ -54,28 +62,34 @@ def tidy_time(t):
     return round(t, 8)
 
 
-def generator(purpose, seed, block=0):
-    """Random generator of its own for a purpose and a seed.
+def generator(purpose: str, seed: int, block: int = 0) -> np.random.Generator:
+    """Random generator that depends on purpose, seed and block alone.
 
     Parameters
     ----------
     purpose : str
         What the numbers are for; components that share a seed draw different numbers.
     seed : int
-        Seed, not negative.
+        Seed, not negative. [1]
     block : int
-        Number of the block of draws.
+        Number of the block of draws. [1]
 
     Returns
     -------
     numpy.random.Generator
+        The generator, at its start.
+
+    Raises
+    ------
+    ValueError
+        The seed is negative; the message names the purpose.
     """
     if seed < 0:
         raise ValueError(f"seed of the {purpose} is {seed}; it must be 0 or above")
     return np.random.default_rng((crc32(purpose.encode()), int(seed), int(block)))
 
 
-def normals(purpose, seed, k, width):
+def normals(purpose: str, seed: int | np.ndarray, k: int, width: int) -> Sequence[Arithmetic]:
     """Standard normal numbers of sample k: the same for the same arguments, independent between samples.
 
     Parameters
@@ -83,15 +97,21 @@ def normals(purpose, seed, k, width):
     purpose : str
         What the numbers are for.
     seed : int or (m,) array of int
-        Seed; an array gives every variation its own numbers.
+        Seed, not negative; an array gives every variation its own numbers. [1]
     k : int
-        Number of the sample, from 0.
+        Number of the sample, from 0. [1]
     width : int
-        How many numbers the sample needs.
+        How many numbers the sample needs. [1]
 
     Returns
     -------
     sequence of `width` floats or (m,) arrays
+        The numbers. [1]
+
+    Raises
+    ------
+    ValueError
+        A seed is negative.
     """
     if isinstance(seed, int):
         return _block(purpose, seed, k // _BLOCK, width)[k % _BLOCK]
@@ -100,6 +120,7 @@ def normals(purpose, seed, k, width):
 
 @lru_cache(maxsize=64)
 def _block(purpose, seed, block, width):
+    """256 rows of `width` numbers: one block of one seed."""
     return generator(purpose, seed, block).standard_normal((_BLOCK, width)).tolist()
 
 

@@ -1,10 +1,16 @@
-"""Tables inside parameter sets: text, rows by semicolons, columns by blanks."""
+"""Tables inside parameter sets: text, rows by semicolons, columns by blanks.
 
+References
+----------
+Definition of this text form.
+"""
+
+from collections.abc import Iterable
 from functools import lru_cache
 
 
 @lru_cache(maxsize=64)
-def parse(text):
+def parse(text: str) -> tuple[tuple[float, ...], ...]:
     """Rows of a table, parsed once per text.
 
     Parameters
@@ -15,7 +21,7 @@ def parse(text):
     Returns
     -------
     tuple of tuples of float
-        One tuple per row, all of the same length.
+        One tuple per row, all of the same length. [as the parameter set says]
 
     Raises
     ------
@@ -35,7 +41,7 @@ def parse(text):
 
 
 @lru_cache(maxsize=64)
-def columns(text, width):
+def columns(text: str, width: int) -> tuple[tuple[float, ...], ...]:
     """Columns of a table whose first column increases, parsed once per text.
 
     Parameters
@@ -43,17 +49,18 @@ def columns(text, width):
     text : str
         Rows by ";", columns by blanks.
     width : int
-        Number of columns there must be.
+        Number of columns that the table must have. [1]
 
     Returns
     -------
     tuple of tuples of float
-        One tuple per column.
+        One tuple per column. [as the parameter set says]
 
     Raises
     ------
     ValueError
-        No such table; it says what was found.
+        The table is not one of numbers, has another number of columns, fewer than two rows, or a first column that does
+        not increase; the message says what was found.
 
     Examples
     --------
@@ -69,16 +76,18 @@ def columns(text, width):
     return tuple(zip(*rows, strict=True))
 
 
-def text(rows):
+def text(rows: Iterable[Iterable[float]]) -> str:
     """The table as text, the inverse of `parse` to five digits.
 
     Parameters
     ----------
     rows : iterable of iterables of float
+        Values, row by row. [as the parameter set says]
 
     Returns
     -------
     str
+        Rows by ";", columns by blanks.
 
     Examples
     --------
@@ -89,6 +98,7 @@ def text(rows):
 
 
 def _row(number, row):
+    """Numbers of a row."""
     try:
         return tuple(float(value) for value in row.split())
     except ValueError:

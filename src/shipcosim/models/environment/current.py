@@ -1,9 +1,9 @@
-"""A current that turns or grows while a log is taken."""
+"""A current that turns or changes its speed during a run."""
 
 from dataclasses import dataclass
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import atan2, clip, hypot, where
+from shipcosim.models.core.maths import Arithmetic, atan2, clip, hypot, where
 from shipcosim.models.core.parameters import quantity
 
 _STILL = 1e-9  # m/s, below which a current has no direction
@@ -21,10 +21,20 @@ class VaryingCurrentParameters:
     time_end: float = quantity(600.0, "s", "time until which it varies", "set by the system")
 
 
-def varying_current(t, north_start, east_start, north_end, east_end, *, time_start, time_end):
-    """Current between two: speed and direction are each linear in time, the direction turns the shorter way.
+def varying_current(
+    t: Arithmetic,
+    north_start: Arithmetic,
+    east_start: Arithmetic,
+    north_end: Arithmetic,
+    east_end: Arithmetic,
+    *,
+    time_start: float,
+    time_end: float,
+) -> tuple[Arithmetic, Arithmetic]:
+    """Current between two times: speed and direction are each linear in time, the direction turns the shorter way.
 
-    Before the start and after the end it stays. Where one of the two is no current, the direction is the other's.
+    Before the start and after the end it stays as it is there. Where one of the two currents has no speed, its
+    direction is that of the other.
 
     Parameters
     ----------
@@ -33,12 +43,16 @@ def varying_current(t, north_start, east_start, north_end, east_end, *, time_sta
     north_start, east_start, north_end, east_end : like t
         Velocity of the water at the start and at the end. [m/s]
     time_start, time_end : float
-        When; the end is later than the start. [s]
+        Times of start and end; the end is later. [s]
 
     Returns
     -------
     tuple of two, like t
-        Speed, and direction it flows to, clockwise from north in [-π, π). [m/s, rad]
+        Speed, and direction the current flows to, clockwise from north in [-π, π). [m/s, rad]
+
+    References
+    ----------
+    Assumed: linear in speed and direction.
 
     Examples
     --------

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from shipcosim.models.core.kinematics import load_at, to_body
-from shipcosim.models.core.maths import clip, hypot
+from shipcosim.models.core.maths import Arithmetic, clip, hypot
 from shipcosim.models.core.parameters import quantity
 
 _SURGE_SHARE, _SWAY_POWER, _YAW_ARM = 1.0 / 3.0, 2.0, -1.5
@@ -49,20 +49,24 @@ class DriftForceParameters:
     )
 
 
-def onset(t, *, onset_time, ramp_time):
-    """Share of an effect that is there: 0 before its onset, growing linearly to 1 over the ramp.
+def onset(t: Arithmetic, *, onset_time: Arithmetic, ramp_time: Arithmetic) -> Arithmetic:
+    """Share of an effect that acts at a time: 0 before its onset, growing linearly to 1 over the ramp.
 
     Parameters
     ----------
     t : float or (...) array or tensor
         Time. [s]
     onset_time, ramp_time : like t
-        When it begins, and how long it grows; 0: at once. [s]
+        Time of the onset, and duration of the ramp; 0: a step. [s]
 
     Returns
     -------
     like t
-        In [0, 1].
+        In [0, 1]. [1]
+
+    References
+    ----------
+    Definition.
 
     Examples
     --------

@@ -1,15 +1,15 @@
 """Gusts: the longitudinal turbulence of the wind at 10 m as a function of time, after the NORSOK spectrum.
 
 Assumed: the gust acts along the mean wind and at once on the whole ship; no lateral or vertical turbulence, so that the
-wind's direction does not flicker. The frequencies are the component's own, from 1/600 to 0.5 Hz, the range for which
-the spectrum is meant; slower changes are the scenario's business, who sets the mean.
+wind direction has no turbulence. The frequencies go from 1/600 to 0.5 Hz, the range for which the spectrum is meant;
+slower changes belong to the mean wind, which the scenario sets.
 """
 
 from functools import lru_cache
 
 import numpy as np
 
-from shipcosim.models.core.maths import cos, maximum, pi, sqrt
+from shipcosim.models.core.maths import Arithmetic, cos, maximum, pi, sqrt
 from shipcosim.models.core.sampling import generator
 from shipcosim.models.environment.sinusoids import column, per_seed, tensors_if_any, total
 
@@ -21,7 +21,7 @@ _ALMOST_CALM = 1e-6  # m/s
 _MIDDLES = np.sqrt(_EDGES[1:] * _EDGES[:-1])
 
 
-def norsok(frequency, mean_speed):
+def norsok(frequency: Arithmetic, mean_speed: Arithmetic) -> Arithmetic:
     """NORSOK (Froya) spectrum of the longitudinal wind speed at 10 m.
 
     Parameters
@@ -45,12 +45,11 @@ def norsok(frequency, mean_speed):
     return (mean_speed / 10.0) ** 2 * _shape(frequency, mean_speed)
 
 
-def gust(t, mean_speed, seed):
+def gust(t: Arithmetic, mean_speed: Arithmetic, seed: int | np.ndarray) -> Arithmetic:
     """Deviation of the wind speed from its mean: a sum of sinusoids, so that no step size enters.
 
-    The band is cut into `COMPONENTS` bins of equal ratio, with one sinusoid of the bin's variance at a frequency drawn
-    inside it. While the mean changes, the amplitudes follow it and the phases go on: a gust stays where it is and
-    grows with the wind.
+    The band is cut into `COMPONENTS` bins of equal ratio, with one sinusoid of the variance of the bin at a frequency
+    drawn inside it. While the mean wind changes, the amplitudes follow it and the phases go on.
 
     Parameters
     ----------
@@ -58,21 +57,25 @@ def gust(t, mean_speed, seed):
         Time. [s]
     mean_speed : float or (m,) array or tensor
         Present mean at 10 m, not negative. [m/s]
-    seed : int or (m,) array
-        Seed of frequencies and phases.
+    seed : int or (m,) array of int
+        Seed of frequencies and phases, not negative. [1]
 
     Returns
     -------
     like mean_speed
         Gust along the mean wind. [m/s]
+
+    References
+    ----------
+    Spectrum as `norsok`; the band and the gust along the mean wind are assumed.
     """
     omega, phase = per_seed(_frequencies_and_phases, seed)
     (wave,) = tensors_if_any((cos(omega * column(t) + phase),), mean_speed)
     return total(_amplitudes(mean_speed), wave)
 
 
-def gust_std(mean_speed):
-    """Standard deviation of `gust`: the root of the spectrum's integral over the band.
+def gust_std(mean_speed: Arithmetic) -> Arithmetic:
+    """Standard deviation of `gust`: root of the integral of the spectrum over the band.
 
     Parameters
     ----------
@@ -82,7 +85,11 @@ def gust_std(mean_speed):
     Returns
     -------
     like mean_speed
-        [m/s]
+        Standard deviation. [m/s]
+
+    References
+    ----------
+    As `gust`.
 
     Examples
     --------
@@ -96,7 +103,7 @@ def gust_std(mean_speed):
 
 
 def _amplitudes(mean_speed):
-    """Of floats and arrays computed once while the mean does not change."""
+    """Amplitudes of the components; of floats and arrays computed once while the mean does not change."""
     if isinstance(mean_speed, float):
         return _float_amplitudes(mean_speed)
     if isinstance(mean_speed, np.ndarray):
@@ -105,6 +112,7 @@ def _amplitudes(mean_speed):
 
 
 def _any_amplitudes(mean_speed):
+    """Amplitudes of the components: roots of twice the variance of each bin."""
     middles, widths = tensors_if_any((_MIDDLES, _EDGES[1:] - _EDGES[:-1]), mean_speed)
     speed = column(mean_speed)
     return speed / 10.0 * sqrt(2.0 * _shape(middles, speed) * widths)
@@ -115,11 +123,12 @@ _float_amplitudes = lru_cache(maxsize=64)(_any_amplitudes)
 
 @lru_cache(maxsize=4)
 def _array_amplitudes(content, shape):
+    """Amplitudes for an array, given as bytes and shape, which can be kept."""
     return _any_amplitudes(np.frombuffer(content).reshape(shape))
 
 
 def _shape(frequency, mean_speed):
-    """The spectrum over (U/10)^2; calm has that of next to no wind."""
+    """The spectrum over (U/10)^2; in calm air that of `_ALMOST_CALM`."""
     n = 0.468
     ratio = 172.0 * frequency * (maximum(mean_speed, _ALMOST_CALM) / 10.0) ** -0.75
     return 320.0 / (1.0 + ratio**n) ** (5.0 / (3.0 * n))
@@ -127,6 +136,7 @@ def _shape(frequency, mean_speed):
 
 @lru_cache(maxsize=64)
 def _frequencies_and_phases(seed):
+    """Circular frequencies and phases of one seed, (n,) each."""
     random = generator("gusts", seed)
     frequency = _EDGES[:-1] * (_EDGES[1:] / _EDGES[:-1]) ** random.random(COMPONENTS)
     return 2.0 * pi * frequency, random.uniform(0.0, 2.0 * pi, COMPONENTS)

@@ -1,37 +1,90 @@
-"""What waves and gusts share: arrays whose last axis is the component of a sum of sinusoids.
+"""Sums of sinusoids, of which waves and gusts are made: arrays whose last axis is the component.
 
 One sea or one wind has arrays (n,); m variations at once have values (m,) and arrays (n,) or (m, n).
+
+References
+----------
+Definition.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 
-from shipcosim.models.core.maths import library_of
+from shipcosim.models.core.maths import Arithmetic, library_of
 
 
-def column(x):
-    """x with a last axis for the components; a single number stays as it is."""
+def column(x: Arithmetic) -> Arithmetic:
+    """Values with a last axis for the components; a single number stays as it is.
+
+    Parameters
+    ----------
+    x : float or (m,) array or tensor
+        Values. [any unit]
+
+    Returns
+    -------
+    float or (m, 1) array or tensor
+        The values. [the unit of x]
+    """
     return x if isinstance(x, (float, int)) else x[..., None]
 
 
-def total(a, b):
-    """Sum of a b over the components; a float where both are (n,) arrays."""
+def total(a: Arithmetic, b: Arithmetic) -> Arithmetic:
+    """Sum of the products a b over the components.
+
+    Parameters
+    ----------
+    a, b : (n,) or (m, n) array or tensor
+        Factors. [any units]
+
+    Returns
+    -------
+    float or (m,) array or tensor
+        The sum; a float where both factors are (n,) arrays. [unit of a times unit of b]
+    """
     if isinstance(a, np.ndarray):
         return float(a.dot(b)) if a.ndim == b.ndim == 1 else np.einsum("...n,...n->...", a, b)
     return (a * b).sum(-1)
 
 
-def tensors_if_any(arrays, *values):
-    """The arrays as tensors of the kind of the first tensor among the values; as they are where there is none."""
+def tensors_if_any(arrays: tuple, *values: Arithmetic) -> tuple:
+    """Arrays as tensors of the kind of the first tensor among some values; as they are where there is none.
+
+    Parameters
+    ----------
+    arrays : tuple of arrays
+        What is to be combined with the values. [any units]
+    values : float or (m,) array or tensor
+        Values that decide. [any units]
+
+    Returns
+    -------
+    tuple of arrays or tensors
+        The same numbers. [the units of arrays]
+    """
     if library_of(*values) is np:
         return arrays
     tensor = next(value for value in values if hasattr(value, "new_tensor"))
     return tuple(tensor.new_tensor(array) for array in arrays)
 
 
-def per_seed(draw, seed):
-    """What `draw(seed)` gives, a tuple of (n,) arrays; stacked to (m, n) for an (m,) array of seeds."""
+def per_seed(draw: Callable[[int], tuple], seed: int | np.ndarray) -> tuple:
+    """Random arrays of one seed, or of several seeds in rows.
+
+    Parameters
+    ----------
+    draw : callable
+        ``draw(seed)`` gives a tuple of (n,) arrays.
+    seed : int or (m,) array of int
+        Seed, not negative. [1]
+
+    Returns
+    -------
+    tuple of (n,) or (m, n) arrays
+        What `draw` gives; one row per seed. [the units of what draw gives]
+    """
     if isinstance(seed, int):
         return draw(seed)
     return _stacked(draw, tuple(np.ravel(seed).tolist()), np.shape(seed))

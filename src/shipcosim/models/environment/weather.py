@@ -1,10 +1,12 @@
-"""Weather: mean wind and current that move towards their setpoints at set rates, and gusts on top."""
+"""Weather: mean wind and current that follow their setpoints at limited rates, with gusts added."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import clip, cos, sin
+from shipcosim.models.core.maths import Arithmetic, clip, cos, sin
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.environment.gusts import gust
 
@@ -42,7 +44,7 @@ class EnvironmentParameters:
 
 
 class EnvironmentState(NamedTuple):
-    """The true means at one time.
+    """Mean wind and current at one time.
 
     Parameters
     ----------
@@ -52,14 +54,23 @@ class EnvironmentState(NamedTuple):
         Current, where it flows to. [m/s, rad]
     """
 
-    wind_speed: float
-    wind_from: float
-    current_speed: float
-    current_to: float
+    wind_speed: Arithmetic
+    wind_from: Arithmetic
+    current_speed: Arithmetic
+    current_to: Arithmetic
 
 
-def step(h, state, wind_speed, wind_from, current_speed, current_to, *, parameters):
-    """Means after a step: each towards its setpoint, directions the shortest way round, none faster than its rate.
+def step(
+    h: float,
+    state: EnvironmentState,
+    wind_speed: Arithmetic,
+    wind_from: Arithmetic,
+    current_speed: Arithmetic,
+    current_to: Arithmetic,
+    *,
+    parameters: EnvironmentParameters,
+) -> EnvironmentState:
+    """Means after a step: each goes to its setpoint no faster than its rate limit, directions the shorter way.
 
     Parameters
     ----------
@@ -70,10 +81,16 @@ def step(h, state, wind_speed, wind_from, current_speed, current_to, *, paramete
     wind_speed, wind_from, current_speed, current_to : like those of the state
         Setpoints during the step. [m/s, rad, m/s, rad]
     parameters : EnvironmentParameters
+        Rate limits.
 
     Returns
     -------
     EnvironmentState
+        Means at the end of the step.
+
+    References
+    ----------
+    Assumed: rate limits of mean wind and current.
 
     Examples
     --------
@@ -93,8 +110,10 @@ def step(h, state, wind_speed, wind_from, current_speed, current_to, *, paramete
     )
 
 
-def air_velocity(t, state, *, gust_scale, seed):
-    """Velocity of the air at 10 m over ground: where it goes to, gusts included.
+def air_velocity(
+    t: Arithmetic, state: EnvironmentState, *, gust_scale: Arithmetic, seed: int | np.ndarray
+) -> tuple[Arithmetic, Arithmetic]:
+    """Velocity of the air at 10 m over ground, gusts included: where it goes to.
 
     Parameters
     ----------
@@ -102,15 +121,19 @@ def air_velocity(t, state, *, gust_scale, seed):
         Time. [s]
     state : EnvironmentState
         Means at t.
-    gust_scale : float
+    gust_scale : float or (m,) array
         Gusts over those of the spectrum. [1]
-    seed : int or (m,) array
-        Seed of the gusts.
+    seed : int or (m,) array of int
+        Seed of the gusts, not negative. [1]
 
     Returns
     -------
     tuple of two, like the state
         North and east component. [m/s]
+
+    References
+    ----------
+    Definition; gusts as `gusts.gust`.
 
     Examples
     --------
@@ -125,7 +148,7 @@ def air_velocity(t, state, *, gust_scale, seed):
     return -speed * cos(state.wind_from), -speed * sin(state.wind_from)
 
 
-def water_velocity(state):
+def water_velocity(state: EnvironmentState) -> tuple[Arithmetic, Arithmetic]:
     """Velocity of the water over ground: where it goes to.
 
     Parameters
@@ -137,13 +160,19 @@ def water_velocity(state):
     -------
     tuple of two, like the state
         North and east component. [m/s]
+
+    References
+    ----------
+    Definition.
     """
     return state.current_speed * cos(state.current_to), state.current_speed * sin(state.current_to)
 
 
 def _towards(value, setpoint, furthest):
+    """A value moved towards its setpoint by at most `furthest`."""
     return value + clip(setpoint - value, -furthest, furthest)
 
 
 def _turned(angle, setpoint, furthest):
+    """A direction turned towards its setpoint the shorter way, by at most `furthest`."""
     return wrap(angle + clip(wrap(setpoint - angle), -furthest, furthest))

@@ -6,7 +6,8 @@ from functools import cached_property, lru_cache
 from shipcosim.angles import wrap
 from shipcosim.models.core.interpolation import interp_columns
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import atan2, hypot, pi, where
+from shipcosim.models.core.maths import Arithmetic, atan2, hypot, pi, where
+from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity
 from shipcosim.models.core.tables import columns
 from shipcosim.models.ship.load_tables import WIND_33M9
@@ -36,8 +37,10 @@ class WindParameters:
         return acts(self.apparent_wind_offset)
 
 
-def apparent_wind(psi, u, v, wind_north, wind_east):
-    """The wind as the ship meets it.
+def apparent_wind(
+    psi: Arithmetic, u: Arithmetic, v: Arithmetic, wind_north: Arithmetic, wind_east: Arithmetic
+) -> tuple[Arithmetic, Arithmetic]:
+    """Wind relative to the moving ship.
 
     Parameters
     ----------
@@ -51,7 +54,11 @@ def apparent_wind(psi, u, v, wind_north, wind_east):
     Returns
     -------
     tuple of two, like psi
-        Speed, and direction the wind comes from, clockwise from the bow. [m/s, rad in (-π, π]]
+        Speed, and direction the wind comes from, clockwise from the bow. [m/s, rad in [-π, π]]
+
+    References
+    ----------
+    Definition.
 
     Examples
     --------
@@ -65,7 +72,7 @@ def apparent_wind(psi, u, v, wind_north, wind_east):
     return hypot(u_r, v_r), atan2(v_r, u_r)
 
 
-def wind_loads(speed, wind_from, *, wind):
+def wind_loads(speed: Arithmetic, wind_from: Arithmetic, *, wind: WindParameters) -> Load:
     """Loads of the apparent wind, by linear interpolation in the angle; wind from port mirrors wind from starboard.
 
     Parameters
@@ -81,6 +88,15 @@ def wind_loads(speed, wind_from, *, wind):
     -------
     tuple of three, like speed
         X, Y, N. [N, N, N.m]
+
+    Raises
+    ------
+    ValueError
+        The table is not one of four columns whose angles go from 0 to 180 deg.
+
+    References
+    ----------
+    Blendermann, Parameter identification of wind loads on ships, J. Wind Eng. Ind. Aerodyn. 51, 1994.
     """
     if wind.turned:
         wind_from = wrap(wind_from - wind.apparent_wind_offset)

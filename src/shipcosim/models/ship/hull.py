@@ -7,7 +7,8 @@ for which it has coefficients; a new effect is one more function here, with coef
 from dataclasses import dataclass
 from functools import cached_property
 
-from shipcosim.models.core.maths import maximum, minimum
+from shipcosim.models.core.maths import Arithmetic, maximum, minimum
+from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity
 
 _MARLEY = "calibrated to the trials of 2022 by M. Marley, MCSim_python, grade B"
@@ -166,13 +167,13 @@ class HullParameters:
         )
 
 
-def hull_loads(u_r, v_r, r, *, hull):
-    """Sum of all contributions.
+def hull_loads(u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Hydrodynamic loads on a hull: the sum of all contributions for which it has coefficients.
 
     Parameters
     ----------
     u_r, v_r, r : float or (...) array or tensor
-        Velocity through the water. [m/s, m/s, rad/s]
+        Velocity relative to the water and yaw rate. [m/s, m/s, rad/s]
     hull : HullParameters
         The hull.
 
@@ -180,6 +181,11 @@ def hull_loads(u_r, v_r, r, *, hull):
     -------
     tuple of three, like u_r
         X, Y, N. [N, N, N.m]
+
+    References
+    ----------
+    Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.1 to 2.3;
+    each contribution names its own.
     """
     X = Y = N = 0.0 * u_r
     for name in hull.contributions:
@@ -188,8 +194,8 @@ def hull_loads(u_r, v_r, r, *, hull):
     return X, Y, N
 
 
-def added_mass_coriolis(u, v, r, *, hull):
-    """Loads -C_A(nu_r) nu_r, centripetal effect of the added mass.
+def added_mass_coriolis(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Coriolis and centripetal loads of the added mass, -C_A(ν_r) ν_r.
 
     Parameters and returns as `hull_loads`.
 
@@ -203,26 +209,47 @@ def added_mass_coriolis(u, v, r, *, hull):
     return sway * r, -surge * r, surge * v - sway * u
 
 
-def linear_damping(u, v, r, *, hull):
-    """Damping proportional to velocity. Parameters and returns as `hull_loads`."""
+def linear_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Linear damping, -D ν_r.
+
+    Parameters and returns as `hull_loads`.
+
+    References
+    ----------
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
+    """
     X_u, Y_v, Y_r, N_v, N_r = hull.linear
     return X_u * u, Y_v * v + Y_r * r, N_v * v + N_r * r
 
 
-def quadratic_damping(u, v, r, *, hull):
-    """Damping proportional to the square of each velocity. Parameters and returns as `hull_loads`."""
+def quadratic_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Quadratic damping of each velocity, X_uu u abs(u) and its like.
+
+    Parameters and returns as `hull_loads`.
+
+    References
+    ----------
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
+    """
     X_uu, Y_vv, N_rr = hull.quadratic
     return X_uu * u * abs(u), Y_vv * v * abs(v), N_rr * r * abs(r)
 
 
-def lift(u, v, r, *, hull):
-    """Side force of a hull at an angle of attack, acting at one point. Parameters and returns as `hull_loads`."""
+def lift(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Side force by lift of a hull at an angle of attack, which acts at one point.
+
+    Parameters and returns as `hull_loads`.
+
+    References
+    ----------
+    Assumed form, abs(u_r) v_r; coefficient and point of attack are fitted (nominal model, equation of motion).
+    """
     Y = hull.lift * abs(u) * v
     return 0.0 * u, Y, hull.lift_x * Y
 
 
-def cross_flow(u, v, r, *, hull):
-    """Drag of each strip's own sway velocity, integrated exactly over the length.
+def cross_flow(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Cross-flow drag: drag of each strip by its own sway velocity, integrated over the length in closed form.
 
     With k = rho C_d T / 2 and half the length l,
 
@@ -233,6 +260,11 @@ def cross_flow(u, v, r, *, hull):
         Y = -2 k l v (M + m² / 3M),  N = -k l² w M (1/2 + q² - q⁴/6).
 
     Parameters and returns as `hull_loads`.
+
+    References
+    ----------
+    Strip-wise cross-flow drag: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021,
+    ch. 6. The closed form of the integrals is derived here.
     """
     half, k = hull.strips
     w = r * half
@@ -243,10 +275,11 @@ def cross_flow(u, v, r, *, hull):
     return 0.0 * u, Y, -k * half * w * larger * (0.5 + q - q * q / 6.0)
 
 
-def polynomial(u, v, r, *, hull):
-    """Manoeuvring polynomial of the SIMVAL project, less its terms with Xudot, Yvdot, Yrdot and Nvdot.
+def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Manoeuvring polynomial of the SIMVAL project, without its terms in Xudot, Yvdot, Yrdot and Nvdot.
 
-    Those are C_A(nu_r) nu_r written out and come from `added_mass_coriolis`: counted once.
+    Those terms are C_A(ν_r) ν_r written out and come from `added_mass_coriolis`, so that they are counted once.
+
     Parameters and returns as `hull_loads`.
 
     References

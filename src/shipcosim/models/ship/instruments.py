@@ -1,20 +1,25 @@
-"""What a ship's log shows of her motion, where antenna, compass, log or clock are not as assumed.
+"""Measured motion of a ship whose antenna, compass, speed log or clock is not as assumed.
 
-The rules are those of logs: position and velocity are the antenna's; surge and sway are its velocity over ground,
-resolved with the measured heading.
+Position and velocity are those of the antenna; surge and sway are its velocity over ground resolved with the measured
+heading.
+
+References
+----------
+Definition.
 """
 
 from dataclasses import dataclass
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import to_body, to_ned, velocity_at
+from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
 
 
 @dataclass(frozen=True)
 class InstrumentParameters:
-    """What can be wrong between a ship and her log."""
+    """Errors of the instruments."""
 
     heading_bias: float = quantity(0.0, "rad", "measured heading minus the true one", "neutral")
     lever_x: float = quantity(0.0, "m", "antenna forward of the origin", "neutral")
@@ -23,8 +28,20 @@ class InstrumentParameters:
     lag: float = quantity(0.0, "s", "by how much all of it is late", "neutral", minimum=0.0)
 
 
-def shown(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, velocity_scale=1.0):
-    """What the log shows of a motion.
+def shown(
+    x: Arithmetic,
+    y: Arithmetic,
+    psi: Arithmetic,
+    u: Arithmetic,
+    v: Arithmetic,
+    r: Arithmetic,
+    *,
+    heading_bias: Arithmetic = 0.0,
+    lever_x: Arithmetic = 0.0,
+    lever_y: Arithmetic = 0.0,
+    velocity_scale: Arithmetic = 1.0,
+) -> Motion:
+    """Motion as the instruments measure it, without noise.
 
     Parameters
     ----------
@@ -38,6 +55,7 @@ def shown(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, vel
     Returns
     -------
     Motion
+        Measured position of the antenna, heading, and velocity of the antenna resolved with the measured heading.
 
     Examples
     --------
@@ -53,15 +71,27 @@ def shown(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, vel
     return Motion(x + north, y + east, wrap(psi + heading_bias), u, v, r)
 
 
-def motion_of(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0, velocity_scale=1.0):
-    """The true motion of which the log shows this, the inverse of `shown`: for runs that start from a logged state.
+def motion_of(
+    x: Arithmetic,
+    y: Arithmetic,
+    psi: Arithmetic,
+    u: Arithmetic,
+    v: Arithmetic,
+    r: Arithmetic,
+    *,
+    heading_bias: Arithmetic = 0.0,
+    lever_x: Arithmetic = 0.0,
+    lever_y: Arithmetic = 0.0,
+    velocity_scale: Arithmetic = 1.0,
+) -> Motion:
+    """True motion that belongs to a measured one, the inverse of `shown`: for runs that start from a logged state.
 
     Parameters
     ----------
     x, y, psi : float or (...) array or tensor
         Logged position and heading. [m, m, rad]
     u, v, r : like x
-        Logged velocity. [m/s, m/s, rad/s]
+        Logged velocity and yaw rate. [m/s, m/s, rad/s]
     heading_bias, lever_x, lever_y, velocity_scale : like x
         As in `InstrumentParameters`. [rad, m, m, 1]
 
@@ -77,13 +107,15 @@ def motion_of(x, y, psi, u, v, r, *, heading_bias=0.0, lever_x=0.0, lever_y=0.0,
     return Motion(x - north, y - east, psi, u, v, r)
 
 
-def remembered(history, t, values, since):
-    """A history with one more entry, and without those that nobody asks for any more.
+def remembered(
+    history: tuple[tuple[float, Motion], ...], t: float, values: Motion, since: float
+) -> tuple[tuple[float, Motion], ...]:
+    """History of a motion with one more entry, without entries that are older than needed.
 
     Parameters
     ----------
     history : tuple of (float, Motion)
-        In the order of time.
+        Times and motions, in the order of time. [s]
     t : float
         Time of the new entry. [s]
     values : Motion
@@ -93,28 +125,30 @@ def remembered(history, t, values, since):
 
     Returns
     -------
-    tuple like history
+    tuple of (float, Motion)
+        The new history. [s]
     """
     first = next((number for number, (time, _) in enumerate(history) if time > since), len(history))
     return (*history[max(first - 1, 0) :], (t, values))
 
 
-def recalled(history, t):
-    """What there was at a time: linear between entries, headings the shorter way.
+def recalled(history: tuple[tuple[float, Motion], ...], t: float) -> Motion:
+    """Motion at a time of its history: linear between entries, headings the shorter way.
 
-    Before the first entry all is as there, behind the last it goes on as between the last two: an FMU that shows what
-    is true at the end of its step has been told what was true at its start.
+    Before the first entry the motion is that of the first; after the last it is extrapolated from the last two, because
+    an FMU that outputs values at the end of its step has inputs of its start.
 
     Parameters
     ----------
     history : tuple of (float, Motion)
-        In the order of time, not empty.
+        Times and motions, in the order of time, not empty. [s]
     t : float
         Time. [s]
 
     Returns
     -------
     Motion
+        Motion at t.
 
     Examples
     --------

@@ -1,7 +1,12 @@
-"""What the ship's sensors say: truth plus slowly wandering error, white noise and bias, sampled on their own clock.
+"""Sensors: true values with Gauss-Markov error, white noise and bias, sampled at a period of their own.
 
 Sample k is taken at the first step that starts at k * period or later, of the truth at that time, with random numbers
 that depend on the seed and k alone. So a finer step gives the same measurements.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper II, Table I,
+read as the nominal model says under sensors.
 """
 
 from dataclasses import dataclass
@@ -9,7 +14,7 @@ from math import radians
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import atan2, cos, exp, hypot, sin, sqrt
+from shipcosim.models.core.maths import Arithmetic, atan2, cos, exp, hypot, sin, sqrt
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.core.sampling import normals, samples_due
 
@@ -58,7 +63,7 @@ class SensorParameters:
 
 
 class Truth(NamedTuple):
-    """What there is to measure; low-frequency motion and wave motion added.
+    """What is measured: motion, low-frequency and wave motion added, and apparent wind; true or as measured.
 
     Parameters
     ----------
@@ -70,29 +75,29 @@ class Truth(NamedTuple):
         Wind relative to the ship, from the bow. [m/s, rad]
     """
 
-    x: float
-    y: float
-    psi: float
-    u: float
-    v: float
-    r: float
-    apparent_wind_speed: float
-    apparent_wind_from: float
+    x: Arithmetic
+    y: Arithmetic
+    psi: Arithmetic
+    u: Arithmetic
+    v: Arithmetic
+    r: Arithmetic
+    apparent_wind_speed: Arithmetic
+    apparent_wind_from: Arithmetic
 
 
 class SensorState(NamedTuple):
-    """Between samples.
+    """State of the sensors between samples.
 
     Parameters
     ----------
     taken : int
-        Samples taken so far, counted from t = 0.
+        Samples taken so far, counted from t = 0. [1]
     drift : tuple of three
         Gauss-Markov errors of x, y, psi. [m, m, rad]
     wind : tuple of pairs
         Latest samples of the wind's components from ahead and from starboard. [m/s, m/s]
     measured : Truth
-        Last sample: what the sensors say until the next.
+        Last sample, which holds until the next.
     """
 
     taken: int
@@ -101,20 +106,22 @@ class SensorState(NamedTuple):
     measured: Truth
 
 
-def start(t, truth, *, parameters):
-    """First sample, with the wandering errors in their stationary distribution.
+def start(t: float, truth: Truth, *, parameters: SensorParameters) -> SensorState:
+    """First sample, with the Gauss-Markov errors drawn from their stationary distribution.
 
     Parameters
     ----------
     t : float
         Time of the start. [s]
     truth : Truth
-        What there is to measure at t.
+        True values at t.
     parameters : SensorParameters
+        Errors and sample period.
 
     Returns
     -------
     SensorState
+        State after the first sample.
     """
     k = samples_due(t, parameters.period) - 1
     numbers = normals("sensors", parameters.seed, k, 11)
@@ -123,7 +130,7 @@ def start(t, truth, *, parameters):
     return _sampled(k, drift, (), numbers, truth, parameters)
 
 
-def step(t, state, truth, *, parameters):
+def step(t: float, state: SensorState, truth: Truth, *, parameters: SensorParameters) -> SensorState:
     """State after all samples that are due by t.
 
     Parameters
@@ -131,14 +138,16 @@ def step(t, state, truth, *, parameters):
     t : float
         Time at the start of a step. [s]
     state : SensorState
-        After the samples before.
+        State after the samples before.
     truth : Truth
-        What there is to measure at t.
+        True values at t.
     parameters : SensorParameters
+        Errors and sample period.
 
     Returns
     -------
     SensorState
+        State after the samples.
     """
     due = samples_due(t, parameters.period)
     while state.taken < due:
@@ -162,6 +171,7 @@ def _wandered(drift, numbers, parameters):
 
 
 def _sampled(k, drift, wind, numbers, truth, parameters):
+    """State after sample k, with its random numbers."""
     p = parameters
     latest = (
         truth.apparent_wind_speed * cos(truth.apparent_wind_from),

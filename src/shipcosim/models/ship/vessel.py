@@ -1,13 +1,20 @@
-"""Motion of a ship in surge, sway and yaw, in a current that is uniform and holds over a step."""
+"""Equations of motion of a ship in surge, sway and yaw, in a uniform current that is held over a step.
+
+References
+----------
+Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6; Skulstad, Data-based
+modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.1 to 2.3.
+"""
 
 from dataclasses import dataclass
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import rk4_motion, substeps
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity
-from shipcosim.models.ship.hull import hull_loads
+from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.load_tables import DRIFT_33M9
 
 _LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
@@ -15,7 +22,7 @@ _LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at fu
 
 @dataclass(frozen=True)
 class DriftParameters:
-    """What the waves' mean drift finds to act on."""
+    """Wave drift coefficients."""
 
     drift_table: str = quantity(
         DRIFT_33M9,
@@ -26,18 +33,29 @@ class DriftParameters:
     )
 
 
-def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
-    """The ship a step later.
+def step(
+    vessel: Motion,
+    tau_X: Arithmetic,
+    tau_Y: Arithmetic,
+    tau_N: Arithmetic,
+    current_north: Arithmetic,
+    current_east: Arithmetic,
+    h: float,
+    *,
+    hull: HullParameters,
+) -> Motion:
+    """Motion of the ship one step later.
 
-    M_RB ν̇ + C_RB(ν) ν + M_A ν̇_r + C_A(ν_r) ν_r + D(ν_r) = τ. Seen from the water, which moves uniformly,
-    this is the same law with ν_r in place of ν: it is integrated there (Runge-Kutta), the way of the water is added.
+    M_RB ν̇ + C_RB(ν) ν + M_A ν̇_r + C_A(ν_r) ν_r + D(ν_r) = τ. Relative to the water, which moves uniformly, the
+    equation is the same with ν_r in place of ν: it is integrated there by Runge-Kutta steps, and the way of the water
+    is added.
 
     Parameters
     ----------
     vessel : Motion
         State at the start.
     tau_X, tau_Y, tau_N : like the state
-        Loads from outside in body axes, held over the step. [N, N, N.m]
+        External loads in body axes, held over the step. [N, N, N.m]
     current_north, current_east : like the state
         Velocity of the water, held over the step. [m/s]
     h : float
@@ -63,15 +81,24 @@ def step(vessel, tau_X, tau_Y, tau_N, current_north, current_east, h, *, hull):
     return Motion(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
 
 
-def accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, *, hull):
-    """Rates of the velocity through the water.
+def accelerations(
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    tau_X: Arithmetic,
+    tau_Y: Arithmetic,
+    tau_N: Arithmetic,
+    *,
+    hull: HullParameters,
+) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+    """Rates of the velocity relative to the water, ν̇_r.
 
     Parameters
     ----------
     u_r, v_r, r : float or (...) array or tensor
-        Velocity through the water. [m/s, m/s, rad/s]
+        Velocity relative to the water and yaw rate. [m/s, m/s, rad/s]
     tau_X, tau_Y, tau_N : like u_r
-        Loads from outside. [N, N, N.m]
+        External loads. [N, N, N.m]
     hull : HullParameters
         The hull.
 
@@ -84,7 +111,7 @@ def accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, *, hull):
 
 
 def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
-    """`accelerations` with the hull's loads as they are."""
+    """`accelerations` from known hull loads."""
     X, Y, N = loads
     m, xg = hull.rigid_body[0], hull.centre_of_gravity_x
     X = X + tau_X + m * r * (v_r + xg * r)
@@ -94,8 +121,10 @@ def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
     return i11 * X, i22 * Y + i26 * N, i62 * Y + i66 * N
 
 
-def through_water(psi, u, v, current_north, current_east):
-    """Velocity relative to the water.
+def through_water(
+    psi: Arithmetic, u: Arithmetic, v: Arithmetic, current_north: Arithmetic, current_east: Arithmetic
+) -> tuple[Arithmetic, Arithmetic]:
+    """Velocity of the ship relative to the water.
 
     Parameters
     ----------
@@ -122,10 +151,28 @@ def through_water(psi, u, v, current_north, current_east):
     return u - u_c, v - v_c
 
 
-def nu_dot(vessel, tau_X, tau_Y, tau_N, current_north, current_east, *, hull):
-    """Rates of the velocity over ground; with ν̇_c = (r v_c, -r u_c, 0) of a constant current.
+def nu_dot(
+    vessel: Motion,
+    tau_X: Arithmetic,
+    tau_Y: Arithmetic,
+    tau_N: Arithmetic,
+    current_north: Arithmetic,
+    current_east: Arithmetic,
+    *,
+    hull: HullParameters,
+) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+    """Rates of the velocity over ground, ν̇ = ν̇_r + ν̇_c with ν̇_c = (r v_c, -r u_c, 0) of a constant current.
 
-    Parameters as `step`.
+    Parameters
+    ----------
+    vessel : Motion
+        State.
+    tau_X, tau_Y, tau_N : like the state
+        External loads in body axes. [N, N, N.m]
+    current_north, current_east : like the state
+        Velocity of the water. [m/s]
+    hull : HullParameters
+        The hull.
 
     Returns
     -------
@@ -135,15 +182,37 @@ def nu_dot(vessel, tau_X, tau_Y, tau_N, current_north, current_east, *, hull):
     return at_present(vessel, tau_X, tau_Y, tau_N, current_north, current_east, hull=hull)[1]
 
 
-def at_present(vessel, tau_X, tau_Y, tau_N, current_north, current_east, *, hull):
-    """What follows from state and loads at one time.
+def at_present(
+    vessel: Motion,
+    tau_X: Arithmetic,
+    tau_Y: Arithmetic,
+    tau_N: Arithmetic,
+    current_north: Arithmetic,
+    current_east: Arithmetic,
+    *,
+    hull: HullParameters,
+) -> tuple[tuple, tuple, Load]:
+    """Velocity relative to the water, rates and hull loads that follow from state and external loads at one time.
 
-    Parameters as `step`.
+    Parameters
+    ----------
+    vessel : Motion
+        State.
+    tau_X, tau_Y, tau_N : like the state
+        External loads in body axes. [N, N, N.m]
+    current_north, current_east : like the state
+        Velocity of the water. [m/s]
+    hull : HullParameters
+        The hull.
 
     Returns
     -------
-    tuple of tuples
-        Velocity through the water u_r, v_r; rates as of `nu_dot`; loads of the water on the hull as `hull_loads`.
+    relative : tuple of two, like the state
+        Velocity relative to the water, u_r and v_r. [m/s]
+    rates : tuple of three, like the state
+        As `nu_dot`. [m/s2, m/s2, rad/s2]
+    loads : tuple of three, like the state
+        Loads of the water on the hull, as `hull.hull_loads`. [N, N, N.m]
     """
     u_c, v_c = to_body(vessel.psi, current_north, current_east)
     u_r, v_r, r = vessel.u - u_c, vessel.v - v_c, vessel.r
