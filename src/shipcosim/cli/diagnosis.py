@@ -84,7 +84,8 @@ def diagnose_log(data, folder, *, system=None, channels=None, effects=None):
     """
     from shipcosim.cli.results import staged
     from shipcosim.diagnose.pipeline import find_causes
-    from shipcosim.report.diagnosis.page import Story, write_diagnosis
+    from shipcosim.report.diagnosis.page import write_diagnosis
+    from shipcosim.report.diagnosis.story import Story
     from shipcosim.ssp import read_system
 
     _check_inputs(data, channels, effects)
@@ -266,7 +267,7 @@ def print_diagnosis(story, folder, as_json):
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
-    from shipcosim.report.diagnosis.page import key_figures
+    from shipcosim.report.diagnosis.key_figures import key_figures
     from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome, title, where
 
     diagnosis = story.diagnosis
@@ -274,9 +275,9 @@ def print_diagnosis(story, folder, as_json):
         print(json.dumps(diagnosis.as_json(), indent=2, ensure_ascii=False))
         return
     console = Console(highlight=False, soft_wrap=True)
-    word, sentence = outcome(diagnosis, story.causes)
+    verdict = outcome(diagnosis, story.causes)
     style = {"consistent": "bold green", "named": "bold blue"}.get(diagnosis.verdict, "bold red")
-    console.print(Text(word, style=style), Text(sentence))
+    console.print(Text(verdict.word, style=style), Text(verdict.sentence))
     listed = Table(box=None, pad_edge=False, show_header=False)
     for finding in diagnosis.findings:
         name, sure = title(finding.cause, finding.component), f"{100 * finding.probability:.0f} %"

@@ -14,11 +14,15 @@ from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.result import Candidate, Diagnosis, ExperimentDesign, Finding
 from shipcosim.diagnose.validation.gain import baseline, compare, gain, rms
 from shipcosim.diagnose.validation.missing_force import missing_force
-from shipcosim.report.diagnosis.causes import manoeuvre_rows, not_testable_rows, whiteness
-from shipcosim.report.diagnosis.data import log_panels, track_panel
-from shipcosim.report.diagnosis.error import condition_table, error_panels, error_table, force_panels
-from shipcosim.report.diagnosis.page import Story, render, write_diagnosis
-from shipcosim.report.diagnosis.parts import metres
+from shipcosim.report.diagnosis.cause_figures import whiteness
+from shipcosim.report.diagnosis.force_figures import force_figures
+from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
+from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
+from shipcosim.report.diagnosis.page import render, write_diagnosis
+from shipcosim.report.diagnosis.prediction_errors import condition_table, error_figures, error_table
+from shipcosim.report.diagnosis.story import Story
+from shipcosim.report.diagnosis.testability import not_testable_rows
+from shipcosim.report.theme.numbers import metres
 from shipcosim.ssp import read_system
 from truth import draw
 
@@ -52,55 +56,55 @@ def log_of(rows=600):
     return xr.Dataset(columns, {"time": time})
 
 
-def by_title(panels):
-    return {panel["title"]: panel for panel in panels}
+def by_title(figures):
+    return {figure.title: figure for figure in figures}
 
 
 def test_stretches_of_a_fault_are_shaded_in_the_panels_of_its_channels_only():
     fault = Finding("gap", kind="data", segments=((100.0, 120.0),), channels=("north",))
-    panels = by_title(log_panels(log_of(), log_of(), [fault]))
-    (shape,) = panels["Position"]["layout"]["shapes"]
+    panels = by_title(log_figures(log_of(), log_of(), [fault]))
+    (shape,) = panels["Position"].layout["shapes"]
     assert (shape["x0"], shape["x1"]) == (100.0, 120.0)
-    assert panels["Heading"]["layout"]["shapes"] == []
+    assert panels["Heading"].layout["shapes"] == []
 
 
 def test_fault_of_the_whole_log_is_shaded_throughout():
     fault = Finding("sign", kind="data", channels=("heading",))
-    (shape,) = by_title(log_panels(log_of(), log_of(), [fault]))["Heading"]["layout"]["shapes"]
+    (shape,) = by_title(log_figures(log_of(), log_of(), [fault]))["Heading"].layout["shapes"]
     assert (shape["x0"], shape["x1"]) == (0.0, 599.0)
 
 
 def test_channel_is_drawn_as_logged_only_where_it_was_changed():
     clean = log_of()
     clean["north"][100:121] = np.nan
-    (logged, north, east) = by_title(log_panels(log_of(), clean, []))["Position"]["data"]
+    (logged, north, east) = by_title(log_figures(log_of(), clean, []))["Position"].traces
     assert (logged["name"], north["name"], east["name"]) == ("north, logged", "north", "east")
     assert logged["y"][110] == 110.0 and north["y"][110] is None
 
 
 def test_repaired_clock_is_drawn_over_the_time_that_was_logged():
     clean = log_of().assign_coords(logged_time=("time", 0.5 * np.arange(600.0)))
-    data = by_title(log_panels(log_of(), clean, []))["Position"]["data"]
+    data = by_title(log_figures(log_of(), clean, []))["Position"].traces
     assert next(trace for trace in data if trace["name"] == "east")["x"][-1] == 299.5
 
 
 def test_heading_is_interrupted_where_it_passes_north():
-    (trace,) = by_title(log_panels(log_of(), log_of(), []))["Heading"]["data"]
+    (trace,) = by_title(log_figures(log_of(), log_of(), []))["Heading"].traces
     assert trace["y"].count(None) == 1
     pairs = [(a, b) for a, b in zip(trace["y"][:-1], trace["y"][1:], strict=True) if None not in (a, b)]
     assert max(abs(a - b) for a, b in pairs) < 1.0
 
 
 def test_thruster_whose_speed_is_much_larger_gets_a_panel_of_its_own():
-    titles = by_title(log_panels(log_of(), log_of(), []))
+    titles = by_title(log_figures(log_of(), log_of(), []))
     assert {"Shaft speed, port", "Shaft speed, tunnel"} <= set(titles)
 
 
 def test_track_is_to_one_scale_with_north_up():
-    track = track_panel(log_of())
-    assert track["layout"]["yaxis"]["scaleanchor"] == "x"
-    assert track["data"][0]["y"][-1] == 599.0 and track["data"][0]["x"][-1] == 1198.0
-    assert track_panel(log_of().drop_vars("north")) is None
+    track = track_figure(log_of())
+    assert track.layout["yaxis"]["scaleanchor"] == "x"
+    assert track.traces[0]["y"][-1] == 599.0 and track.traces[0]["x"][-1] == 1198.0
+    assert track_figure(log_of().drop_vars("north")) is None
 
 
 def errors_of():
@@ -112,11 +116,11 @@ def errors_of():
 
 
 def test_errors_are_root_mean_squares_by_horizon_and_by_what_the_ship_did():
-    plain = error_panels(errors_of(), ("plain", "floor"))[0]["data"][0]
+    plain = error_figures(errors_of(), ("plain", "floor"))[0].traces[0]
     assert plain["x"] == ["10 s", "30 s", "60 s"]
     assert plain["y"][0] == pytest.approx(np.sqrt(np.mean([0, 1, 4, 9])), rel=1e-2)
-    head, rows = error_table(errors_of())
-    moving = dict(zip(head, next(row for row in rows if row[0] == "moving"), strict=True))
+    table = error_table(errors_of())
+    moving = dict(zip(table.head, next(row for row in table.rows if row[0] == "moving"), strict=True))
     assert moving["Segments"] == "2" and moving["Position [m]"] == "9.5 / 22"  # of 9, 10 and 21, 22
 
 
@@ -126,11 +130,11 @@ def test_missing_force_against_the_wind_is_its_mean_in_sectors():
     force = {name: ("time", np.zeros(n), {"units": "N"}) for name in ("surge", "sway", "north", "east")}
     force["surge"] = ("time", 1000.0 * np.cos(np.radians(wind)), {"units": "N"})
     force |= {"yaw": ("time", np.zeros(n), {"units": "N.m"}), "heading": ("time", wind), "wind_from": ("time", wind)}
-    panels = by_title(force_panels(xr.Dataset(force, {"time": wind}), None, []))
-    surge = panels["Missing force against the wind"]["data"][0]
+    panels = by_title(force_figures(xr.Dataset(force, {"time": wind}), None, []))
+    surge = panels["Missing force against the wind"].traces[0]
     assert len(surge["x"]) == 24 and surge["x"][0] == 7.5
     assert surge["y"] == pytest.approx(np.cos(np.radians(surge["x"])), abs=0.01)
-    assert panels["Missing force, body frame"]["data"][0]["y"][0] == pytest.approx(1.0)  # kN
+    assert panels["Missing force, body frame"].traces[0]["y"][0] == pytest.approx(1.0)  # kN
 
 
 def test_innovations_are_whiter_with_the_cause_than_without(story):
@@ -152,7 +156,7 @@ def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(story):
 def test_manoeuvre_is_told_step_by_step_from_start_to_end(story):
     model = story.details.problem.model
     for manoeuvre in library(model):
-        rows = manoeuvre_rows(manoeuvre)
+        rows = manoeuvre_steps(manoeuvre)
         assert rows[0][0].startswith("0–") and all(doing for _, doing in rows)
         assert max(int(re.search(r"–(\d+) s", when).group(1)) for when, _ in rows) == round(60 * manoeuvre.minutes)
         assert all(any(push.thruster in doing for _, doing in rows) for push in manoeuvre.pushes)
@@ -160,7 +164,7 @@ def test_manoeuvre_is_told_step_by_step_from_start_to_end(story):
 
 def test_box_is_told_with_its_corners():
     box = Manoeuvre("box", ((90.0, 30.0, 0.0, 0.0), (90.0, 30.0, 30.0, 0.0), (60.0, 30.0, 30.0, np.pi / 2)))
-    assert manoeuvre_rows(box) == [
+    assert manoeuvre_steps(box) == [
         ("0–90 s", "move to 30 m ahead"),
         ("90–180 s", "move to 30 m ahead and 30 m to starboard"),
         ("180–240 s", "turn to 90° clockwise of the first heading"),
@@ -183,7 +187,7 @@ def test_ambiguous_log_shows_what_to_sail(story):
 def test_every_link_of_the_chain_is_on_the_page(story):
     text = render(story)
     for key in SECTIONS:
-        assert f"<section id='{key}'>" in text and f"href='#{key}'" in text
+        assert f'<section id="{key}">' in text and f'href="#{key}"' in text
     gain = story.diagnosis.gain
     assert f"{100 * gain['share_of_explainable']:.0f} %" in text
     assert "The system could not be extended" in text  # this story has none
@@ -191,7 +195,8 @@ def test_every_link_of_the_chain_is_on_the_page(story):
 
 def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(story):
     errors, some = story.comparison.errors, story.comparison.errors.isel(segment=slice(0, 12))
-    head, rows = condition_table(errors, {"free drift": some})
+    table = condition_table(errors, {"free drift": some})
+    head, rows = table.head, table.rows
     assert [row[0] for row in rows] == [
         "the later part",
         *(f"of it {name}" for name in np.unique(errors["regime"])),

@@ -4,8 +4,9 @@ import pytest
 
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
-from shipcosim.report.diagnosis.numbers import plain, plus_minus, vector
+from shipcosim.report.diagnosis.estimates import plus_minus, vector
 from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome, title, told, where
+from shipcosim.report.theme.numbers import plain
 
 LOSS = Finding("thrust_loss", "port", parameters={"loss": Estimate(0.337, 0.0121, "1")})
 GAP = Finding("gap", kind="data", segments=((463.0, 499.0), (912.0, 1001.0)), channels=("north", "east"))
@@ -111,8 +112,8 @@ def test_every_cause_of_the_catalogue_has_advice():
     ids=["consistent", "one", "two", "data", "both", "unknown", "ambiguous"],
 )
 def test_verdict_is_one_sentence_on_model_and_log(diagnosis, word, said):
-    found, sentence = outcome(diagnosis)
-    assert found == word and all(text in sentence for text in said)
+    found = outcome(diagnosis)
+    assert found.word == word and all(text in found.sentence for text in said)
 
 
 def test_next_steps_name_what_to_inspect_what_to_run_and_what_stays_open():

@@ -1,9 +1,13 @@
 """The ship on the chart."""
 
+import json
+
 import numpy as np
 import pytest
+import xarray as xr
 
-from shipcosim.report.run.track import hull_outline, outline_rows, placed
+from shipcosim.report.run.roles import find_roles
+from shipcosim.report.run.track import hull_outline, outline_rows, placed, ship_size, track_figure
 
 
 def area(east, north):
@@ -44,3 +48,26 @@ def test_long_way_is_outlined_at_even_distances_and_not_too_often():
     rows = outline_rows(way, 0.0 * way, 0.0 * way, 33.9)
     assert len(rows) <= 41
     assert len(set(np.diff(rows[:-1]))) == 1
+
+
+def chart_of(start_values):
+    """The chart of a ship that sails 100 m north; with these start values in the table's attributes."""
+    way = np.linspace(0.0, 100.0, 101)
+    signals = {"vessel.x": (way, "m"), "vessel.y": (0.0 * way, "m"), "vessel.psi": (0.0 * way, "rad")}
+    table = xr.Dataset({k: ("time", v, {"units": unit}) for k, (v, unit) in signals.items()}, {"time": way})
+    table.attrs["start_values"] = json.dumps(start_values)
+    roles = find_roles(table.data_vars)
+    return track_figure(table, roles, (), ship_size(table, roles))
+
+
+def test_ship_is_drawn_to_scale_where_the_table_says_how_large_she_is():
+    chart = chart_of({"vessel.length": 40.0, "vessel.breadth": 10.0})
+    assert np.ptp(chart.outline[0]) == 40.0 and np.ptp(chart.outline[1]) == 10.0
+    assert "ship on the way" in [trace["name"] for trace in chart.traces]
+
+
+@pytest.mark.parametrize("start_values", [{}, {"vessel.length": 40.0}])
+def test_ship_of_unknown_size_is_a_small_symbol_that_says_so(start_values):
+    chart = chart_of(start_values)
+    assert np.ptp(chart.outline[0]) == pytest.approx(8.0)
+    assert "ship on the way, not to scale" in [trace["name"] for trace in chart.traces]

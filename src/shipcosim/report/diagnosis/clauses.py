@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from shipcosim.diagnose.result import Estimate
-from shipcosim.report.diagnosis.numbers import plus_minus, vector
+from shipcosim.report.diagnosis.estimates import plus_minus, vector
 
 __all__ = ["filled"]
 

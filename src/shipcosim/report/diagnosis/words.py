@@ -6,7 +6,9 @@ from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.result import Diagnosis, ExperimentDesign, Finding
 from shipcosim.report.diagnosis.clauses import filled
-from shipcosim.report.diagnosis.numbers import amount, plus_minus, span
+from shipcosim.report.diagnosis.estimates import amount, plus_minus
+from shipcosim.report.theme.numbers import span
+from shipcosim.report.theme.views import Outcome
 
 
 def title(cause: str, component: str | None = None) -> str:
@@ -61,7 +63,7 @@ def _fault(finding: Finding) -> str:
     return text
 
 
-def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> tuple[str, str]:
+def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> Outcome:
     """The verdict as a word, and in one sentence.
 
     Parameters
@@ -72,8 +74,13 @@ def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> 
 
     Returns
     -------
-    tuple of str, str
+    Outcome
     """
+    word, sentence = _verdict(diagnosis, causes)
+    return Outcome(diagnosis.verdict, word, sentence)
+
+
+def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[str, str]:
     data = [told(f) for f in diagnosis.findings if f.kind == "data"]
     physics = [told(f, causes) for f in diagnosis.findings if f.kind == "physics"]
     log = f" The log itself is faulty: {_listed(data)}." if data else ""
@@ -151,7 +158,7 @@ def _manoeuvre(prescription: ExperimentDesign | None) -> str:
 
 def estimate_rows(finding: Finding) -> list[tuple[str, str, str, str]]:
     """Name, value with standard deviation and unit of each parameter, as texts."""
-    largest = {}
+    largest: dict[str, float] = {}
     for estimate in finding.parameters.values():
         largest[estimate.unit] = max(abs(estimate.estimate), largest.get(estimate.unit, 0.0))
     return [(n.replace("_", " "), *amount(e, largest=largest[e.unit])) for n, e in finding.parameters.items()]

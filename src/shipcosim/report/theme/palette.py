@@ -5,6 +5,7 @@ They can be told apart with every kind of colour vision. `theme/figures.js` look
 
 BLUE, VERMILLION, GREEN, ORANGE = "@blue", "@vermillion", "@green", "@orange"
 SKY, PURPLE, OLIVE, INK, FAINT = "@sky", "@purple", "@olive", "@ink", "@faint"
+FAULT, BAND = "@fault", "@band"  # behind curves: where a log is faulty, what white noise stays within
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, OLIVE, INK)
 
 SHIP, REFERENCE, SET_POINT, MEASURED, EXPECTED, COMMAND = BLUE, ORANGE, INK, FAINT, PURPLE, INK

@@ -58,6 +58,8 @@ class Figure:
         plotly wants. A colour is a name of `palette`.
     layout : dict
         Layout of plotly, as far as it is this figure's own.
+    height : int, optional
+        Height on the page, where it is not that of all figures. [px]
     """
 
     title: str
@@ -65,6 +67,7 @@ class Figure:
     traces: tuple[dict[str, Any], ...]
     layout: dict[str, Any] = field(default_factory=dict)
     note: str = ""
+    height: int | None = None
 
     @property
     def drawn(self) -> dict[str, Any]:

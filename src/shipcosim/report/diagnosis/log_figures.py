@@ -1,9 +1,18 @@
-"""Figures of a diagnosis' first link: the log over time, as logged and as used, with the stretches that are faulty."""
+"""Figures of the log: its channels over time, as logged and as used, with faulty stretches shaded; the track."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from xarray import DataArray, Dataset
 
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
+from shipcosim.diagnose.result import Finding
+from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import as_variable, thinned
+from shipcosim.report.theme.figures import TIME, line, rounded
+from shipcosim.report.theme.views import Figure
 
 GROUPS = (  # title, channels, unit
     ("Position", ("north", "east"), "m"),
@@ -13,29 +22,12 @@ GROUPS = (  # title, channels, unit
     ("Wind speed", ("wind_speed", "true_wind_speed"), "m/s"),
     ("Wind from", ("wind_from", "true_wind_from"), "deg"),
 )
-COLOURS = ("blue", "orange", "green", "purple", "sky", "olive")
+COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.SKY, palette.OLIVE)
 MOST_BYTES = 900_000
-TIME = {"ticksuffix": " s", "showticksuffix": "first"}
 
 
-def line(name, x, y, colour, **more):
-    """A curve; colours are names of the style sheet."""
-    look = {"color": f"@{colour}", "width": more.pop("width", 1.5), "dash": more.pop("dash", "solid")}
-    return {"type": "scatter", "mode": "lines", "name": name, "x": rounded(x), "y": rounded(y), "line": look} | more
-
-
-def rounded(values, digits=5):
-    """Numbers with few digits, None where there is none."""
-    return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, float)]
-
-
-def panel(title, unit, traces, note="", **layout):
-    """A figure of the page, with a heading above it and a sentence below."""
-    return {"title": title, "unit": unit, "data": traces, "layout": layout, "note": note}
-
-
-def log_panels(log, clean, findings):
-    """Panels of all channels.
+def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> list[Figure]:
+    """Figures of all channels.
 
     Parameters
     ----------
@@ -46,13 +38,13 @@ def log_panels(log, clean, findings):
 
     Returns
     -------
-    list of dict
+    list of Figure
     """
     raw, used = _ordered(log), _on_log_time(clean)
     faults = [f for f in findings if f.kind == "data"]
     named = {channel for _, channels, _ in GROUPS for channel in channels}
     groups = [*GROUPS, *_thrusters([str(n) for n in log.data_vars if n not in named], log)]
-    panels = []
+    figures = []
     for title, channels, unit in groups:
         there = [c for c in channels if c in raw]
         if not there:
@@ -60,11 +52,11 @@ def log_panels(log, clean, findings):
         pairs = [_traces(raw, used, channel, COLOURS[k % len(COLOURS)], unit) for k, channel in enumerate(there)]
         traces = [trace for pair in pairs for trace in pair[:-1]] + [pair[-1] for pair in pairs]
         shapes = [shape for fault in faults if _concerns(fault, there) for shape in _shades(fault, raw)]
-        panels.append(panel(title, unit, traces, shapes=shapes, xaxis=TIME))
-    return panels
+        figures.append(Figure(title, unit, tuple(traces), {"shapes": shapes, "xaxis": TIME}))
+    return figures
 
 
-def track_panel(clean):
+def track_figure(clean: Dataset) -> Figure | None:
     """Where the ship went, north up; None without positions."""
     if "north" not in clean or "east" not in clean:
         return None
@@ -83,7 +75,7 @@ def track_panel(clean):
                 "x": rounded(east[[row]]),
                 "y": rounded(north[[row]]),
             },
-            "marker": {"color": "@ink", "size": 9, "symbol": symbol, "line": {"color": "@ink", "width": 2}},
+            "marker": {"color": palette.INK, "size": 9, "symbol": symbol, "line": {"color": palette.INK, "width": 2}},
         }
         for row, name, symbol in ends
     ]
@@ -91,22 +83,24 @@ def track_panel(clean):
         "xaxis": {"title": {"text": "East"}},
         "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"},
     }
-    return panel("Track", "m", [line("track", east, north, "blue"), *marks], **axes)
+    return Figure("Track", "m", (line("track", east, north, palette.BLUE), *marks), axes)
 
 
-def _ordered(log):
+def _ordered(log: Dataset) -> Dataset:
+    """The rows in the order of their times; rows without a time are left out."""
     time = log["time"].values
     rows = np.flatnonzero(np.isfinite(time))
     return _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
 
 
-def _on_log_time(clean):
+def _on_log_time(clean: Dataset) -> Dataset:
+    """The repaired log over the times that were logged."""
     if "logged_time" not in clean.coords:
         return _shown(clean)
     return _shown(clean.assign_coords(time=("time", clean["logged_time"].values)).drop_vars("logged_time"))
 
 
-def _shown(table):
+def _shown(table: Dataset) -> Dataset:
     """The table as `thinned` takes it."""
     found = table.drop_vars([n for n in table.data_vars if table[n].dtype.kind not in "fiu"])
     for name in found.data_vars:
@@ -116,7 +110,7 @@ def _shown(table):
     return found
 
 
-def _thrusters(names, log):
+def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str, ...], str]]:
     """Groups of the thrusters' channels: of one quantity, and of similar size."""
     found = []
     for suffix, title, unit in (
@@ -133,7 +127,8 @@ def _thrusters(names, log):
     return found
 
 
-def _traces(raw, used, channel, colour, unit):
+def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -> list[dict[str, Any]]:
+    """A channel as used; before it as logged, where that differs."""
     label = channel.replace("_", " ")
     traces = []
     old, _ = thinned(raw[[channel]], MOST_BYTES // 40)
@@ -141,7 +136,13 @@ def _traces(raw, used, channel, colour, unit):
     if new is None or not _same(raw[channel], used[channel]):
         traces.append(
             _curve(
-                f"{label}, logged", old["time"].values, old[channel].values, "faint", unit, width=3.0, showlegend=False
+                f"{label}, logged",
+                old["time"].values,
+                old[channel].values,
+                palette.FAINT,
+                unit,
+                width=3.0,
+                showlegend=False,
             )
         )
     if new is not None:
@@ -149,11 +150,11 @@ def _traces(raw, used, channel, colour, unit):
     return traces
 
 
-def _same(one, other):
+def _same(one: DataArray, other: DataArray) -> bool:
     return one.size == other.size and np.array_equal(one.values, other.values, equal_nan=True)
 
 
-def _curve(name, time, values, colour, unit, **look):
+def _curve(name: str, time: NDArray, values: NDArray, colour: str, unit: str, **look: Any) -> dict[str, Any]:
     """A channel over time; angles are interrupted where they go round."""
     if unit == "deg":
         turns = np.flatnonzero(np.abs(np.diff(values)) > 180.0) + 1
@@ -161,14 +162,15 @@ def _curve(name, time, values, colour, unit, **look):
     return line(name, time, values, colour, hovertemplate=f"%{{y:.4~g}} {unit}", **look)
 
 
-def _concerns(fault, channels):
-    return not fault.channels or read_faults()[fault.cause].in_every_channel or set(fault.channels) & set(channels)
+def _concerns(fault: Finding, channels: Sequence[str]) -> bool:
+    everywhere = not fault.channels or read_faults()[fault.cause].in_every_channel
+    return everywhere or not set(fault.channels).isdisjoint(channels)
 
 
-def _shades(fault, raw):
+def _shades(fault: Finding, raw: Dataset) -> Iterator[dict[str, Any]]:
     time = raw["time"].values
     for start, end in fault.segments or ((time[0], time[-1]),):
         yield {
             **{"type": "rect", "x0": float(start), "x1": float(end), "y0": 0, "y1": 1, "yref": "paper"},
-            **{"layer": "below", "fillcolor": "@fault", "line": {"width": 0}},
+            **{"layer": "below", "fillcolor": palette.FAULT, "line": {"width": 0}},
         }

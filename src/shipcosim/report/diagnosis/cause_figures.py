@@ -1,0 +1,151 @@
+"""Figures of the causes: evidence, estimates, unmodelled errors, and whiteness of the innovations."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.noise import explained
+from shipcosim.diagnose.inference.search import without_causes
+from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
+from shipcosim.report.diagnosis.words import title
+from shipcosim.report.theme import palette
+from shipcosim.report.theme.figures import TIME, limit, line, rounded
+from shipcosim.report.theme.views import Figure
+
+CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
+COLOURS = (palette.BLUE, palette.SKY, palette.PURPLE, palette.GREEN, palette.OLIVE, palette.ORANGE)
+MOST_SETS, LAGS = 12, 30
+UNMODELLED_KINDS = {
+    "slow": "a slow force in the ship's frame",
+    "with the heading": "a force that goes with the heading",
+    "from part to part": "the best cause's size, from part to part of the log",
+    "beyond tolerances": "the ship's numbers, farther off than their tolerances say",
+    "periodic": "a periodic force",
+    "in a channel": "an error of a channel",
+}
+
+
+def label_of(fit: Fit) -> str:
+    """A set of causes as people write it."""
+    return "\n+ ".join(title(s.cause, s.component) for s in fit.hypotheses) or "Nothing"
+
+
+def evidence_figure(fits: Sequence[Fit], chosen: Fit) -> Figure:
+    """How much likelier the log is with each set of causes than with none.
+
+    Parameters
+    ----------
+    fits : sequence of Fit
+        Best first.
+    chosen : Fit
+        That the verdict rests on.
+    """
+    nothing = without_causes(fits).score
+    sets = [fit for fit in fits if fit.hypotheses][:MOST_SETS][::-1]
+    gains = [max(fit.score - nothing, 0.0) for fit in sets]
+    bars = {
+        **{"type": "bar", "orientation": "h", "y": [label_of(fit) for fit in sets], "x": rounded(gains, 4)},
+        "marker": {"color": [palette.BLUE if fit is chosen else palette.FAINT for fit in sets]},
+        **{"hovertemplate": "%{y}: %{x:.1f} nats", "named": False, "showlegend": False},
+        **{"text": [f"{fit.score - nothing:.1f}" for fit in sets], "textposition": "auto"},
+    }
+    note = (
+        f"Log-evidence over the ship without a cause, in nats: {ENOUGH:g} more (dotted) mean {np.exp(ENOUGH):.0f} "
+        "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
+    )
+    height = 90 + (12 + 16 * max([1, *(len(fit.hypotheses) for fit in sets)])) * max(len(sets), 2)
+    axes = {"xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"}, "yaxis": {"automargin": True}}
+    layout = {"shapes": [limit(ENOUGH)], **axes}
+    return Figure("Evidence of the best sets of causes", "nats", (bars,), layout, note, height)
+
+
+def estimate_figure(fit: Fit) -> Figure:
+    """Estimates of a set's parameters, in units of the size that matters, with two standard deviations."""
+    parameters = [(s, k) for s in fit.hypotheses for k in s.parameters][::-1]
+    names = [f"{title(s.cause, s.component)}:\n{k.name.replace('_', ' ')}" for s, k in parameters]
+    size = [(fit.values[k.paths[0]] - k.neutral) / k.typical for _, k in parameters]
+    wide = [2.0 * fit.std[k.paths[0]] / k.typical for _, k in parameters]
+    marks = {
+        **{"type": "scatter", "mode": "markers", "x": rounded(size, 4), "y": names, "showlegend": False},
+        "error_x": {"type": "data", "array": rounded(wide, 3), "color": palette.BLUE, "thickness": 2},
+        **{"marker": {"color": palette.BLUE, "size": 9}, "hovertemplate": "%{x:.2f} typical sizes"},
+        "named": False,
+    }
+    axes = {
+        "xaxis": {"title": {"text": "typical sizes"}, "zeroline": True, "rangemode": "tozero"},
+        "yaxis": {"range": [-0.6, len(parameters) - 0.4]},
+    }
+    note = "From what the model has, at 0; 1 is a size that matters. Bars are two standard deviations."
+    return Figure("How large, and how sure", "", (marks,), axes, note, height=110 + 40 * len(parameters))
+
+
+def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
+    """What errors that no cause describes would gain beside the chosen causes."""
+    names = [UNMODELLED_KINDS.get(kind, kind) for kind in unmodelled]
+    bars = {
+        **{
+            "type": "bar",
+            "orientation": "h",
+            "y": names,
+            "x": rounded([max(gain, 0.0) for gain in unmodelled.values()], 4),
+        },
+        "marker": {
+            "color": [palette.VERMILLION if gain > UNMODELLED else palette.FAINT for gain in unmodelled.values()]
+        },
+        **{"showlegend": False, "named": False, "hovertemplate": "%{x:.1f} nats"},
+        **{"text": ["none" if g <= 0.0 else f"{g:.1f}" for g in unmodelled.values()], "textposition": "outside"},
+    }
+    axes = {
+        "xaxis": {"title": {"text": "nats"}, "range": [0.0, 1.15 * max(UNMODELLED, *unmodelled.values())]},
+        "yaxis": {"automargin": True},
+    }
+    note = "Beyond the dotted line something acts that no known cause explains: the verdict is then unknown."
+    layout = {"shapes": [limit(UNMODELLED)], **axes}
+    return Figure("Errors without a name", "nats", (bars,), layout, note, height=90 + 34 * len(names))
+
+
+def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) -> NDArray:
+    """Autocorrelation of the whitened innovations that a fit leaves.
+
+    Parameters
+    ----------
+    problem : IdentificationProblem
+    fit : Fit
+    as_it_is : bool
+        Without moving known numbers within their tolerances.
+
+    Returns
+    -------
+    (LAGS, 6) array
+        From a lag of one row on; NaN for a channel that was not measured.
+    """
+    theta = 0.0 * fit.left if as_it_is else fit.left
+    white = innovations(explained(fit.linear, theta), problem.noise, problem.record).white[..., 0]
+    white = np.where(fit.linear.whole, white, np.nan)
+    found = np.full((LAGS, white.shape[1]), np.nan)
+    for channel, values in enumerate(white.T):
+        if np.isfinite(values).sum() > 10 * LAGS:
+            values = values - np.nanmean(values)
+            power = np.nanmean(values**2)
+            found[:, channel] = [np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)]
+    return found
+
+
+def whiteness_figure(
+    heading: str, correlation: NDArray, step: float, rows: int, between: tuple[float, float]
+) -> Figure:
+    """Autocorrelation of all channels over the lag, with the band of white noise."""
+    lag = step * np.arange(1, LAGS + 1)
+    traces = [
+        line(name, lag, correlation[:, i], COLOURS[i], mode="lines+markers", marker={"size": 4})
+        for i, name in enumerate(CHANNELS)
+        if np.isfinite(correlation[:, i]).any()
+    ]
+    band = {"type": "rect", "x0": 0, "x1": 1, "xref": "paper", "y0": -2 / np.sqrt(rows), "y1": 2 / np.sqrt(rows)}
+    shape = {**band, "layer": "below", "fillcolor": palette.BAND, "line": {"width": 0}}
+    note = "Autocorrelation of the whitened innovations; inside the band they are as white as noise."
+    layout = {"shapes": [shape], "xaxis": TIME, "yaxis": {"range": between}}
+    return Figure(f"White? {heading}", "", tuple(traces), layout, note)

@@ -1,0 +1,48 @@
+"""Section 2 of the page: what does the simulation get wrong?"""
+
+from dataclasses import dataclass
+
+from shipcosim.report.diagnosis.force_figures import force_figures
+from shipcosim.report.diagnosis.prediction_errors import error_figures, error_table, models_to_show
+from shipcosim.report.diagnosis.story import Story
+from shipcosim.report.theme.numbers import metres
+from shipcosim.report.theme.views import Figure, Table
+
+
+@dataclass(frozen=True)
+class ErrorSection:
+    """Errors of predictions with the model as it was, and the force that it lacks.
+
+    Attributes
+    ----------
+    found : str
+        The result in a few words.
+    figures : tuple of Figure
+        Errors; empty if there was too little data for predictions.
+    errors : Table
+    has_floor : bool
+        Whether the noise floor is shown too.
+    forces : tuple of Figure
+        The missing force; empty if it is not known.
+    """
+
+    found: str
+    figures: tuple[Figure, ...]
+    errors: Table
+    has_floor: bool
+    forces: tuple[Figure, ...]
+
+
+def error_section(story: Story) -> ErrorSection:
+    """The section as the template fills it in."""
+    base, errors, forces = story.diagnosis.baseline, story.errors, []
+    models = models_to_show(("plain", "floor"), story.diagnosis)
+    if story.force is not None:
+        forces = force_figures(story.force, story.force_left, story.details.problem.model.azimuths)
+    return ErrorSection(
+        found=f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:g} s" if base else "not measured",
+        figures=() if errors is None else tuple(error_figures(errors, models)),
+        errors=Table(()) if errors is None else error_table(errors, models),
+        has_floor="floor" in models,
+        forces=tuple(forces),
+    )

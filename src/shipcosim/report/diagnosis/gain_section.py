@@ -1,0 +1,96 @@
+"""Section 5 of the page: what was gained?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from shipcosim.diagnose.validation.gain import rms
+from shipcosim.report.diagnosis.prediction_errors import MODELS, condition_table, gain_figures, models_to_show, removed
+from shipcosim.report.diagnosis.story import Story
+from shipcosim.report.theme.numbers import metres, percent
+from shipcosim.report.theme.views import Figure, Table
+
+LACKING = {"other headings": "another quarter of headings", "free drift": "a drift without thrust"}
+
+
+@dataclass(frozen=True)
+class GainSection:
+    """Errors of predictions before and after.
+
+    Attributes
+    ----------
+    found : str
+        The result in a few words.
+    is_cosimulation, is_extended : bool
+        Whether predictions are co-simulations or in array form; whether the extended system was among them.
+    errors : Table
+        After 60 s, with each model.
+    figures : tuple of Figure
+        Empty if there was too little data to measure it.
+    conditions : Table
+        By condition; without a row if there is no gain.
+    missing : str
+        Conditions that the log has too little of, as one text.
+    extended, calibrated : str
+        Errors in array form: with the causes; with every known number of the ship moved within its tolerance too. [m]
+    difference : str
+        Largest difference between co-simulation and array form, if it is known. [m]
+    """
+
+    found: str
+    is_cosimulation: bool
+    is_extended: bool
+    errors: Table = Table(())
+    figures: tuple[Figure, ...] = ()
+    conditions: Table = Table(())
+    missing: str = ""
+    extended: str = ""
+    calibrated: str = ""
+    difference: str = ""
+
+
+def gain_section(story: Story) -> GainSection:
+    """The section as the template fills it in."""
+    gain, errors, simulated = story.diagnosis.gain, story.errors, story.simulated
+    models = models_to_show(tuple(MODELS), story.diagnosis)
+    if story.extension is None or gain is None:
+        models = [model for model in models if not model.startswith("extended")]
+    found, is_extended = _found(gain, story.diagnosis.verdict), "extended" in models
+    if errors is None:
+        return GainSection(found, simulated is not None, is_extended)
+    apart = (
+        simulated["difference"].isel(horizon=-1).max() if simulated is not None and "difference" in simulated else None
+    )
+    without = {"extended": "", "calibrated": ""}
+    return GainSection(
+        found,
+        simulated is not None,
+        is_extended,
+        errors=_errors(gain),
+        figures=tuple(gain_figures(errors, models)),
+        conditions=condition_table(errors, story.unseen_errors) if gain else Table(()),
+        missing=" and of ".join(text for name, text in LACKING.items() if name not in story.unseen_errors),
+        **({name: metres(rms(story.comparison.errors, "position", name)) for name in without} if gain else without),
+        difference="" if apart is None else metres(float(apart)),
+    )
+
+
+def _found(gain: Mapping[str, Any] | None, verdict: str) -> str:
+    if gain and gain["share_of_explainable"] is not None:
+        return f"{percent(gain['share_of_explainable'])} of the explainable error"
+    return "nothing to gain" if verdict == "consistent" else "none"
+
+
+def _errors(gain: Mapping[str, Any] | None) -> Table:
+    """Errors with each model, and the share of the explainable error that is removed."""
+    if not gain:
+        return Table(())
+    rows = [
+        ("Simulation as it was", metres(gain["before_m"])),
+        ("with a bias observer", metres(gain["bias_observer_m"])),
+        ("with the named causes", metres(gain["after_m"])),
+        ("Noise floor", metres(gain["noise_floor_m"])),
+    ]
+    if gain["share_of_explainable"] is not None:
+        rows.append(("Explainable error removed", removed(gain)))
+    return Table(tuple(rows), head=("Position error after 60 s", "Root mean square"))

@@ -1,0 +1,48 @@
+"""Section 1 of the page: is the log right?"""
+
+from dataclasses import dataclass
+
+from shipcosim.diagnose.hypotheses.catalogue import read_faults
+from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
+from shipcosim.report.diagnosis.story import Story
+from shipcosim.report.diagnosis.words import title, told, where
+from shipcosim.report.theme.views import Figure, Table
+
+
+@dataclass(frozen=True)
+class LogSection:
+    """Faults of the log, what is remarkable in it, and its channels.
+
+    Attributes
+    ----------
+    found : str
+        The result in a few words.
+    faults : Table
+    notes, handled : tuple of str
+        What could not be known; what is ordinary in a log and was handled.
+    figures : tuple of Figure
+    """
+
+    found: str
+    faults: Table
+    notes: tuple[str, ...]
+    figures: tuple[Figure, ...]
+    handled: tuple[str, ...]
+
+
+def log_section(story: Story) -> LogSection:
+    """The section as the template fills it in."""
+    findings, identification = story.diagnosis.findings, story.details.explained.identification
+    faults = [f for f in findings if f.kind == "data"]
+    rows = (
+        (title(f.cause), ", ".join(f.channels) or "all", where(f), f.note or told(f), read_faults()[f.cause].repair)
+        for f in faults
+    )
+    track = track_figure(identification.repaired)
+    return LogSection(
+        found=f"{len(faults)} fault{'s' * (len(faults) != 1)}" if faults else "no fault found",
+        faults=Table(tuple(rows), head=("Fault", "Channels", "Where", "What", "Done about it")),
+        notes=tuple(story.notes),
+        figures=(*([track] if track else []), *log_figures(identification.log, identification.repaired, findings)),
+        handled=tuple(story.handled),
+    )
