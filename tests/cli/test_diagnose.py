@@ -226,7 +226,7 @@ def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(lossy, like_the_r
         raise error
 
     monkeypatch.chdir(like_the_root)
-    monkeypatch.setattr("shipcosim.diagnose.pipeline.diagnose", lambda *_: (lossy.story.diagnosis, lossy.story.details))
+    monkeypatch.setattr("shipcosim.diagnose.pipeline.find_causes", lambda *_: lossy.story.diagnosis)
     monkeypatch.setattr(command, "_with_errors", lambda story: story)
     monkeypatch.setattr("shipcosim.report.diagnosis.page.write_diagnosis", cut_off)
     before = {path.name: path.read_bytes() for path in lossy.folder.iterdir()}
