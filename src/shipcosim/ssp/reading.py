@@ -1,13 +1,25 @@
 """A system read from any file that describes one: an SSP in its three forms, or an OspSystemStructure.xml."""
 
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.xml.document import Findings
 
+if TYPE_CHECKING:
+    from shipcosim.ssp.flatten.system import System
+    from shipcosim.ssp.read.parameters import ParameterSets
 
-def read_system(path, parameters=(), *, fmus=()):
+
+def read_system(
+    path: str | os.PathLike[str], parameters: ParameterSets = (), *, fmus: Iterable[str | os.PathLike[str]] = ()
+) -> System:
     """Read a system structure and everything it refers to, checked completely.
 
     Parameters
@@ -30,12 +42,14 @@ def read_system(path, parameters=(), *, fmus=()):
         With everything that is wrong.
     """
     system, findings = assemble(path, parameters, fmus)
-    if findings.errors:
+    if system is None or findings.errors:
         raise ShipcosimError(list(dict.fromkeys(findings.errors)))
     return system
 
 
-def assemble(path, parameters=(), fmus=()):
+def assemble(
+    path: str | os.PathLike[str], parameters: ParameterSets = (), fmus: Iterable[str | os.PathLike[str]] = ()
+) -> tuple[System | None, Findings]:
     """System and findings; the system is None or incomplete where there are errors."""
     findings = Findings()
     osp = osp_file(path)
