@@ -108,17 +108,18 @@ def _event_complaint(system: System, verb: str, signal: str, value: Value | None
         return error.problems[0].found, error.problems[0].remedy
     if component is None and name not in system.inputs:
         return f"'{signal}' is no input of the system.", f"Inputs: {', '.join(system.inputs) or 'none'}."
-    variable = system.inputs[name] if component is None else system.components[component].fmu.variables[name]
-    kind = variable.type if component is None else variable.kind
-    if component is not None and not _may_change(variable):
-        remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
-        return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
-    if verb != "reset" and not _fits(value, kind, variable.items, verb):
-        items = f" Its items are {', '.join(variable.items)}." if variable.items else ""
-        return (
-            f"{verb} of '{signal}' with {value!r}: the signal is {kind}.",
-            f"{_WANTED.get(kind, 'It cannot be changed.')}{items}",
-        )
+    if component is None:
+        kind, items = system.inputs[name].type or "", system.inputs[name].items
+    else:
+        variable = system.components[component].fmu.variables[name]
+        kind, items = variable.kind, variable.items
+        if not _may_change(variable):
+            remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
+            return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
+    if verb != "reset" and not _fits(value, kind, items, verb):
+        listed = f" Its items are {', '.join(items)}." if items else ""
+        found = f"{verb} of '{signal}' with {value!r}: the signal is {kind or None}."
+        return found, f"{_WANTED.get(kind, 'It cannot be changed.')}{listed}"
     return None
 
 
