@@ -17,9 +17,11 @@ from shipcosim.diagnose.inference.null_distribution import healthy_records
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.result import Estimate, Finding
-from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Inputs, Motion, loads, motion_rates, ship_model_of
-from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.diagnose.ship.dynamics import loads, motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs, first_motion, record_of
+from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.thrusters import dp_thruster_of
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.thruster import AzimuthParameters
 from shipcosim.series import write_table
 
@@ -46,7 +48,7 @@ def test_a_propeller_that_nothing_turns_pushes_where_the_system_points_it():
     np.testing.assert_allclose(record.units["left"][1], LEFT_TOE)
     assert X > 0.0 and pytest.approx(np.tan(LEFT_TOE)) == Y / X
     assert pytest.approx(-2.2 * Y + 0.7 * X) == N
-    assert (pusher_of(model, "left").axis, pusher_of(model, "left").turns) == (LEFT_TOE, False)
+    assert (dp_thruster_of(model, "left").axis, dp_thruster_of(model, "left").turns) == (LEFT_TOE, False)
 
 
 def test_a_propeller_that_nothing_turns_can_lose_thrust_astern_and_has_no_offset_of_direction():

@@ -19,8 +19,11 @@ from shipcosim.diagnose.inference.linearisation import STATES
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.search import explain
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates, ship_model_of
+from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind
 from shipcosim.models.ship import instruments
 from shipcosim.series import make_table

@@ -8,11 +8,13 @@ import torch
 
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.pipeline import find_causes
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates
 from shipcosim.diagnose.validation.gain import compare, gain
 from shipcosim.diagnose.validation.predictions import missing
 from shipcosim.diagnose.validation.split import in_rows
+from shipcosim.models.core.motion import Motion
 from trial.tools import system, with_drift
 
 HIDDEN, EPOCHS, PATIENCE = 24, 600, 60

@@ -16,9 +16,11 @@ from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
+from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Motion, motion_rates, ship_model_of
+from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.models.core.motion import Motion
 from trial.tools import system
 
 SMOOTH = 4.0  # s, standard deviation of the Gaussian that measurements and model are smoothed with
@@ -188,7 +190,7 @@ def sparse_regression(path):
 
     problem = problem_of(path)
     library = [
-        hypothesis for hypothesis in problem.hypotheses if hypothesis.effect.law != "turning"
+        hypothesis for hypothesis in problem.hypotheses if hypothesis.definition.law != "turning"
     ]  # holds the steady current
     parameters = [parameter for hypothesis in library for parameter in hypothesis.parameters]
     optimizer = pysindy.STLSQ(threshold=THRESHOLD, alpha=RIDGE)

@@ -26,8 +26,9 @@ from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.search import explain
 from shipcosim.diagnose.inference.verdict import judge
 from shipcosim.diagnose.ship.inputs import Record, first_motion
-from shipcosim.diagnose.ship.model import Motion, ShipModel, ship_model_of
-from shipcosim.diagnose.ship.track_keeping import Dp, sailed
+from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
+from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind
 
 NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]))
@@ -63,7 +64,9 @@ def believed(values, spread=0.1, of=None):
     present = [hypothesis for hypothesis in of.hypotheses if hypothesis.label in values]
     known = of.known(present)
     own = [
-        Regressor({path: of.model.tolerances[path]}) for hypothesis in present for path in hypothesis.effect.companions
+        Regressor({path: of.model.tolerances[path]})
+        for hypothesis in present
+        for path in hypothesis.definition.companions
     ]
     turned, numbers = [], {}
     for hypothesis in present:
@@ -143,11 +146,11 @@ def test_noisy_logs_show_the_expected_difference_or_somewhat_more():
     one, count, random = pick("pulses"), 12, np.random.default_rng(3)
     of = replace(problem(), noise=replace(NOISE, walk=NOISE.walk * 1e-3))
     expected = apart(truth, rival, one, of=of)[0]
-    dp = Dp(of.model, step_for(of.model))
+    dp = DpController(of.model, step_for(of.model))
     track, record, _ = planned([one], dp, (300.0, 0.0, 0.0, 0.0), (0.0, 0.5))
     rows = record.time.size
     jolts = random.standard_normal((rows, 3, count)) * (NOISE.jolt * np.sqrt(dp.h))[:, None]
-    motion, units = sailed(truth.model, count, track, record, dp, jolts=jolts)
+    motion, units = kept_on_track(truth.model, count, track, record, dp, jolts=jolts)
     white = NOISE.white / np.sqrt(dp.h)
     measured = np.stack(motion, axis=-1) + white * random.standard_normal((count, rows, 6))
     still = tuple(np.broadcast_to(series, (count, rows)) for series in record.wind)
@@ -173,9 +176,9 @@ def _log_evidence(fit, motion, record, noise):
 
 def sailing(one, wind=(6.0, 0.5), model=None):
     model = model or problem().model
-    dp = Dp(model, step_for(model))
+    dp = DpController(model, step_for(model))
     track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), wind)
-    motion, units = sailed(model, 1, track, record, dp, held=held)
+    motion, units = kept_on_track(model, 1, track, record, dp, held=held)
     return record.time, Motion(*(v[0] for v in motion)), {n: tuple(s[0] for s in pair) for n, pair in units.items()}
 
 
@@ -238,7 +241,7 @@ def test_fixed_propellers_are_not_asked_to_turn():
     fixed = cannot_turn(replace(one.record, units=ahead), one.model)
     assert set(fixed) == {"port", "starboard"} and cannot_turn(one.record, one.model) == ()
     assert not [m for m in library(one.model, fixed) if m.name.startswith("sweep")]
-    dp = Dp(one.model, 2.0, fixed)
+    dp = DpController(one.model, 2.0, fixed)
     _, record, _ = planned(library(one.model, fixed), dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
     assert all(np.ptp(record.units[name][1]) == 0.0 for name in fixed)
 
@@ -279,10 +282,10 @@ def logged(values, manoeuvre=None, seed=1, minutes=8.0):
     pushes = tuple(replace(p, start=p.start + before, end=p.end + before) for p in after.pushes)
     free = tuple((a + before, b + before) for a, b in after.free)
     one = Manoeuvre("both", ((before, 0.0, 0.0, 0.0), *after.legs), pushes, free)
-    dp, random = Dp(model, 1.0), np.random.default_rng(seed)
+    dp, random = DpController(model, 1.0), np.random.default_rng(seed)
     track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
     jolts = random.standard_normal((record.time.size, 3, 1)) * NOISE.jolt[:, None]
-    motion, units = sailed(model.with_values(values), 1, track, record, dp, jolts=jolts, held=held)
+    motion, units = kept_on_track(model.with_values(values), 1, track, record, dp, jolts=jolts, held=held)
     measured = np.stack([v[0] for v in motion], -1) + NOISE.white * random.standard_normal((record.time.size, 6))
     units = {name: tuple(series[0] for series in pair) for name, pair in units.items()}
     record = replace(record, measured=measured, units=units, wind=tuple(series[0] for series in record.wind))

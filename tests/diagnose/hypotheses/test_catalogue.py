@@ -77,15 +77,15 @@ def test_bounds_hold_the_model_and_what_is_typical_is_above_what_matters_above_w
             low, high = sorted(parameter.bounds)
             assert low <= parameter.neutral <= high, hypothesis.label
             assert max(high - parameter.neutral, parameter.neutral - low) >= parameter.typical, hypothesis.label
-            assert parameter.typical > hypothesis.effect.least * parameter.typical >= 1.5 * parameter.tolerance, (
+            assert parameter.typical > hypothesis.definition.least * parameter.typical >= 1.5 * parameter.tolerance, (
                 hypothesis.label
             )
 
 
 def test_companions_are_numbers_of_the_ship_that_are_only_known_within_a_tolerance(everyone):
     for hypothesis in everyone:
-        assert all(twin.model().tolerances[path] > 0.0 for path in hypothesis.effect.companions)
-        assert all(twin.model().has(path) for path in hypothesis.effect.replaces)
+        assert all(twin.model().tolerances[path] > 0.0 for path in hypothesis.definition.companions)
+        assert all(twin.model().has(path) for path in hypothesis.definition.replaces)
 
 
 def test_units_of_a_file_are_those_of_the_report_and_the_ships_numbers_are_in_hers(everyone):

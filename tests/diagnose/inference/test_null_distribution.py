@@ -8,7 +8,7 @@ from diagnose import twin
 from diagnose.twin import fits, problem
 
 from shipcosim.diagnose.inference.null_distribution import healthy_records, null_gains
-from shipcosim.diagnose.ship.model import Motion
+from shipcosim.models.core.motion import Motion
 
 COUNT = 6
 

@@ -63,7 +63,7 @@ def test_a_cause_far_above_the_rest_is_named():
 def test_a_cause_of_another_shape_is_another_cause(off, says):
     """In units of the tolerances; the second would be exceeded by one right drift in six hundred."""
     drift = fit(40.0, "wave_drift")
-    columns = tuple(Regressor({path: 1.0}) for path in drift.hypotheses[0].effect.shape)
+    columns = tuple(Regressor({path: 1.0}) for path in drift.hypotheses[0].definition.shape)
     assert verdict(replace(drift, theta=off, columns=columns)).verdict == says
 
 
@@ -108,7 +108,7 @@ def test_two_causes_are_named_together_when_each_gains_beside_the_other():
     ("what", "fitted"),
     [
         ("gains too little", fit(ENOUGH - 0.1, "mass")),
-        ("too small to matter", fit(40.0, "mass", size=0.9 * EVERYONE["mass"].effect.least)),
+        ("too small to matter", fit(40.0, "mass", size=0.9 * EVERYONE["mass"].definition.least)),
         ("not known to a third of its size", fit(40.0, "mass", std=0.4)),
         ("at its bound", fit(40.0, "mass", mass_scale=2.5)),
     ],
@@ -167,7 +167,7 @@ def test_what_a_cause_too_small_to_matter_explains_is_no_unmodelled_error():
     def unmodelled(of):
         return {"slow": 20.0 if not of.hypotheses else -5.0}
 
-    trifle = fit(40.0, "mass", size=0.9 * EVERYONE["mass"].effect.least)
+    trifle = fit(40.0, "mass", size=0.9 * EVERYONE["mass"].definition.least)
     assert verdict(trifle, unmodelled=unmodelled).verdict == "consistent"
     assert verdict(fit(40.0, "mass", mass_scale=2.5), unmodelled=unmodelled).verdict == "unknown"
     assert verdict(trifle, unmodelled=lambda _: {"slow": 20.0}).verdict == "unknown"

@@ -8,10 +8,13 @@ import pytest
 from diagnose import twin
 
 from shipcosim.cosim import RunOptions, simulate
+from shipcosim.diagnose.ship.dynamics import current_at, loads, motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Inputs, Motion, current_at, loads, motion_rates, ship_model_of
+from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.thruster import AzimuthParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.scenario import Scenario
@@ -134,10 +137,12 @@ def test_line_and_waves_load_the_ship_by_their_closed_forms():
     still = {name: (0.0 * psi, 0.0 * psi) for name in twin.model().thrusters}
     found = loads(ship, Inputs(0.0 * psi, still, None, None), twin.model().with_values(values))
     Y = -tow[0] * np.sin(psi) + tow[1] * np.cos(psi)
-    np.testing.assert_allclose(found["tow"], (tow[0] * np.cos(psi) + tow[1] * np.sin(psi), Y, -17.0 * Y), atol=1e-9)
+    np.testing.assert_allclose(
+        found["earth_force"], (tow[0] * np.cos(psi) + tow[1] * np.sin(psi), Y, -17.0 * Y), atol=1e-9
+    )
     A, gamma = hypot(*drift), np.arctan2(drift[1], drift[0]) - psi
     expected = A * np.cos(gamma) / 3.0, A * np.sin(gamma) * np.abs(np.sin(gamma)), -1.5 * A * np.sin(2.0 * gamma)
-    np.testing.assert_allclose(found["drift"], expected, atol=1e-9)
+    np.testing.assert_allclose(found["drift_force"], expected, atol=1e-9)
 
 
 def test_drift_swells_about_its_place_in_the_log_and_nowhere_else():
@@ -146,8 +151,8 @@ def test_drift_swells_about_its_place_in_the_log_and_nowhere_else():
     still = {name: (np.zeros_like(time), np.zeros_like(time)) for name in twin.model().thrusters}
     ship = replace(twin.model().with_values({"water.drift_north": 2000.0}), span=(0.0, 700.0))
     where, at = Motion(*[np.full_like(time, 0.4)] + [np.zeros_like(time)] * 5), Inputs(time, still, None, None)
-    plain = np.array(loads(where, at, ship)["drift"])
-    swollen = np.array(loads(where, at, ship.with_values({"water.drift_swell_4": 0.2}))["drift"])
+    plain = np.array(loads(where, at, ship)["drift_force"])
+    swollen = np.array(loads(where, at, ship.with_values({"water.drift_swell_4": 0.2}))["drift_force"])
     share = 1.0 + 0.2 * np.interp(time, [200.0, 300.0, 400.0], [0.0, 1.0, 0.0])
     np.testing.assert_allclose(swollen, share * plain, atol=1e-9)
 

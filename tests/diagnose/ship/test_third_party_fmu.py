@@ -1,4 +1,4 @@
-"""Thrusters of somebody else: their law is found by co-simulation, and what is wrong with them by name."""
+"""Third-party thrusters: their surrogates are made by co-simulation, and what is wrong with them is named."""
 
 from functools import cache
 from pathlib import Path
@@ -15,11 +15,13 @@ from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship import model as plant_module
+from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Motion, loads, ship_model_of
-from shipcosim.diagnose.ship.surrogate import bollard_of, with_surrogates
-from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.surrogate import fitted_thrust, with_surrogates
+from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.errors import ShipcosimError
+from shipcosim.models.core.motion import Motion
 from shipcosim.series import write_table
 
 
@@ -91,7 +93,7 @@ def test_its_numbers_change_the_load_as_they_say():
 
 
 def test_a_speed_of_the_other_sign_gets_about_the_load_of_the_fmu():
-    """Far from what it was linearised about, the bollard law holds."""
+    """Far from what it was linearised about, the quadratic law of thrust holds."""
     model, record, motion = along()
     n, azimuth = record.units["left"]
     inputs = record.inputs(model)._replace(units=record.inputs(model).units | {"left": (-n[:-1], azimuth[:-1])})
@@ -105,20 +107,20 @@ def test_bollard_law_of_a_unit_that_turns_is_found_with_its_place():
     rpm, azimuth = random.uniform(-200.0, 300.0, 400), random.uniform(-3.0, 3.0, 400)
     thrust = np.where(rpm > 0.0, 2.0, 1.3) * rpm * np.abs(rpm)
     X, Y = thrust * np.cos(azimuth), thrust * np.sin(azimuth)
-    assert bollard_of(np.stack([X, Y, -7.0 * Y - 1.5 * X]), rpm, azimuth, True) == pytest.approx(
+    assert fitted_thrust(np.stack([X, Y, -7.0 * Y - 1.5 * X]), rpm, azimuth, True) == pytest.approx(
         (2.0, 1.3, 0.0, -7.0, 1.5)
     )
-    across = bollard_of(np.stack([0.0 * thrust, -thrust, -4.0 * thrust]), rpm, 0.0 * rpm, False)
+    across = fitted_thrust(np.stack([0.0 * thrust, -thrust, -4.0 * thrust]), rpm, 0.0 * rpm, False)
     assert across == pytest.approx((2.0, 1.3, -0.5 * np.pi, 4.0, 0.0), abs=1e-9)
 
 
 def test_a_dp_knows_where_it_pushes_and_leaves_alone_what_does_not():
     model, record, motion = along()
-    left = pusher_of(model, "left")
+    left = dp_thruster_of(model, "left")
     assert (left.x, left.y, left.axis) == pytest.approx((0.0, -0.9, 0.0), abs=1e-9)
     assert left.ahead == pytest.approx(boat.GAIN, rel=0.2)
     still, *_ = with_laws(ship_model_of(boat.structure().checked()), logged().assign(left_rpm=0.0 * logged().left_rpm))
-    assert pusher_of(still, "left").ahead == 0.0 and pusher_of(still, "right").ahead > 0.0
+    assert dp_thruster_of(still, "left").ahead == 0.0 and dp_thruster_of(still, "right").ahead > 0.0
 
 
 def test_suspects_and_tolerances_are_those_that_it_has():
@@ -134,11 +136,11 @@ def test_suspects_and_tolerances_are_those_that_it_has():
 def test_a_law_is_kept_for_a_part_of_its_log_and_made_anew_for_other_drivers():
     model, *_ = along()
     part = logged().isel(time=slice(100, 300))
-    assert with_laws(model, part)[0].third_party["left"].law is model.third_party["left"].law
+    assert with_laws(model, part)[0].third_party["left"].surrogate is model.third_party["left"].surrogate
     other = part.assign(left_rpm=part.left_rpm.copy(data=-part.left_rpm.values))
     again = with_laws(model, other)[0].third_party
-    assert again["left"].law is not model.third_party["left"].law
-    assert again["right"].law is model.third_party["right"].law
+    assert again["left"].surrogate is not model.third_party["left"].surrogate
+    assert again["right"].surrogate is model.third_party["right"].surrogate
 
 
 @pytest.fixture
@@ -291,7 +293,7 @@ def test_what_nobody_logs_keeps_its_start_value_and_that_is_said(strange_azimuth
 
 def test_a_case_of_the_boat_is_prepared_with_her_laws():
     problem = identification_problem(logged(), ship_model_of(boat.structure().checked()), read_catalogue())
-    assert all(one.law for one in problem.model.third_party.values())
+    assert all(one.surrogate for one in problem.model.third_party.values())
     assert {"left.gain", "left.rpm_offset", "left.thrust_loss"} <= set(problem.model.tolerances)
 
 
@@ -368,7 +370,7 @@ def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(pod
     np.testing.assert_allclose(X, 0.45 * wanted * np.cos(azimuth), atol=1e-6 * wanted.max())
     np.testing.assert_allclose(Y, 0.45 * wanted * np.sin(azimuth), atol=1e-6 * wanted.max())
     assert wanted.max() > 500.0 and np.ptp(azimuth) > 2.0 and not N.any()
-    assert pusher_of(model, "pod").ahead == 0.0
+    assert dp_thruster_of(model, "pod").ahead == 0.0
 
 
 def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(podded, tmp_path):

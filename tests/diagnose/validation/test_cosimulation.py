@@ -10,11 +10,12 @@ from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.instruments import true_motion
-from shipcosim.diagnose.ship.model import Motion, ship_model_of
+from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table, in_array_form, replayed
 from shipcosim.diagnose.validation.gain import Predictor
 from shipcosim.diagnose.validation.predictions import replayable
 from shipcosim.errors import ShipcosimError
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind
 from shipcosim.ssp import read_system, with_values
 

@@ -14,7 +14,7 @@ from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import Motion, ship_model_of
+from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.validation.conditions import compare_unseen, unseen
 from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
 from shipcosim.diagnose.validation.gain import (
@@ -38,6 +38,7 @@ from shipcosim.diagnose.validation.split import (
     trained,
     without_headings,
 )
+from shipcosim.models.core.motion import Motion
 from shipcosim.ssp import read_system, with_values
 from truth import draw
 

@@ -1,4 +1,4 @@
-"""Which manoeuvre would tell causes apart: every one of the library is sailed in array form and scored."""
+"""Which manoeuvre would tell causes apart: every one of the library is kept_on_track in array form and scored."""
 
 from dataclasses import fields, replace
 from itertools import combinations
@@ -12,9 +12,10 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem, probes
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import beside, linearise, rows_first
 from shipcosim.diagnose.result import ExperimentDesign
+from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Motion, with_steady_current
-from shipcosim.diagnose.ship.track_keeping import Dp, sailed
+from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
+from shipcosim.models.core.motion import Motion
 
 CLEAR = 10.0
 """Expected difference in log-evidence that separates two causes. [nats]
@@ -145,7 +146,7 @@ def _shared_columns(fits):
 
 def _own(fit):
     turned = {path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths}
-    turned |= {path for s in fit.hypotheses for path in s.effect.companions}
+    turned |= {path for s in fit.hypotheses for path in s.definition.companions}
     return [column for column in fit.columns if turned & set(column.changes)]
 
 
@@ -183,7 +184,7 @@ def _sailings(problem, models, manoeuvres):
     """Motions and records of every manoeuvre by every ship, and whether she gets through; lists by ship."""
     start = float(problem.record.time[-1]), *(float(value[-1]) for value in problem.motion[:3])
     wind = true_wind(problem.record, problem.motion, problem.model)
-    dp = Dp(_in_true_wind(problem.model), step_for(problem.model), cannot_turn(problem.record, problem.model))
+    dp = DpController(_in_true_wind(problem.model), step_for(problem.model), cannot_turn(problem.record, problem.model))
     track, record, held = planned(manoeuvres, dp, start, wind)
     motions, records, through = [], [], []
     many, ships = len(manoeuvres), _abreast(models, start[0], len(manoeuvres))
@@ -195,7 +196,7 @@ def _sailings(problem, models, manoeuvres):
     )
     held = {name: np.tile(where, times) for name, where in held.items()}
     tracks = Motion(*(np.tile(value, times) for value in track))
-    sailing, units = sailed(ships, many * len(models), tracks, side_by_side, dp, held=held)
+    sailing, units = kept_on_track(ships, many * len(models), tracks, side_by_side, dp, held=held)
     for i in range(len(models)):
         part = slice(i * many, (i + 1) * many)
         motions.append(Motion(*(value[part] for value in sailing)))
@@ -250,9 +251,9 @@ def testability(model, hypotheses, noise, manoeuvres, wind=None):
     """
     longest = 60.0 * max(one.minutes for one in manoeuvres)
     model, noise = replace(_in_true_wind(model), span=(0.0, longest)), sized(noise, step_for(model))
-    dp = Dp(model, step_for(model))
+    dp = DpController(model, step_for(model))
     track, record, held = planned(manoeuvres, dp, (0.0, 0.0, 0.0, 0.0), wind)
-    motion, units = sailed(model, len(manoeuvres), track, record, dp, held=held)
+    motion, units = kept_on_track(model, len(manoeuvres), track, record, dp, held=held)
     record = replace(record, units=units, measured=_readings(motion, model))
     known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).known(())
     groups = [(hypothesis, group) for hypothesis in hypotheses for group in probes(hypothesis)]

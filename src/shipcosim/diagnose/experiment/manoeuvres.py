@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates
-from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs, Record
+from shipcosim.diagnose.ship.thrusters import dp_thruster_of
+from shipcosim.models.core.motion import Motion
 
 LONGEST = 15.0
 """No manoeuvre takes longer. [min]"""
@@ -164,7 +165,7 @@ def planned(manoeuvres, dp, start, wind):
     Parameters
     ----------
     manoeuvres : sequence of Manoeuvre
-    dp : Dp
+    dp : DpController
         What the track needs by its ship is told to the thrusters beforehand.
     start : tuple of four floats
         Time, position and heading at the start. [s, m, m, rad]
@@ -259,7 +260,7 @@ def _needed(track, time, start, wind, dp):
 def _load_of(name, force, azimuth, model):
     unit = model.parts[name]
     if name not in model.azimuths:
-        azimuth = np.full_like(azimuth, pusher_of(model, name).axis)
+        azimuth = np.full_like(azimuth, dp_thruster_of(model, name).axis)
     X, Y = force * np.cos(azimuth), force * np.sin(azimuth)
     return np.stack([X, Y, unit.x * Y - getattr(unit, "y", 0.0) * X])
 

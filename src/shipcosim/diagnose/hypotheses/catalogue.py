@@ -47,13 +47,13 @@ class HypothesisParameter:
 class Hypothesis:
     """A cause at one place of one ship."""
 
-    effect: Cause
+    definition: Cause
     component: str | None
     parameters: tuple[HypothesisParameter, ...]
 
     @property
     def cause(self):
-        return self.effect.cause
+        return self.definition.cause
 
     @property
     def label(self):
@@ -62,7 +62,7 @@ class Hypothesis:
 
     def vector_of(self, parameter: HypothesisParameter) -> tuple[str, ...]:
         """Numbers that a parameter is a vector with, where the law is one of vectors that turn; else none."""
-        if self.effect.law != "turning":
+        if self.definition.law != "turning":
             return ()
         first = self.parameters.index(parameter) // 2 * 2
         return tuple(other.paths[0] for other in self.parameters[first : first + 2])

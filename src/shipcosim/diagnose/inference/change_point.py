@@ -64,7 +64,7 @@ def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> floa
         Time [s]; None where nothing is gained by a change point.
     """
     nothing = without_causes(fits)
-    hypotheses = [hypothesis for hypothesis in problem.hypotheses if hypothesis.effect.law != "turning"]
+    hypotheses = [hypothesis for hypothesis in problem.hypotheses if hypothesis.definition.law != "turning"]
     groups = [group for hypothesis in hypotheses for group in probes(hypothesis)]
     linear = beside(nothing.linear, problem.base_of([column for group in groups for column in group]))
     parts = max(int(problem.record.time.size * problem.record.step / CHANGE_POINT_BLOCK), 8)

@@ -80,12 +80,12 @@ class IdentificationProblem:
     def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
         taken = {path for hypothesis in hypotheses for parameter in hypothesis.parameters for path in parameter.paths}
-        taken |= {path for hypothesis in hypotheses for path in hypothesis.effect.replaces}
+        taken |= {path for hypothesis in hypotheses for path in hypothesis.definition.replaces}
         everyone = self.known_of or self.hypotheses
-        taken |= {path for hypothesis in everyone for path in hypothesis.effect.companions}
+        taken |= {path for hypothesis in everyone for path in hypothesis.definition.companions}
         found = [Regressor({path: size}) for path, size in self.model.tolerances.items() if path not in taken]
         for hypothesis in everyone:
-            for parameter in hypothesis.parameters if hypothesis.effect.law == "linear" else ():
+            for parameter in hypothesis.parameters if hypothesis.definition.law == "linear" else ():
                 listed = all(path in self.model.tolerances for path in parameter.paths)
                 if parameter.tolerance > 0.0 and not listed and not taken & set(parameter.paths):
                     found.append(Regressor(dict.fromkeys(parameter.paths, parameter.tolerance)))
@@ -204,7 +204,7 @@ def fitted(
 
 def _own(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
     """Columns of hypotheses, what is only known within a tolerance about them first."""
-    about = [path for hypothesis in hypotheses for path in hypothesis.effect.companions]
+    about = [path for hypothesis in hypotheses for path in hypothesis.definition.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
     return found + [_regressor(one, parameter) for one in hypotheses for parameter in one.parameters]
 
@@ -263,7 +263,7 @@ def _bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> d
 
 def _about(fit: Fit) -> dict[str, float]:
     """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
-    wanted = NONLINEAR | {path for hypothesis in fit.hypotheses for path in hypothesis.effect.companions}
+    wanted = NONLINEAR | {path for hypothesis in fit.hypotheses for path in hypothesis.definition.companions}
     found = {}
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
         for path, size in column.changes.items() if wanted & set(column.changes) else ():
@@ -325,7 +325,7 @@ def gains(
         for group in probes(hypothesis):
             here = prior.copy()
             here[place : place + len(group)] = 1.0
-            taken = {path for column in group for path in column.changes} | set(hypothesis.effect.replaces)
+            taken = {path for column in group for path in column.changes} | set(hypothesis.definition.replaces)
             here[[i for i, column in enumerate(columns) if taken & set(column.changes)]] = 0.0
             score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
             values = {}
@@ -344,8 +344,8 @@ def _together(tries: list[tuple[float, dict[str, float]]], hypothesis: Hypothesi
     scores = np.array([score for score, _ in tries])
     best = int(scores.argmax())
     values = tries[best][1]
-    if hypothesis.effect.law == "turning":
-        first, grown = np.array([values[path] for path in hypothesis.effect.sought_by]).reshape(2, 2)
+    if hypothesis.definition.law == "turning":
+        first, grown = np.array([values[path] for path in hypothesis.definition.sought_by]).reshape(2, 2)
         names, ends = [parameter.paths[0] for parameter in hypothesis.parameters], _one_way(first, first + grown)
         values = dict(zip(names, map(float, np.concatenate(ends)), strict=True))
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
@@ -364,10 +364,10 @@ def _one_way(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarra
 def probes(hypothesis: Hypothesis) -> list[list[Regressor]]:
     """Groups of columns by which a hypothesis is first sought."""
     parameters = hypothesis.parameters
-    if hypothesis.effect.law == "linear":
+    if hypothesis.definition.law == "linear":
         return [[Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for parameter in parameters]]
-    if hypothesis.effect.law == "turning":
-        return [[Regressor({path: parameters[0].typical}) for path in hypothesis.effect.sought_by]]
+    if hypothesis.definition.law == "turning":
+        return [[Regressor({path: parameters[0].typical}) for path in hypothesis.definition.sought_by]]
     pair, size = (parameters[0].paths[0], parameters[1].paths[0]), parameters[0].typical
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     return [[Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]

@@ -9,8 +9,8 @@ import numpy as np
 
 from shipcosim.diagnose.inference import kalman
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
-from shipcosim.diagnose.ship.model import Motion
 from shipcosim.models.control.observer import wave_transition
+from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.linearisation import Linear

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.ship.dynamics import loads, motion_rates, rate_difference
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Motion, loads, motion_rates, rates_apart
 from shipcosim.models.core.integrate import rk4
+from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import Inputs, ShipModel
+    from shipcosim.diagnose.ship.inputs import Inputs, Record
+    from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = [
     "SLOW_STD",
@@ -191,7 +192,7 @@ def linearise(motion: Motion, record: Record, model: ShipModel, regressors: Sequ
             late = (motion_rates(middle, record.inputs(ship, 0.5), ship) for ship in (down, up))
             slopes[j] = _apart(*late)[3:]
         elif any(not path.startswith("instruments.") for path in changes):
-            for slope, apart in zip(slopes[j], rates_apart(down, up, middle, inputs, like), strict=True):
+            for slope, apart in zip(slopes[j], rate_difference(down, up, middle, inputs, like), strict=True):
                 slope[...] = apart
         else:
             out[..., 1 + j] = rows_first(_apart(readings(motion, up), readings(motion, down))) / (2.0 * shares[j])

@@ -21,8 +21,8 @@ from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.thresholds import LOST_TRACK
 from shipcosim.diagnose.ship.inputs import Record, first_motion
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Motion
-from shipcosim.diagnose.ship.track_keeping import Dp, sailed
+from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
+from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
@@ -99,7 +99,7 @@ def healthy_records(problem: IdentificationProblem, motion: Motion, count: int, 
     """
     model, record, noise = _drawn(problem.model, count, rng), problem.record, problem.noise
     jolts = rng.standard_normal((record.time.size, 3, count)) * (np.asarray(noise.jolt) * np.sqrt(record.step))[:, None]
-    ships, units = sailed(model, count, motion, record, Dp(problem.model, record.step), jolts=jolts)
+    ships, units = kept_on_track(model, count, motion, record, DpController(problem.model, record.step), jolts=jolts)
     return _logged(ships, units, model, problem, rng)
 
 

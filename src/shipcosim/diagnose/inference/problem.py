@@ -100,11 +100,13 @@ def unidentifiable(
         Thrusters that the log is sure to have, whatever drives them.
     """
     silent = [name for name in record.units if f"{name}_rpm" not in repaired and name not in third_party]
-    return [s for s in everyone if s.component in silent or (record.wind is None and s.effect.without_wind != "sought")]
+    return [
+        s for s in everyone if s.component in silent or (record.wind is None and s.definition.without_wind != "sought")
+    ]
 
 
 def _unknown_wind(everyone: Iterable[Hypothesis]) -> dict[str, float]:
     """Tolerances of what stands for the wind, where nobody knows it: the typical size of causes allowed for."""
-    allowed = [hypothesis for hypothesis in everyone if hypothesis.effect.without_wind == "allowed for"]
+    allowed = [hypothesis for hypothesis in everyone if hypothesis.definition.without_wind == "allowed for"]
     parameters = [parameter for hypothesis in allowed for parameter in hypothesis.parameters]
     return {path: parameter.typical for parameter in parameters for path in parameter.paths}

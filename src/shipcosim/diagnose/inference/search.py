@@ -124,7 +124,9 @@ def _simpler(problem, hypotheses):
     found = []
     for left in hypotheses:
         rest = tuple(hypothesis for hypothesis in hypotheses if hypothesis is not left)
-        special = [s for s in problem.hypotheses if s.cause == left.effect.special and s.component == left.component]
+        special = [
+            s for s in problem.hypotheses if s.cause == left.definition.special and s.component == left.component
+        ]
         found += [rest] if rest else []
         found += [(*rest, one) for one in special if one not in rest]
     return found
@@ -134,6 +136,6 @@ def _value(parameter, hypothesis, fit):
     """What a fit says of a number: its own value, or the mean of those of the more general cause."""
     if parameter.paths[0] in fit.values:
         return fit.values[parameter.paths[0]]
-    general = next(s for s in fit.hypotheses if s.effect.special == hypothesis.cause)
+    general = next(s for s in fit.hypotheses if s.definition.special == hypothesis.cause)
     place = hypothesis.parameters.index(parameter)
     return float(np.mean([fit.values[k.paths[0]] for k in general.parameters[place :: len(hypothesis.parameters)]]))

@@ -21,7 +21,7 @@ from shipcosim.diagnose.inference.thresholds import (
     SIZE_FROM_PART_TO_PART,
     UNMODELLED,
 )
-from shipcosim.diagnose.ship.environment import hat_functions
+from shipcosim.diagnose.ship.environment import piecewise_linear_basis
 from shipcosim.diagnose.ship.instruments import readings
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def _bases(problem, fit):
     """Accelerations in the body frame over the rows: by kind a list of (n, 3, p) arrays."""
     time, psi = problem.record.time, fit.motion.psi
     n = time.size
-    slow = hat_functions(np.linspace(0.0, 1.0, n), BASIS_FUNCTIONS).T
+    slow = piecewise_linear_basis(np.linspace(0.0, 1.0, n), BASIS_FUNCTIONS).T
     c, s = np.cos(psi), np.sin(psi)
     heading = np.stack([c, s, np.cos(2 * psi), np.sin(2 * psi), c**3, s**3], axis=-1)
     span = time[-1] - time[0]

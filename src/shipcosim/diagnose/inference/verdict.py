@@ -172,12 +172,12 @@ def _is_sized(hypothesis, fit):
     parameters, size = hypothesis.parameters, _size(hypothesis, fit)
     std = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in parameters]) / np.sqrt(len(parameters))
     at_bound = any(fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in parameters)
-    return not (size < hypothesis.effect.least or size < DEVIATIONS * std or at_bound)
+    return not (size < hypothesis.definition.least or size < DEVIATIONS * std or at_bound)
 
 
 def _in_shape(hypothesis, fit):
     """Whether what tells a cause's shape lies within its tolerances, taken together."""
-    shape = set(hypothesis.effect.shape)
+    shape = set(hypothesis.definition.shape)
     squares = sum(t**2 for t, column in zip(fit.theta, fit.columns, strict=True) if set(column.changes) & shape)
     return not shape or bool(chi2.sf(squares, len(shape)) > SHAPE_CHANCE)
 
@@ -192,7 +192,7 @@ def _with_a_small_cause(best, fits):
     for fit in sorted(fits, key=lambda fit: -fit.score):
         more = [hypothesis for hypothesis in fit.hypotheses if hypothesis not in best.hypotheses]
         if len(more) == 1 and len(fit.hypotheses) == len(best.hypotheses) + 1 and fit.score > best.score + ENOUGH:
-            if _size(more[0], fit) < more[0].effect.least:
+            if _size(more[0], fit) < more[0].definition.least:
                 return [fit]
     return []
 

@@ -33,7 +33,8 @@ from shipcosim.diagnose.log_faults.thresholds import (
     TYPICAL_SEGMENT,
 )
 from shipcosim.diagnose.result import Estimate, Finding
-from shipcosim.diagnose.ship.model import Motion, motion_rates
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.models.core.motion import Motion
 
 __all__ = ["clock_by_response", "is_testable", "with_rate"]
 

@@ -205,7 +205,7 @@ def _shows_at_its_ends(log, mislabel, fault):
 
 def _least_gain(fault, fit):
     """What a fault of the inputs' channels must gain over a fit: little, if a wrong unit looks like a cause in it."""
-    label, alike = mislabel_of(fault), {channel for one in fit.hypotheses for channel in one.effect.unit_of}
+    label, alike = mislabel_of(fault), {channel for one in fit.hypotheses for channel in one.definition.unit_of}
     is_unit = label is not None and label.scale is not None
     return UNIT if is_unit and alike & set(fault.channels) else FAULT
 

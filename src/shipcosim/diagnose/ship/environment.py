@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.hull import HullParameters
 
-__all__ = ["Water", "hat_functions", "share_of", "swell_of", "water_of"]
+__all__ = ["Water", "piecewise_linear_basis", "share_of", "swell_of", "water_of"]
 
 _NEUTRAL = "neutral"
 _SWELLS = 8
@@ -74,7 +74,7 @@ def share_of(time, span):
     return np.clip((time - first) / (last - first), 0.0, 1.0)
 
 
-def hat_functions(share, count):
+def piecewise_linear_basis(share, count):
     """Hat functions over shares of a log, of which each is 1 at its own of evenly spaced places: (count, ...) array."""
     places = np.arange(count).reshape(-1, *[1] * np.ndim(share))
     return np.clip(1.0 - np.abs(np.asarray(share) * (count - 1) - places), 0.0, None)
@@ -100,5 +100,5 @@ def swell_of(time, span, water):
     if not np.any(swells):
         return 1.0
     return 1.0 + sum(
-        swell * hat for swell, hat in zip(swells, hat_functions(share_of(time, span), _SWELLS), strict=True)
+        swell * hat for swell, hat in zip(swells, piecewise_linear_basis(share_of(time, span), _SWELLS), strict=True)
     )

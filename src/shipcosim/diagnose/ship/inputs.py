@@ -1,20 +1,39 @@
 """A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from shipcosim.angles import unwrap_series
-from shipcosim.diagnose.ship.model import Inputs, Motion
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.models.core.motion import Motion
 
-__all__ = ["CHANNELS", "Record", "first_motion", "record_of"]
+__all__ = ["CHANNELS", "Inputs", "Record", "first_motion", "record_of"]
 
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s on Gunnerus
 _ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
+
+
+class Inputs(NamedTuple):
+    """What acts on the ship at some times, arrays of one shape.
+
+    Attributes
+    ----------
+    time : array
+        [s]
+    units : dict of str to tuple of two arrays
+        By thruster: speed, or thrust where that drives it, and direction as logged. [rev/s or N, rad]
+    wind_speed, wind_from : array or None
+        Wind at the mast, apparent or true as `ShipModel.wind_is_true` says. [m/s, rad]
+    """
+
+    time: Any
+    units: dict
+    wind_speed: Any
+    wind_from: Any
 
 
 @dataclass(frozen=True)

@@ -1,34 +1,46 @@
-"""The law of a black box: its loads over a log, from co-simulations of its FMU alone, and what a deviation changes.
+"""Surrogates of third-party FMUs: loads over a log, from co-simulations of an FMU alone, and their derivatives.
 
 The FMU runs along the log with what the log says at its inputs, and again with each of them, and each of its
-parameters, a little off. In between stands the bollard law that fits it best, which holds for large deviations too.
+parameters, changed a little. The part of its loads that goes with the squared speed of a propeller is a quadratic law
+of thrust, which holds for large changes too; the surrogate is linear in the rest.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from shipcosim.cosim import RunOptions, simulate
-from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, drives_of
+from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, BlackBox, ThirdPartyFmu, drives_of
+from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.motion import Load, Motion
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import Connection, Signal, System
 
-__all__ = ["Bollard", "Surrogate", "with_surrogates", "surrogates_of"]
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["QuadraticThrust", "Surrogate", "with_surrogates", "surrogates_of"]
 
 _AXES = ("X", "Y", "N")
-_OFF = {"x": 0.1, "y": 0.1, "psi": 2e-3, "azimuth": 2e-3, "r": 1e-3}  # m, rad, rad/s: connector offsets
-_OFF |= dict.fromkeys(("u", "v", "u_r", "v_r"), 0.01)  # m/s
-_OFF_DRIVE = 2e-3  # of the largest speed or thrust
-_OFF_PARAMETER = 0.1  # of a tolerance
+_CHANGE = {"x": 0.1, "y": 0.1, "psi": 2e-3, "azimuth": 2e-3, "r": 1e-3}  # m, rad, rad/s: changes for derivatives
+_CHANGE |= dict.fromkeys(("u", "v", "u_r", "v_r"), 0.01)  # m/s
+_CHANGE_OF_DRIVE = 2e-3  # of the largest speed or thrust
+_CHANGE_OF_PARAMETER = 0.1  # of a tolerance
 _LEAD = 30.0  # s, in which an FMU settles at what the log begins with
 _MOST_STEPS = 250_000  # of all FMUs together
-_NEAR = 0.05  # of the largest speed, and in rad: other inputs than these have a law of their own
+_NEAR = 0.05  # of the largest speed, and in rad: for other inputs than these another surrogate is made
 
 
-class Bollard(NamedTuple):
-    """Thrust by squared speed, along an axis, at a place.
+class QuadraticThrust(NamedTuple):
+    """Thrust that goes with the squared speed of a propeller, along an axis, at a place.
 
     Attributes
     ----------
@@ -46,8 +58,8 @@ class Bollard(NamedTuple):
     x: float = 0.0
     y: float = 0.0
 
-    def loads(self, rpm, azimuth):
-        """Loads on the ship, and their slopes by speed and direction; three tuples of three. [N, N, N.m]"""
+    def loads(self, rpm: Arithmetic, azimuth: Arithmetic) -> tuple[Load, Load, Load]:
+        """Loads on the ship [N, N, N.m], and their derivatives by speed [rpm] and direction [rad]."""
         c, s = np.cos(self.axis + azimuth), np.sin(self.axis + azimuth)
         share = np.where(rpm >= 0.0, self.ahead, self.astern)
         along, across = (c, s, self.x * s - self.y * c), (-s, c, self.x * c + self.y * s)
@@ -59,7 +71,7 @@ class Bollard(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Surrogate:
-    """Loads over a log: the bollard law, and linear in all that deviates what the FMU does otherwise.
+    """Loads over a log: a quadratic law of thrust, and the rest linear in all inputs and parameters.
 
     Attributes
     ----------
@@ -70,20 +82,20 @@ class Surrogate:
     nominal : dict of str to float
         Its parameters that have slopes.
     rest : (1 + q + p, 3, k) array
-        Load less that of the bollard law, then its slopes by each of `about`, by each of `nominal`.
-    bollard : Bollard
+        Load less that of the quadratic law, then its derivatives by each of `about`, by each of `nominal`.
+    thrust : QuadraticThrust
     rpm_max : float
         Largest speed, the FMU's or the log's. [rpm]
     """
 
     time: np.ndarray
-    about: dict
-    nominal: dict
+    about: dict[str, np.ndarray]
+    nominal: dict[str, float]
     rest: np.ndarray
-    bollard: Bollard
+    thrust: QuadraticThrust
     rpm_max: float
 
-    def loads(self, time, given, part):
+    def loads(self, time: np.ndarray, given: Mapping[str, Arithmetic], part: BlackBox) -> Load:
         """Loads on the ship.
 
         Parameters
@@ -103,20 +115,20 @@ class Surrogate:
         low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
         share = at - low
         rest = self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share
-        given = given | {name: given[name] + sign * getattr(part, off) for name, off, sign in _wrong(given, part)}
+        given = given | {name: given[name] + sign * getattr(part, off) for name, off, sign in _offsets(given, part)}
         found = list(rest[0])
         off = [given[name] - (v[low] * (1.0 - share) + v[low + 1] * share) for name, v in self.about.items()]
         off += [getattr(part, name) - value for name, value in self.nominal.items()]
         for deviation, slopes in zip(off, rest[1:], strict=True):
             found = [load + slope * deviation for load, slope in zip(found, slopes, strict=True)]
         if "rpm" in self.about:
-            ideal = self.bollard.loads(given["rpm"], given["azimuth"])[0]
+            ideal = self.thrust.loads(given["rpm"], given["azimuth"])[0]
             found = [load + more for load, more in zip(found, ideal, strict=True)]
         kept = 1.0 - getattr(part, "thrust_loss", 0.0)
         return tuple(kept * load for load in found)
 
-    def fits(self, record, units):
-        """Whether it is that of these times and inputs."""
+    def fits(self, record: Record, units: Mapping[str, np.ndarray]) -> bool:
+        """Whether the surrogate was built for these times and similar inputs."""
         inside = self.time[0] <= record.time[0] and record.time[-1] <= self.time[-1] + 1e-6
         near = {kind: _NEAR * max(np.abs(self.about.get(kind, 0.0)).max(), 1.0) for kind in ("rpm", "thrust")}
         near["azimuth"] = _NEAR
@@ -127,14 +139,14 @@ class Surrogate:
         )
 
 
-def _wrong(given, part):
-    """What of the inputs may be wrong: quantity, number, sign."""
+def _offsets(given: Mapping[str, Arithmetic], part: BlackBox) -> list[tuple[str, str, float]]:
+    """Offsets of the inputs: quantity, number of the part, sign."""
     wrong = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
     return [one for one in wrong if one[0] in given and hasattr(part, one[1])]
 
 
-def with_surrogates(model, record, motion):
-    """The ship with the law of each of her black boxes over a log.
+def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipModel:
+    """The ship with surrogates of her third-party FMUs over a log.
 
     Parameters
     ----------
@@ -155,20 +167,25 @@ def with_surrogates(model, record, motion):
     new = {
         name: one
         for name, one in model.third_party.items()
-        if one.law is None or not one.law.fits(record, units.get(name, {}))
+        if one.surrogate is None or not one.surrogate.fits(record, units.get(name, {}))
     }
-    laws = surrogates_of(new, record.time, units, motion) if new else {}
-    third_party = model.third_party | {name: replace(new[name], law=law) for name, law in laws.items()}
+    surrogates = surrogates_of(new, record.time, units, motion) if new else {}
+    third_party = model.third_party | {name: replace(new[name], surrogate=one) for name, one in surrogates.items()}
     parts, tolerances = dict(model.parts), dict(model.tolerances)
     for name, one in third_party.items():
         if "rpm" in one.drives:
-            parts[name] = replace(parts[name], rpm_max=one.law.rpm_max)
-            tolerances[f"{name}.rpm_offset"] = 5e-4 * one.law.rpm_max
+            parts[name] = replace(parts[name], rpm_max=one.surrogate.rpm_max)
+            tolerances[f"{name}.rpm_offset"] = 5e-4 * one.surrogate.rpm_max
     return replace(model, parts=parts, tolerances=tolerances, third_party=third_party)
 
 
-def surrogates_of(third_party, time, units, motion):
-    """Laws of several FMUs, from one co-simulation.
+def surrogates_of(
+    third_party: Mapping[str, ThirdPartyFmu],
+    time: np.ndarray,
+    units: Mapping[str, Mapping[str, np.ndarray]],
+    motion: Motion,
+) -> dict[str, Surrogate]:
+    """Surrogates of several FMUs, from one co-simulation.
 
     Parameters
     ----------
@@ -182,7 +199,7 @@ def surrogates_of(third_party, time, units, motion):
 
     Returns
     -------
-    dict of str to Law
+    dict of str to Surrogate
     """
     moved = dict(zip(MOTION, (*motion, motion.u, motion.v), strict=True))
     given = {name: moved | units.get(name, {}) for name in third_party}
@@ -197,7 +214,7 @@ def surrogates_of(third_party, time, units, motion):
 
 
 class _Run(NamedTuple):
-    """One copy of an FMU, with one quantity or number off by something."""
+    """One copy of an FMU, with one input or one parameter changed by something."""
 
     of: str
     name: str
@@ -206,18 +223,18 @@ class _Run(NamedTuple):
     by: float = 0.0
 
 
-def _runs(name, one, given):
-    """All copies of an FMU: as it is, and with each of its quantities and parameters off."""
+def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Iterator[_Run]:
+    """All copies of an FMU: as it is, and with each of its inputs and parameters changed."""
     yield _Run(name, name)
     for quantity in dict.fromkeys(link.quantity for link in one.links):
-        by = _OFF.get(quantity) or _OFF_DRIVE * max(np.abs(given[quantity]).max(), 1.0)
+        by = _CHANGE.get(quantity) or _CHANGE_OF_DRIVE * max(np.abs(given[quantity]).max(), 1.0)
         yield _Run(name, f"{name} with another {quantity}", quantity, by=by)
     for number, variable in one.parameters.items():
-        by = _OFF_PARAMETER * one.component.tolerances[variable]
+        by = _CHANGE_OF_PARAMETER * one.component.tolerances[variable]
         yield _Run(name, f"{name} with another {variable}", number=number, by=by)
 
 
-def _fine(time, runs, step):
+def _fine(time: np.ndarray, runs: int, step: float) -> np.ndarray:
     """Times of the run: a quarter of the rows' step or the system's own, coarser where there are many copies."""
     row, span = time[1] - time[0], time[-1] - time[0]
     wanted = max(0.25 * row, step, min(row, runs * span / _MOST_STEPS))
@@ -225,7 +242,12 @@ def _fine(time, runs, step):
     return time[0] + h * np.arange(int(np.ceil(span / h - 1e-6)) + 1)
 
 
-def _simulated(runs, third_party, fed, fine):
+def _simulated(
+    runs: Sequence[_Run],
+    third_party: Mapping[str, ThirdPartyFmu],
+    fed: Mapping[str, Mapping[str, np.ndarray]],
+    fine: np.ndarray,
+) -> xarray.Dataset:
     """Table of a co-simulation of all copies, settled beforehand; rows are those of the times and one more."""
     h = fine[1] - fine[0]
     lead, components, connections, inputs, columns = int(np.ceil(_LEAD / h)), {}, [], {}, {}
@@ -249,28 +271,34 @@ def _simulated(runs, third_party, fed, fine):
     return found.isel(time=slice(lead + 1, None))  # what a step makes of a row is there at its end
 
 
-def _surrogate(one, runs, table, fine, fed):
-    """The law of a third-party FMU from the runs of its copies."""
+def _surrogate(
+    one: ThirdPartyFmu,
+    runs: Sequence[_Run],
+    table: xarray.Dataset,
+    fine: np.ndarray,
+    fed: Mapping[str, np.ndarray],
+) -> Surrogate:
+    """The surrogate of a third-party FMU from the runs of its copies."""
     base, *others = (_on_ship(one, run.name, table) for run in runs)
     quantities = [run.quantity for run in runs if run.quantity]
     nominal = {n: one.component.start_value(v) for n, v in one.parameters.items()}
     rest = np.stack([base, *((other - base) / run.by for other, run in zip(others, runs[1:], strict=True))])
-    about, bollard, most = {q: fed[q] for q in quantities}, Bollard(), 1.0
+    about, thrust, most = {q: fed[q] for q in quantities}, QuadraticThrust(), 1.0
     if "rpm" in about:
         top = next(one.component.fmu.variables[x.variable].maximum for x in one.links if x.quantity == "rpm")
         factor = next(link.factor for link in one.links if link.quantity == "rpm")
         logged = float(max(np.abs(fed["rpm"]).max(), 1.0))
         most = max(abs(top / factor), logged) if top and np.isfinite(top) and top < 1e6 else logged
-        bollard = bollard_of(base, fed["rpm"], fed["azimuth"], "azimuth" in about)
-        ideal = bollard.loads(fed["rpm"], fed["azimuth"])
+        thrust = fitted_thrust(base, fed["rpm"], fed["azimuth"], "azimuth" in about)
+        ideal = thrust.loads(fed["rpm"], fed["azimuth"])
         rest[0] -= ideal[0]
         for quantity, slopes in zip(("rpm", "azimuth"), ideal[1:], strict=True):
             if quantity in about:
                 rest[1 + quantities.index(quantity)] -= slopes
-    return Surrogate(fine, about, nominal, rest, bollard, most)
+    return Surrogate(fine, about, nominal, rest, thrust, most)
 
 
-def _on_ship(one, name, table):
+def _on_ship(one: ThirdPartyFmu, name: str, table: xarray.Dataset) -> np.ndarray:
     """Load of a copy on the ship, (3, k) array."""
     found = np.zeros((3, table.sizes["time"]))
     for axis, output, factor, offset in one.loads:
@@ -278,8 +306,8 @@ def _on_ship(one, name, table):
     return found
 
 
-def bollard_of(load, rpm, azimuth, turns):
-    """The bollard law nearest to loads.
+def fitted_thrust(load: np.ndarray, rpm: np.ndarray, azimuth: np.ndarray, turns: bool) -> QuadraticThrust:
+    """The quadratic law of thrust that fits loads best.
 
     Parameters
     ----------
@@ -292,20 +320,20 @@ def bollard_of(load, rpm, azimuth, turns):
 
     Returns
     -------
-    Bollard
+    QuadraticThrust
         Without thrust where the loads do not go with the squared speed.
     """
     square = rpm * np.abs(rpm)
     scale = square @ square
     if scale == 0.0:
-        return Bollard()
+        return QuadraticThrust()
     axis = 0.0 if turns else float(np.arctan2(load[1] @ square, load[0] @ square))
     along = np.cos(axis + azimuth) * load[0] + np.sin(axis + azimuth) * load[1]
     both = along @ square / scale
     ways = [square * where for where in (rpm > 0.0, rpm < 0.0)]
     ahead, astern = (max(along @ way / (way @ way), 0.0) if way @ way > 0.01 * scale else both for way in ways)
     if both <= 0.0 or min(ahead, astern) <= 0.0:
-        return Bollard()
+        return QuadraticThrust()
     levers = np.stack([load[1], -load[0]], axis=-1)
     x, y = np.linalg.lstsq(levers, load[2], rcond=1e-6)[0]
-    return Bollard(float(ahead), float(astern), axis, float(x), float(y))
+    return QuadraticThrust(float(ahead), float(astern), axis, float(x), float(y))

@@ -1,13 +1,21 @@
-"""A part of the ship that somebody else's FMU moves: what it is fed with, what of it reaches her, its numbers."""
+"""Third-party FMUs that load the ship: what feeds them, what of their outputs reaches her, their parameters."""
+
+from __future__ import annotations
 
 import keyword
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, field, make_dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from shipcosim.errors import Problem
+from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.parameters import quantity
 from shipcosim.series import conversion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.surrogate import Surrogate
+    from shipcosim.ssp import Component, Connection, System
 
 __all__ = ["DRIVES", "BlackBox", "Link", "ThirdPartyFmu", "drives_of", "part_of", "problem_of", "third_party_fmu_of"]
 
@@ -21,11 +29,11 @@ _KNOWN = 0.02  # of the thrust, where nobody says more (assumed)
 
 @dataclass(frozen=True)
 class BlackBox:
-    """Numbers of a part that the FMU of somebody else moves; `part_of` gives it its fields."""
+    """Numbers of the part of a third-party FMU; `part_of` gives it its fields."""
 
 
 class Link(NamedTuple):
-    """What an input gets: ``factor * quantity + offset``, the quantity in rpm, N, rad, m, m/s or rad/s."""
+    """What feeds an input: ``factor * quantity + offset``, the quantity in rpm, N, rad, m, m/s or rad/s."""
 
     quantity: str
     variable: str
@@ -35,7 +43,7 @@ class Link(NamedTuple):
 
 @dataclass(frozen=True)
 class ThirdPartyFmu:
-    """An FMU of somebody else that puts a load on the ship.
+    """A third-party FMU that puts a load on the ship.
 
     Attributes
     ----------
@@ -52,32 +60,32 @@ class ThirdPartyFmu:
         Inputs of which more than one could be its speed, or its direction.
     step : float or None
         Of the system. [s]
-    law : Surrogate or None
+    surrogate : Surrogate or None
         Its loads over a log.
     """
 
-    component: Any
-    links: tuple
-    loads: tuple
-    parameters: dict = field(default_factory=dict)
-    idle: tuple = ()
-    unclear: tuple = ()
+    component: Component
+    links: tuple[Link, ...]
+    loads: tuple[tuple[str, str, float, float], ...]
+    parameters: dict[str, str] = field(default_factory=dict)
+    idle: tuple[str, ...] = ()
+    unclear: tuple[str, ...] = ()
     step: float | None = None
-    law: Any = None
+    surrogate: Surrogate | None = None
 
     @property
-    def drives(self):
+    def drives(self) -> tuple[str, ...]:
         """What a log has to say of it: ``"rpm"`` or ``"thrust"``, ``"azimuth"``."""
         return tuple(kind for kind in DRIVES if any(link.quantity == kind for link in self.links))
 
 
-def drives_of(first, azimuth):
+def drives_of(first: Arithmetic, azimuth: Arithmetic) -> dict[str, Arithmetic]:
     """Inputs of a third-party FMU by quantity; `first` is its speed [rev/s] or its thrust [N]."""
     return {"rpm": 60.0 * first, "thrust": first, "azimuth": azimuth}
 
 
-def third_party_fmu_of(system, name, ship):
-    """A component as a black box.
+def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
+    """A component of a system as a third-party FMU.
 
     Parameters
     ----------
@@ -119,7 +127,7 @@ def third_party_fmu_of(system, name, ship):
     return ThirdPartyFmu(component, tuple(links), loads, _parameters(component), tuple(idle), tuple(unclear), step)
 
 
-def _kind(system, connection):
+def _kind(system: System, connection: Connection) -> str | None:
     """Which drive an input would be, by the unit of what feeds it, or by its name where there is none."""
     source, given = connection.source
     label = given if source is None else connection.target[1]
@@ -131,14 +139,14 @@ def _kind(system, connection):
     return kind if named == kind or (source is None and kind != "thrust") else None
 
 
-def _unit(system, connection):
+def _unit(system: System, connection: Connection) -> str | None:
     """Unit in which a log would feed it: that of the system's input, else of the variable."""
     (source, given), (name, variable) = connection.source, connection.target
     own = system.components[name].fmu.variables[variable].unit
     return (system.inputs[given].unit or own) if source is None else own
 
 
-def _drive(system, kind, connection):
+def _drive(system: System, kind: str, connection: Connection) -> Link:
     """The link from a log to an input, through the system where one of its inputs feeds it."""
     unit = _unit(system, connection)
     per, offset = (1.0, 0.0) if unit in (None, "", "1") else conversion(DRIVES[kind], unit)
@@ -147,7 +155,7 @@ def _drive(system, kind, connection):
     return Link(kind, connection.target[1], connection.factor * per, connection.factor * offset + connection.offset)
 
 
-def _parameters(component):
+def _parameters(component: Component) -> dict[str, str]:
     """Variables of real parameters with a tolerance, by the names of their numbers."""
     found = {}
     for variable in component.tolerances:
@@ -159,8 +167,8 @@ def _parameters(component):
     return found
 
 
-def _numbers(drives):
-    """What may be wrong with any thruster, whoever made it."""
+def _numbers(drives: Collection[str]) -> dict[str, Any]:
+    """Numbers that any thruster has, whoever made it: its loss, and offsets of what drives it."""
     loss = quantity(0.0, "1", "share of its load that is missing", "neutral", tolerance=_KNOWN, maximum=1.0)
     offset = quantity(0.0, "rpm", "given speed minus the real one", "neutral")
     most = quantity(1.0, "rpm", "largest speed", "the FMU's, else the log's", minimum=1e-6)
@@ -170,7 +178,7 @@ def _numbers(drives):
     return found | ({"azimuth_offset": turned} if "azimuth" in drives else {})
 
 
-def part_of(third_party):
+def part_of(third_party: ThirdPartyFmu) -> BlackBox:
     """Numbers of a third-party FMU: neutral ones, and its parameters that are known within a tolerance.
 
     Parameters
@@ -191,7 +199,7 @@ def part_of(third_party):
     return make_dataclass("BlackBoxOf", listed, bases=(BlackBox,), frozen=True)()
 
 
-def problem_of(system, name, ship, one):
+def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Problem | None:
     """What to say of a third-party FMU whose load no log tells; None where it does."""
     if one.links and not one.unclear:
         return None

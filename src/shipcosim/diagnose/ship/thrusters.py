@@ -1,18 +1,28 @@
-"""Thrusters: loads of our own on the ship by the log's speeds and directions, and how a DP knows any of them."""
+"""Thrusters: loads of our own FMUs by logged speed and direction, and each thruster as a DP controller knows it."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.motion import Load
 from shipcosim.models.propulsion import thruster
 from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
 
-__all__ = ["Pusher", "fixed_of", "neighbours_of", "neighbours_placed", "pusher_of", "thruster_loads"]
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Inputs
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.ssp import System
+
+__all__ = ["DpThruster", "fixed_of", "neighbours_of", "neighbours_placed", "dp_thruster_of", "thruster_loads"]
 
 
-class Pusher(NamedTuple):
-    """A thruster as a DP knows it.
+class DpThruster(NamedTuple):
+    """A thruster as a DP controller knows it.
 
     Attributes
     ----------
@@ -23,7 +33,7 @@ class Pusher(NamedTuple):
     pointed, turns : bool
         Whether it has a direction, and whether the DP may change that.
     ahead, astern : float
-        Bollard thrust over squared speed; 0 where the DP has to leave it alone. [N.s2]
+        QuadraticThrust thrust over squared speed; 0 where the DP has to leave it alone. [N.s2]
     most : float
         Largest speed. [rev/s]
     """
@@ -38,8 +48,8 @@ class Pusher(NamedTuple):
     most: float
 
 
-def pusher_of(model, name):
-    """A thruster of a ship as her DP knows it.
+def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
+    """A thruster of a ship as her DP controller knows it.
 
     Parameters
     ----------
@@ -48,22 +58,24 @@ def pusher_of(model, name):
 
     Returns
     -------
-    Pusher
+    DpThruster
     """
     unit = model.parts[name]
     if name in model.third_party:
-        law, pointed = model.third_party[name].law, "azimuth" in model.drives(name)
-        b = law.bollard
-        return Pusher(b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, law.rpm_max / 60.0)
+        surrogate, pointed = model.third_party[name].surrogate, "azimuth" in model.drives(name)
+        b, most = surrogate.thrust, surrogate.rpm_max / 60.0
+        return DpThruster(b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, most)
     if isinstance(unit, AzimuthParameters):
         turns = name not in model.fixed
         axis, rates = model.fixed.get(name, 0.0), (*unit.bollard[:2], unit.rpm_max / 60.0)
-        return Pusher(unit.x, unit.y, axis, turns, turns, *rates)
+        return DpThruster(unit.x, unit.y, axis, turns, turns, *rates)
     thrust = 3600.0 * unit.thrust_coefficient
-    return Pusher(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
+    return DpThruster(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
 
 
-def thruster_loads(name, inputs, u_r, v_r, r, model):
+def thruster_loads(
+    name: str, inputs: Inputs, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, model: ShipModel
+) -> Load:
     """Load of a thruster, as the system wires it.
 
     Parameters
@@ -85,7 +97,14 @@ def thruster_loads(name, inputs, u_r, v_r, r, model):
     return model.wiring.loaded(name, _loads_of(name, units, u_r, v_r, r, model))
 
 
-def _loads_of(name, units, u_r, v_r, r, model):
+def _loads_of(
+    name: str,
+    units: dict[str, tuple[Arithmetic, Arithmetic]],
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    model: ShipModel,
+) -> Load:
     unit, (n, azimuth) = model.parts[name], units[name]
     if isinstance(unit, TunnelParameters):
         return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
@@ -98,7 +117,7 @@ def _loads_of(name, units, u_r, v_r, r, model):
     return thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)[-3:]
 
 
-def neighbours_of(system, parts):
+def neighbours_of(system: System, parts: Mapping[str, Any]) -> dict[str, str]:
     """By azimuth thruster of ours, the one whose slipstream can hit it: as the system wires it, else the nearest.
 
     Parameters
@@ -122,7 +141,7 @@ def neighbours_of(system, parts):
     return found
 
 
-def neighbours_placed(parts, neighbours):
+def neighbours_placed(parts: Mapping[str, Any], neighbours: Mapping[str, str]) -> dict[str, Any]:
     """The parts, in which each azimuth thruster knows where its neighbour is."""
     placed = dict(parts)
     for name, other in neighbours.items():
@@ -131,7 +150,7 @@ def neighbours_placed(parts, neighbours):
     return placed
 
 
-def fixed_of(system, parts):
+def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
     """Azimuth thrusters of ours that a system drives and never turns, as fixed propellers, and where they point.
 
     Parameters

@@ -6,9 +6,11 @@ those of a planned manoeuvre.
 
 import numpy as np
 
-from shipcosim.diagnose.ship.model import Inputs, Motion, motion_rates
-from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.integrate import euler
+from shipcosim.models.core.motion import Motion
 
 _FREQUENCY = 0.5  # rad/s times the square root of the length in m over gravity, of the DP: 0.09 rad/s on Gunnerus
 _DAMPING = 0.8
@@ -17,7 +19,7 @@ _ACROSS = 0.2  # how readily a unit turns, against how readily it changes its sp
 _ANSWER = 4.0  # s, until the thrusters of a ship of 33.9 m do as told; others by the root of their length
 
 
-def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
+def kept_on_track(ships, count, track, record, dp, *, jolts=None, held=None):
     """Motion and thrusters of ships that a DP brings along a track.
 
     Parameters
@@ -30,7 +32,7 @@ def sailed(ships, count, track, record, dp, *, jolts=None, held=None):
         (n,) or (m, n) arrays.
     record : Record
         What the thrusters are told anyway, (n,) or (m, n) arrays, and the wind.
-    dp : Dp
+    dp : DpController
     jolts : (n, 3, m) array, optional
         Changes of velocity at each row. [m/s, m/s, rad/s]
     held : dict of str to (n,) or (m, n) bool array, optional
@@ -92,7 +94,7 @@ def _moved(ship, last, inputs, model, h, dp):
     return Motion(*euler(ship, rates, h)), rates
 
 
-class Dp:
+class DpController:
     """Proportional, derivative and slow integral action, shared out to the thrusters that the ship has.
 
     Parameters
@@ -107,7 +109,7 @@ class Dp:
 
     def __init__(self, model, h, fixed=()):
         hull = model.parts["hull"]
-        self.pushers = {name: pusher_of(model, name) for name in model.thrusters}
+        self.thrusters = {name: dp_thruster_of(model, name) for name in model.thrusters}
         self.h, self.model, self.fixed = h, model, fixed
         self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
         self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
@@ -151,7 +153,7 @@ class Dp:
             For k forces, in the order of the thrusters.
         """
         columns, eases = [], []
-        for name, unit in self.pushers.items():
+        for name, unit in self.thrusters.items():
             angle = unit.axis + (azimuths[name] if unit.pointed else 0.0 * azimuths[name])
             alone = held.get(name, False) if unit.ahead else True
             for i in range(self._forces(name)):
@@ -169,12 +171,12 @@ class Dp:
 
     def _forces(self, name):
         """In how many directions a thruster pushes as the DP wants."""
-        return 2 if self.pushers[name].turns and name not in self.fixed else 1
+        return 2 if self.thrusters[name].turns and name not in self.fixed else 1
 
     def _by_thruster(self, forces):
         """Forces along and across the axis of each thruster."""
         found, place = {}, 0
-        for name in self.pushers:
+        for name in self.thrusters:
             own = forces[place : place + self._forces(name)]
             found[name] = own if len(own) > 1 else np.concatenate([own, np.zeros_like(own)])
             place += len(own)
@@ -187,7 +189,7 @@ class Dp:
         """
         found = {}
         for name, (along, across) in self._by_thruster(told).items():
-            unit, (n, azimuth) = self.pushers[name], (_between(series, k) for series in record.units[name])
+            unit, (n, azimuth) = self.thrusters[name], (_between(series, k) for series in record.units[name])
             if not unit.ahead:
                 found[name] = n + 0.0 * along, azimuth + 0.0 * along
                 continue
@@ -199,13 +201,13 @@ class Dp:
         return found
 
     def force(self, name, n):
-        """Bollard thrust of a thruster at a speed in rev/s. [N]"""
-        unit = self.pushers[name]
+        """QuadraticThrust thrust of a thruster at a speed in rev/s. [N]"""
+        unit = self.thrusters[name]
         return np.where(n >= 0, unit.ahead, unit.astern) * n * np.abs(n)
 
     def speed(self, name, force):
         """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
-        unit = self.pushers[name]
+        unit = self.thrusters[name]
         return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern))
 
 

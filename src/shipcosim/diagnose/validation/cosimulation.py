@@ -7,11 +7,11 @@ import numpy as np
 
 from shipcosim.cosim import replay
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Motion
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
 from shipcosim.diagnose.validation.predictions import missing, predicted
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.models.core.motion import Motion
 from shipcosim.series import make_table
 
 STEP = 0.1

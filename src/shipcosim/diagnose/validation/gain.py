@@ -9,7 +9,6 @@ import xarray
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import Motion
 from shipcosim.diagnose.validation.predictions import (
     earth_fixed,
     missing,
@@ -20,6 +19,7 @@ from shipcosim.diagnose.validation.predictions import (
     restarted,
 )
 from shipcosim.diagnose.validation.split import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
+from shipcosim.models.core.motion import Motion
 
 MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
 _HELD = {"plain": "bias_observer", "extended": "extended_observer", "calibrated": None, "floor": None}

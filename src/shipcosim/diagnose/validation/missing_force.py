@@ -7,7 +7,7 @@ import xarray
 
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import linearise
-from shipcosim.diagnose.ship.thrusters import pusher_of
+from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.validation.predictions import mass_matrix
 from shipcosim.models.core.kinematics import to_body, to_ned
 
@@ -53,7 +53,7 @@ def _in_frames(surge, sway, yaw, motion, record, model):
         "east": (east, "N", "missing force towards east"),
     }
     for name in model.thrusters:
-        unit = pusher_of(model, name)
+        unit = dp_thruster_of(model, name)
         direction = unit.axis + (record.units[name][1] if unit.pointed else np.zeros(surge.size))
         along, across = to_body(direction, surge, sway)
         columns[f"{name}_along"] = along, "N", f"missing force in the direction of positive thrust of {name}"

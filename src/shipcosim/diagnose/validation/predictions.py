@@ -8,8 +8,8 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.ship.instruments import LAGS, readings, true_motion
-from shipcosim.diagnose.ship.model import Motion
 from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.motion import Motion
 
 _FASTEST, _FASTEST_TURN = 20.0, 0.5  # m/s, rad/s
 _FORCE = slice(6, 9)

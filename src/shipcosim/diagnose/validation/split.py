@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.diagnose.inference.linearisation import Linear
-from shipcosim.diagnose.ship.model import Motion
+from shipcosim.models.core.motion import Motion
 
 HORIZONS = (10.0, 30.0, 60.0)
 """Of the predictions. [s]"""

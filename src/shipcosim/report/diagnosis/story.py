@@ -56,7 +56,7 @@ class Story:
     @property
     def causes(self) -> dict[str, Cause]:
         """The causes by name."""
-        return read_catalogue() | {one.cause: one.effect for one in self.details.problem.hypotheses}
+        return read_catalogue() | {one.cause: one.definition for one in self.details.problem.hypotheses}
 
     @property
     def notes(self):

@@ -1,0 +1,188 @@
+"""Dynamics of the ship model: loads by name, and rates of position, heading and velocity over ground."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.angles import wrap
+from shipcosim.diagnose.ship.environment import share_of, swell_of
+from shipcosim.diagnose.ship.third_party_fmu import drives_of
+from shipcosim.diagnose.ship.thrusters import thruster_loads
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.maths import Arithmetic, cos, sin
+from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.parameters import acts
+from shipcosim.models.environment import wind_loads as wind
+from shipcosim.models.environment.current import varying_current
+from shipcosim.models.environment.earth_fixed_loads import drift_force, earth_force
+from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.ship.vessel import accelerations
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Inputs
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["current_at", "loads", "motion_rates", "rate_difference", "with_steady_current"]
+
+Alike = tuple["ShipModel", dict[str, Load]]
+_CURRENT = tuple(f"{of}_{to}" for of in ("current", "trend") for to in ("north", "east"))
+_CURRENT += tuple(f"{to}_{at}" for to in ("north", "east") for at in ("start", "end"))
+
+
+def current_at(time: Arithmetic, model: ShipModel) -> tuple[Arithmetic, Arithmetic]:
+    """Velocity of the water towards north and east [m/s] at some times [s]."""
+    water, (first, last) = model.parts["water"], model.span
+    share = share_of(time, model.span)
+    north = water.current_north + water.trend_north * share
+    east = water.current_east + water.trend_east * share
+    ends = (water.north_start, water.east_start, water.north_end, water.east_end)
+    if any(ends):
+        speed, to = varying_current(time, *ends, time_start=first, time_end=last)
+        return north + speed * cos(to), east + speed * sin(to)
+    return north, east
+
+
+def with_steady_current(model: ShipModel, time: float) -> ShipModel:
+    """The ship in the current of a time [s], as one that does not vary."""
+    north, east = (float(value) for value in current_at(np.array(time), model))
+    steady = dict.fromkeys(_CURRENT, 0.0) | {"current_north": north, "current_east": east}
+    return model.with_values({f"water.{name}": value for name, value in steady.items()})
+
+
+def _body_current(psi: Arithmetic, time: Arithmetic, model: ShipModel) -> tuple[Arithmetic, Arithmetic]:
+    """Velocity of the water forward and to starboard. [m/s]"""
+    if not any(acts(getattr(model.parts["water"], name)) for name in _CURRENT):
+        return 0.0, 0.0
+    return to_body(psi, *current_at(time, model))
+
+
+def loads(motion: Motion, inputs: Inputs, model: ShipModel, like: Alike | None = None) -> dict[str, Load]:
+    """Loads on the ship by name: each thruster, wind, wave drift, line.
+
+    Parameters
+    ----------
+    motion : Motion
+    inputs : Inputs
+        At the same times.
+    model : ShipModel
+    like : tuple of ShipModel, dict, optional
+        Another ship in the same motion with the same inputs, and her loads: those of equal parts are not computed
+        again.
+
+    Returns
+    -------
+    dict of str to tuple of three arrays
+        X, Y, N. [N, N, N.m]
+    """
+    parts, found = model.parts, {}
+    u_c, v_c = _body_current(motion.psi, inputs.time, model)
+    u_r, v_r, r = motion.u - u_c, motion.v - v_c, motion.r
+    same = _alike(model, *like) if like else {}
+    for name in [name for name in parts if isinstance(parts[name], (AzimuthParameters, TunnelParameters))]:
+        found[name] = same.get(name) or thruster_loads(name, inputs, u_r, v_r, r, model)
+    for name in model.third_party:
+        found[name] = same.get(name) or _third_party_loads(name, motion, inputs, (u_r, v_r), model)
+    if inputs.wind_speed is not None:
+        found["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
+    water = parts["water"]
+    if np.any(water.drift_north) or np.any(water.drift_east):
+        shape = {name: getattr(water, f"drift_{name}") for name in ("surge_share", "sway_power", "yaw_arm")}
+        swell = swell_of(inputs.time, model.span, water)
+        found["drift_force"] = drift_force(motion.psi, swell * water.drift_north, swell * water.drift_east, **shape)
+    if np.any(water.tow_north) or np.any(water.tow_east):
+        found["earth_force"] = earth_force(motion.psi, water.tow_north, water.tow_east, x=water.tow_x)
+    return found
+
+
+def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[str, Load]:
+    """Those of another ship's loads that this one has too."""
+    if not _same_current(model, other):
+        return {"wind": found["wind"]} if "wind" in found and model.parts["wind"] is other.parts["wind"] else {}
+    return {name: load for name, load in found.items() if model.parts.get(name) is other.parts.get(name, 0)}
+
+
+def _same_current(model: ShipModel, other: ShipModel) -> bool:
+    one, two = model.parts["water"], other.parts["water"]
+    return one is two or all(getattr(one, name) == getattr(two, name) for name in _CURRENT)
+
+
+def _third_party_loads(
+    name: str, motion: Motion, inputs: Inputs, through: tuple[Arithmetic, Arithmetic], model: ShipModel
+) -> Load:
+    """Load of a third-party FMU by its surrogate, at a velocity through the water."""
+    given = motion._asdict() | dict(zip(("u_r", "v_r"), through, strict=True))
+    given |= drives_of(*inputs.units.get(name, (0.0, 0.0)))
+    return model.third_party[name].surrogate.loads(inputs.time, given, model.parts[name])
+
+
+def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:
+    parameters = model.parts["wind"]
+    speed, direction = inputs.wind_speed, inputs.wind_from
+    if model.wind_is_true:
+        north, east = -speed * cos(direction), -speed * sin(direction)
+        speed, direction = wind.apparent_wind(motion.psi, motion.u, motion.v, north, east)
+    return wind.wind_loads(
+        speed, wrap(direction - parameters.apparent_wind_offset), wind=replace(parameters, apparent_wind_offset=0.0)
+    )
+
+
+def motion_rates(
+    motion: Motion, inputs: Inputs, model: ShipModel, extra: Load = (0.0, 0.0, 0.0), like: Alike | None = None
+) -> Motion:
+    """Rates of position, heading and velocity over ground.
+
+    Parameters
+    ----------
+    motion : Motion
+    inputs : Inputs
+    model : ShipModel
+    extra : tuple of three
+        Further loads. [N, N, N.m]
+    like : tuple of ShipModel, dict, optional
+        As for `loads`.
+
+    Returns
+    -------
+    Motion
+        Rates.
+    """
+    north, east = to_ned(motion.psi, motion.u, motion.v)
+    return Motion(north, east, motion.r, *_accelerations(motion, inputs, model, extra, like))
+
+
+def _accelerations(motion: Motion, inputs: Inputs, model: ShipModel, extra: Load, like: Alike | None) -> Load:
+    """Rates of the velocity over ground."""
+    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, inputs, model, like).values(), strict=True))
+    u_c, v_c = _body_current(motion.psi, inputs.time, model)
+    u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=model.parts["hull"])
+    return u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot
+
+
+def rate_difference(one: ShipModel, other: ShipModel, motion: Motion, inputs: Inputs, like: Alike) -> Load:
+    """Accelerations of one ship minus those of another in the same motion with the same inputs.
+
+    Parameters
+    ----------
+    one, other : ShipModel
+    motion : Motion
+    inputs : Inputs
+    like : tuple of ShipModel, dict
+        As for `loads`.
+
+    Returns
+    -------
+    tuple of three arrays
+        [m/s2, m/s2, rad/s2]
+    """
+    hull = one.parts["hull"]
+    if hull is not other.parts["hull"] or not _same_current(one, other):
+        rates = (_accelerations(motion, inputs, model, (0.0, 0.0, 0.0), like) for model in (one, other))
+        return tuple(a - b for a, b in zip(*rates, strict=True))
+    mine, theirs = (loads(motion, inputs, model, like) for model in (one, other))
+    pairs = [(mine[name], theirs[name]) for name in mine if mine[name] is not theirs[name]]
+    X, Y, N = (sum(a[axis] - b[axis] for a, b in pairs) for axis in range(3))
+    i11, i22, i26, i62, i66 = hull.inverse_mass
+    return i11 * X, i22 * Y + i26 * N, i62 * Y + i66 * N
