@@ -101,9 +101,9 @@
     const chart = { automargin: false, zeroline: false, ticksuffix: " m", constrain: "domain" };
     const ghost = { type: "scatter", mode: "lines", name: "at the cursor", x: [], y: [], line: { color: colour("vermillion"), width: 2 }, fill: "toself", fillcolor: colour("vermillion/0.15"), hoverinfo: "skip", showlegend: false };
     Plotly.newPlot(track, [...traces(data.track.traces), ghost], layout({
-      margin: { l: 60, r: 12, t: 30, b: 76 }, hovermode: "closest", dragmode: "pan",
+      margin: { l: 60, r: 12, t: 30, b: 84 }, hovermode: "closest", dragmode: "pan",
       legend: { orientation: "h", x: 0.5, xanchor: "center", yref: "container", y: 0 },
-      xaxis: axis({ ...chart, title: { text: "East" }, range: data.track.x }), yaxis: axis({ ...chart, title: { text: "North" }, range: data.track.y, scaleanchor: "x", scaleratio: 1 }),
+      xaxis: axis({ ...chart, title: { text: "East", standoff: 6 }, range: data.track.x }), yaxis: axis({ ...chart, title: { text: "North" }, range: data.track.y, scaleanchor: "x", scaleratio: 1 }),
     }), { ...config, scrollZoom: true });
   }
 

@@ -1,0 +1,76 @@
+"""Writes docs/images/four_corner.png and diagnosis.png: what the pages look like in a browser.
+
+Run `python docs/generators/write_images.py` after a page looks different; it takes a minute. Needs Chromium, its
+driver, and the packages selenium and Pillow.
+"""
+
+import base64
+import io
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from PIL import Image
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+
+ROOT = Path(__file__).resolve().parents[2]
+IMAGES = ROOT / "docs" / "images"
+PAGES = {
+    "four_corner": ["run", "scenarios/four_corner.toml"],
+    "diagnosis": ["diagnose", "docs/examples/gunnerus_log.csv.gz"],
+}
+HEIGHTS = {"four_corner": 1140, "diagnosis": 1020}
+SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
+WIDTH = 1280
+MOST_COLOURS = 128
+SWITCHES = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars")
+
+
+def browser(profile: Path) -> webdriver.Chrome:
+    """Headless Chromium, light."""
+    options = webdriver.ChromeOptions()
+    found = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")]
+    options.binary_location = next(path for path in found if path)
+    for switch in (*SWITCHES, f"--user-data-dir={profile}"):
+        options.add_argument(switch)
+    driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    media = {"features": [{"name": "prefers-color-scheme", "value": "light"}]}
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", media)
+    return driver
+
+
+def picture(driver: webdriver.Chrome, page: Path, height: int) -> bytes:
+    """The top of a page as a PNG of few colours, when every figure is drawn."""
+    size = {"width": WIDTH, "height": height, "deviceScaleFactor": 1, "mobile": False}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    driver.get(page.as_uri())
+    while driver.execute_script("return document.body.dataset.drawn") != "all":
+        time.sleep(0.1)
+    shot = base64.b64decode(driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"])
+    few = Image.open(io.BytesIO(shot)).convert("RGB").quantize(MOST_COLOURS, dither=Image.Dither.NONE)
+    written = io.BytesIO()
+    few.save(written, "PNG", optimize=True)
+    return written.getvalue()
+
+
+def write_images() -> None:
+    """Makes both pages in a folder that is deleted again, and writes their pictures."""
+    with tempfile.TemporaryDirectory() as folder:
+        driver = browser(Path(folder) / "profile")
+        try:
+            for name, command in PAGES.items():
+                out = Path(folder) / name
+                done = subprocess.run([SHIPCOSIM, *command, "--out", str(out)], cwd=ROOT)
+                if done.returncode not in (0, 1):  # 1: it ran and found something, as the diagnosis shall
+                    raise SystemExit(f"{' '.join(command)} failed")
+                (IMAGES / f"{name}.png").write_bytes(picture(driver, out / "report.html", HEIGHTS[name]))
+        finally:
+            driver.quit()
+
+
+if __name__ == "__main__":
+    write_images()
