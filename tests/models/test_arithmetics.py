@@ -188,6 +188,7 @@ CASES = [
     Case(wave_motion.first_order_motion, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA), BOX),
     Case(wave_motion.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
     Case(reference.critically_damped, [(2.0, -0.3, 0.01)], lambda *e: (13.0, *e), dict(frequency=0.05)),
+    Case(reference.at_rest, [(1.0, -2.0, 0.4)]),
     Case(reference.step, LOOP, of_reference, dict(h=0.05, parameters=reference.ReferenceParameters(speed_max=0.3))),
     Case(observer.step, LOOP, of_observer, OBSERVER),
     Case(control.step, LOOP, of_control, dict(h=0.1, ship=DP_SHIP, parameters=control.ControlParameters())),
@@ -254,6 +255,7 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
     covered |= {maths.library_of}  # tells the arithmetics apart
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
+    covered |= {drive.drive_step}  # by the steps of both thrusters
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}
     missing = [f"{name}.{function.__name__}" for name, function in promising() if function not in covered]
     assert not missing

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shipcosim.models.control import observer
-from shipcosim.models.control.observer import DpShip, ObserverParameters, at_rest, design, kalman_gain
+from shipcosim.models.control.observer import DpShip, ObserverParameters, at_rest, design
+from shipcosim.models.control.wave_filter import kalman_gain
 from shipcosim.models.core.motion import Motion
 
 SHIP, PARAMETERS = DpShip(), ObserverParameters()

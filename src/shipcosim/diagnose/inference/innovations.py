@@ -9,7 +9,7 @@ import numpy as np
 
 from shipcosim.diagnose.inference import kalman
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
-from shipcosim.models.control.observer import wave_transition
+from shipcosim.models.control.wave_filter import wave_transition
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:

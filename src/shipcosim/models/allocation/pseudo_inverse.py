@@ -1,7 +1,7 @@
-"""Thrust allocation: which thruster gives how much of the load that is asked for.
+"""Thrust allocation by a weighted generalised inverse at fixed azimuth angles.
 
-An allocator is two functions: one computes once what it needs of its parameters, `step` turns a requested load into
-commands. The generalised inverse at fixed angles is the first of them; others keep the form of `step`.
+An allocator is two functions: `design` computes once what it needs of its parameters, `step` turns a requested load
+into commands.
 """
 
 import math
@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.core.maths import clip, cos, sin, where
+from shipcosim.models.core.maths import Arithmetic, clip, cos, sin, where
+from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
 
 
@@ -60,34 +61,60 @@ class AllocationParameters:
 
 
 class AllocationState(NamedTuple):
-    """Commanded thrusts, and the load they give. [N, N, N.m]"""
+    """State of the allocator: commanded thrusts and the load they give.
 
-    port: float
-    starboard: float
-    tunnel: float
-    tau_X: float
-    tau_Y: float
-    tau_N: float
-    saturated: bool
+    Parameters
+    ----------
+    port, starboard, tunnel : float or (...) array or tensor
+        Commanded thrusts. [N]
+    tau_X, tau_Y, tau_N : like port
+        Load of these thrusts, body frame. [N, N, N.m]
+    saturated : bool or (...) array or tensor of bool
+        True where limits of thrust or missing units keep the commands from meeting the request. [1]
+    """
+
+    port: Arithmetic
+    starboard: Arithmetic
+    tunnel: Arithmetic
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
+    saturated: Arithmetic
 
 
 class Design(NamedTuple):
-    """Effect of the three units on X, Y, N, and the nine elements of the inverse for each set of free units.
+    """Thruster configuration matrix and the generalised inverses of its parts.
 
-    Set k holds unit i where bit i of k is set; bit 3 is set where a unit is missing.
+    Parameters
+    ----------
+    effect : tuple of three tuples
+        Effect of port, starboard and tunnel on X, Y, N, as `effect`. [1, 1, m]
+    inverses : tuple of sixteen tuples
+        Nine elements of the inverse for each set of free units: set k holds unit i where bit i of k is set; bit 3 is
+        set where a unit is missing. [1, 1, 1/m]
     """
 
     effect: tuple
     inverses: tuple
 
 
-def effect(parameters):
-    """Load of one newton of each unit, B(α).
+def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
+    """Thruster configuration matrix B(α), column by column: load of one newton of each unit.
+
+    Parameters
+    ----------
+    parameters : AllocationParameters
+        Positions and angles of the units.
 
     Returns
     -------
     tuple of three tuples
-        (1 or m) for port, starboard and tunnel: X, Y and N = x sin α - y cos α.
+        For port, starboard and tunnel: X, Y and N = x sin α - y cos α. [1, 1, m]
+
+    References
+    ----------
+    Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.4, with the
+    full yaw arm (nominal model, DP).
     """
     p = parameters
     units = []
@@ -100,22 +127,28 @@ def effect(parameters):
     return (*units, (0.0, 1.0, p.tunnel_x))
 
 
-def design(parameters):
+def design(parameters: AllocationParameters) -> Design:
     """Weighted generalised inverses for all sets of free units.
 
     Parameters
     ----------
     parameters : AllocationParameters
-        Fields may be arrays of one shape.
+        Units and weights; fields may be arrays of one shape.
 
     Returns
     -------
     Design
+        What `step` needs.
 
     Notes
     -----
-    f = W^-1/2 (S B W^-1/2)⁺ S τ: the thrusts that miss least of τ in the norm of S, and of those the cheapest in
-    the norm of W. S counts a moment as a force at the yaw lever.
+    f = W^-1/2 (S B W^-1/2)⁺ S τ: the thrusts with the smallest error of τ in the norm of S, and of those the smallest
+    in the norm of W. S counts a moment as a force at the yaw lever.
+
+    References
+    ----------
+    Weighted generalised inverse: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley,
+    2021.
     """
     p = parameters
     b = effect(p)
@@ -129,33 +162,62 @@ def design(parameters):
     return Design(b, tuple(inverses))
 
 
-def at_rest(tau):
-    """State at the start: no thrust. `tau` only tells the arithmetic."""
+def at_rest(tau: Load) -> AllocationState:
+    """State at the start: no thrust.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays or tensors
+        Any load: it gives shape and type only. [N, N, N.m]
+
+    Returns
+    -------
+    AllocationState
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
     zero = 0.0 * tau[0]
     return AllocationState(zero, zero, zero, zero, zero, zero, zero > 0.0)
 
 
-def step(state, tau, available, h, *, parameters, design):
+def step(
+    state: AllocationState,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    parameters: AllocationParameters,
+    design: Design,
+) -> AllocationState:
     """Commands for a requested load, `h` after the last ones.
 
     Parameters
     ----------
     state : AllocationState
+        State at the last commands.
     tau : tuple of three
         Requested load, body frame. [N, N, N.m]
-    available : tuple of three bools
-        Whether port, starboard and tunnel can be used. The others take over what they can.
+    available : tuple of three bools or (...) arrays of bool
+        Whether port, starboard and tunnel can be used; the others take over what they can. [1]
     h : float
-        Step, for the limit of the commands' rate. [s]
+        Time since the last commands, for the rate limit. [s]
     parameters : AllocationParameters
+        Units, limits and weights.
     design : Design
         Made of the same parameters by `design`.
 
     Returns
     -------
     AllocationState
-        Commands, the load they give, and whether limits of thrust or missing units keep them from giving what was asked
-        for (the limit of the rate passes, so it does not count).
+        Commands, the load they give, and whether limits of thrust or missing units keep them from meeting the request
+        (the rate limit is passing, so it does not count).
+
+    References
+    ----------
+    Weighted generalised inverse as `design`; that thrust beyond a limit is allocated to the free units is assumed.
     """
     wanted = _within_limits(tau, available, parameters=parameters, design=design)
     X, Y, N = _missing(tau, wanted, design.effect)
@@ -168,21 +230,38 @@ def step(state, tau, available, h, *, parameters, design):
     return AllocationState(*thrusts, *load(thrusts, design.effect), missed > 1.0)
 
 
-def load(thrusts, effect):
-    """Load of three thrusts, B f. [N, N, N.m]"""
+def load(thrusts: tuple[Arithmetic, Arithmetic, Arithmetic], effect: tuple[tuple, tuple, tuple]) -> Load:
+    """Load of three thrusts, B f.
+
+    Parameters
+    ----------
+    thrusts : tuple of three floats or (...) arrays or tensors
+        Thrusts of port, starboard and tunnel. [N]
+    effect : tuple of three tuples
+        Thruster configuration matrix, as `effect`. [1, 1, m]
+
+    Returns
+    -------
+    tuple of three, like the thrusts
+        X, Y, N. [N, N, N.m]
+
+    References
+    ----------
+    Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.4.
+    """
     a, b, c = thrusts
     (aX, aY, aN), (bX, bY, bN), (cX, cY, cN) = effect
     return aX * a + bX * b + cX * c, aY * a + bY * b + cY * c, aN * a + bN * b + cN * c
 
 
 def _missing(tau, thrusts, effect):
-    """What thrusts fall short of a load."""
+    """Load that the thrusts leave unmet."""
     X, Y, N = load(thrusts, effect)
     return tau[0] - X, tau[1] - Y, tau[2] - N
 
 
 def _within_limits(tau, available, *, parameters, design):
-    """Steady thrusts for a load. What one unit cannot give is asked of those that are not yet at a limit."""
+    """Thrusts for a load, without rate limit. What one unit cannot give is allocated to those not yet at a limit."""
     azimuth = (parameters.azimuth_thrust_min, parameters.azimuth_thrust_max)
     limits = (azimuth, azimuth, (-parameters.tunnel_thrust_max, parameters.tunnel_thrust_max))
     free = [where(usable, 1.0, 0.0) for usable in available]

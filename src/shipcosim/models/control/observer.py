@@ -1,17 +1,21 @@
-"""Observer of the low-frequency ship: Kalman filter with wave filter and bias force, gains constant and computed once.
+"""Observer of the low-frequency ship: Kalman filter with wave filter and bias force, with constant gains.
 
-The ship's position is followed in north-east-down, everything else in the body frame, so one set of gains fits every
+The position is estimated in north-east-down, everything else in the body frame, so that one set of gains fits every
 heading.
+
+References
+----------
+Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 13.4.
 """
 
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import cos, sin
+from shipcosim.models.control.wave_filter import AxisGains, axis_gains, wave_transition
+from shipcosim.models.core.maths import Arithmetic, cos, sin
+from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity
 
 DEGREE = math.pi / 180.0
@@ -96,45 +100,51 @@ class ObserverParameters:
 
 
 class Estimate(NamedTuple):
-    """Low-frequency ship, bias load (north, east, yaw), and wave motion in body axes with its rate."""
+    """Estimated state: low-frequency ship, bias load, wave motion in body axes with its rate.
 
-    x: float
-    y: float
-    psi: float
-    u: float = 0.0
-    v: float = 0.0
-    r: float = 0.0
-    bias_north: float = 0.0
-    bias_east: float = 0.0
-    bias_N: float = 0.0
-    surge_wave: float = 0.0
-    sway_wave: float = 0.0
-    yaw_wave: float = 0.0
-    u_wave: float = 0.0
-    v_wave: float = 0.0
-    r_wave: float = 0.0
-
-
-class AxisGains(NamedTuple):
-    """What one unit of innovation adds to the wave's motion and rate, position, velocity and bias acceleration.
-
-    First the five for the innovation of position, then the five for that of velocity.
+    Parameters
+    ----------
+    x, y, psi : float or (...) array or tensor
+        Position and heading of the low-frequency ship. [m, m, rad]
+    u, v, r : like x
+        Velocity of the low-frequency ship in body axes. [m/s, m/s, rad/s]
+    bias_north, bias_east, bias_N : like x
+        Bias load. [N, N, N.m]
+    surge_wave, sway_wave, yaw_wave : like x
+        Wave motion in body axes. [m, m, rad]
+    u_wave, v_wave, r_wave : like x
+        Rates of the wave motion. [m/s, m/s, rad/s]
     """
 
-    wave_position: float
-    rate_position: float
-    position_position: float
-    velocity_position: float
-    bias_position: float
-    wave_velocity: float
-    rate_velocity: float
-    position_velocity: float
-    velocity_velocity: float
-    bias_velocity: float
+    x: Arithmetic
+    y: Arithmetic
+    psi: Arithmetic
+    u: Arithmetic = 0.0
+    v: Arithmetic = 0.0
+    r: Arithmetic = 0.0
+    bias_north: Arithmetic = 0.0
+    bias_east: Arithmetic = 0.0
+    bias_N: Arithmetic = 0.0
+    surge_wave: Arithmetic = 0.0
+    sway_wave: Arithmetic = 0.0
+    yaw_wave: Arithmetic = 0.0
+    u_wave: Arithmetic = 0.0
+    v_wave: Arithmetic = 0.0
+    r_wave: Arithmetic = 0.0
 
 
 class Design(NamedTuple):
-    """What the observer computes once: gains, the wave model's transition over a sample, the inverse of the mass."""
+    """What the observer computes once from its parameters.
+
+    Parameters
+    ----------
+    horizontal, yaw : AxisGains
+        Gains of surge and sway, gains of yaw.
+    wave : tuple of four floats or (...) arrays
+        Transition of the wave model over a sample, as `wave_filter.wave_transition`. [1, s, 1/s, 1]
+    inverse_mass : tuple of four floats or (...) arrays
+        Elements 11, 22, 26, 66 of the inverse of the mass matrix. [1/kg, 1/kg, 1/(kg.m), 1/(kg.m2)]
+    """
 
     horizontal: AxisGains
     yaw: AxisGains
@@ -142,28 +152,25 @@ class Design(NamedTuple):
     inverse_mass: tuple
 
 
-def design(ship, parameters):
-    """Steady Kalman gains of the observer.
+def design(ship: DpShip, parameters: ObserverParameters) -> Design:
+    """Gains, wave model and inverse of the mass matrix for a ship.
 
     Parameters
     ----------
     ship : DpShip
+        The ship; fields may be arrays of one shape.
     parameters : ObserverParameters
-        Fields may be arrays of one shape.
+        Noise, waves and disturbances; fields may be arrays of one shape.
 
     Returns
     -------
     Design
-
-    Notes
-    -----
-    Each axis is taken alone, with acceleration as input: a wave motion p'' + 2 ζ ω p' + ω² p = noise, and a ship
-    x' = u, u' = b + noise, b' = noise; measured are x + p and u + p'. The gain solves the Riccati equation.
+        What `step` needs.
     """
     p = parameters
     dt = p.sample_period
     wave = wave_transition(dt, p.wave_frequency, p.wave_damping)
-    horizontal = _axis_gains(
+    horizontal = axis_gains(
         dt,
         wave,
         p.wave_motion,
@@ -173,7 +180,7 @@ def design(ship, parameters):
         p.position_noise,
         p.velocity_noise,
     )
-    yaw = _axis_gains(
+    yaw = axis_gains(
         dt, wave, p.wave_yaw, p.wave_frequency, p.rate_disturbance, p.bias_drift_yaw, p.heading_noise, p.rate_noise
     )
     determinant = ship.mass_sway * ship.mass_yaw - ship.mass_sway_yaw * ship.mass_sway_yaw
@@ -186,59 +193,33 @@ def design(ship, parameters):
     return Design(horizontal, yaw, wave, inverse)
 
 
-def wave_transition(dt, frequency, damping):
-    """Exact transition (a11, a12, a21, a22) of p'' + 2 ζ ω p' + ω² p = 0 over `dt`, for damping below 1."""
-    decay = np.exp(-damping * frequency * dt)
-    free = frequency * np.sqrt(1.0 - damping * damping)
-    c, s = decay * np.cos(free * dt), decay * np.sin(free * dt) / free
-    shift = damping * frequency * s
-    return _floats(c + shift, s, -frequency * frequency * s, c - shift)
-
-
-def kalman_gain(transition, noise, output, output_noise):
-    """Steady gain of the measurement update of a Kalman filter.
+def at_rest(measured: Motion) -> Estimate:
+    """Estimate at the start: the ship as measured, standing still, no bias, no waves.
 
     Parameters
     ----------
-    transition : (..., n, n) array
-        State over one sample.
-    noise : (..., n, n) array
-        Covariance that a sample adds.
-    output : (m, n) array
-        Measured combination of states.
-    output_noise : (..., m, m) array
-        Covariance of the measurements.
+    measured : Motion
+        First measurement.
 
     Returns
     -------
-    (..., n, m) array
-
-    Notes
-    -----
-    The Riccati equation is solved by doubling: each round covers twice as many samples as the last.
-
-    References
-    ----------
-    Anderson and Moore, Optimal Filtering, Prentice-Hall, 1979, section 6.7.
+    Estimate
+        The estimate.
     """
-    a, h = np.swapaxes(transition, -1, -2), noise
-    g = output.T @ np.linalg.inv(output_noise) @ output
-    eye = np.eye(output.shape[-1])
-    for _ in range(20):
-        inverse = np.linalg.inv(eye + g @ h)
-        at = np.swapaxes(a, -1, -2)
-        g, h, a = g + a @ inverse @ g @ at, h + at @ h @ inverse @ a, a @ inverse @ a
-    return h @ output.T @ np.linalg.inv(output @ h @ output.T + output_noise)
-
-
-def at_rest(measured):
-    """Estimate at the start: the ship as measured, standing still, no bias, no waves."""
     zero = 0.0 * measured.x
     return Estimate(measured.x, measured.y, measured.psi, *(zero,) * 12)
 
 
-def step(estimate, measured, load, *, ship, parameters, design):
-    """Advance the estimate by one sample and correct it with what was measured at its end.
+def step(
+    estimate: Estimate,
+    measured: Motion,
+    load: Load,
+    *,
+    ship: DpShip,
+    parameters: ObserverParameters,
+    design: Design,
+) -> Estimate:
+    """Estimate one sample later: predicted with the known load, corrected with the measurement at its end.
 
     Parameters
     ----------
@@ -249,24 +230,23 @@ def step(estimate, measured, load, *, ship, parameters, design):
     load : tuple of three
         Known load over the sample, thrusters and wind, body frame. [N, N, N.m]
     ship : DpShip
+        The ship.
     parameters : ObserverParameters
+        Of which the sample period is used here.
     design : Design
         Made of the same ship and parameters by `design`.
 
     Returns
     -------
     Estimate
-
-    References
-    ----------
-    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 13.4.
+        Estimate at the end.
     """
     predicted = _predict(estimate, load, dt=parameters.sample_period, ship=ship, design=design)
     return _correct(predicted, measured, ship=ship, design=design)
 
 
 def _predict(e, load, *, dt, ship, design):
-    """Estimate after a sample without measurement: the acceleration held, waves exactly."""
+    """Estimate after a sample without measurement: acceleration held, wave model integrated exactly."""
     c, s = cos(e.psi), sin(e.psi)
     X = load[0] - ship.damping_surge * e.u + c * e.bias_north + s * e.bias_east
     Y = load[1] - ship.damping_sway * e.v - s * e.bias_north + c * e.bias_east
@@ -327,40 +307,3 @@ def _correct(e, measured, *, ship, design):
         e.v_wave + g.rate_position * sway + g.rate_velocity * dv,
         e.r_wave + k.rate_position * yaw + k.rate_velocity * dr,
     )
-
-
-def _axis_gains(dt, wave, wave_std, wave_frequency, disturbance, bias_drift, position_noise, velocity_noise):
-    """Gains of one axis. The noise that drives the wave model is scaled so that its motion has `wave_std`."""
-    one, zero = dt / dt, 0.0 * dt
-    w11, w12, w21, w22 = wave
-    transition = _matrix(
-        [
-            [w11, w12, zero, zero, zero],
-            [w21, w22, zero, zero, zero],
-            [zero, zero, one, dt, 0.5 * dt * dt],
-            [zero, zero, zero, one, dt],
-            [zero, zero, zero, zero, one],
-        ]
-    )
-    output = np.array([[1.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0]])
-    stationary = _diagonal(wave_std**2, (wave_std * wave_frequency) ** 2, zero, zero, zero)
-    noise = stationary - transition @ stationary @ np.swapaxes(transition, -1, -2)
-    noise = noise + _diagonal(zero, zero, zero, disturbance * dt, bias_drift * dt)
-    gain = kalman_gain(transition, noise, output, _diagonal(position_noise**2, velocity_noise**2))
-    return AxisGains(*_floats(*(gain[..., state, measured] for measured in (0, 1) for state in range(5))))
-
-
-def _matrix(rows):
-    """(..., n, m) array of rows of scalars or arrays of one shape."""
-    rows = [np.broadcast_arrays(*row) for row in rows]
-    return np.stack(np.broadcast_arrays(*(np.stack(row, axis=-1) for row in rows)), axis=-2)
-
-
-def _diagonal(*values):
-    """(..., n, n) array with the values on its diagonal."""
-    return np.stack(np.broadcast_arrays(*values), axis=-1)[..., None] * np.eye(len(values))
-
-
-def _floats(*values):
-    """Python floats where the values are scalars, so that an FMU stays with the arithmetic of floats."""
-    return tuple(float(value) if np.ndim(value) == 0 else value for value in values)

@@ -5,14 +5,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
+from shipcosim.models.control.observer import DpShip, Estimate
+from shipcosim.models.control.reference import ReferenceState
 from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import clip, exp, hypot, maximum, where
+from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum, where
+from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
 
 
 @dataclass(frozen=True)
 class ControlParameters:
-    """Where the poles are and what is limited. Gains follow from the ship's mass."""
+    """Poles and limits of the control law; its gains follow from the mass of the ship."""
 
     surge_frequency: float = quantity(
         0.10, "rad/s", "natural frequency of the loop in surge", "tuned on 20 seeds of the four corners", minimum=0.0
@@ -68,67 +71,132 @@ class ControlParameters:
 
 
 class Desired(NamedTuple):
-    """Desired motion: position and heading, rates and accelerations in north-east, as a `ReferenceState` holds them."""
-
-    x: float
-    y: float
-    psi: float
-    x_dot: float
-    y_dot: float
-    r: float
-    x_ddot: float
-    y_ddot: float
-    r_dot: float
-
-
-class ControlState(NamedTuple):
-    """Integral load (north, east, yaw), filtered wind load (body) and the load last asked for (body). [N, N, N.m]"""
-
-    integral_north: float
-    integral_east: float
-    integral_N: float
-    wind_X: float
-    wind_Y: float
-    wind_N: float
-    tau_X: float
-    tau_Y: float
-    tau_N: float
-
-
-def at_rest(wind_load):
-    """State at the start: nothing integrated or asked for yet, the wind's load as measured. [N, N, N.m]"""
-    zero = 0.0 * wind_load[0]
-    return ControlState(zero, zero, zero, *wind_load, zero, zero, zero)
-
-
-def known_load(state, allocated):
-    """Load that the observer may count on: allocated thrust and filtered wind, body frame. [N, N, N.m]"""
-    return allocated[0] + state.wind_X, allocated[1] + state.wind_Y, allocated[2] + state.wind_N
-
-
-def step(state, estimate, desired, allocated, wind_load, h, *, ship, parameters):
-    """Load to ask for, one sample later.
+    """Desired motion: position, heading, and their rates and accelerations in north-east, as in `ReferenceState`.
 
     Parameters
     ----------
-    state : ControlState
-    estimate : observer.Estimate
-        Low-frequency ship.
-    desired : Desired or reference.ReferenceState
-        Desired motion.
-    allocated : tuple of three
-        What the thrusters were told to give of the last request, body frame. [N, N, N.m]
-    wind_load : tuple of three
+    x, y, psi : float or (...) array or tensor
+        Position north and east, heading. [m, m, rad]
+    x_dot, y_dot, r : like x
+        Rates of x, y, psi. [m/s, m/s, rad/s]
+    x_ddot, y_ddot, r_dot : like x
+        Second derivatives of x, y, psi. [m/s2, m/s2, rad/s2]
+    """
+
+    x: Arithmetic
+    y: Arithmetic
+    psi: Arithmetic
+    x_dot: Arithmetic
+    y_dot: Arithmetic
+    r: Arithmetic
+    x_ddot: Arithmetic
+    y_ddot: Arithmetic
+    r_dot: Arithmetic
+
+
+class ControlState(NamedTuple):
+    """State of the controller.
+
+    Parameters
+    ----------
+    integral_north, integral_east, integral_N : float or (...) array or tensor
+        Integral load. [N, N, N.m]
+    wind_X, wind_Y, wind_N : like integral_north
+        Filtered wind load, body frame. [N, N, N.m]
+    tau_X, tau_Y, tau_N : like integral_north
+        Load requested last, body frame. [N, N, N.m]
+    """
+
+    integral_north: Arithmetic
+    integral_east: Arithmetic
+    integral_N: Arithmetic
+    wind_X: Arithmetic
+    wind_Y: Arithmetic
+    wind_N: Arithmetic
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
+
+
+def at_rest(wind_load: Load) -> ControlState:
+    """State at the start: no integral, nothing requested, the wind load as measured.
+
+    Parameters
+    ----------
+    wind_load : tuple of three floats or (...) arrays or tensors
         Load of the measured wind, body frame. [N, N, N.m]
-    h : float
-        Time since the last sample. [s]
-    ship : observer.DpShip
-    parameters : ControlParameters
 
     Returns
     -------
     ControlState
-        Its `tau_X`, `tau_Y`, `tau_N` is the load to ask for.
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
+    zero = 0.0 * wind_load[0]
+    return ControlState(zero, zero, zero, *wind_load, zero, zero, zero)
+
+
+def known_load(state: ControlState, allocated: Load) -> Load:
+    """Load that the observer uses as known: allocated thrust and filtered wind load.
+
+    Parameters
+    ----------
+    state : ControlState
+        State of the controller.
+    allocated : tuple of three
+        Load that the thrusters were told to give, body frame. [N, N, N.m]
+
+    Returns
+    -------
+    tuple of three, like allocated
+        Load in the body frame. [N, N, N.m]
+
+    References
+    ----------
+    Definition.
+    """
+    return allocated[0] + state.wind_X, allocated[1] + state.wind_Y, allocated[2] + state.wind_N
+
+
+def step(
+    state: ControlState,
+    estimate: Estimate,
+    desired: Desired | ReferenceState,
+    allocated: Load,
+    wind_load: Load,
+    h: float,
+    *,
+    ship: DpShip,
+    parameters: ControlParameters,
+) -> ControlState:
+    """State of the controller one sample later, with the load that it requests.
+
+    Parameters
+    ----------
+    state : ControlState
+        State at the last sample.
+    estimate : Estimate
+        Low-frequency ship.
+    desired : Desired or ReferenceState
+        Desired motion.
+    allocated : tuple of three
+        Load that the thrusters were told to give of the last request, body frame. [N, N, N.m]
+    wind_load : tuple of three
+        Load of the measured wind, body frame. [N, N, N.m]
+    h : float
+        Time since the last sample. [s]
+    ship : DpShip
+        The ship.
+    parameters : ControlParameters
+        Poles and limits.
+
+    Returns
+    -------
+    ControlState
+        Its `tau_X`, `tau_Y`, `tau_N` is the requested load.
 
     Notes
     -----
@@ -136,8 +204,9 @@ def step(state, estimate, desired, allocated, wind_load, h, *, ship, parameters)
 
         τ = M (Rᵀ η̈_d + a) + D ν_d + Rᵀ i - τ_wind,  a = 2 ζ ω (ν_d - ν) + ω² e.
 
-    The integral i grows with κ ω M a, not with e alone: on a long way home, where e is limited, a is zero at a steady
-    speed. It grows no further in a direction in which the last request was not given (thrusters at their limits).
+    The integral i grows with κ ω M a, not with e alone: on a long way back, where e is limited, a is zero at a steady
+    speed. Anti-windup: i grows no further in a direction in which the last request was not met (thrusters at their
+    limits).
 
     References
     ----------
@@ -161,13 +230,30 @@ def step(state, estimate, desired, allocated, wind_load, h, *, ship, parameters)
     )
 
 
-def errors(estimate, desired):
-    """Distance and turn from the desired to the estimated ship. [m, rad]"""
+def errors(estimate: Estimate, desired: Desired | ReferenceState) -> tuple[Arithmetic, Arithmetic]:
+    """Distance from the desired to the estimated position, and estimated less desired heading.
+
+    Parameters
+    ----------
+    estimate : Estimate
+        Low-frequency ship.
+    desired : Desired or ReferenceState
+        Desired motion.
+
+    Returns
+    -------
+    tuple of two, like the estimate
+        Distance, and heading error in [-π, π). [m, rad]
+
+    References
+    ----------
+    Definition.
+    """
     return hypot(estimate.x - desired.x, estimate.y - desired.y), wrap(estimate.psi - desired.psi)
 
 
 def _correction(estimate, desired, nu_d, *, parameters):
-    """Acceleration that takes the ship to the desired motion, for errors of position and heading up to their limits."""
+    """Acceleration by proportional and derivative action, with limited errors of position and heading."""
     p, damping = parameters, 2.0 * parameters.damping_ratio
     surge, sway = to_body(estimate.psi, desired.x - estimate.x, desired.y - estimate.y)
     scale = p.position_error_max / maximum(hypot(surge, sway), p.position_error_max)

@@ -1,4 +1,4 @@
-"""Reference model: setpoints become positions, velocities and accelerations that a ship can follow.
+"""Reference model: from setpoints to desired position, velocity and acceleration that a ship can follow.
 
 Each axis is a critically damped filter of third order, integrated exactly, behind a limit of the setpoint's speed.
 """
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import exp, hypot, maximum, minimum, where
+from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum, where
 from shipcosim.models.core.parameters import quantity
 
 
@@ -39,44 +39,79 @@ class ReferenceParameters:
 
 
 class ReferenceState(NamedTuple):
-    """Desired position and heading (north, east, clockwise; heading not wrapped) with rates, and the filter's input."""
+    """State of the reference model: desired position and heading with rates, and the input of its filter.
 
-    x: float
-    y: float
-    psi: float
-    x_dot: float = 0.0
-    y_dot: float = 0.0
-    r: float = 0.0
-    x_ddot: float = 0.0
-    y_ddot: float = 0.0
-    r_dot: float = 0.0
-    x_in: float = 0.0
-    y_in: float = 0.0
-    psi_in: float = 0.0
+    Parameters
+    ----------
+    x, y, psi : float or (...) array or tensor
+        Desired position north and east, heading (not wrapped). [m, m, rad]
+    x_dot, y_dot, r : like x
+        Rates of x, y, psi. [m/s, m/s, rad/s]
+    x_ddot, y_ddot, r_dot : like x
+        Second derivatives of x, y, psi. [m/s2, m/s2, rad/s2]
+    x_in, y_in, psi_in : like x
+        Setpoint behind its speed limit, the input of the filter. [m, m, rad]
+    """
+
+    x: Arithmetic
+    y: Arithmetic
+    psi: Arithmetic
+    x_dot: Arithmetic = 0.0
+    y_dot: Arithmetic = 0.0
+    r: Arithmetic = 0.0
+    x_ddot: Arithmetic = 0.0
+    y_ddot: Arithmetic = 0.0
+    r_dot: Arithmetic = 0.0
+    x_in: Arithmetic = 0.0
+    y_in: Arithmetic = 0.0
+    psi_in: Arithmetic = 0.0
 
 
-def at_rest(x, y, psi):
-    """Reference that stands at a position and heading. [m, m, rad]"""
+def at_rest(x: Arithmetic, y: Arithmetic, psi: Arithmetic) -> ReferenceState:
+    """Reference that stands still at a position and heading.
+
+    Parameters
+    ----------
+    x, y, psi : float or (...) array or tensor
+        Position north and east, heading. [m, m, rad]
+
+    Returns
+    -------
+    ReferenceState
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
     zero = 0.0 * x
     return ReferenceState(x, y, psi, zero, zero, zero, zero, zero, zero, x, y, psi)
 
 
-def step(state, setpoint, h, *, parameters):
-    """Advance the reference by `h`.
+def step(
+    state: ReferenceState,
+    setpoint: tuple[Arithmetic, Arithmetic, Arithmetic],
+    h: float,
+    *,
+    parameters: ReferenceParameters,
+) -> ReferenceState:
+    """Reference one step later.
 
     Parameters
     ----------
     state : ReferenceState
         Reference at the start of the step.
-    setpoint : tuple of three, floats or (...) arrays or tensors
-        Position and heading to go to, held over the step; headings go the shortest way round. [m, m, rad]
+    setpoint : tuple of three floats or (...) arrays or tensors
+        Position and heading to go to, held over the step; headings go the shorter way. [m, m, rad]
     h : float
         Step. [s]
     parameters : ReferenceParameters
+        Natural frequencies and speed limits.
 
     Returns
     -------
     ReferenceState
+        Reference at the end of the step.
 
     Notes
     -----
@@ -100,26 +135,32 @@ def step(state, setpoint, h, *, parameters):
     return ReferenceState(x + x_in, y + y_in, psi + psi_in, x_dot, y_dot, r, x_ddot, y_ddot, r_dot, x_in, y_in, psi_in)
 
 
-def critically_damped(h, e, v, a, *, frequency):
+def critically_damped(
+    h: float, e: Arithmetic, v: Arithmetic, a: Arithmetic, *, frequency: Arithmetic
+) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
     """Exact solution of (d/dt + w)³ e = 0 after time `h`.
 
     Parameters
     ----------
     h : float
         Time. [s]
-    e, v, a : floats or (...) arrays or tensors
-        Deviation, its rate and its second derivative at the start.
+    e, v, a : float or (...) array or tensor
+        Deviation, its rate and its second derivative at the start. [any unit, that unit/s, that unit/s2]
     frequency : float or like e
         w, all three poles are at -w. [rad/s]
 
     Returns
     -------
     tuple of three, like e
-        Deviation, rate and second derivative at the end.
+        Deviation, rate and second derivative at the end. [as e, v, a]
 
     Notes
     -----
     With the system matrix A, N = A + w I is nilpotent, so exp(A h) = exp(-w h) (I + h N + h²/2 N²).
+
+    References
+    ----------
+    Definition; solved in closed form here.
     """
     w = frequency
     decay = exp(-w * h)
@@ -132,5 +173,5 @@ def critically_damped(h, e, v, a, *, frequency):
 
 
 def _share(distance, reach):
-    """Part of a distance that is covered where no more than `reach` is; all of it where reach is 0."""
+    """Share of a distance that is covered when at most `reach` is; all of it where reach is 0, which is no limit."""
     return where(reach > 0.0, minimum(1.0, reach / maximum(distance, 1e-12)), 1.0)

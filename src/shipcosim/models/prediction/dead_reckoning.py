@@ -1,17 +1,30 @@
-"""Dead reckoning: where the ship will be if thrust, wind, current and waves stay as they are."""
+"""Dead reckoning: motion to come if thrust, wind, current and waves stay as they are."""
 
 from math import ceil
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.motion import Motion
-from shipcosim.models.environment.wind_loads import apparent_wind, wind_loads
+from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations, through_water
 
 
-def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, hull, wind):
-    """Positions and headings of the ship ahead in time.
+def predict(
+    vessel: Motion,
+    thrusters: Load,
+    drift: Load,
+    air: tuple[Arithmetic, Arithmetic],
+    current: tuple[Arithmetic, Arithmetic],
+    *,
+    horizons: tuple[float, ...],
+    longest_step: float,
+    hull: HullParameters,
+    wind: WindParameters,
+) -> tuple[Motion, ...]:
+    """Motion of the ship ahead in time by its equations of motion, with constant thrust, wind, current and wave drift.
 
     Parameters
     ----------
@@ -22,13 +35,15 @@ def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, h
     drift : tuple of three
         Mean wave drift load, held in body axes. [N, N, N.m]
     air, current : tuple of two
-        Velocity of air and water, north and east, held; the wind's load follows the ship's heading. [m/s]
+        Velocity of air and water, north and east, held; the wind load follows the heading of the ship. [m/s]
     horizons : tuple of float, increasing
         How far ahead. [s]
     longest_step : float
         Longest step of the integration; each stretch up to a horizon is divided into equal steps. [s]
     hull : HullParameters
+        The hull.
     wind : WindParameters
+        Wind load coefficients.
 
     Returns
     -------
@@ -37,7 +52,11 @@ def predict(vessel, thrusters, drift, air, current, *, horizons, longest_step, h
 
     Notes
     -----
-    Midpoint rule, with the wind's load at the middle heading of each step.
+    Midpoint rule, with the wind load at the middle heading of each step.
+
+    References
+    ----------
+    Equations of motion as `ship.vessel`; integration as `core.integrate.midpoint_motion`.
     """
     held = [thrust + wave for thrust, wave in zip(thrusters, drift, strict=True)]
     motion = *vessel, *through_water(vessel.psi, vessel.u, vessel.v, *current)

@@ -6,14 +6,20 @@ shaft speed that gives T at bollard and Q_b(n) the torque there,
     Q_cmd = Q_b(n_d) + k_p 2π (n_d - n) + z,  n_d = g(T_cmd),  ż = k_i 2π (n_d - g(T)),
 
 T the delivered thrust: its estimate is assumed to be exact. At bollard g(T) = n, an ordinary PI speed loop, as linear
-through zero thrust as elsewhere; with inflow the integral brings the thrust, not the speed, to what was asked. Where
-the motor's limits cut the torque, z follows back at k_i/k_p. The speed limit lets the shaft near n_max at rate k_p/I.
+through zero thrust as elsewhere; with inflow the integral brings the thrust, not the speed, to the command. Where the
+limits of the motor cut the torque, z follows back at k_i/k_p (anti-windup). The speed limit lets the shaft approach
+n_max at rate k_p/I.
+
+References
+----------
+Smogeli, Control of Marine Propellers, NTNU, 2006; that the estimate of the thrust is exact is assumed.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from shipcosim.models.core.integrate import rk4_pair, substeps
-from shipcosim.models.core.maths import clip, maximum, minimum, pi, where
+from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, pi, where
 
 _LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
 _TURN = 2.0 * pi
@@ -27,17 +33,17 @@ class Thruster(NamedTuple):
     Parameters
     ----------
     n : float or (...) array or tensor
-        Shaft speed, of a tunnel thruster its motor's. [rev/s]
+        Shaft speed, of a tunnel thruster that of its motor. [rev/s]
     integral : like n
         Integral part z of the drive. [N.m]
     thrust_cmd : like n
-        Command within its limits and rate. [N]
+        Command within its limits of size and rate. [N]
     azimuth : like n
         Direction of positive thrust, clockwise from the bow; π/2 for a tunnel. [rad]
     torque : like n
         Torque of the motor. [N.m]
-    saturated : bool or array
-        Running at a limit of force, of its rate, or of the motor.
+    saturated : bool or (...) array or tensor of bool
+        True at a limit of force, of its rate, or of the motor. [1]
     """
 
     n: Any
@@ -48,8 +54,8 @@ class Thruster(NamedTuple):
     saturated: Any
 
 
-def at_rest(azimuth):
-    """A thruster that stands still.
+def at_rest(azimuth: Arithmetic) -> Thruster:
+    """State of a thruster whose shaft stands still.
 
     Parameters
     ----------
@@ -59,13 +65,23 @@ def at_rest(azimuth):
     Returns
     -------
     Thruster
+        The state.
     """
     zero = 0.0 * azimuth
     return Thruster(zero, zero, zero, azimuth, zero, False)
 
 
-def drive_step(thruster, thrust_cmd, failed, h, drive, loads, speed, torque):
-    """Drive, motor and shaft a step later.
+def drive_step(
+    thruster: Thruster,
+    thrust_cmd: Arithmetic,
+    failed: Any,
+    h: float,
+    drive: Any,
+    loads: Callable,
+    speed: Callable,
+    torque: Callable,
+) -> Thruster:
+    """State of drive, motor and shaft one step later.
 
     Parameters
     ----------
@@ -73,14 +89,14 @@ def drive_step(thruster, thrust_cmd, failed, h, drive, loads, speed, torque):
         State at the start, its direction already that of the end.
     thrust_cmd : like the state
         Commanded thrust. [N]
-    failed : bool or array
-        Without power: no motor torque, the shaft runs free, command and integral are forgotten.
+    failed : bool or (...) array or tensor of bool
+        Without power: no motor torque, the shaft runs free, command and integral are reset. [1]
     h : float
         Step, divided into equal parts of at most 0.05 s. [s]
     drive : AzimuthParameters or TunnelParameters
-        Limits, motor and gains.
+        Limits, motor and gains. [as the fields say]
     loads : callable
-        ``loads(n)`` gives the propeller's thrust and torque. [N, N.m]
+        ``loads(n)`` gives thrust and torque of the propeller. [N, N.m]
     speed, torque : callable
         The bollard curves ``speed(thrust)`` and ``torque(n)``. [rev/s, N.m]
 

@@ -7,6 +7,12 @@ With the hydrodynamic pitch angle β = atan2(u_a, 0.7 π n D) and C = ρ/2 (u_a�
 which has no singular point: n = 0 is β = ±90 deg. Between the corners of the first quadrant, 0 <= β <= 31.9 deg
 (J = u_a/(n D) from 0 to 1.37), CT comes from the unit's own polynomial KT(J); elsewhere CT and CQ are those of the open
 propeller B4-70, P/D 1.4, scaled so that both bollard points are met (assumed; grade D outside the first quadrant).
+
+References
+----------
+Four-quadrant form: Smogeli, Control of Marine Propellers, NTNU, 2006. Series: Roddy, Hess and Faller, Neural network
+predictions of the 4-quadrant Wageningen propeller series, NSWCCD-50-TR-2006/004. Polynomial and scaling: nominal
+model, azimuth thrusters.
 """
 
 from dataclasses import dataclass
@@ -15,7 +21,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from shipcosim.models.core.interpolation import even_table, interp_even
-from shipcosim.models.core.maths import atan2, pi, sqrt, where
+from shipcosim.models.core.maths import Arithmetic, atan2, pi, sqrt, where
 from shipcosim.models.core.parameters import quantity
 
 # Fourier coefficients of CT and CQ of B4-70, P/D 1.4: Roddy, Hess and Faller, Neural network predictions of the
@@ -97,13 +103,13 @@ class PropellerParameters:
         return thrust * KT_ahead, astern, torque * KQ_ahead, torque * KQ_astern
 
 
-def propeller_loads(u_a, n, *, propeller):
+def propeller_loads(u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParameters) -> tuple[Arithmetic, Arithmetic]:
     """Thrust and torque in all four quadrants.
 
     Parameters
     ----------
     u_a : float or (...) array or tensor
-        Speed of the unit through the water along its axis, positive when it advances. [m/s]
+        Speed of advance of the unit through the water along its axis. [m/s]
     n : like u_a
         Shaft speed, negative astern. [rev/s]
     propeller : PropellerParameters
@@ -130,8 +136,8 @@ def propeller_loads(u_a, n, *, propeller):
     return scale * ct * C, propeller.torque_scale * cq * D * C
 
 
-def bollard_torque(n, *, propeller):
-    """Torque at no speed.
+def bollard_torque(n: Arithmetic, *, propeller: PropellerParameters) -> Arithmetic:
+    """Torque at bollard, which is no speed of advance.
 
     Parameters
     ----------
@@ -149,8 +155,8 @@ def bollard_torque(n, *, propeller):
     return n * abs(n) * where(n < 0.0, astern, ahead)
 
 
-def bollard_speed(thrust, *, propeller):
-    """Shaft speed that gives a thrust at no speed, the inverse of the bollard curve.
+def bollard_speed(thrust: Arithmetic, *, propeller: PropellerParameters) -> Arithmetic:
+    """Shaft speed that gives a thrust at bollard, the inverse of the bollard thrust curve.
 
     Parameters
     ----------
@@ -169,8 +175,8 @@ def bollard_speed(thrust, *, propeller):
     return where(thrust < 0.0, -speed, speed)
 
 
-def series(beta):
-    """CT and CQ of the open propeller B4-70, P/D 1.4, unscaled.
+def series(beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Thrust and torque coefficient of the open propeller B4-70, P/D 1.4, unscaled.
 
     Parameters
     ----------
@@ -180,7 +186,7 @@ def series(beta):
     Returns
     -------
     tuple of two (n,) arrays
-        CT, CQ. [1]
+        CT, CQ. [1, 1]
     """
     order = np.arange(len(_CT_COS))
     c, s = np.cos(np.outer(beta, order)), np.sin(np.outer(beta, order))

@@ -1,28 +1,30 @@
-"""The slipstream of a thruster and what lies in it."""
+"""Slipstream of a thruster, which reduces the thrust of a neighbour that lies in it."""
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import atan2, exp, pi, where
+from shipcosim.models.core.maths import Arithmetic, atan2, exp, pi, where
 
 
-def slipstream_share(x, y, azimuth, rpm, *, width):
-    """How much of a thruster's slipstream a point meets: exp(-(angle off its axis / width)²), at any distance.
+def slipstream_share(
+    x: Arithmetic, y: Arithmetic, azimuth: Arithmetic, rpm: Arithmetic, *, width: Arithmetic
+) -> Arithmetic:
+    """Share of a thruster's slipstream at a point: exp(-(angle off its axis / width)²), at any distance.
 
     The slipstream goes opposite to the thrust: towards azimuth + π at positive shaft speed, towards azimuth at
-    negative. A shaft that stands has none.
+    negative. A thruster whose shaft stands still has none.
 
     Parameters
     ----------
     x, y : float or (...) array or tensor
         The point, forward and to starboard of the thruster. [m]
     azimuth, rpm : like x
-        Direction of the thruster's positive thrust, clockwise from the bow, and its shaft speed. [rad, rpm]
+        Direction of positive thrust, clockwise from the bow, and shaft speed. [rad, rpm]
     width : like x
         Angle off the axis at which 1/e is left. [rad]
 
     Returns
     -------
     like azimuth
-        1 on the axis, 0 far beside it. [1]
+        1 on the axis, towards 0 beside it. [1]
 
     References
     ----------
