@@ -67,7 +67,7 @@ def _rejoin(structure: SystemStructure, system: System, connection: Connection, 
     structure.connect(source, target, factor=factor / per, offset=offset - factor / per * zero)
 
 
-def _unit(system: System, end: tuple[str | None, str]) -> str:
+def _unit(system: System, end: tuple[str | None, str]) -> str | None:
     owner, name = end
     return system.inputs[name].unit if owner is None else system.components[owner].fmu.variables[name].unit
 
@@ -102,7 +102,7 @@ def connect_neighbours(draft: ExtensionDraft, finding: Finding, rule: ExtensionR
                 draft.structure.connect(f"{others[0]}.{output}", f"{unit}.{into}")
         for name, there in zip(rule.neighbour_place or (), place[others[0]], strict=False):
             if values[f"{unit}.{name}"] != there:
-                draft.put(finding, f"{unit}.{name}", Estimated(there, None), "m", note=f"where {others[0]} is")
+                draft.put(finding, f"{unit}.{name}", Estimated(there), "m", note=f"where {others[0]} is")
 
 
 def _distance(a: tuple[float, float], b: tuple[float, float]) -> float:

@@ -19,10 +19,10 @@ AXES = ("X", "Y", "N")
 
 
 class Estimated(NamedTuple):
-    """A value with its standard deviation, None where there is none."""
+    """A value with its standard deviation, 0 where there is none."""
 
     value: float
-    std: float | None
+    std: float = 0.0
 
 
 def converted(estimate: Estimate, unit: str) -> Estimated:

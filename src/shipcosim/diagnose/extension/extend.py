@@ -173,7 +173,7 @@ def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: M
         add_force(draft, finding, rule, own)
     elif rule.by == "steady current":
         steady = _vector(own, "north", "east")
-        add_current(draft, finding, *(((None, None), steady) if finding.onset is not None else (steady, None)))
+        add_current(draft, finding, *((None, steady) if finding.onset is not None else (steady, None)))
     else:
         add_current(draft, finding, *(_vector(own, f"north_{end}", f"east_{end}") for end in ("start", "end")))
     return True

@@ -16,7 +16,7 @@ __all__ = ["RAMP", "add_current", "add_force", "add_instruments"]
 RAMP = 30.0
 """Time over which something grows after its onset, assumed. [s]"""
 
-_Vector = tuple[Estimated | None, Estimated | None]
+_Vector = tuple[Estimated, Estimated]
 
 
 def add_force(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, Estimate]) -> None:
@@ -38,19 +38,19 @@ def add_force(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, esti
         return
     for into, output in rule.inputs.items():
         draft.structure.connect(f"{draft.ship}.{output}", f"{name}.{into}")
-    zero = Estimate(0.0, 0.0, _unit(draft, name, rule.zero[0])) if rule.zero else None
-    for parameter, estimate in (dict.fromkeys(rule.zero, zero) | dict(estimates)).items():
+    zeros = {parameter: Estimate(0.0, 0.0, _unit(draft, name, rule.zero[0])) for parameter in rule.zero}
+    for parameter, estimate in (zeros | dict(estimates)).items():
         draft.put_parameter(finding, name, parameter, estimate)
     water = water_of(draft.structure.parameters[f"{draft.ship}.length"])
     numbers = {parameter: number.rpartition(".")[2] for number, parameter in rule.parameters.items()}
     for parameter, why in rule.assumed.items():
         if parameter not in estimates:
-            given = Estimated(getattr(water, numbers[parameter]), None)
+            given = Estimated(getattr(water, numbers[parameter]))
             draft.put(finding, f"{name}.{parameter}", given, _unit(draft, name, parameter), note=why)
     if finding.onset is not None and rule.onset:
         start, growth = rule.onset
-        draft.put(finding, f"{name}.{start}", Estimated(finding.onset, None), "s")
-        draft.put(finding, f"{name}.{growth}", Estimated(RAMP, None), "s", note="assumed")
+        draft.put(finding, f"{name}.{start}", Estimated(finding.onset), "s")
+        draft.put(finding, f"{name}.{growth}", Estimated(RAMP), "s", note="assumed")
 
 
 def _unit(draft: ExtensionDraft, component: str, parameter: str) -> str:
@@ -85,7 +85,7 @@ def add_instruments(
             draft.errors[name] = given.value
 
 
-def add_current(draft: ExtensionDraft, finding: Finding, start: _Vector, end: _Vector | None = None) -> None:
+def add_current(draft: ExtensionDraft, finding: Finding, start: _Vector | None, end: _Vector | None = None) -> None:
     """Make the water move.
 
     Parameters
@@ -94,8 +94,9 @@ def add_current(draft: ExtensionDraft, finding: Finding, start: _Vector, end: _V
         Changed.
     finding : Finding
         One with an onset gets a current that grows from then on.
-    start : tuple of two Estimated
-        North and east, steady without an `end`, else at the log's first row; of None at an onset: none. [m/s]
+    start : tuple of two Estimated or None
+        North and east, steady without an `end`, else at the log's first row; None where it only grows at the onset.
+        [m/s]
     end : tuple of two Estimated, optional
         At the log's last row, or after the onset. [m/s]
     """
@@ -105,16 +106,19 @@ def add_current(draft: ExtensionDraft, finding: Finding, start: _Vector, end: _V
         return
     draft.moved = True
     if end is None:
-        _steady(draft, finding, source, *start)
+        if start is not None:
+            _steady(draft, finding, source, *start)
         return
     if source is None:
         source = _environment(draft)
-    onset = start == (None, None)
-    span = (finding.onset, finding.onset + RAMP) if onset else draft.log.get("span")
+    span = draft.log.get("span")
+    if start is None and finding.onset is not None:
+        span = finding.onset, finding.onset + RAMP
     if span is None:
         span = draft.structure.start_time, draft.structure.stop_time or 600.0
         draft.remark(finding, f"the log's span is not known; it varies from {span[0]:g} to {span[1]:g} s")
-    _add_varying(draft, finding, source, {"start": start, "end": end}, span)
+    ends = {"end": end} if start is None else {"start": start, "end": end}
+    _add_varying(draft, finding, source, ends, span)
 
 
 def _add_varying(
@@ -127,10 +131,9 @@ def _add_varying(
         draft.structure.connect(f"{name}.{output}", f"{source}.{output}")
     for label, vector in ends.items():
         for axis, given in zip(("north", "east"), vector, strict=True):
-            if given is not None:
-                draft.put(finding, f"{name}.{axis}_{label}", given, "m/s")
+            draft.put(finding, f"{name}.{axis}_{label}", given, "m/s")
     for label, time in zip(("start", "end"), span, strict=True):
-        draft.put(finding, f"{name}.time_{label}", Estimated(time, None), "s", note="of the log")
+        draft.put(finding, f"{name}.time_{label}", Estimated(time), "s", note="of the log")
 
 
 def _water(draft: ExtensionDraft) -> str | None:
@@ -167,8 +170,7 @@ def _start(draft: ExtensionDraft, finding: Finding, component: str, name: str, g
     """Start value of an input: at the system's own input where that feeds it, else at the component."""
     system, target = draft.structure.checked(), (component, name)
     feeding = next((c for c in system.connections if c.target == target), None)
-    outer = feeding is not None and feeding.source[0] is None and feeding.mapping is None and feeding.factor != 0.0
-    if not outer:
+    if feeding is None or feeding.source[0] is not None or feeding.mapping is not None or feeding.factor == 0.0:
         draft.release(f"{component}.{name}")
         draft.put(finding, f"{component}.{name}", given, unit)
         return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ __all__ = [
     "WIND_LABELS",
     "Mislabel",
     "finding_of",
+    "mislabel_in",
     "mislabel_of",
     "negative",
     "possible",
@@ -52,7 +53,7 @@ class Mislabel:
     scale: float | None = None
 
 
-def negative(role):
+def negative(role: str) -> Mislabel:
     """A channel with the other sign."""
     return Mislabel("sign", (role,), f"{role} has the other sign", lambda log: {role: -log[role]})
 
@@ -122,23 +123,33 @@ WIND_LABELS = (
 MISLABELS = (*HEADING_LABELS, *POSITION_LABELS, *WIND_LABELS)
 
 
-def possible(labels, log) -> list[Mislabel]:
+def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
     """Those of some mislabels whose channels a log has."""
     return [label for label in labels if all(role in log for role in label.channels)]
 
 
-def finding_of(mislabel: Mislabel, probability: float, segment=None) -> Finding:
+def finding_of(mislabel: Mislabel, probability: float, segment: tuple[float, float] | None = None) -> Finding:
     """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
     segments = (segment,) if segment else ()
     return Finding(mislabel.cause, None, "data", probability, {}, segments, mislabel.channels, note=mislabel.sentence)
 
 
-def mislabel_of(finding) -> Mislabel | None:
+def mislabel_of(finding: Finding) -> Mislabel | None:
     """The mislabel that a finding names by its note; None where the finding is another fault."""
     return next((m for m in MISLABELS if (m.cause, m.sentence) == (finding.cause, finding.note)), None)
 
 
-def undone(log: dict, mislabel: Mislabel, segments) -> dict:
+def mislabel_in(finding: Finding) -> Mislabel:
+    """The mislabel of a finding that is one; `mislabel_of` where it can be another fault."""
+    mislabel = mislabel_of(finding)
+    if mislabel is None:
+        raise ValueError(f"no mislabel: {finding.label}")
+    return mislabel
+
+
+def undone(
+    log: dict[str, np.ndarray], mislabel: Mislabel, segments: Sequence[tuple[float, float]]
+) -> dict[str, np.ndarray]:
     """The log, a dict of arrays by role with `time`, with a mislabel undone in some segments, or throughout.
 
     What was rounded away in a unit that is too large is lost: such a channel is NaN there.

@@ -15,7 +15,7 @@ from shipcosim.diagnose.inference.search import at_first_sight, explain
 from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
 from shipcosim.diagnose.inference.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.log.checks.wind import leaps
-from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of, mislabel_of, possible
+from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of, mislabel_in, mislabel_of, possible
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
 from shipcosim.diagnose.log_faults.input_labels import (
@@ -52,7 +52,9 @@ def corrected(found: Identification) -> Identification:
 def with_right_navigation(found: Identification) -> Identification:
     """The log with the channels of the navigation labelled as the ship's response says."""
     candidates = relabelled(found.log, found.faults, found.problem)
-    best, enough = found, explain(found.problem, most=1)[0].score + FAULT if candidates else None
+    if not candidates:
+        return found
+    best, enough = found, explain(found.problem, most=1)[0].score + FAULT
     for candidate in candidates:
         again = _repaired(found, candidate.faults)
         if at_first_sight(again.problem) + candidate.density < enough:
@@ -98,7 +100,7 @@ def _likeliest_direction(as_logged, fault):
     `as_logged` has the log without that fault put right, and the problem with it put right.
     """
     log, problem = as_logged.repaired, as_logged.problem
-    if mislabel_of(fault).scale is not None:
+    if mislabel_in(fault).scale is not None:
         return fault, problem
     directions = [label for label in possible(WIND_LABELS, log) if label.scale is None]
     rights = {label: with_label(log, label, fault.segments) for label in directions}

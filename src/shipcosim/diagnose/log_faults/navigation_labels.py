@@ -16,7 +16,7 @@ from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.log.checks.kinematics import filter_for, is_clear, position_motion
-from shipcosim.diagnose.log.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_of, possible
+from shipcosim.diagnose.log.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_in, mislabel_of, possible
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log.rows import arrays_of, inside
 from shipcosim.diagnose.log_faults.input_labels import where_best, with_label
@@ -84,10 +84,10 @@ def relabelled(log: xarray.Dataset, faults: Sequence[Finding], problem: Identifi
         calm = CALM_JOLT * first_noise(problem.record, problem.model.parts["hull"].length).jolt
         problem = replace(problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm)))
     base = _by_row(problem, record_of(plain, problem.model))
-    known = [mislabel_of(fault) for fault in found]
+    known = [mislabel_in(fault) for fault in found]
     labels = [label for label in possible(LABELS, plain) if label in known or _matters(plain, label)]
     gains = {label: _gain(plain, label, problem) - base for label in labels}
-    so_far = sum(float(gains[mislabel_of(one)][inside(problem.record.time, one.segments)].sum()) for one in found)
+    so_far = sum(float(gains[mislabel_in(one)][inside(problem.record.time, one.segments)].sum()) for one in found)
     tried = _likely(gains, problem.record, max(LABEL_GAIN, so_far + BETTER_LABEL))
     less = sum(_density(one, problem) for one in found)
     return [Relabelled((*others, one), _density(one, problem) - less) for one in tried]
@@ -103,7 +103,7 @@ def _likely(gains, record, least):
 
 def _stretches(found):
     """A label in its stretch and throughout; a unit throughout is a scale, which is a cause of its own."""
-    return (found,) if mislabel_of(found).scale is not None else (found, replace(found, segments=()))
+    return (found,) if mislabel_in(found).scale is not None else (found, replace(found, segments=()))
 
 
 def _matters(plain, label):
@@ -146,7 +146,7 @@ def _by_row(problem, record):
 
 def _density(finding, problem):
     """Logarithm of the factors by which a finding changes the values of its channels."""
-    scale = mislabel_of(finding).scale or 1.0
+    scale = mislabel_in(finding).scale or 1.0
     places = [CHANNELS.index(role) for role in finding.channels]
     here = np.isfinite(problem.record.measured[:, places]) & inside(problem.record.time, finding.segments)[:, None]
     return float(np.log(scale) * here.sum())

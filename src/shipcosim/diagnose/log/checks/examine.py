@@ -13,7 +13,7 @@ from shipcosim.diagnose.log.checks.samples import gaps, outliers, wraps
 from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
-from shipcosim.diagnose.log.mislabels import mislabel_of, undone
+from shipcosim.diagnose.log.mislabels import mislabel_in, undone
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log.rows import inside, usable_rows
 from shipcosim.diagnose.stages import CheckedLog, ReadLog
@@ -44,14 +44,14 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     found = [*gaps(table), *wraps(table)]
     table = _without(table, found)
     quiet = silent_rate(table)
-    table = undone(table, mislabel_of(quiet[0]), quiet[0].segments) if quiet else table
+    table = undone(table, mislabel_in(quiet[0]), quiet[0].segments) if quiet else table
     labels, right = mislabelled(table)
     clock = wrong_clock(right)
     kept = [label for label in labels if not _is_the_clock(label, clock, table["time"])]
     if len(kept) < len(labels):
         right = table
         for label in kept:
-            right = undone(right, mislabel_of(label), label.segments)
+            right = undone(right, mislabel_in(label), label.segments)
         clock = wrong_clock(right)
     found += [*quiet, *kept, *(mislabelled_wind(right) or jumping_wind(right)), *clock]
     return sorted(found, key=lambda finding: -finding.probability)

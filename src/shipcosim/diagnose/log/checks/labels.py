@@ -25,7 +25,7 @@ from shipcosim.diagnose.log.mislabels import (
     POSITION_LABELS,
     Mislabel,
     finding_of,
-    mislabel_of,
+    mislabel_in,
     possible,
     undone,
 )
@@ -67,7 +67,7 @@ def mislabelled(log: dict) -> tuple[list[Finding], dict]:
             finding = _best(log, motion_of, labels)
             if finding is None:
                 break
-            log = undone(log, mislabel_of(finding), finding.segments)
+            log = undone(log, mislabel_in(finding), finding.segments)
             found.append(finding)
     return found, log
 

@@ -111,7 +111,7 @@ def _flat_runs(log, roles):
     if not roles:
         return
     time, values = log["time"], np.column_stack([log[role] for role in roles])
-    for first, last in runs(np.isnan(values).all(axis=1)):
+    for first, last in runs(np.all(np.isnan(values), axis=1)):
         if time[last - 1] - time[first] >= SHORTEST_GAP:
             yield _Run(first, last - 1, roles, NO_VALUES)
     bends = np.column_stack([_bend(log[role], role) for role in roles])

@@ -107,7 +107,7 @@ def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
     kinds = SLOPES[frame]
     weights = {kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12 for kind, b in kinds.items()}
-    kind = max(weights, key=weights.get)
+    kind = max(weights, key=lambda one: weights[one])
     return [_named(LABEL[frame, kind], segment, gain, weights[kind] / sum(weights.values()))]
 
 

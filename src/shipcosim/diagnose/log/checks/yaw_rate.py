@@ -41,7 +41,7 @@ def silent_rate(log: dict) -> list[Finding]:
     usual = float(np.quantile([window.mean() for window in windows], 0.8))
     if usual <= 3.0 * fine:
         return []
-    quiet = max(usual / RADIAN.scale, 0.25 * fine)
+    quiet = max(usual / (RADIAN.scale or 1.0), 0.25 * fine)
     gains = np.clip(np.log(usual / quiet) - bends / quiet + bends / usual, -CLIP, CLIP)
     gain, segment = best_segment(motion.time, gains)
     if segment is None or gain < LEAST_GAIN:
