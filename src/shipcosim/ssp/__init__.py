@@ -11,7 +11,7 @@ from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
-from shipcosim.ssp.reading import read_system
+from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
 
 __all__ = [

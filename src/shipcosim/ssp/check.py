@@ -1,20 +1,26 @@
-"""Everything that is wrong with a file, at once."""
+"""Checks of files: everything that is wrong with one, at once; no binary is loaded."""
 
 import platform
 import sys
+from collections.abc import Iterable
+from os import PathLike
 from pathlib import Path
 
 from shipcosim.errors import Problem
 from shipcosim.ssp.flatten.loops import loop_problems
+from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
-from shipcosim.ssp.read.parameters import read_dictionary, read_mapping, read_parameter_set
-from shipcosim.ssp.reading import assemble
+from shipcosim.ssp.read.parameters import ParameterSets, read_dictionary, read_mapping, read_parameter_set
+from shipcosim.ssp.system_files import assemble
 from shipcosim.ssp.xml.document import Findings, read_document
 
 READERS = {".ssv": read_parameter_set, ".ssm": read_mapping, ".ssb": read_dictionary}
 
 
-def check_system(path, parameters=(), *, fmus=()):
+def check_system(
+    path: str | PathLike[str], parameters: ParameterSets = (), *, fmus: Iterable[str | PathLike[str]] = ()
+) -> list[Problem]:
     """Problems of a system structure and all it refers to; no binary is loaded.
 
     Parameters
@@ -30,7 +36,7 @@ def check_system(path, parameters=(), *, fmus=()):
     return problems_of(*assemble(path, parameters, fmus))
 
 
-def problems_of(system, findings):
+def problems_of(system: System | None, findings: Findings) -> list[Problem]:
     """Findings about a system, each once, with remarks on what its FMUs lack; the system may be None."""
     described = {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
     for fmu in described.values():
@@ -39,7 +45,7 @@ def problems_of(system, findings):
     return list(dict.fromkeys([*findings.problems, *loops]))
 
 
-def check_file(path, *, fmus=()):
+def check_file(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> list[Problem]:
     """Problems of a file by its ending: .ssp, .ssd, .ssv, .ssm, .ssb, .fmu, .xml (of OSP), or of a folder.
 
     Parameters
@@ -74,14 +80,14 @@ def check_file(path, *, fmus=()):
     return list(dict.fromkeys(findings.problems))
 
 
-def _remark_platform(fmu, where, findings):
+def _remark_platform(fmu: FmuDescription, where: str, findings: Findings) -> None:
     names = this_platform()
     if not set(names) & set(fmu.platforms):
         there = ", ".join(fmu.platforms) or "none"
         findings.remark(where, f"It has no binary for this platform ({names[0]}).", f"It has: {there}.")
 
 
-def this_platform():
+def this_platform() -> tuple[str, str]:
     """Names that FMI 2.0 and FMI 3.0 have for the platform that Python runs on."""
     system = {"win32": "windows", "darwin": "darwin"}.get(sys.platform, "linux")
     machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())

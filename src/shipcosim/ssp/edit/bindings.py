@@ -27,7 +27,7 @@ def unbind(draft: Draft, source: str | PathLike[str], element: str) -> None:
     listed = children(element_named(draft, element), "ssd:ParameterBindings", "ssd:ParameterBinding")
     found = [part for part in listed if part.get("source") == quote(str(source))]
     if not found:
-        known = [source for part in listed if (source := part.get("source"))]
+        known = [uri for part in listed if (uri := part.get("source"))]
         raise draft.error(str(source), "It is not bound there.", suggestion(str(source), known))
     for part in found:
         drop(part)

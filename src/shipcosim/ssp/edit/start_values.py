@@ -107,7 +107,7 @@ class StartValues(MutableMapping):
         if unit is None:
             return value
         given = find_unit(unit, read_units(children(self._draft.root, "ssd:Units", "ssc:Unit")))
-        if own is None or relation(given, own) in ("unknown", "incompatible"):
+        if given is None or own is None or relation(given, own) in ("unknown", "incompatible"):
             found = f"A value in {unit}, but {name} is in {own.name if own else 'no unit'}."
             raise ShipcosimError(self._draft.problem(name, found, "These cannot be converted."))
         factor, offset = conversion(given, own)

@@ -44,10 +44,11 @@ def parameter(name, value, unit=None, description="", *, tolerance=None):
     ShipcosimError
         If the unit's spelling makes no sense.
     """
-    if unit is not None and find_unit(unit).exponents is None:
+    defined = find_unit(unit)
+    if defined is not None and defined.exponents is None:
         raise ShipcosimError(Problem(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'."))
     kind = "Real" if unit is not None and type(value) is int else KIND_OF[type(value)]
-    return ParameterValue(name, kind, value, find_unit(unit), description, tolerance=tolerance)
+    return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
 
 def write_ssv(path, name, values):
@@ -108,7 +109,7 @@ def pack(folder, fmus, out):
     package = open_package(folder, findings, fmus)
     if package is not None:
         assemble_package(package, (), str(folder), findings)
-    if findings.errors:
+    if package is None or findings.errors:
         raise ShipcosimError(list(dict.fromkeys(findings.errors)))
     files = {
         path.relative_to(folder).as_posix(): path.read_bytes()

@@ -3,6 +3,7 @@
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from shipcosim.errors import Problem
 from shipcosim.ssp.flatten.system import System
@@ -14,7 +15,7 @@ MOST_TRIED = 50
 """Components of which it is tried whether they break a loop."""
 
 
-Node = tuple[str, str | None]
+Node = tuple[Any, Any]
 """Component and variable; None stands for all inputs of a component whose FMU says nothing of its outputs."""
 
 Edge = tuple[Node, Node]

@@ -1,13 +1,20 @@
-"""A system as a tool takes it that reads its file itself: with the values and connections that it applies.
+"""A system as a tool interprets its file: with the values and connections that the tool applies.
 
 What it refuses or dies of is not looked at; see `shipcosim.ssp.portability.support_table`.
 """
 
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, replace
+from os import PathLike
 
-from shipcosim.ssp.flatten.system import System
-from shipcosim.ssp.portability.features import hints_of_others, linear_without_factor, model_exchange_asked
-from shipcosim.ssp.portability.subject import subject_of
+from shipcosim.ssp.flatten.connections import Connection
+from shipcosim.ssp.flatten.system import Component, System
+from shipcosim.ssp.fmu.description import FmuDescription, Variable
+from shipcosim.ssp.portability.connection_features import linear_without_factor
+from shipcosim.ssp.portability.structure_features import hints_of_others, model_exchange_asked
+from shipcosim.ssp.portability.subject import Subject, subject_of
+from shipcosim.ssp.read.parameters import ParameterValue, Transformation
+from shipcosim.ssp.xml.values import Value
 
 
 @dataclass(frozen=True)
@@ -26,13 +33,15 @@ class Taken:
     system: System
 
 
-def told_set(path, *, fmus=()):
+def told_set(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> str | None:
     """Name of the first parameter set on a component, which ecos is told; None where there is none."""
     subject = subject_of(path, fmus)
     return next((values.name for *_, values in subject.sets), None) if subject is not None else None
 
 
-def taken_by(host, path, *, fmus=()):
+def taken_by(
+    host: str, path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()
+) -> tuple[list[Taken], System | None]:
     """Respects in which a tool takes a system otherwise, and the system with all of them together.
 
     Parameters
@@ -59,7 +68,7 @@ def taken_by(host, path, *, fmus=()):
     return found, whole
 
 
-def _values(host, subject, system):
+def _values(host: str, subject: Subject, system: System) -> tuple[str, System]:
     """Start values: a component's first set or, in ecos, its last of the name told; each value as the number it is."""
     applied = {name: {} for name in system.components}
     sets = list(subject.sets)
@@ -81,7 +90,7 @@ def _values(host, subject, system):
     return _listed("parameters are not applied", other), replace(system, components=components)
 
 
-def _takes(host, value, variable, fmu):
+def _takes(host: str, value: ParameterValue, variable: Variable, fmu: FmuDescription) -> bool:
     if host == "libcosim":
         known = ("input",) if fmu.fmi_version.startswith("1") else ("parameter", "input")
         if value.kind != variable.kind or variable.causality not in known:
@@ -89,23 +98,23 @@ def _takes(host, value, variable, fmu):
     return variable.kind in ("Real", "Integer", "Boolean", "String") and value.kind != "Enumeration"
 
 
-def _value(component, variable, applied):
+def _value(component: Component, variable: str, applied: Mapping[str, Value]) -> Value | None:
     return applied.get(variable, component.fmu.variables[variable].start)
 
 
-def _instead(component, variable, applied):
+def _instead(component: Component, variable: str, applied: Mapping[str, Value]) -> str:
     there, here = _value(component, variable, applied), component.start_value(variable)
     return f"{component.name}.{variable} is {there!r} instead of {here!r}"
 
 
-def _connections(host, subject, system):
+def _connections(host: str, subject: Subject, system: System) -> tuple[str, System]:
     """Connections: as they are written, no units and mappings; those that are written the other way round left out."""
     links = {}
     for link, _, _ in subject.links:
         ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
         how = link.transformation
-        linear = how is not None and how.kind == "Linear"
-        links[ends] = (how.factor, how.offset) if linear else (1.0, 0.0), link.place
+        linear = how if how is not None and how.kind == "Linear" else Transformation()
+        links[ends] = (linear.factor, linear.offset), link.place
     if host == "ecos":
         misread = {place for place, _ in linear_without_factor(subject)}
         lines = {place.partition(": ")[0] for place in misread}
@@ -129,23 +138,23 @@ def _connections(host, subject, system):
     return _listed("connections are something else", other), replace(system, connections=tuple(taken))
 
 
-def _holds(place, lines):
+def _holds(place: str, lines: Container[str]) -> bool:
     """Whether a connection's place is that of a transformation in it, in the same line or the next one."""
     file, _, line = place.partition(": ")[0].rpartition(", line ")
     return any(f"{file}, line {int(line) + more}" in lines for more in (0, 1)) if line.isdigit() else False
 
 
-def _how(factor, offset, connection):
+def _how(factor: float, offset: float, connection: Connection) -> str:
     if connection.mapping is not None:
         return "made without its mapping"
     return f"{factor:g} times plus {offset:g} instead of {connection.factor:g} times plus {connection.offset:g}"
 
 
-def _arrow(connection):
+def _arrow(connection: Connection) -> str:
     return " -> ".join(".".join(filter(None, end)) for end in (connection.source, connection.target))
 
 
-def _steps(host, subject, system):
+def _steps(host: str, subject: Subject, system: System) -> tuple[str, System]:
     """Steps of components that only another tool's annotation states."""
     if not any(True for _ in hints_of_others(subject)):
         return "", system
@@ -154,13 +163,13 @@ def _steps(host, subject, system):
     return _listed("step sizes are not read", other), replace(system, components=plain)
 
 
-def _forms(host, subject, system):
+def _forms(host: str, subject: Subject, system: System) -> tuple[str, System]:
     """Co-simulation, whatever the system asks for."""
     plain = {name: replace(part, implementation="any") for name, part in system.components.items()}
     other = [f"{name} runs as co-simulation" for name, _ in model_exchange_asked(subject)]
     return _listed("forms are not looked at", other), replace(system, components=plain)
 
 
-def _listed(what, found):
+def _listed(what: str, found: list[str]) -> str:
     more = f" and {len(found) - 5} more" if len(found) > 5 else ""
     return f"{what}: {'; '.join(found[:5])}{more}" if found else ""

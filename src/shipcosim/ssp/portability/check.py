@@ -1,21 +1,30 @@
 """What a tool that reads a system's file itself would ignore, misread or die of: `check --for`."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from os import PathLike
+from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.portability.subject import Subject, subject_of
-from shipcosim.ssp.portability.support_table import FEATURES, HOSTS, TOLD
+from shipcosim.ssp.portability.support_table import FEATURES, HOSTS, TOLD, Feature
 from shipcosim.ssp.xml.document import Findings, read_document
 
 
-def check_host(host):
-    """Raise ShipcosimError where nothing is known of a tool."""
+def check_host(host: str) -> None:
+    """Refuse a tool of which nothing is known.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is not one of HOSTS.
+    """
     if host not in HOSTS:
         raise ShipcosimError(Problem(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS)))
 
 
-def check_for(host, path, *, fmus=()):
+def check_for(host: str, path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> list[Problem]:
     """What a tool that reads the file itself would ignore, misread or die of.
 
     Parameters
@@ -49,7 +58,7 @@ def check_for(host, path, *, fmus=()):
     return list(dict.fromkeys(problem for feature in known for problem in _problems(host, feature, subject)))
 
 
-def _problems(host, feature, subject):
+def _problems(host: str, feature: Feature, subject: Subject) -> Iterator[Problem]:
     verdict = feature.becomes[host]
     for place, what in feature.find(subject):
         found = f"{what or feature.about}: {host} {verdict}."
@@ -58,8 +67,8 @@ def _problems(host, feature, subject):
         yield replace(problem, severity="remark") if verdict == TOLD else problem
 
 
-def _osp_subject(path, fmus):
+def _osp_subject(path: Path, fmus: Iterable[str | PathLike[str]]) -> Subject | None:
     findings = Findings()
     system = assemble_osp(path, (), fmus, findings)
     document = read_document(path, str(path), findings)
-    return None if findings.errors else Subject(None, None, None, None, system, document)
+    return None if system is None or findings.errors else Subject(None, None, None, None, system, document)

@@ -1,25 +1,32 @@
-"""A system that is looked at for what other tools take otherwise: its outermost file as written, and what it means."""
+"""Input to the portability checks: an SSP as written in its outermost file, and as resolved."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike
 
 import lxml.etree as etree
 
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
-from shipcosim.ssp.flatten.ports import Key
+from shipcosim.ssp.flatten.ports import Key, Port
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.flatten.walk import take_in
+from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.read.package import Package, open_package
-from shipcosim.ssp.read.parameters import read_parameter_set
-from shipcosim.ssp.read.structure import ComponentElement, Structure
+from shipcosim.ssp.read.parameters import ParameterSet, ParameterValue, read_parameter_set
+from shipcosim.ssp.read.structure import Binding, ComponentElement, DictionaryReference, Link, Structure, SystemElement
 from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Document, Findings, local
+from shipcosim.ssp.xml.values import KINDS, SSP_1_TYPES
+
+Found = Iterator[tuple[str, str]]
+"""Places that have a feature, each with what is there; an empty text stands for the feature's own words."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """A system that is looked at: the outermost file as written, and what it means.
+    """A system to be checked: its outermost file as written, and the system as resolved.
 
     Parameters
     ----------
@@ -39,88 +46,98 @@ class Subject:
     osp: Document | None = None
 
     @cached_property
-    def elements(self):
+    def elements(self) -> tuple[ComponentElement | DictionaryReference | SystemElement, ...]:
         """Elements of the outermost system."""
         return () if self.structure is None else self.structure.system.elements
 
     @cached_property
-    def components(self):
+    def components(self) -> list[ComponentElement]:
         """Components of the outermost system."""
         return [part for part in self.elements if isinstance(part, ComponentElement)]
 
     @cached_property
-    def links(self):
+    def links(self) -> list[tuple[Link, Port | None, Port | None]]:
         """Connections of the outermost system between its elements, with their ends' ports where they are known."""
         found = []
         for link in () if self.structure is None else self.structure.system.links:
-            ends = [
-                self.tree.ports.get(Key((element,), name))
-                for element, name in (
-                    (link.start_element, link.start_connector),
-                    (link.end_element, link.end_connector),
-                )
-            ]
             if link.start_element and link.end_element:
-                found.append((link, *ends))
+                start = self._port(link.start_element, link.start_connector)
+                found.append((link, start, self._port(link.end_element, link.end_connector)))
         return found
 
+    def _port(self, element: str, connector: str) -> Port | None:
+        return None if self.tree is None else self.tree.ports.get(Key((element,), connector))
+
     @cached_property
-    def sets(self):
+    def sets(self) -> list[tuple[ComponentElement, FmuDescription | None, Binding, ParameterSet]]:
         """(component element, FMU, binding, ParameterSet) of sets bound to components."""
         found = []
         for part in self.components:
-            _, fmu = self.tree.components.get((part.name,), (None, None))
+            _, fmu = (None, None) if self.tree is None else self.tree.components.get((part.name,), (None, None))
             for binding in part.bindings:
-                document = binding.values.inline
-                if document is None and not binding.values.in_component:
-                    file = self.package.locate(binding.values.uri, self.document.folder, "", Findings())
-                    document = None if file is None else self.package.read(file, Findings())
+                document = binding.values.inline or self._file(binding)
                 if document is not None:
                     found.append((part, fmu, binding, read_parameter_set(document, Findings())))
         return found
 
-    @cached_property
-    def documents(self):
-        """The outermost file, and the files of the sets that are bound to its components."""
-        found = [] if self.document is None else [self.document]
-        for binding in (binding for part in self.components for binding in part.bindings):
-            if binding.values.uri and not binding.values.in_component:
-                file = self.package.locate(binding.values.uri, self.document.folder, "", Findings())
-                found.append(None if file is None else self.package.read(file, Findings()))
-        return [document for document in found if document is not None]
+    def _file(self, binding: Binding) -> Document | None:
+        """File of a set that is bound by its address in the package."""
+        source = binding.values
+        if self.package is None or self.document is None or not source.uri or source.in_component:
+            return None
+        file = self.package.locate(source.uri, self.document.folder, "", Findings())
+        return None if file is None else self.package.read(file, Findings())
 
     @cached_property
-    def values(self):
+    def documents(self) -> list[Document]:
+        """The outermost file, and the files of the sets that are bound to its components."""
+        files = [self._file(binding) for part in self.components for binding in part.bindings]
+        return [document for document in (self.document, *files) if document is not None]
+
+    @cached_property
+    def values(self) -> list[tuple[ParameterValue, Variable, FmuDescription]]:
         """(value, variable, fmu) of the values that are bound to components by their own names."""
         found = []
         for _, fmu, binding, values in self.sets:
-            for value in values.values if fmu is not None and binding.mapping is None else ():
+            if fmu is None or binding.mapping is not None:
+                continue
+            for value in values.values:
                 variable = fmu.variables.get(value.name.removeprefix(binding.prefix))
                 if variable is not None:
                     found.append((value, variable, fmu))
         return found
 
     @cached_property
-    def fmus(self):
+    def fmus(self) -> list[tuple[str, FmuDescription]]:
         """(component's name, FMU) of all components."""
         return [(name, component.fmu) for name, component in self.system.components.items()]
 
 
-def subject_of(path, fmus=()):
+def subject_of(path: str | PathLike[str], fmus: Iterable[str | PathLike[str]] = ()) -> Subject | None:
     """Subject of an SSP, or None where it has errors."""
     findings = Findings()
     package = open_package(path, findings, fmus)
     document = None if package is None else package.document(findings)
     structure = None if document is None else read_structure(document, findings)
-    if structure is None:
+    if package is None or structure is None:
         return None
     tree = Hierarchy(findings)
     take_in(tree, structure, package)
     system = assemble_package(package, (), str(path), findings)
-    return None if findings.errors else Subject(document, structure, package, tree, system)
+    return None if system is None or findings.errors else Subject(document, structure, package, tree, system)
 
 
-def elements_of(subject, *tags):
+def elements_of(subject: Subject, *tags: str) -> Iterator[etree._Element]:
     """Elements of the outermost file of these local names."""
     if subject.document is not None:
         yield from (part for part in subject.document.root.iter(etree.Element) if local(part) in tags)
+
+
+def types_of_2(element: etree._Element) -> list[str]:
+    """Types of SSP 2.0 that an element of a connector or value has."""
+    return [local(part) for part in element if local(part) in KINDS and local(part) not in SSP_1_TYPES]
+
+
+def is_fmi_1(fmu: FmuDescription) -> bool:
+    """Whether an FMU is of FMI 1.0."""
+    return fmu.fmi_version.startswith("1")

@@ -4,11 +4,11 @@ Every entry is what the tool did when it was tried (libcosimpy 0.0.6, ecospy 0.7
 table to it. `shipcosim simulate --engine` is another thing: it gives each engine the system as we read it.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from shipcosim.ssp.portability import features as find
-from shipcosim.ssp.portability.subject import Subject
+from shipcosim.ssp.portability import connection_features, osp_features, parameter_features, structure_features
+from shipcosim.ssp.portability.subject import Found, Subject
 
 IGNORED, MISREAD = "goes on without it, and says nothing", "takes it for something else, and says nothing"
 REFUSED, CRASHES = "refuses the system", "crashes"
@@ -36,18 +36,18 @@ class Feature:
     about: str
     becomes: Mapping[str, str]
     remedy: str
-    find: Callable[[Subject], Iterable[tuple[str, str]]]
+    find: Callable[[Subject], Found]
 
 
-def _both(verdict):
-    return dict.fromkeys(HOSTS, verdict)
+def _both(verdict: str) -> dict[str, str]:
+    return {host: verdict for host in HOSTS}
 
 
-def _libcosim(verdict):
+def _libcosim(verdict: str) -> dict[str, str]:
     return {"libcosim": verdict}
 
 
-def _ecos(verdict):
+def _ecos(verdict: str) -> dict[str, str]:
     return {"ecos": verdict}
 
 
@@ -59,251 +59,277 @@ FEATURES = (
         "other namespace prefixes than the standard's own",
         _both(REFUSED),
         "Read and write it with shipcosim, which writes ssd:, ssc:, ssv:.",
-        find.prefixes,
+        structure_features.prefixes,
     ),
-    Feature("version_2", "SSP 2.0", _ecos(REFUSED), 'Write version="1.0".', find.version_2),
-    Feature("nested_system", "a system in a system", _both(REFUSED), FLAT, find.nested_systems),
-    Feature("other_file", "a component that is a system of its own", _both(REFUSED), FLAT, find.other_files),
-    Feature("dictionary", "a signal dictionary", _both(REFUSED), "Connect the components directly.", find.dictionaries),
+    Feature("version_2", "SSP 2.0", _ecos(REFUSED), 'Write version="1.0".', structure_features.version_2),
+    Feature("nested_system", "a system in a system", _both(REFUSED), FLAT, structure_features.nested_systems),
+    Feature(
+        "other_file", "a component that is a system of its own", _both(REFUSED), FLAT, structure_features.other_files
+    ),
+    Feature(
+        "dictionary",
+        "a signal dictionary",
+        _both(REFUSED),
+        "Connect the components directly.",
+        structure_features.dictionaries,
+    ),
     Feature(
         "system_connection",
         "a connection with a connector of the outermost system",
         _both(REFUSED),
         "Leave it out; set what it feeds, look at what it shows.",
-        find.system_connections,
+        structure_features.system_connections,
     ),
     Feature(
         "reversed",
         "a connection written from input to output",
         {"libcosim": REFUSED, "ecos": IGNORED},
         "Exchange its start and its end.",
-        find.reversed_links,
+        connection_features.reversed_links,
     ),
     Feature(
         "undeclared",
         "a connector that only the FMU declares",
         _both(REFUSED),
         "Declare it.",
-        find.undeclared_connectors,
+        connection_features.undeclared_connectors,
     ),
     Feature(
         "typeless",
         "a connector without a type",
         _libcosim(REFUSED),
         "Give it the type of the FMU's variable.",
-        find.typeless_connectors,
+        connection_features.typeless_connectors,
     ),
     Feature(
         "types_differ",
         "a connection between different types",
         _both(REFUSED),
         "Connect equal types.",
-        find.different_types,
+        connection_features.different_types,
     ),
     Feature(
         "connector_2",
         "a connector of a type of SSP 2.0",
         _libcosim(REFUSED),
         "Write Real, Integer, Boolean or String.",
-        find.connectors_of_2,
+        connection_features.connectors_of_2,
     ),
     Feature(
         "enumeration_connector",
         "a connector that is an enumeration",
         _libcosim(CRASHES),
         "Leave the connector out, or make the variable an Integer.",
-        find.enumeration_connectors,
+        connection_features.enumeration_connectors,
     ),
     Feature(
         "enumeration_connection",
         "a connection of enumerations",
         _both(REFUSED),
         "Make the variables Integers.",
-        find.enumeration_connections,
+        connection_features.enumeration_connections,
     ),
     Feature(
         "parameter_connection",
         "a connection into a parameter",
         {"libcosim": REFUSED, "ecos": IGNORED},
         "Set the parameter's value in a set.",
-        find.parameter_connections,
+        connection_features.parameter_connections,
     ),
     Feature(
         "mapping",
         "a Boolean, integer or enumeration mapping",
         _both(IGNORED),
         "Do it in a component between the two.",
-        find.mappings,
+        connection_features.mappings,
     ),
     Feature(
         "linear_without_factor",
         "a linear transformation without a factor",
         _ecos(MISREAD),
         'Write factor="1".',
-        find.linear_without_factor,
+        connection_features.linear_without_factor,
     ),
     Feature(
         "unit_conversion",
         "a connection that converts units",
         _both(IGNORED),
         "Write the conversion as a LinearTransformation and suppressUnitConversion.",
-        find.unit_conversions,
+        connection_features.unit_conversions,
     ),
-    Feature("set_on_system", "a parameter set bound to a system", _both(IGNORED), BIND, find.sets_on_systems),
+    Feature(
+        "set_on_system", "a parameter set bound to a system", _both(IGNORED), BIND, parameter_features.sets_on_systems
+    ),
     Feature(
         "several_sets",
         "a second parameter set on a component",
         _both(IGNORED),
         "Make one set of them: `system.bind_to_components()`.",
-        find.several_sets,
+        parameter_features.several_sets,
     ),
     Feature(
         "set_names",
         "parameter sets of different names",
         _ecos(IGNORED),
         "Give all sets one name: ecos applies those of the name that it is told.",
-        find.sets_of_other_names,
+        parameter_features.sets_of_other_names,
     ),
     Feature(
         "set_name",
         "a parameter set",
         _ecos(TOLD),
         "Give its name: `init(parameter_set=...)`; without one ecos applies none.",
-        find.set_names,
+        parameter_features.set_names,
     ),
-    Feature("set_prefix", "a prefix of a binding", _both(IGNORED), BIND, find.set_prefixes),
-    Feature("set_mapping", "a parameter mapping (SSM)", _both(IGNORED), BIND, find.set_mappings),
+    Feature("set_prefix", "a prefix of a binding", _both(IGNORED), BIND, parameter_features.set_prefixes),
+    Feature("set_mapping", "a parameter mapping (SSM)", _both(IGNORED), BIND, parameter_features.set_mappings),
     Feature(
-        "set_in_fmu", "a parameter set inside an FMU", _both(REFUSED), "Put the file beside the SSD.", find.sets_in_fmus
+        "set_in_fmu",
+        "a parameter set inside an FMU",
+        _both(REFUSED),
+        "Put the file beside the SSD.",
+        parameter_features.sets_in_fmus,
     ),
     Feature(
         "set_unit",
         "a value in another unit than the FMU's",
         _both(IGNORED),
         "Give it in the FMU's unit.",
-        find.set_units,
+        parameter_features.set_units,
     ),
     Feature(
         "set_enumeration",
         "a value of type Enumeration",
         {"libcosim": CRASHES, "ecos": REFUSED},
         "Leave it to the FMU's start value.",
-        find.set_enumerations,
+        parameter_features.set_enumerations,
     ),
     Feature(
         "set_2",
         "a value of a type of SSP 2.0",
         _libcosim(CRASHES),
         "Write Real, Integer, Boolean or String.",
-        find.values_of_2,
+        parameter_features.values_of_2,
     ),
     Feature(
         "set_fmi_1",
         "a value for a parameter of an FMU of FMI 1.0",
         _libcosim(IGNORED),
         "Set it from the program that runs libcosim, or take an FMU of FMI 2.0.",
-        find.values_for_fmi_1,
+        parameter_features.values_for_fmi_1,
     ),
     Feature(
         "set_integer",
         "an Integer value for a Real",
         _libcosim(IGNORED),
         "Write it as <ssv:Real>.",
-        find.integers_for_reals,
+        parameter_features.integers_for_reals,
     ),
     Feature(
         "set_other",
         "a value for a variable that is no parameter or input",
         _libcosim(IGNORED),
         "Make the variable a parameter.",
-        find.values_of_others,
+        parameter_features.values_of_others,
     ),
     Feature(
         "no_osp_step",
         "a step size that only another tool's annotation states",
         _libcosim(CRASHES),
         "State it as osp:FixedStepAlgorithm (`system.step_size = ...`), or give it in the call.",
-        find.steps_of_others,
+        structure_features.steps_of_others,
     ),
     Feature(
         "no_step",
         "no step size",
         _libcosim(TOLD),
         "State it (`system.step_size = ...`), or give it in the call: without one libcosim crashes.",
-        find.no_steps,
+        structure_features.no_steps,
     ),
-    Feature("step", "a step size", _ecos(TOLD), "Give it in the call: ecos reads none from the file.", find.steps),
+    Feature(
+        "step",
+        "a step size",
+        _ecos(TOLD),
+        "Give it in the call: ecos reads none from the file.",
+        structure_features.steps,
+    ),
     Feature(
         "osp_annotation",
         "OSP's algorithm with another prefix than osp:, or with the prefix declared on itself",
         _libcosim(REFUSED),
         "Read and write it with shipcosim, which declares osp: on the root.",
-        find.osp_annotations,
+        structure_features.osp_annotations,
     ),
     Feature(
         "step_hint",
         "a component's step size in another tool's annotation",
         _both(IGNORED),
         "Write it as osp:StepSizeHint in an annotation of type com.opensimulationplatform.",
-        find.hints_of_others,
+        structure_features.hints_of_others,
     ),
-    Feature("start_time", "a start time other than 0", _ecos(IGNORED), "Let the system start at 0.", find.start_times),
+    Feature(
+        "start_time",
+        "a start time other than 0",
+        _ecos(IGNORED),
+        "Let the system start at 0.",
+        structure_features.start_times,
+    ),
     Feature(
         "escaped_address",
         "an address with escaped characters",
         _ecos(REFUSED),
         "Rename the file so that nothing has to be escaped.",
-        find.escaped_addresses,
+        structure_features.escaped_addresses,
     ),
-    Feature("fmi_3", "an FMU of FMI 3.0", _libcosim(REFUSED), "Export the FMU as FMI 2.0.", find.fmi_3),
+    Feature("fmi_3", "an FMU of FMI 3.0", _libcosim(REFUSED), "Export the FMU as FMI 2.0.", structure_features.fmi_3),
     Feature(
         "model_exchange_1",
         "an FMU of FMI 1.0 that offers no co-simulation",
         _both(REFUSED),
         "Export the FMU for co-simulation.",
-        find.without_co_simulation_1,
+        structure_features.without_co_simulation_1,
     ),
     Feature(
         "model_exchange",
         "an FMU that offers no co-simulation",
         {"libcosim": REFUSED, "ecos": CRASHES},
         "Export the FMU for co-simulation.",
-        find.without_co_simulation,
+        structure_features.without_co_simulation,
     ),
     Feature(
         "form_asked",
         "model exchange asked for of an FMU that offers co-simulation too",
         _both(IGNORED),
         "Take an FMU that offers model exchange alone, or ask for co-simulation: they run that.",
-        find.model_exchange_asked,
+        structure_features.model_exchange_asked,
     ),
     Feature(
         "osp_algorithm",
         "an OspSystemStructure.xml without an algorithm",
         _libcosim(REFUSED),
         "Add <Algorithm>fixedStep</Algorithm>.",
-        find.osp_without_algorithm,
+        osp_features.osp_without_algorithm,
     ),
     Feature(
         "osp_second_target",
         "a second connection from the output of a function",
         _libcosim(IGNORED),
         "Give each target a function of its own.",
-        find.osp_second_targets,
+        osp_features.osp_second_targets,
     ),
     Feature(
         "osp_group_file",
         "variable groups in a file that has not the model's name",
         _libcosim(REFUSED),
         "Call the file MODELNAME_OspModelDescription.xml.",
-        find.osp_group_files,
+        osp_features.osp_group_files,
     ),
     Feature(
         "same_guid",
         "two FMUs of one GUID",
         _libcosim(MISREAD),
         "Build one of them anew: libcosim takes the variables of the first for both.",
-        find.same_guids,
+        structure_features.same_guids,
     ),
 )
 """In the order in which a check reports them."""

@@ -77,13 +77,13 @@ class Document:
         Name as the user knows it, also for what lies inside an archive.
     root : lxml element
         Its outermost element.
-    folder : Path or None
+    folder : Path
         Folder that relative addresses in it start from.
     """
 
     file: str
     root: etree._Element
-    folder: Path | None = None
+    folder: Path = Path()
 
     def place(self, element, what=""):
         """Where an element stands, for the user to look it up."""

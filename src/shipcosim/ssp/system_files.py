@@ -1,24 +1,19 @@
 """A system read from any file that describes one: an SSP in its three forms, or an OspSystemStructure.xml."""
 
-from __future__ import annotations
-
-import os
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from os import PathLike
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.read.package import open_package
+from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.xml.document import Findings
-
-if TYPE_CHECKING:
-    from shipcosim.ssp.flatten.system import System
-    from shipcosim.ssp.read.parameters import ParameterSets
 
 
 def read_system(
-    path: str | os.PathLike[str], parameters: ParameterSets = (), *, fmus: Iterable[str | os.PathLike[str]] = ()
+    path: str | PathLike[str], parameters: ParameterSets = (), *, fmus: Iterable[str | PathLike[str]] = ()
 ) -> System:
     """Read a system structure and everything it refers to, checked completely.
 
@@ -48,9 +43,15 @@ def read_system(
 
 
 def assemble(
-    path: str | os.PathLike[str], parameters: ParameterSets = (), fmus: Iterable[str | os.PathLike[str]] = ()
+    path: str | PathLike[str], parameters: ParameterSets = (), fmus: Iterable[str | PathLike[str]] = ()
 ) -> tuple[System | None, Findings]:
-    """System and findings; the system is None or incomplete where there are errors."""
+    """Like `read_system`, but collecting what is wrong.
+
+    Returns
+    -------
+    tuple of System or None, and Findings
+        The system is None or incomplete where there are errors.
+    """
     findings = Findings()
     osp = osp_file(path)
     if osp is not None:

@@ -1,0 +1,110 @@
+"""Simulators of an OspSystemStructure.xml: components with their FMUs and initial values."""
+
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+from urllib.request import url2pathname
+
+import lxml.etree as etree
+
+from shipcosim.errors import suggestion
+from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.ports import Setting
+from shipcosim.ssp.fmu.arrays import without_arrays
+from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.fmu.reader import describe_fmu
+from shipcosim.ssp.osp.schema import NAMESPACE
+from shipcosim.ssp.osp.times import own_step
+from shipcosim.ssp.read.parameters import ParameterValue
+from shipcosim.ssp.read.structure import FMU, ComponentElement
+from shipcosim.ssp.xml.document import Document, Findings, local, reporting
+from shipcosim.ssp.xml.values import read_value
+
+HERE = ("", "file")
+"""Schemes of addresses that mean a file."""
+
+
+class Simulators:
+    """Collects the simulators of a document in a Hierarchy.
+
+    Parameters
+    ----------
+    document : Document
+        The OspSystemStructure.xml, which keeps its schema.
+    searched : list of Path
+        Folders searched for FMUs that are not where the document says.
+    tree : Hierarchy
+        Takes the components and the values set.
+    findings : Findings
+        Takes what is wrong.
+    """
+
+    def __init__(self, document: Document, searched: list[Path], tree: Hierarchy, findings: Findings):
+        self.document, self.searched, self.tree, self.findings = document, searched, tree, findings
+        self._described: dict[Path, FmuDescription | None] = {}
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the simulators so far."""
+        return [".".join(path) for path in self.tree.components]
+
+    def fmu_of(self, simulator: str, place: str) -> FmuDescription | None:
+        """FMU of a simulator, or None, with an error unless there is one already."""
+        if (simulator,) not in self.tree.components:
+            found = f"There is no simulator '{simulator}'."
+            self.findings.error(place, found, suggestion(simulator, self.names))
+            return None
+        return self.tree.components[simulator,][1]
+
+    def take(self, element: etree._Element) -> None:
+        """Collect a Simulator element with its FMU and its initial values."""
+        name = element.get("name")
+        place = self.document.place(element, name)
+        if (name,) in self.tree.components:
+            self.findings.error(place, f"A second simulator is named '{name}'.", "Names must differ.")
+            return
+        fmu = self._fmu(element.get("source"), place)
+        step = own_step(self.document, element, self.findings)
+        described = ComponentElement(name, element.get("source"), FMU, "any", (), (), step, place)
+        fmu = fmu and without_arrays(fmu, place, self.findings, self.tree.sizes.get(name))
+        self.tree.components[name,] = described, fmu
+        self.tree.arrays[name,] = {} if fmu is None else dict(fmu.arrays)
+        for initial in element.iter(f"{{{NAMESPACE}}}InitialValue"):
+            self._initial(name, initial)
+
+    def _initial(self, name: str, element: etree._Element) -> None:
+        variable = element.get("variable")
+        (typed,) = (part for part in element if local(part))
+        place = self.document.place(element, f"{name}.{variable}")
+        with reporting(self.document, element, self.findings, f"{name}.{variable}"):
+            value = read_value(local(typed), typed.get("value"))
+            given = ParameterValue(variable, local(typed), value, place=place)
+            self.tree.settings.append(Setting((name,), variable, given, near=True))
+
+    def _fmu(self, source: str, place: str) -> FmuDescription | None:
+        file = self._located(source, place)
+        if file is None:
+            return None
+        if file not in self._described:
+            self._described[file] = describe_fmu(file, self.findings)
+        return self._described[file]
+
+    def _located(self, source: str, place: str) -> Path | None:
+        """File that a source means, or None with an error; it may lie anywhere, as in OSP's own examples."""
+        try:
+            parts = urlsplit(source)
+            if parts.scheme not in HERE:
+                remedy = "Name the FMU's file: proxies and servers of FMUs are not supported."
+                self.findings.error(place, f"'{source}' is an address of the kind '{parts.scheme}'.", remedy)
+                return None
+            path = url2pathname(parts.path) if parts.scheme else unquote(parts.path)
+            paths = [self.document.folder / path, self.document.folder / source]
+            paths += [folder / Path(path).name for folder in self.searched]
+            found = next((path for path in paths if path.is_file()), None)
+        except (ValueError, OSError) as error:
+            self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")
+            return None
+        if found is None:
+            there = {file.name for file in paths[0].parent.glob("*.fmu")} if paths[0].parent.is_dir() else ()
+            remedy = f"In {paths[0].parent} there{suggestion(paths[0].name, there).removeprefix('There')}"
+            self.findings.error(place, f"The file '{source}' does not exist.", remedy)
+        return found

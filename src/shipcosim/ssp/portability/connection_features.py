@@ -1,0 +1,105 @@
+"""Where a system has connectors and connections that other tools take otherwise.
+
+Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
+"""
+
+from math import isclose
+
+from shipcosim.ssp.flatten.ports import Key
+from shipcosim.ssp.portability.subject import Found, Subject, elements_of, types_of_2
+from shipcosim.ssp.read.structure import Connector
+from shipcosim.ssp.xml.document import local
+
+
+def reversed_links(subject: Subject) -> Found:
+    """A connection written from input to output."""
+    if subject.tree is not None:
+        wires = {(wire.source, wire.target) for wire in subject.tree.wires}
+        for link, _, _ in subject.links:
+            ends = Key((link.end_element,), link.end_connector), Key((link.start_element,), link.start_connector)
+            if ends in wires:
+                yield link.place, ""
+
+
+def undeclared_connectors(subject: Subject) -> Found:
+    """A connector that only the FMU declares."""
+    declared = {(part.name, connector.name) for part in subject.elements for connector in _connectors(part)}
+    for link, _, _ in subject.links:
+        for end in ((link.start_element, link.start_connector), (link.end_element, link.end_connector)):
+            if end not in declared:
+                yield link.place, f"{'.'.join(end)} is not declared as a connector"
+
+
+def _connectors(part: object) -> tuple[Connector, ...]:
+    return getattr(part, "connectors", ())
+
+
+def typeless_connectors(subject: Subject) -> Found:
+    """A connector without a type."""
+    for part in subject.components:
+        yield from ((connector.place, "") for connector in part.connectors if connector.type is None)
+
+
+def connectors_of_2(subject: Subject) -> Found:
+    """A connector of a type of SSP 2.0."""
+    for part in elements_of(subject, "Connector"):
+        yield from ((subject.document.place(part), f"a connector of type {name}") for name in types_of_2(part))
+
+
+def enumeration_connectors(subject: Subject) -> Found:
+    """A connector that is an enumeration."""
+    for part in subject.components:
+        yield from ((connector.place, "") for connector in part.connectors if connector.type == "Enumeration")
+
+
+def different_types(subject: Subject) -> Found:
+    """A connection between different types."""
+    for link, start, end in subject.links:
+        kinds = [port.variable.kind for port in (start, end) if port is not None and port.variable is not None]
+        if len(kinds) == 2 and kinds[0] != kinds[1]:
+            yield link.place, f"a connection between {kinds[0]} and {kinds[1]}"
+
+
+def enumeration_connections(subject: Subject) -> Found:
+    """A connection of enumerations."""
+    for link, *ports in subject.links:
+        if any(p is not None and p.variable is not None and p.variable.kind == "Enumeration" for p in ports):
+            yield link.place, ""
+
+
+def parameter_connections(subject: Subject) -> Found:
+    """A connection into a parameter."""
+    initial = {(c.source, c.target): c for c in subject.system.connections if c.initial}
+    for link, _, _ in subject.links:
+        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
+        if ends in initial or ends[::-1] in initial:
+            yield link.place, ""
+
+
+def mappings(subject: Subject) -> Found:
+    """A Boolean, integer or enumeration mapping."""
+    for link, _, _ in subject.links:
+        if link.transformation is not None and link.transformation.kind != "Linear":
+            yield link.place, f"a mapping of {link.transformation.kind} values"
+
+
+def linear_without_factor(subject: Subject) -> Found:
+    """A linear transformation without a factor."""
+    for part in elements_of(subject, "LinearTransformation"):
+        if part.get("factor") is None and local(part.getparent()) == "Connection":
+            yield subject.document.place(part), ""
+
+
+def unit_conversions(subject: Subject) -> Found:
+    """Connections whose whole transformation is another than the one that is written."""
+    flat = {(c.source, c.target): c for c in subject.system.connections}
+    for link, _, _ in subject.links:
+        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
+        whole = flat.get(ends) or flat.get(ends[::-1])
+        how = link.transformation
+        if whole is None or (how is not None and how.kind != "Linear"):
+            continue
+        written = (how.factor, how.offset) if how is not None else (1.0, 0.0)
+        pairs = zip(written, (whole.factor, whole.offset), strict=True)
+        if not all(isclose(one, other, rel_tol=1e-12) for one, other in pairs):
+            yield link.place, f"a conversion of units, {whole.factor:.6g} times the value plus {whole.offset:.6g}"
