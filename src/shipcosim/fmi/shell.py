@@ -1,4 +1,4 @@
-"""The side of the shell that pythonfmu's binary calls. Writers of FMUs need `Fmu` only.
+"""FMI 2.0 interface of an FMU, called by the binary of pythonfmu. Writers of FMUs need `Fmu` only.
 
 The binary looks for a class that has a base class named `Fmi2Slave`, makes an instance per component and calls the
 methods below. It logs the `repr` of what they raise with status fatal, and the queue of messages after other calls.
@@ -7,80 +7,32 @@ methods below. It logs the `repr` of what they raise with status fatal, and the 
 import copy
 import functools
 import math
-import operator
-import os
-import traceback
 import weakref
-from collections.abc import Callable
-from pathlib import Path
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar, NamedTuple
 
 from shipcosim.fmi import state
+from shipcosim.fmi.access import (
+    Access,
+    Found,
+    getter,
+    refuse_not_finite_inputs,
+    refuse_not_finite_outputs,
+    whole_number,
+)
+from shipcosim.fmi.failures import FmuError, Message, message_of, text_of
 from shipcosim.fmi.pythonfmu_memory import keep
-
-CODE = Path(__file__).parents[2]
-SHELL = str(Path(__file__).parent)
-STATUSES = ("ok", "warning", "discard", "error")
-
-
-class FmuError(Exception):
-    """Why an FMU cannot go on, in words for its user. The host's logger takes its text for a printf format."""
-
-    def __repr__(self):
-        return str(self).replace("%", "%%")
-
-
-class Message(NamedTuple):
-    """What the binary hands to the host's logger; its text is a printf format."""
-
-    status: int
-    category: str
-    msg: str
+from shipcosim.fmi.variables import Parameters, Variable
 
 
 class State(NamedTuple):
-    """What the host holds as FMU state. The owner is not part of it."""
+    """FMU state as the host holds it. The owner is not part of the stored state."""
 
-    owner: object
+    owner: Any
     content: tuple
 
 
-class _Found(NamedTuple):
-    """Names of variables, a fixed parameter among them or "", and what takes their values from a mapping as tuple."""
-
-    names: tuple
-    fixed: str
-    values: Callable
-
-
-class _Access(dict):
-    """Variables behind a call's value references."""
-
-    def __init__(self, variables, kind):
-        super().__init__()
-        self.variables, self.kind = variables, kind
-
-    def __missing__(self, references):
-        found = []
-        for reference in references:
-            if not 0 <= reference < len(self.variables) or self.variables[reference].type != self.kind:
-                raise FmuError(f"there is no {self.kind} variable with value reference {reference}")
-            found.append(self.variables[reference])
-        fixed = [variable.name for variable in found if variable.causality == "parameter" and not variable.tunable]
-        names = tuple(variable.name for variable in found)
-        self[references] = _Found(names, fixed[0] if fixed else "", _getter(names))
-        return self[references]
-
-
-def _getter(names):
-    """Function that takes the values of these names from a mapping, as a tuple."""
-    if len(names) == 1:
-        (name,) = names
-        return lambda values: (values[name],)
-    return operator.itemgetter(*names) if names else lambda values: ()
-
-
-def _guarded(method):
+def _guarded(method: Callable) -> Callable:
     """Whatever a method raises reaches the binary as an `FmuError` that names component and time."""
 
     @functools.wraps(method)
@@ -113,93 +65,97 @@ class Fmi2Slave:
         "__weakref__",
     )
 
-    variables = ()
-    groups = ()
-    newest = None  # refers to the instance that the binary made last: a master in this process can call it directly
+    variables: ClassVar[tuple[Variable, ...]] = ()
+    groups: ClassVar[tuple[Parameters, ...]] = ()
+    newest: ClassVar[Any] = (
+        None  # refers to the instance that the binary made last: a master in this process can call it directly
+    )
 
-    def __init_subclass__(cls, **kwargs):
+    def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         cls._real, cls._integer, cls._boolean, cls._string = (
-            _Access(cls.variables, kind) for kind in ("Real", "Integer", "Boolean", "String")
+            Access(cls.variables, kind) for kind in ("Real", "Integer", "Boolean", "String")
         )
         cls._real_outputs = tuple(v.name for v in cls.variables if v.causality == "output" and v.type == "Real")
-        cls._real_output_values = staticmethod(_getter(cls._real_outputs))
+        cls._real_output_values = staticmethod(getter(cls._real_outputs))
         cls._starts = {variable.name: variable.start for variable in cls.variables}
 
-    def __init__(self, instance_name="", *, resources="", **_):
+    def __init__(self, instance_name: str = "", *, resources: str = "", **_: Any):
         self.instance_name = instance_name or type(self).__name__
         self.start_time = self._time = 0.0
-        self.messages = []
+        self.messages: list[Message] = []
         self._in_binary = bool(resources)
         if resources:
             Fmi2Slave.newest = weakref.ref(self)
         self._initialising = self._initialised = self._stale = False
         self.__dict__.update(self._starts)
 
-    # life
+    # life cycle
 
-    def setup_experiment(self, start_time, stop_time=None, tolerance=None):
+    def setup_experiment(
+        self, start_time: float, stop_time: float | None = None, tolerance: float | None = None
+    ) -> None:
         self.start_time = self._time = start_time
 
-    def enter_initialization_mode(self):
+    def enter_initialization_mode(self) -> None:
         self._initialising = self._stale = True
 
     @_guarded
-    def exit_initialization_mode(self):
+    def exit_initialization_mode(self) -> None:
         if self._stale:
             self._start()
         self._initialising, self._initialised = False, True
 
     @_guarded
-    def do_step(self, time, step_size):
+    def do_step(self, time: float, step_size: float) -> bool:
         self._time = time
         self.step(time, step_size)
         self._time = time + step_size
         self._check_outputs()
         return True
 
-    def terminate(self):
+    def terminate(self) -> None:
         pass
 
     # values
 
     @_guarded
-    def set_real(self, references, values):
+    def set_real(self, references: Sequence[int], values: Sequence[float]) -> None:
         found = self._real[tuple(references)]
         if not math.isfinite(sum(values)):
-            self._check_finite(found.names, values)
+            refuse_not_finite_inputs(self.variables, found.names, values)
         self._set(found, values)
 
     @_guarded
-    def set_integer(self, references, values):
+    def set_integer(self, references: Sequence[int], values: Sequence[int]) -> None:
         self._set(self._integer[tuple(references)], values)
 
     @_guarded
-    def set_boolean(self, references, values):
+    def set_boolean(self, references: Sequence[int], values: Sequence[bool]) -> None:
         self._set(self._boolean[tuple(references)], values)
 
     @_guarded
-    def set_string(self, references, values):
+    def set_string(self, references: Sequence[int], values: Sequence[str]) -> None:
         self._set(self._string[tuple(references)], values)
 
     @_guarded
-    def get_real(self, references):
+    def get_real(self, references: Sequence[int]) -> list[float]:
         return list(self._get(self._real[tuple(references)]))
 
     @_guarded
-    def get_integer(self, references):
+    def get_integer(self, references: Sequence[int]) -> list[int]:
         found = self._integer[tuple(references)]
-        return [_integer(name, value) for name, value in zip(found.names, self._get(found), strict=True)]
+        return [whole_number(name, value) for name, value in zip(found.names, self._get(found), strict=True)]
 
     @_guarded
-    def get_boolean(self, references):
+    def get_boolean(self, references: Sequence[int]) -> list[bool]:
         return [bool(value) for value in self._get(self._boolean[tuple(references)])]
 
     @_guarded
-    def get_string(self, references):
+    def get_string(self, references: Sequence[int]) -> list[str]:
         return [str(value) for value in self._get(self._string[tuple(references)])]
 
-    def real_setter(self, references):
+    def real_setter(self, references: tuple[int, ...]) -> Callable[[Sequence[float]], None]:
         """`set_real` for the same variables every time, for a master in this process that can call it by itself.
 
         What goes wrong is raised as it is; `failure` turns it into what `set_real` raises. The same holds for
@@ -207,9 +163,9 @@ class Fmi2Slave:
         """
         found, put = self._real[references], self.__dict__.update
 
-        def set_values(values):
+        def set_values(values: Sequence[float]) -> None:
             if not math.isfinite(sum(values)):
-                self._check_finite(found.names, values)
+                refuse_not_finite_inputs(self.variables, found.names, values)
             if found.fixed and self._initialised:
                 self._refuse(found)
             put(zip(found.names, values, strict=True))
@@ -217,27 +173,27 @@ class Fmi2Slave:
 
         return set_values
 
-    def real_getter(self, references):
+    def real_getter(self, references: tuple[int, ...]) -> Callable[[], tuple]:
         """`get_real` for the same variables every time; see `real_setter`."""
         take, values = self._real[references].values, self.__dict__
 
-        def get_values():
+        def get_values() -> tuple:
             if self._stale:
                 self._start()
             return take(values)
 
         return get_values
 
-    def _set(self, found, values):
+    def _set(self, found: Found, values: Sequence) -> None:
         if found.fixed and self._initialised:
             self._refuse(found)
         self.__dict__.update(zip(found.names, values, strict=True))
         self._stale = self._initialising
 
-    def _refuse(self, found):
+    def _refuse(self, found: Found) -> None:
         raise FmuError(f"parameter '{found.fixed}' is fixed, it can only be set before the run")
 
-    def _get(self, found):
+    def _get(self, found: Found) -> tuple:
         if self._stale:
             self._start()
         return found.values(self.__dict__)
@@ -245,12 +201,12 @@ class Fmi2Slave:
     # state
 
     @_guarded
-    def _get_fmu_state(self):
+    def _get_fmu_state(self) -> State:
         phase = self._time, self._initialising, self._initialised, self._stale
         return State(self, (phase, copy.deepcopy(self.__dict__)))
 
     @_guarded
-    def _set_fmu_state(self, stored):
+    def _set_fmu_state(self, stored: State | FmuError) -> None:
         if isinstance(stored, FmuError):
             raise stored
         phase, values = stored.content
@@ -259,14 +215,14 @@ class Fmi2Slave:
         self.__dict__.update(copy.deepcopy(values))
 
     @classmethod
-    def _fmu_state_to_bytes(cls, stored):
+    def _fmu_state_to_bytes(cls, stored: State) -> bytes:
         try:
             return state.to_bytes(stored.content, cls.__module__, cls._packages())
         except Exception as error:
             raise stored.owner.failure(FmuError(f"the state cannot be stored: {error}")) from None
 
     @classmethod
-    def _fmu_state_from_bytes(cls, data):
+    def _fmu_state_from_bytes(cls, data: bytes) -> State | FmuError:
         """The state, or why there is none: an exception here, where no instance is known, would crash the binary."""
         try:
             return State(None, state.from_bytes(data, cls.__module__, cls._packages()))
@@ -274,16 +230,16 @@ class Fmi2Slave:
             return FmuError(f"the state cannot be restored: {error}")
 
     @classmethod
-    def _packages(cls):
+    def _packages(cls) -> set[str]:
         return {cls.__module__.partition(".")[0], __name__.partition(".")[0]}
 
     # messages
 
-    def _get_log_queue(self):
+    def _get_log_queue(self) -> list[Message]:
         return self.messages
 
-    def log(self, message, status="ok"):
-        """Tell the user something through the host's log.
+    def log(self, message: str, status: str = "ok") -> None:
+        """Send a message to the log of the host.
 
         Parameters
         ----------
@@ -292,13 +248,11 @@ class Fmi2Slave:
         status : str
             "ok", "warning" or "error"; none of them stops the run, an exception does.
         """
-        text = f"{self.instance_name} at t = {self._time:.9g} s: {message}".replace("%", "%%")
-        self.messages.append(Message(STATUSES.index(status), f"logStatus{status.capitalize()}", text))
+        self.messages.append(message_of(f"{self.instance_name} at t = {self._time:.9g} s: {message}", status))
 
-    def failure(self, error):
-        """The error to raise instead: whose and when, what was logged before, the traceback below the shell."""
-        text = str(error) if isinstance(error, FmuError) else f"exception\n{_traceback(error)}"
-        text = f"{self.instance_name} at t = {self._time:.9g} s: {text}"
+    def failure(self, error: BaseException) -> FmuError:
+        """The error to raise in place of another: component and time, earlier messages, traceback below the shell."""
+        text = f"{self.instance_name} at t = {self._time:.9g} s: {text_of(error)}"
         if self._in_binary:
             text = "\n".join([*(message.msg.replace("%%", "%") for message in self.messages), text])
             self.messages.clear()
@@ -307,7 +261,7 @@ class Fmi2Slave:
 
     # checks
 
-    def _start(self):
+    def _start(self) -> None:
         values = self.__dict__
         parameters = [variable for variable in self.variables if variable.causality == "parameter"]
         problems = [(variable.name, variable.outside(values[variable.name])) for variable in parameters]
@@ -317,48 +271,11 @@ class Fmi2Slave:
         self._stale = False
         self._check_outputs()
 
-    def _check_outputs(self):
+    def _check_outputs(self) -> None:
         values = self.__dict__
         try:
             if math.isfinite(sum(self._real_output_values(values))):
                 return
         except (KeyError, TypeError, ValueError):
             pass
-        for name in self._real_outputs:
-            value = values.get(name)
-            try:
-                right = math.isfinite(value)
-            except (TypeError, ValueError):
-                right = False
-            if not right:
-                raise FmuError(f"output '{name}' is {value!r}, not a finite number")
-
-    def _check_finite(self, names, values):
-        kinds = {variable.name: variable.causality for variable in self.variables}
-        for name, value in zip(names, values, strict=True):
-            if not math.isfinite(value):
-                raise FmuError(f"{kinds[name]} '{name}' was set to {value}, not a finite number")
-
-
-def _integer(name, value):
-    """A value as FMI's 32-bit integer."""
-    try:
-        whole = operator.index(value)
-    except TypeError:
-        raise FmuError(f"'{name}' is {value!r}, not a whole number") from None
-    if not -(2**31) <= whole < 2**31:
-        raise FmuError(f"'{name}' is {whole}, which FMI's 32-bit integers cannot hold")
-    return whole
-
-
-def _traceback(error):
-    """Traceback as Python prints it, without frames of host and shell, files named from the FMU's own folder."""
-    trace = error.__traceback__
-    while trace.tb_next and not _is_fmus_own(trace.tb_frame.f_code.co_filename):
-        trace = trace.tb_next
-    lines = "".join(traceback.format_exception(type(error), error, trace)).rstrip()
-    return lines.replace(str(CODE) + os.sep, "")
-
-
-def _is_fmus_own(file):
-    return file.startswith(str(CODE)) and not file.startswith(SHELL)
+        refuse_not_finite_outputs(self._real_outputs, values)

@@ -1,0 +1,80 @@
+"""Errors and messages of an FMU, as the host reads them."""
+
+import os
+import traceback
+from pathlib import Path
+from typing import NamedTuple
+
+CODE = Path(__file__).parents[2]
+SHELL = str(Path(__file__).parent)
+STATUSES = ("ok", "warning", "discard", "error")
+
+
+class FmuError(Exception):
+    """Why an FMU cannot go on, in words for its user. The host's logger takes its text for a printf format."""
+
+    def __repr__(self) -> str:
+        return str(self).replace("%", "%%")
+
+
+class Message(NamedTuple):
+    """Message to the logger of the host; its text is a printf format.
+
+    Attributes
+    ----------
+    status : int
+        Status of FMI: place in `STATUSES`.
+    category : str
+        Log category, as the model description lists them.
+    msg : str
+        Text.
+    """
+
+    status: int
+    category: str
+    msg: str
+
+
+def message_of(text: str, status: str) -> Message:
+    """A text as message, with the percent signs doubled.
+
+    Parameters
+    ----------
+    text : str
+        Text.
+    status : str
+        One of `STATUSES`.
+
+    Returns
+    -------
+    Message
+    """
+    return Message(STATUSES.index(status), f"logStatus{status.capitalize()}", text.replace("%", "%%"))
+
+
+def text_of(error: BaseException) -> str:
+    """Text of an error: that of an `FmuError`, else the traceback below the shell.
+
+    Parameters
+    ----------
+    error : BaseException
+        The error.
+
+    Returns
+    -------
+    str
+    """
+    return str(error) if isinstance(error, FmuError) else f"exception\n{_traceback(error)}"
+
+
+def _traceback(error: BaseException) -> str:
+    """Traceback as Python prints it, without frames of host and shell, files named from the FMU's own folder."""
+    trace = error.__traceback__
+    while trace and trace.tb_next and not _is_fmus_own(trace.tb_frame.f_code.co_filename):
+        trace = trace.tb_next
+    lines = "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    return lines.replace(str(CODE) + os.sep, "")
+
+
+def _is_fmus_own(file: str) -> bool:
+    return file.startswith(str(CODE)) and not file.startswith(SHELL)
