@@ -47,7 +47,7 @@ def repeat(
     ShipcosimError
         If system, FMUs or inputs are others than those of the run, or it was continued from a snapshot.
     """
-    facts = table.attrs if hasattr(table, "attrs") else read_table(table).attrs
+    facts = read_table(table).attrs if isinstance(table, str | os.PathLike) else table.attrs
     if "system_sha256" not in facts:
         raise ShipcosimError(Problem("repeat", "The table does not say how it came about.", "Give a result.nc."))
     if not isinstance(system, System):

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.master.interrupt import held_back
-from shipcosim.cosim.master.run import Journey, RunError
-from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.cosim.master.interrupt import delayed_interrupt
+from shipcosim.cosim.master.run import RunError, Simulation
+from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
@@ -84,23 +84,22 @@ def replay(
     ...     "vessel.x_start": [0.0, 12.5], "vessel.psi_start": [0.0, 0.4]})
     >>> predicted["vessel.x"].sel(segment=1, time=30.0)  # doctest: +SKIP
     """
-    starts = np.asarray(starts, dtype=float)
-    if starts.ndim != 1 or len(starts) == 0 or not np.isfinite(starts).all():
+    times = np.asarray(starts, dtype=float)
+    if times.ndim != 1 or len(times) == 0 or not np.isfinite(times).all():
         raise ShipcosimError(Problem("replay", "starts is no list of times.", "Give the time of each segment's start."))
-    segments = _Segments(system, inputs, starts, duration, step_size, output_interval, states or {})
+    segments = _Segments(system, inputs, times, duration, step_size, output_interval, states or {})
     segments.check()
-    table = None
-    with held_back() as check_interrupt, Instances() as instances:
-        for number in range(len(starts)):
-            journey = segments.journey(number)
-            with _named(number, starts):
-                journey.run(instances, check_interrupt)
-            journey.end()
-            table = table if table is not None else _Stacked(journey, starts, segments.states, signals)
-            table.put(number, journey)
+    rows = _SegmentRows(times, segments.states, signals)
+    with delayed_interrupt() as check_interrupt, Instances() as instances:
+        for number in range(len(times)):
+            simulation = segments.simulation(number)
+            with _named(number, times):
+                simulation.run(instances, check_interrupt)
+            simulation.terminate()
+            rows.put(number, simulation)
             if progress is not None:
-                progress(number + 1, len(starts))
-    return table.dataset()
+                progress(number + 1, len(times))
+    return rows.dataset()
 
 
 class _Segments:
@@ -120,18 +119,18 @@ class _Segments:
         for number in range(len(self.starts)):
             try:
                 with _named(number, self.starts):
-                    self.journey(number)
+                    self.simulation(number)
             except ShipcosimError as error:
                 problems += error.problems
         if problems:
             raise ShipcosimError(problems[:MOST_PROBLEMS])
 
-    def journey(self, number):
+    def simulation(self, number: int) -> Simulation:
         """Run of a segment, planned."""
         start = float(self.starts[number])
         system = with_values(self.system, {name: values[number] for name, values in self.states.items()}, "states")
         scenario = Scenario(description=f"Replay of {system.name}", stop_time=start + self.duration, **self.how)
-        return Journey(system, scenario, span_of(scenario, start), self.options)
+        return Simulation(system, scenario, time_grid_of(scenario, start), self.options)
 
 
 def _bad_times(starts, duration, step_size, output_interval):
@@ -177,27 +176,37 @@ def _named(number, starts):
         raise ShipcosimError(problems) from error
 
 
-class _Stacked:
+class _SegmentRows:
     """Rows of all segments: (segments, rows) an array for each signal."""
 
-    def __init__(self, journey, starts, states, signals):
-        columns = {name: (values, about) for name, values, *about in journey.columns()}
-        if unknown := [name for name in signals or () if name not in columns]:
-            found = f"there is no signal '{unknown[0]}'."
-            raise ShipcosimError(Problem("replay: signals", found, suggestion(unknown[0], columns)))
-        self.names = columns if signals is None else list(signals)
-        self.starts, self.time = starts, journey.row_times - starts[0]
-        self.about = {name: columns[name][1] for name in self.names}
-        self.arrays = {name: np.empty((len(starts), len(self.time)), columns[name][0].dtype) for name in self.names}
-        self.attributes = journey.attributes(complete=True) | {"states": json.dumps(states)}
+    def __init__(self, starts: np.ndarray, states: Mapping, signals: Sequence[str] | None):
+        self.starts, self.states, self.signals = starts, states, signals
+        self.about: dict[str, tuple[str, str]] = {}
+        self.arrays: dict[str, np.ndarray] = {}
 
-    def put(self, number, journey):
-        """Keep the rows of a segment."""
-        for name, values, *_ in journey.columns():
+    def put(self, number: int, simulation: Simulation) -> None:
+        """Keep the rows of a segment's run."""
+        columns = simulation.columns()
+        if number == 0:
+            self._allocate(simulation, columns)
+        for name, values, *_ in columns:
             if name in self.arrays:
                 self.arrays[name][number] = values
 
-    def dataset(self):
+    def _allocate(self, simulation, columns):
+        """Make room for all segments, as large as the first one's rows."""
+        columns = {name: (values, (unit, text)) for name, values, unit, text in columns}
+        if unknown := [name for name in self.signals or () if name not in columns]:
+            found = f"there is no signal '{unknown[0]}'."
+            raise ShipcosimError(Problem("replay: signals", found, suggestion(unknown[0], columns)))
+        self.time = simulation.row_times - self.starts[0]
+        shape = len(self.starts), len(self.time)
+        for name in columns if self.signals is None else self.signals:
+            self.about[name] = columns[name][1]
+            self.arrays[name] = np.empty(shape, columns[name][0].dtype)
+        self.attributes = simulation.attributes(complete=True) | {"states": json.dumps(self.states)}
+
+    def dataset(self) -> xarray.Dataset:
         """The table. Its attributes are those of the first segment, with the `states` of all."""
         import xarray
 

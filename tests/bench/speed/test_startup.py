@@ -19,13 +19,13 @@ RUNS = 5
 LONGEST_HELP, LONGEST_START = 0.3, 2.0  # s
 FIRST_STEP = """
 import sys, time
-from shipcosim.cosim.master import component as part
-step = part.Part.step
+from shipcosim.cosim.master.component import ComponentInstance
+step = ComponentInstance.step
 def first(*arguments):
     print("first step at", time.time(), file=sys.stderr)
-    part.Part.step = step
+    ComponentInstance.step = step
     return step(*arguments)
-part.Part.step = first
+ComponentInstance.step = first
 """
 
 

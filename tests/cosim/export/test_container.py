@@ -142,7 +142,7 @@ def test_connections_with_more_than_a_copy_are_refused(chain, tmp_path, change, 
 
 
 def test_a_block_that_computes_something_else_is_not_written(make_system, tmp_path, monkeypatch):
-    monkeypatch.setattr("shipcosim.cosim.export.container.feeders_first", lambda system: list(system.components))
+    monkeypatch.setattr("shipcosim.cosim.export.container.sources_first", lambda system: list(system.components))
     monkeypatch.setattr("shipcosim.cosim.export.fmu.SWEEPS", (1,))
     parts = {name: ("gain", {"factor": 2.0}) for name in ("c", "b", "a")} | {"source": ("lag", {"y_start": 1.0})}
     system = make_system(parts, ["source.y -> a.u", "a.y -> b.u", "b.y -> c.u"])

@@ -15,7 +15,7 @@ import pytest
 
 from shipcosim.cosim import RunError, RunOptions, simulate
 from shipcosim.cosim.master.component import set_start_values
-from shipcosim.cosim.processes.parent import Isolated
+from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import ShipcosimError
 from shipcosim.fmi.export.builder import build_fmu
@@ -284,7 +284,7 @@ def test_one_that_goes_down_when_its_text_is_read_is_named_by_the_connection(mak
 def test_a_start_value_that_is_refused_is_said_where_it_was_set(make_system):
     system = make_system({"slow": "lag"})
     component = system.components["slow"]
-    with Isolated(system, LIMIT) as instances:
+    with IsolatedInstances(system, LIMIT) as instances:
         slave = instances.instance_of(component)
         with pytest.raises(SlaveError, match="slow at t = 0 s: parameter 'time_constant' was set to nan"):
             set_start_values(slave, [(component.fmu.variables["time_constant"], float("nan"))])

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from shipcosim.cosim import RunError, RunOptions, repeat, simulate
-from shipcosim.cosim.master.run import Journey
-from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.cosim.master.run import Simulation
+from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.errors import ShipcosimError
@@ -280,10 +280,10 @@ def test_runs_of_one_instance_and_repeated_runs_are_equal_to_the_digit(model, ve
     assert np.array_equal(repeat(whole, system)["m.h"], whole["m.h"])
     with Instances() as instances:
         for _ in range(2):
-            journey = Journey(system, scenario, span_of(scenario), RunOptions())
-            journey.run(instances, lambda: None)
-            journey.end()
-            assert np.array_equal(journey.table(complete=True)["m.h"], whole["m.h"])
+            simulation = Simulation(system, scenario, time_grid_of(scenario), RunOptions())
+            simulation.run(instances, lambda: None)
+            simulation.terminate()
+            assert np.array_equal(simulation.table(complete=True)["m.h"], whole["m.h"])
 
 
 def test_a_run_in_one_form_is_not_repeated_in_the_other(model):

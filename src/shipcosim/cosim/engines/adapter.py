@@ -1,4 +1,4 @@
-"""A run on somebody else's engine: what that is told, and how what it gives back becomes our table.
+"""A run on another engine: what that is told, and how what it gives back becomes our table.
 
 The engine gets the components, their start values and the connections between them. What no component feeds is known
 before the run: inputs of the system, and inputs that hang on nothing but change in events. It is set from here.
@@ -8,34 +8,34 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS
-from shipcosim.cosim.master.events import bend, changes, settings_over_time
-from shipcosim.cosim.master.inputs import digest, feed
-from shipcosim.cosim.master.interrupt import held_back
-from shipcosim.cosim.master.plan import WIDE, label, make_plan
+from shipcosim.cosim.master.events import changes, external_values, modify
+from shipcosim.cosim.master.inputs import digest, input_values
+from shipcosim.cosim.master.interrupt import delayed_interrupt
+from shipcosim.cosim.master.plan import WIDE, End, label, make_plan
 from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.run import Interrupted, RunError
-from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
-from shipcosim.ssp import Connection, System
+from shipcosim.ssp import Connection, System, Variable
 
 if TYPE_CHECKING:
     import xarray
 
-STRETCH = 100
+MOST_STEPS = 100
 """Most steps that an engine makes before it is asked whether the user wants to stop."""
 
 
@@ -44,18 +44,18 @@ class EngineError(Exception):
 
 
 @dataclass(frozen=True)
-class Driven:
+class ExternalInput:
     """An input that no component feeds.
 
     Parameters
     ----------
-    start : value
+    start : number
         During the initialisation.
     values : (n + 1,) array
         From each step on.
     """
 
-    start: object
+    start: float
     values: np.ndarray
 
 
@@ -75,53 +75,53 @@ class Job:
         Rows of the outputs that have to be recorded, steps of the components.
     times : (n + 1,) array
         Of the steps. [s]
-    driven : dict of End to Driven
+    external : dict of End to ExternalInput
         Inputs to set from outside.
     connections : list of Connection
         To make between components.
-    changes : list of (step, override or bias or reset, End, value)
+    changes : list of Change
         To make to what the engine passes on itself: outputs and connected inputs.
     """
 
     def __init__(self, system: System, scenario: Scenario, options: RunOptions):
         if options.order != "jacobi":
             raise ShipcosimError(f"Only the engine fmpy knows the order '{options.order}'; the others have jacobi.")
-        self.system, self.scenario, self._span = system, scenario, span_of(scenario)
+        self.system, self.scenario, self._grid = system, scenario, time_grid_of(scenario)
         self.progress, inputs = options.progress, options.inputs
-        self.times = self._span.times
-        self._fed = feed(inputs, system, self.times) if inputs is not None else {}
+        self.times = self._grid.times
+        self._fed = input_values(inputs, system, self.times) if inputs is not None else {}
         self._known = {"inputs_sha256": digest(inputs)} if inputs is not None else {}
         self.plan = make_plan(system, scenario, self._fed)
         self.connections = [c for c in system.connections if c.source[0] is not None and c.target[0] is not None]
-        self._all_changes = list(changes(scenario, self.plan, self._span))
-        self._settings = {kind: self._settings_of(kind) for kind in self.plan.layouts}
-        self.driven = dict(self._driven())
-        last = {(k, end): (k, change, end, value) for k, change, end, value in changes(scenario, self.plan, self._span)}
-        self.changes = [c for (_, end), c in last.items() if end[0] is not None and end not in self.driven]
+        self._all_changes = list(changes(scenario, self.plan, self._grid))
+        self._values = {kind: self._external_values(kind) for kind in self.plan.layouts}
+        self.external = dict(self._external_inputs())
+        last = {(change.step, change.end): change for change in self._all_changes}
+        self.changes = [c for c in last.values() if c.end[0] is not None and c.end not in self.external]
 
     @property
     def n_steps(self) -> int:
         """Number of steps."""
         return len(self.times) - 1
 
-    def starts(self, name: str) -> dict:
-        """Start values of a component, with what drives it."""
-        driven = {end[1]: driven.start for end, driven in self.driven.items() if end[0] == name}
-        return dict(self.system.components[name].start) | driven
+    def starts(self, name: str) -> dict[str, object]:
+        """Start values of a component, those of its external inputs among them."""
+        external = {end[1]: found.start for end, found in self.external.items() if end[0] == name}
+        return dict(self.system.components[name].start) | external
 
-    def stretches(self):
+    def intervals(self) -> Iterator[tuple[int, int, dict[End, float]]]:
         """(first step, last, {End: value} that change before it), over the whole run."""
-        values = np.array([driven.values for driven in self.driven.values()], dtype=float)
-        values = values.reshape(len(self.driven), self.n_steps + 1)
+        values = np.array([found.values for found in self.external.values()], dtype=float)
+        values = values.reshape(len(self.external), self.n_steps + 1)
         moving = np.flatnonzero((np.diff(values[:, :-1], axis=1) != 0).any(axis=0)) + 1
-        starts = sorted({*range(0, self.n_steps, STRETCH), *moving.tolist()})
-        before = {end: driven.start for end, driven in self.driven.items()}
+        starts = sorted({*range(0, self.n_steps, MOST_STEPS), *moving.tolist()})
+        before = {end: found.start for end, found in self.external.items()}
         for first, last in zip(starts, [*starts[1:], self.n_steps], strict=True):
-            now = {end: driven.values[first].item() for end, driven in self.driven.items()}
+            now = {end: found.values[first].item() for end, found in self.external.items()}
             yield first, last, {end: value for end, value in now.items() if value != before[end]}
             before = now
 
-    def table(self, outputs, attributes):
+    def table(self, outputs: Mapping[str, Sequence[np.ndarray]], attributes: Mapping[str, object]) -> xarray.Dataset:
         """Table of a run.
 
         Parameters
@@ -132,50 +132,73 @@ class Job:
             What is known beyond the plan and the scenario.
         """
         rows = min((len(column) for columns in outputs.values() for column in columns), default=len(self.times))
-        every = slice(0, rows, self._span.every)
+        every = slice(0, rows, self._grid.steps_per_row)
         recorded = {kind: [c[every] for c in self._columns(kind, arrays)] for kind, arrays in outputs.items()}
         times = self.times[every]
-        known = attributes_of(self.system, self.scenario) | self._known | {"start_time": 0.0} | attributes
+        known = attributes_of(self.system, self.scenario) | self._known | {"start_time": 0.0} | dict(attributes)
         return make_table(times, columns_of(self.plan, len(times), recorded), known)
 
-    def _settings_of(self, kind):
-        """(n + 1, settings) array."""
-        over_time = settings_over_time(self.scenario, self.plan, kind, self._span, self._fed, {})
+    def _external_values(self, kind):
+        """(n + 1, external values) array."""
+        over_time = external_values(self.scenario, self.plan, kind, self._grid, self._fed, {})
         if over_time is not None:
             return over_time
-        start = np.array(list(self.plan.layouts[kind].settings.values()), dtype=BUFFER_TYPES[kind])
+        start = np.array(list(self.plan.layouts[kind].external.values()), dtype=BUFFER_TYPES[kind])
         return np.tile(start, (self.n_steps + 1, 1))
 
-    def _driven(self):
+    def _external_inputs(self):
         for kind, layout in self.plan.layouts.items():
-            crossing = {setting for setting, _, _ in layout.crossings}
-            for end, wire in zip(layout.inputs, layout.wires, strict=True):
-                setting = wire.source - len(layout.outputs)
-                if setting >= 0 and setting not in crossing and not wire.added:
-                    plain = wire.passed_on(self._settings[kind][:, setting])
-                    yield end, Driven(plain[0].item(), self._changed(plain, end))
+            from_other_type = {row for row, _, _ in layout.type_changes}
+            for end, connection in zip(layout.inputs, layout.connections, strict=True):
+                row = connection.source - len(layout.outputs)
+                if row >= 0 and row not in from_other_type and not connection.added:
+                    values = connection.transferred(self._values[kind][:, row])
+                    yield end, ExternalInput(values[0].item(), self._modified(values, end))
 
     def _columns(self, kind, outputs):
-        """Outputs, settings and inputs that the table shows, in the order of the recorder."""
+        """Outputs, external values and inputs that the table shows, in the order of the recorder."""
         layout = self.plan.layouts[kind]
-        settings, inputs = recorded_rows(self.plan, kind)
+        external, inputs = recorded_rows(self.plan, kind)
         yield from outputs
-        yield from (self._settings[kind][:, setting] for setting in settings)
+        yield from (self._values[kind][:, row] for row in external)
         for i in inputs:
-            end, wire = layout.inputs[i], layout.wires[i]
-            if end in self.driven:
-                yield self.driven[end].values
+            end, connection = layout.inputs[i], layout.connections[i]
+            if end in self.external:
+                yield self.external[end].values
             else:
-                yield self._changed(wire.arriving(outputs), end)
+                yield self._modified(connection.input_values(outputs), end)
 
-    def _changed(self, plain, end):
+    def _modified(self, values, end):
         """Values of an input with the events on it."""
-        values = plain.copy()
-        bend(values, None, [(k, change, value) for k, change, changed, value in self._all_changes if changed == end])
-        return values
+        modified = values.copy()
+        modify(modified, None, [change for change in self._all_changes if change.end == end])
+        return modified
 
 
-def run_on(engine: str, open_session: Callable[[Job], AbstractContextManager], job: Job, about: dict) -> xarray.Dataset:
+class Session(Protocol):
+    """A job on its way in an engine. Each method may raise EngineError."""
+
+    @property
+    def n_done(self) -> int:
+        """Steps done."""
+        ...
+
+    def set_input(self, end: End, value: float) -> None:
+        """Set an input that no component feeds, from the next step on."""
+        ...
+
+    def advance(self, last: int) -> None:
+        """Go on to the step of this number."""
+        ...
+
+    def outputs(self) -> dict[str, list[np.ndarray]]:
+        """By kind the plan's outputs at the start and after each step, (steps done + 1,) arrays. Ends the session."""
+        ...
+
+
+def run_on(
+    engine: str, open_session: Callable[[Job], AbstractContextManager[Session]], job: Job, about: Mapping[str, object]
+) -> xarray.Dataset:
     """Run a job on an engine.
 
     Parameters
@@ -183,9 +206,7 @@ def run_on(engine: str, open_session: Callable[[Job], AbstractContextManager], j
     engine : str
         Its name.
     open_session : callable
-        Opens a session: a context manager with ``drive(end, value)``, ``advance(last)`` to a step, ``n_done``, the
-        steps done, and ``outputs()``, by kind the plan's outputs at the start and after each step. Each may raise
-        EngineError.
+        Opens the context manager of a session; may raise EngineError.
     job : Job
         What it is to do.
     about : dict
@@ -203,9 +224,9 @@ def run_on(engine: str, open_session: Callable[[Job], AbstractContextManager], j
 
     def table(complete):
         known = {"engine": engine, "order": "jacobi", "complete": int(complete), "remarks": json.dumps([])}
-        return job.table(session.outputs(), known | about)
+        return job.table(session.outputs(), known | dict(about))
 
-    with held_back() as check_interrupt, _opened(engine, open_session, job) as session:
+    with delayed_interrupt() as check_interrupt, _opened(engine, open_session, job) as session:
         try:
             _advance(session, job, check_interrupt)
         except EngineError as error:
@@ -225,10 +246,10 @@ def _opened(engine, open_session, job):
 
 def _advance(session, job, check_interrupt):
     progress, report_at = job.progress, perf_counter()
-    for first, last, driven in job.stretches():
+    for first, last, inputs in job.intervals():
         check_interrupt()
-        for end, value in driven.items():
-            session.drive(end, value)
+        for end, value in inputs.items():
+            session.set_input(end, value)
         if progress is not None and perf_counter() >= report_at:
             progress(first, job.n_steps)
             report_at = perf_counter() + BETWEEN_REPORTS
@@ -237,7 +258,9 @@ def _advance(session, job, check_interrupt):
         progress(job.n_steps, job.n_steps)
 
 
-def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | None], others=()) -> list[Problem]:
+def unsupported(
+    engine: str, job: Job, complaint_of: Callable[[Connection], str | None], others: Iterable[Problem] = ()
+) -> list[Problem]:
     """What an engine cannot do of a job, which it would otherwise ignore or die of.
 
     Parameters
@@ -246,7 +269,7 @@ def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | 
         Its name.
     job : Job
         What it would have to do.
-    may_connect : callable
+    complaint_of : callable
         What is wrong with a connection between variables of one type, for this engine.
     others : iterable of Problem
         What is wrong beside the connections.
@@ -264,13 +287,13 @@ def complaints(engine: str, job: Job, may_connect: Callable[[Connection], str | 
                 Problem(component.name, f"has enumerations, which {engine} has not: {', '.join(items[:5])}.")
             )
     for connection in job.connections:
-        if found := _connection_complaint(job, connection) or may_connect(connection):
+        if found := _unsupported_connection(job, connection) or complaint_of(connection):
             place = f"{label(connection.source)} -> {label(connection.target)}"
             problems.append(Problem(place, f"{engine} cannot make this connection: {found}.", "The engine fmpy can."))
     return problems
 
 
-def _connection_complaint(job, connection):
+def _unsupported_connection(job, connection):
     kinds = [job.plan.variable(end).kind for end in (connection.source, connection.target)]
     if connection.initial:
         return "it sets a parameter"
@@ -294,7 +317,7 @@ def is_linear(connection: Connection) -> bool:
     return (connection.factor, connection.offset) != (1.0, 0.0)
 
 
-def indices(job: Job, name: str, kind: str) -> tuple[list[int], list]:
+def indices(job: Job, name: str, kind: str) -> tuple[list[int], list[Variable]]:
     """Rows among the outputs of a kind that a component has, and their variables."""
     rows = [row for row, end in enumerate(job.plan.layouts[kind].outputs) if end[0] == name]
     return rows, [job.plan.variable(job.plan.layouts[kind].outputs[row]) for row in rows]

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim.engines.adapter import EngineError
-from shipcosim.cosim.master.time_grid import span_of
+from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
 
@@ -51,18 +51,18 @@ def readers(path, scenario, *, set_name=None):
 
 
 def _run(host, path, scenario, set_name, system):
-    span = span_of(scenario)
+    grid = time_grid_of(scenario)
     outputs = {
         f"{name}.{v.name}": (name, v.name, v.value_reference, v.kind, v.unit or "")
         for name, component in system.components.items()
         for v in component.fmu.variables.values()
         if v.causality == "output" and v.kind in KINDS
     }
-    job = {"path": path, "step": scenario.step_size, "n": span.last, "set": set_name, "ends": list(outputs.values())}
+    job = {"path": path, "step": scenario.step_size, "n": grid.last, "set": set_name, "ends": list(outputs.values())}
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
         values = _values(host, job, Path(folder))
     columns = [(name, values[:, i], end[-1], "") for i, (name, end) in enumerate(outputs.items())]
-    return make_table(span.times[1:], columns, {"engine": host})
+    return make_table(grid.times[1:], columns, {"engine": host})
 
 
 def _values(host, job, folder):

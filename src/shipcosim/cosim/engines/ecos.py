@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.engines.adapter import EngineError, Job, complaints, is_linear, run_on, sums
-from shipcosim.cosim.engines.traces import no_traces
+from shipcosim.cosim.engines.adapter import EngineError, Job, is_linear, run_on, sums, unsupported
+from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End, label
+from shipcosim.cosim.master.signals import Modifier
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
@@ -39,7 +40,7 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     check_installed()
     job = Job(system, scenario, options)
     added = sums(job.connections)
-    if problems := complaints("ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)):
+    if problems := unsupported("ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)):
         raise ShipcosimError(problems)
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
     return run_on("ecos", Session, job, about)
@@ -60,28 +61,37 @@ def _problems(job):
         if multiple > 1:
             found = f"steps {multiple} base steps at a time; ecos only lets components step with the base step."
             yield Problem(name, found)
-    for _, change, end, _ in job.changes:
-        if job.plan.variable(end).kind != "Real":
-            yield Problem(label(end), f"is connected and not Real, so ecos knows no {change} of it.")
+    for change in job.changes:
+        if job.plan.variable(change.end).kind != "Real":
+            found = f"is connected and not Real, so ecos knows no {change.action} of it."
+            yield Problem(label(change.end), found)
 
 
 @dataclass
-class Link:
-    """What ecos does with each value on its way through a connection; (scale, shift) of changes to its ends."""
+class Transformation:
+    """What ecos does with each value that a connection passes on.
+
+    Parameters
+    ----------
+    connection : Connection
+        With its linear transformation.
+    source, target : (scale, shift)
+        Overrides and biases of its ends.
+    """
 
     connection: Connection
-    source: tuple = (1, 0)
-    target: tuple = (1, 0)
+    source: Modifier = (1, 0)
+    target: Modifier = (1, 0)
 
-    def __call__(self, value):
-        value = _changed(value, self.source)
+    def __call__(self, value: float) -> float:
+        value = _modified(value, self.source)
         if is_linear(self.connection):
             value = self.connection.factor * value + self.connection.offset
-        return _changed(value, self.target)
+        return _modified(value, self.target)
 
 
-def _changed(value, change):
-    return value if change == (1, 0) else change[0] * value + change[1]
+def _modified(value, modifier):
+    return value if modifier == (1, 0) else modifier[0] * value + modifier[1]
 
 
 class Session:
@@ -95,12 +105,12 @@ class Session:
 
     def __init__(self, job: Job):
         self._job, self.n_done = job, 0
-        self._links, self._changes = defaultdict(list), defaultdict(list)
+        self._transformations, self._changes = defaultdict(list), defaultdict(list)
         for change in job.changes:
-            self._changes[change[0]].append(change[1:])
+            self._changes[change.step].append(change)
         self._records = [_Record(job, kind) for kind in TYPES]
         with ExitStack() as stack:
-            stack.enter_context(no_traces())
+            stack.enter_context(imports_undone())
             self._open(stack)
             self._stack = stack.pop_all()
 
@@ -110,12 +120,12 @@ class Session:
     def __exit__(self, *_):
         self._stack.close()
 
-    def drive(self, end, value):
-        """Set an input that nothing feeds, from the next step on."""
+    def set_input(self, end: End, value: float) -> None:
+        """Set an input that no component feeds, from the next step on."""
         name, _, convert = TYPES[self._job.plan.variable(end).kind]
         getattr(self._simulation, f"set_{name}")(_identifier(end), convert(value))
 
-    def advance(self, last):
+    def advance(self, last: int) -> None:
         """Go on to the step of this number."""
         step, simulation, one = _function("step"), c_void_p(self._simulation.sim), c_size_t(1)
         for k in range(self.n_done, last):
@@ -126,14 +136,14 @@ class Session:
             for record in self._records:
                 record(simulation, k + 1)
 
-    def outputs(self):
+    def outputs(self) -> dict[str, list[np.ndarray]]:
         """Values of all outputs at the start and after each step, by kind."""
         columns = {record.kind: record.columns(self.n_done + 1) for record in self._records}
         for row, end in enumerate(self._job.plan.layouts["Real"].outputs):
-            plain = columns["Real"][row].copy()
-            for k, change, changed, value in self._job.changes:
-                if changed == end:
-                    columns["Real"][row][k + 1 :] = _changed(plain[k + 1 :], _change(change, value))
+            unmodified = columns["Real"][row].copy()
+            for change in (change for change in self._job.changes if change.end == end):
+                after = slice(change.step + 1, None)
+                columns["Real"][row][after] = _modified(unmodified[after], _modifier(change))
         return columns
 
     def _open(self, stack):
@@ -158,29 +168,30 @@ class Session:
             for variable, value in self._job.starts(name).items():
                 values[_identifier((name, variable))] = value
         structure.add_parameter_set(START, values)
-        changed = {end for _, _, end, _ in self._job.changes}
+        modified = {change.end for change in self._job.changes}
         for connection in self._job.connections:
             kind = self._job.plan.variable(connection.source).kind
             ends = _identifier(connection.source), _identifier(connection.target)
-            if is_linear(connection) or changed & {connection.source, connection.target}:
-                link = Link(connection)
-                self._links[connection.source].append(link)
-                self._links[connection.target].append(link)
-                structure.make_real_connection(*ends, link)
+            if is_linear(connection) or modified & {connection.source, connection.target}:
+                transformation = Transformation(connection)
+                self._transformations[connection.source].append(transformation)
+                self._transformations[connection.target].append(transformation)
+                structure.make_real_connection(*ends, transformation)
             else:
                 name = {"Integer": "int", "Boolean": "bool"}.get(kind, kind.lower())
                 getattr(structure, f"make_{name}_connection")(*ends)
 
     def _act(self, changes):
         """Make changes that are due before a step: first those to inputs, which get the values from before it."""
-        for change, end, value in sorted(changes, key=lambda c: self._job.plan.variable(c[1]).causality == "output"):
-            for link in self._links[end]:
-                if link.connection.target == end:
-                    link.target = _change(change, value)
-                    source = self._simulation.get_real(_identifier(link.connection.source))
-                    self._simulation.set_real(_identifier(end), link(source))
+        variable = self._job.plan.variable
+        for change in sorted(changes, key=lambda change: variable(change.end).causality == "output"):
+            for transformation in self._transformations[change.end]:
+                if transformation.connection.target == change.end:
+                    transformation.target = _modifier(change)
+                    source = self._simulation.get_real(_identifier(transformation.connection.source))
+                    self._simulation.set_real(_identifier(change.end), transformation(source))
                 else:
-                    link.source = _change(change, value)
+                    transformation.source = _modifier(change)
 
 
 class _Record:
@@ -211,9 +222,9 @@ def _identifier(end: End) -> str:
     return f"{end[0]}::{end[1]}"
 
 
-def _change(change, value):
+def _modifier(change):
     """A change as (scale, shift)."""
-    return {"override": (0, value), "bias": (1, value), "reset": (1, 0)}[change]
+    return {"override": (0, change.value), "bias": (1, change.value), "reset": (1, 0)}[change.action]
 
 
 def _function(name):

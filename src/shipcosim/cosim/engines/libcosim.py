@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
+from collections.abc import Mapping
 from contextlib import ExitStack
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32
 from importlib.metadata import version
@@ -20,9 +21,10 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from shipcosim.cosim.engines import adapter as outside
-from shipcosim.cosim.engines.adapter import EngineError, Job, held, indices, is_linear, run_on, sums
-from shipcosim.cosim.engines.traces import no_traces
+from shipcosim.cosim.engines.adapter import EngineError, Job, held, indices, is_linear, run_on, sums, unsupported
+from shipcosim.cosim.engines.python_imports import imports_undone
+from shipcosim.cosim.master.events import Change
+from shipcosim.cosim.master.plan import End
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
@@ -39,7 +41,7 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     """Run a checked system on libcosim. See `shipcosim.cosim.simulate`."""
     check_installed()
     job = Job(system, scenario, options)
-    if problems := complaints(job):
+    if problems := unsupported_by_libcosim(job):
         raise ShipcosimError(problems)
     return run_on("libcosim", Session, job, {"libcosimpy_version": version("libcosimpy")})
 
@@ -55,9 +57,9 @@ def check_installed() -> None:
         raise ShipcosimError(Problem("libcosim", f"is not installed: {error}.", remedy)) from error
 
 
-def complaints(job: Job) -> list[Problem]:
+def unsupported_by_libcosim(job: Job) -> list[Problem]:
     """What libcosim cannot do of a job."""
-    return outside.complaints("libcosim", job, _complaint_of(job), _problems(job))
+    return unsupported("libcosim", job, _complaint_of(job), _problems(job))
 
 
 def _problems(job):
@@ -95,7 +97,7 @@ class Session:
     def __init__(self, job: Job):
         self._job, self._stack = job, ExitStack()
         self._step = _nanoseconds(job.scenario.step_size)
-        self._stack.enter_context(no_traces())
+        self._stack.enter_context(imports_undone())
         self._folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-")))
         try:
             self._open()
@@ -110,22 +112,22 @@ class Session:
         self._execution = self._series = self._flags = self._override = self._events = None
         self._stack.close()
 
-    def drive(self, end, value):
-        """Set an input that nothing feeds, from the next step on."""
+    def set_input(self, end: End, value: float) -> None:
+        """Set an input that no component feeds, from the next step on."""
         name, variable = end[0], self._job.plan.variable(end)
         set_values = getattr(self._override, f"slave_{variable.kind.lower()}_values")
         self._check(set_values(self._indices[name], [variable.value_reference], [value]))
 
-    def advance(self, last):
+    def advance(self, last: int) -> None:
         """Go on to the step of this number."""
         self._check(self._execution.step(last - self.n_done))
 
     @property
-    def n_done(self):
+    def n_done(self) -> int:
         """Steps done."""
         return round(self._execution.status().current_time / self._step)
 
-    def outputs(self):
+    def outputs(self) -> dict[str, list[np.ndarray]]:
         """Values of all outputs at the start and after each step, by kind. Ends the execution."""
         n_rows, columns = self.n_done + 1, {}
         for kind in SERIES:
@@ -267,7 +269,12 @@ def _flag_file(folder, name):
     return next(f for f in folder.iterdir() if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name))
 
 
-def structure_of(job: Job, sources=None, values=None, end_time: float | None = None) -> str:
+def structure_of(
+    job: Job,
+    sources: Mapping[str, str] | None = None,
+    values: Mapping[str, dict] | None = None,
+    end_time: float | None = None,
+) -> str:
     """OspSystemStructure.xml of a job, no events in it.
 
     Parameters
@@ -294,18 +301,19 @@ def structure_of(job: Job, sources=None, values=None, end_time: float | None = N
     return structure_text(simulators, job.connections, step, end_time)
 
 
-def event_of(job: Job, k: int, change: str, end: tuple, value) -> dict:
-    """Event of OSP that makes a change of a job before its step of number k."""
-    time = float(seconds_text(job.scenario.step_size * k))
-    event = {"time": time, "model": end[0], "variable": end[1], "action": change}
-    if change != "reset":
-        event["value"] = {"Real": float, "Boolean": bool}.get(job.plan.variable(end).kind, int)(value)
+def event_of(job: Job, change: Change) -> dict[str, object]:
+    """Event of OSP that makes a change of a job."""
+    component, variable = change.end
+    time = float(seconds_text(job.scenario.step_size * change.step))
+    event = {"time": time, "model": component, "variable": variable, "action": change.action}
+    if change.action != "reset":
+        event["value"] = {"Real": float, "Boolean": bool}.get(job.plan.variable(change.end).kind, int)(change.value)
     return event
 
 
 def _events(job):
     """Scenario of OSP, in JSON, with the changes that a job makes to what travels between components."""
-    events = [event_of(job, *change) for change in job.changes]
+    events = [event_of(job, change) for change in job.changes]
     after = 2.0 * job.times[-1]  # all changes are taken back at this time
     return json.dumps({"description": job.scenario.description, "events": events, "end": after})
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from shipcosim.cosim.export.container_description import BINARY, container_description
 from shipcosim.cosim.export.container_face import Face, face_of, library_type
-from shipcosim.cosim.master.order import feeders_first
+from shipcosim.cosim.master.order import sources_first
 from shipcosim.cosim.master.plan import label
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import System
@@ -211,7 +211,7 @@ def _connections(system, numbers):
         if source is not None and target is not None:
             kind = library_type(system.components[source].fmu, variable)
             together.setdefault((source, target, kind), []).append(connection)
-    place = {name: position for position, name in enumerate(feeders_first(system))}
+    place = {name: position for position, name in enumerate(sources_first(system))}
     for source, target, kind in sorted(together, key=lambda key: (place[key[0]], place[key[1]], key[2])):
         pairs = together[source, target, kind]
         yield {

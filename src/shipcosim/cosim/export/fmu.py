@@ -57,7 +57,7 @@ def export_fmu(
         With everything that the FMU could not express, or with the signals in which it differs.
     """
     if not check:
-        return write_container(system, path, step_size, connectors_only=connectors_only)
+        return write_container(system, Path(path), step_size, connectors_only=connectors_only)
     ours, differing = None, []
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
         for sweeps in SWEEPS:
@@ -67,7 +67,7 @@ def export_fmu(
             container = _run(block_of(tried), step_size, RunOptions(isolate=True, timeout=LIMIT))
             differing = _differences(ours, container)
             if not differing:
-                write_container(system, path, step_size, connectors_only=connectors_only, sweeps=sweeps)
+                write_container(system, Path(path), step_size, connectors_only=connectors_only, sweeps=sweeps)
                 return remarks
     remedy = "Components whose outputs follow their inputs at once are passed on in another order there."
     raise ShipcosimError([Problem(system.name, found, remedy) for found in differing[:5]])

@@ -7,7 +7,8 @@ from urllib.parse import quote
 import numpy as np
 
 from shipcosim.cosim.engines.adapter import Job
-from shipcosim.cosim.engines.libcosim import complaints, event_of, structure_of
+from shipcosim.cosim.engines.libcosim import event_of, structure_of, unsupported_by_libcosim
+from shipcosim.cosim.master.events import Change
 from shipcosim.cosim.master.plan import KINDS
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
@@ -51,7 +52,7 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     if wrong:
         raise ShipcosimError(wrong)
     job = Job(system, scenario, RunOptions())
-    problems = [*complaints(job), *_values_problems(job)]
+    problems = [*unsupported_by_libcosim(job), *_values_problems(job)]
     if problems:
         raise ShipcosimError(problems)
     names = _file_names(system)
@@ -59,24 +60,24 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     values = {name: _initial_values(job, name) for name in system.components}
     structure = structure_of(job, sources, values, end_time=scenario.stop_time)
     files = {STRUCTURE: structure.encode()}
-    if events := happenings(job):
+    if events := osp_events(job):
         end = 2.0 * job.times[-1]  # all changes would be taken back at this time
         files[SCENARIO] = scenario_text(scenario.description, events, float(end)).encode()
     files |= {name: path.read_bytes() for path, name in names.items()}
     return files, list(_remarks(system, scenario))
 
 
-def happenings(job: Job) -> list[dict]:
+def osp_events(job: Job) -> list[dict[str, object]]:
     """Events of OSP that do what a job's events do, by their times.
 
     What nothing feeds is set to the value that it has from then on: libcosim knows no inputs of the system.
     """
-    events = [(change[0], event_of(job, *change)) for change in job.changes]
-    for end, driven in job.driven.items():
-        before = np.concatenate([[driven.start], driven.values[:-2]])
-        for k in np.flatnonzero(driven.values[:-1] != before).tolist():
-            events.append((k, event_of(job, k, "override", end, driven.values[k].item())))
-    return [event for _, event in sorted(events, key=lambda item: item[0])]
+    events = list(job.changes)
+    for end, external in job.external.items():
+        before = np.concatenate([[external.start], external.values[:-2]])
+        for step in np.flatnonzero(external.values[:-1] != before).tolist():
+            events.append(Change(step, "override", end, external.values[step].item()))
+    return [event_of(job, change) for change in sorted(events, key=lambda change: change.step)]
 
 
 def _as_typed(value, kind):

@@ -1,64 +1,48 @@
-"""The master: brings the components to a consistent start, then steps them and passes their values on.
+"""The co-simulation algorithm: makes the start consistent, then steps the components and exchanges their values."""
 
-Steps are counted in integers. Time is the quotient of two integers, k p / q for a step size of p / q seconds, so that
-it is the double nearest to the true time at every step, and an FMU is told to step by the difference of two times, so
-that it ends where the next step begins. libcosim, which counts nanoseconds, gets the same numbers.
-"""
-
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
-from fractions import Fraction
 from time import perf_counter
 
 import numpy as np
 
+from shipcosim.cosim.master.component import ComponentInstance
+from shipcosim.cosim.master.connections import ParameterConnection, StringConnection
+from shipcosim.cosim.master.signals import Exchange
+from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem
-from shipcosim.scenario import whole_steps
 
-SWEEPS = 200
-"""Sweeps over the components, beyond one for each of them, in which the start has to become consistent."""
-BETWEEN_REPORTS = 0.1  # s
+MOST_ITERATIONS = 200
+"""Iterations over the components, beyond one for each of them, in which the start has to become consistent."""
+
+BETWEEN_REPORTS = 0.1
+"""Least time between two calls that report progress. [s]"""
+
+SAME = 1e-12
+"""Relative change of an input in an iteration below which it is taken for rounding."""
 
 
 class Failure(Exception):
     """A run cannot go on; `problem` says why."""
 
-    def __init__(self, problem):
+    def __init__(self, problem: Problem):
         super().__init__(str(problem))
         self.problem = problem
 
 
-def step_times(step_size, first, last, start_time=0.0):
-    """Times of the steps from one number to another, both included.
-
-    Examples
-    --------
-    >>> step_times(0.05, 0, 3).tolist()
-    [0.0, 0.05, 0.1, 0.15]
-
-    A run that starts on a step of another one has the same times:
-
-    >>> step_times(0.05, 0, 1, start_time=0.15).tolist() == step_times(0.05, 3, 4).tolist()
-    True
-    """
-    step, before = Fraction(step_size).limit_denominator(10**12), whole_steps(start_time, step_size)
-    if before is None:
-        return start_time + step_times(step_size, first, last)
-    return np.arange(before + first, before + last + 1) * float(step.numerator) / float(step.denominator)
-
-
 class Master:
-    """A system on its way through time.
+    """The master of a co-simulation: all components and what is exchanged between them.
 
     Parameters
     ----------
-    parts : sequence of Part
+    components : sequence of ComponentInstance
         In the order in which they step.
     exchanges : mapping of str to Exchange
         By kind.
-    texts : sequence of Text
-        Connections between String variables.
-    handovers : sequence of Handover
+    string_connections : sequence of StringConnection
+        Connections between String or Binary variables.
+    parameter_connections : sequence of ParameterConnection
         Connections into parameters, made during initialisation.
     names : mapping of str to (sources, inputs)
         Names of the rows of each exchange, for messages.
@@ -69,52 +53,68 @@ class Master:
         at the start of the step.
     """
 
-    def __init__(self, parts, exchanges, texts, handovers, names, check_interrupt, sequential=False):
-        self._parts, self._exchanges, self._texts, self._names = parts, exchanges, texts, names
-        self._handovers = handovers
+    def __init__(
+        self,
+        components: Sequence[ComponentInstance],
+        exchanges: Mapping[str, Exchange],
+        string_connections: Sequence[StringConnection],
+        parameter_connections: Sequence[ParameterConnection],
+        names: Mapping[str, tuple[list[str], list[str]]],
+        check_interrupt: Callable[[], None],
+        sequential: bool = False,
+    ):
+        self._components, self._exchanges, self._names = components, exchanges, names
+        self._string_connections, self._parameter_connections = string_connections, parameter_connections
         self._check_interrupt, self._sequential = check_interrupt, sequential
-        self._all = list(exchanges.values())
+        self._all_exchanges = list(exchanges.values())
 
-    def initialise(self, start_time, stop_time):
-        """Bring all components to a start at which every input equals what feeds it."""
-        for part in self._parts:
+    def initialise(self, start_time: float, stop_time: float) -> None:
+        """Initialise all components, consistently: every input equals what feeds it. Times in s.
+
+        Raises
+        ------
+        Failure, KeyboardInterrupt
+        """
+        for component in self._components:
             self._check_interrupt()
-            with _blame(part, "at the start"):
-                part.slave.enter_initialisation(start_time, stop_time)
-                part.read()
-        self._settle()
-        for part in self._parts:
-            with _blame(part, "at the end of the initialisation"):
-                part.write()
-                part.slave.exit_initialisation()
-                part.read()
+            with _failing(component, "at the start"):
+                component.slave.enter_initialisation(start_time, stop_time)
+                component.read()
+        self._iterate_start()
+        for component in self._components:
+            with _failing(component, "at the end of the initialisation"):
+                component.write()
+                component.slave.exit_initialisation()
+                component.read()
         self._transfer(0)
         self._check_finite(start_time)
 
-    def resume(self, step):
-        """Pass on what is due before a step, after values and FMUs have been brought into the state they had then."""
+    def resume(self, step: int) -> None:
+        """Exchange what is due before a step, after values and FMUs have been brought into the state they had then."""
         self._transfer(step)
 
-    def _settle(self):
-        """Sweep over the components until no input changes any more."""
+    def _iterate_start(self):
+        """Iterate over the components in initialisation mode until no input changes any more."""
         self._transfer(0)
-        before, moving = None, {}
-        for sweep in range(SWEEPS + len(self._parts)):
-            last, before = before, self._inputs()
-            changed = [_passed_on(handover) for handover in self._handovers]
-            if last == before and not any(changed):
+        inputs, moving = {}, {}
+        for iteration in range(MOST_ITERATIONS + len(self._components)):
+            last, inputs = inputs, self._inputs()
+            changed = [_transferred(connection) for connection in self._parameter_connections]
+            if iteration and last == inputs and not any(changed):
                 return
-            if sweep >= SWEEPS:
-                moving |= {name: abs(value - last[name]) for name, value in before.items() if value != last[name]}
+            if iteration >= MOST_ITERATIONS:
+                moving |= {name: abs(value - last[name]) for name, value in inputs.items() if value != last[name]}
             self._check_interrupt()
-            for part in self._parts:
-                with _blame(part, "at the start"):
-                    part.write()
-                    part.read()
+            for component in self._components:
+                with _failing(component, "at the start"):
+                    component.write()
+                    component.read()
             self._transfer(0)
-        if any(change > 1e-12 * abs(before[name]) for name, change in moving.items()):
-            names = ", ".join(name for name in before if name in moving)
-            found = f"the start does not settle: after {SWEEPS} sweeps over the components {names} still change."
+        if any(change > SAME * abs(inputs[name]) for name, change in moving.items()):
+            names = ", ".join(name for name in inputs if name in moving)
+            found = (
+                f"the start does not settle: after {MOST_ITERATIONS} sweeps over the components {names} still change."
+            )
             remedy = "They lie on or behind a loop of direct feedthrough. One of it has to hold its output over a step."
             raise Failure(Problem("initialisation", found, remedy))
 
@@ -126,17 +126,24 @@ class Master:
             for name, value in zip(self._names[kind][1], exchange.inputs.tolist(), strict=True)
         }
 
-    def run(self, span, actions, settings, record, progress=None):
+    def run(
+        self,
+        grid: TimeGrid,
+        actions: Mapping[int, Sequence[Callable[[], None]]],
+        external: Sequence[tuple[np.ndarray, np.ndarray]],
+        record: Callable[[], None],
+        progress: Callable[[int, int], None] | None = None,
+    ) -> None:
         """Step to the end, recording rows.
 
         Parameters
         ----------
-        span : Span
+        grid : TimeGrid
             From which step to which, and the steps' times.
         actions : mapping of int to sequence of callables
             What events do before the step of this number.
-        settings : sequence of (array, (n + 1, m) array)
-            Settings of an exchange and the values that they take at each step of the span.
+        external : sequence of ((m,) array, (n + 1, m) array)
+            External values of an exchange, and what they are at each step of the grid.
         record : callable
             Called when the values are those of the next row.
         progress : callable, optional
@@ -146,22 +153,23 @@ class Master:
         ------
         Failure, KeyboardInterrupt
         """
-        clock, first, last, every, report_at = span.times.tolist(), span.first, span.last, span.every, perf_counter()
+        clock, first, last = grid.times.tolist(), grid.first, grid.last
+        steps_per_row, report_at = grid.steps_per_row, perf_counter()
         for k in range(first, last):
             if k in actions:
                 self._act(actions[k])
-            if k % every == 0:
+            if k % steps_per_row == 0:
                 record()
             self._check_interrupt()
             if progress is not None and perf_counter() >= report_at:
                 progress(k - first, last - first)
                 report_at = perf_counter() + BETWEEN_REPORTS
             self._step(k, clock)
-            for target, values in settings:
+            for target, values in external:
                 target[:] = values[k + 1 - first]
             self._transfer(k + 1)
             self._check_finite(clock[k + 1])
-        if last % every == 0:
+        if last % steps_per_row == 0:
             record()
         if progress is not None:
             progress(last - first, last - first)
@@ -169,60 +177,60 @@ class Master:
     def _act(self, actions):
         for action in actions:
             action()
-        for exchange in self._all:
+        for exchange in self._all_exchanges:
             exchange.refresh()
 
     def _step(self, k, clock):
-        """Step all components; where none waits for another's outputs, those in own processes do it at once."""
-        for part in self._parts:
+        """Step all components; in Jacobi's order those in processes of their own do it at the same time."""
+        for component in self._components:
             if self._sequential:
                 self._transfer(k + 1)
             try:
-                if k % part.multiple == 0:
-                    part.write()
-                    part.step(clock[k], clock[k + part.multiple] - clock[k])
-                if self._sequential and (k + 1) % part.multiple == 0:
-                    part.read()
+                if k % component.multiple == 0:
+                    component.write()
+                    component.step(clock[k], clock[k + component.multiple] - clock[k])
+                if self._sequential and (k + 1) % component.multiple == 0:
+                    component.read()
             except SlaveError as error:
-                raise _failed_step(part, clock[k], error) from error
-        for part in () if self._sequential else self._parts:
+                raise _failed_step(component, clock[k], error) from error
+        for component in () if self._sequential else self._components:
             try:
-                if (k + 1) % part.multiple == 0:
-                    part.read()
+                if (k + 1) % component.multiple == 0:
+                    component.read()
             except SlaveError as error:
-                raise _failed_step(part, clock[k + 1 - part.multiple], error) from error
+                raise _failed_step(component, clock[k + 1 - component.multiple], error) from error
 
     def _transfer(self, count):
-        for exchange in self._all:
+        for exchange in self._all_exchanges:
             exchange.transfer(count)
-        for text in self._texts:
-            _passed_on(text, count)
+        for connection in self._string_connections:
+            _transferred(connection, count)
 
     def _check_finite(self, time):
         reals = self._exchanges.get("Real")
-        if reals is None or np.isfinite(reals.seen).all():
+        if reals is None or np.isfinite(reals.modified_sources).all():
             return
-        row = int(np.flatnonzero(~np.isfinite(reals.seen))[0])
-        found = f"is {reals.seen[row]} at t = {time:.9g} s."
+        row = int(np.flatnonzero(~np.isfinite(reals.modified_sources))[0])
+        found = f"is {reals.modified_sources[row]} at t = {time:.9g} s."
         raise Failure(Problem(self._names["Real"][0][row], found, "Every value has to be a finite number."))
 
 
-def _failed_step(part, time, error):
-    return Failure(Problem(part.name, f"failed in the step from t = {time:.9g} s. {error}"))
+def _failed_step(component, time, error):
+    return Failure(Problem(component.name, f"failed in the step from t = {time:.9g} s. {error}"))
 
 
-def _passed_on(carried, *arguments):
-    """What `transfer` of a Text or Handover returns; what the FMUs at its ends say becomes a Failure."""
+def _transferred(connection, *arguments):
+    """What `transfer` of a connection returns; what the FMUs at its ends say becomes a Failure."""
     try:
-        return carried.transfer(*arguments)
+        return connection.transfer(*arguments)
     except SlaveError as error:
-        raise Failure(Problem(carried.place, f"its value cannot be passed on. {error}")) from error
+        raise Failure(Problem(connection.place, f"its value cannot be passed on. {error}")) from error
 
 
 @contextmanager
-def _blame(part, when):
+def _failing(component, when):
     """Turn what a slave says into a Failure of its component."""
     try:
         yield
     except SlaveError as error:
-        raise Failure(Problem(part.name, f"failed {when}. {error}")) from error
+        raise Failure(Problem(component.name, f"failed {when}. {error}")) from error

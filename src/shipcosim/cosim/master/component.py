@@ -1,17 +1,31 @@
-"""A component in a run: its slave and the calls that exchange its values, prepared once."""
+"""A component in a run: the instance of its FMU and the calls that exchange its values, prepared once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from shipcosim.cosim.master.plan import Rows
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES, FAILED, Slave, SlaveError
+from shipcosim.ssp import Variable
 
 
 @dataclass
-class Discrete:
-    """Prepared call that sets inputs of a type other than Real, which is made only when a value has changed."""
+class DiscreteSetter:
+    """Prepared call that sets inputs of a type other than Real, which is made only when a value has changed.
+
+    Parameters
+    ----------
+    function : str
+        Its name in FMI, without prefix, for messages.
+    exchange : Exchange
+        Holds the values.
+    call : callable
+        Makes the call and returns the status.
+    version : int
+        Of the exchange's inputs that were set last.
+    """
 
     function: str
     exchange: Exchange
@@ -20,7 +34,7 @@ class Discrete:
 
 
 @dataclass
-class Part:
+class ComponentInstance:
     """A component in a run.
 
     Parameters
@@ -41,7 +55,7 @@ class Part:
     multiple: int
     fixed_step: float | None = None
     _set_reals: Callable[[], int] | None = None
-    _discrete: list[Discrete] = field(default_factory=list)
+    _discrete: list[DiscreteSetter] = field(default_factory=list)
     _gets: list[tuple[str, Callable[[], int]]] = field(default_factory=list)
 
     def __post_init__(self):
@@ -49,7 +63,7 @@ class Part:
         if (step := self.fixed_step) is not None:
             self._do_step = lambda time, _: do_step(time, step)
 
-    def bind(self, kind: str, exchange: Exchange, outputs: tuple, inputs: tuple) -> None:
+    def prepare(self, kind: str, exchange: Exchange, outputs: Rows, inputs: Rows) -> None:
         """Prepare the calls for the variables of one kind.
 
         Parameters
@@ -58,22 +72,22 @@ class Part:
             A key of BUFFER_TYPES.
         exchange : Exchange
             Holds their values.
-        outputs, inputs : (first row, variables)
-            Rows and variables of this component.
+        outputs, inputs : Rows
+            First row and variables of this component.
         """
-        (first, variables), (first_input, driven) = outputs, inputs
+        (first, variables), (first_input, inputs_set) = outputs, inputs
         if variables:
-            buffer = exchange.raw[first : first + len(variables)]
+            buffer = exchange.sources[first : first + len(variables)]
             self._gets.append((f"Get{kind}", self.slave.getter(kind, variables, buffer)))
-        if driven:
-            call = self.slave.setter(kind, driven, exchange.inputs[first_input : first_input + len(driven)])
+        if inputs_set:
+            call = self.slave.setter(kind, inputs_set, exchange.inputs[first_input : first_input + len(inputs_set)])
             if kind == "Real":
                 self._set_reals = call
             else:
-                self._discrete.append(Discrete(f"Set{kind}", exchange, call))
+                self._discrete.append(DiscreteSetter(f"Set{kind}", exchange, call))
 
     def write(self) -> None:
-        """Hand the inputs over to the FMU."""
+        """Set the inputs of the FMU."""
         if self._set_reals is not None and (status := self._set_reals()) >= FAILED:
             self.slave.check("SetReal", status)
         for discrete in self._discrete:
@@ -83,24 +97,24 @@ class Part:
                 discrete.version = discrete.exchange.version
 
     def restore(self, state: bytes) -> None:
-        """Bring the FMU into a state; the inputs that it had then are not taken for those that it has to get."""
+        """Bring the FMU into a state. All discrete inputs are set again in the next step."""
         self.slave.restore(state)
         for discrete in self._discrete:
             discrete.version = -1
 
     def step(self, time: float, step_size: float) -> None:
-        """Advance the FMU from a time."""
+        """Advance the FMU from a time by a step size. [s, s]"""
         if (status := self._do_step(time, step_size)) >= FAILED:
             self.slave.check("DoStep", status)
 
     def read(self) -> None:
-        """Take the outputs over from the FMU."""
+        """Get the outputs of the FMU."""
         for function, call in self._gets:
             if (status := call()) >= FAILED:
                 self.slave.check(function, status)
 
 
-def set_start_values(slave: Slave, values: list[tuple]) -> None:
+def set_start_values(slave: Slave, values: Sequence[tuple[Variable, object]]) -> None:
     """Set (variable, value) pairs on an FMU that is not initialised yet, structural parameters first."""
     structural = [pair for pair in values if pair[0].causality == "structuralParameter"]
     if structural:

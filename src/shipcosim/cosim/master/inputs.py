@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
@@ -25,7 +26,7 @@ LONGEST_GAP = 5.0
 CLOSE = 1e-6  # s; times of a log in seconds since 1970 are no finer
 
 
-def feed(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, np.ndarray]:
+def input_values(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, np.ndarray]:
     """Values of a system's inputs at the times of the steps.
 
     Parameters
@@ -52,13 +53,13 @@ def feed(table: xarray.Dataset, system: System, times: np.ndarray) -> dict[str, 
         need are looked at.
     """
     try:
-        return _fed(table, system, times)
+        return _values(table, system, times)
     except ShipcosimError as error:
         file = table.encoding.get("source", "inputs")
         raise ShipcosimError([replace(p, where=p.where.replace("inputs", file, 1)) for p in error.problems]) from error
 
 
-def _fed(table, system, times):
+def _values(table, system, times):
     clock = table["time"].values.astype(float)
     problems = [*_unknown(table, system), *_clock_problems(clock)]
     if problems:
@@ -75,13 +76,13 @@ def _fed(table, system, times):
     return fed
 
 
-def interpolated(table: xarray.Dataset, system: System, names) -> xarray.Dataset:
+def interpolated(table: xarray.Dataset, system: System, names: Iterable[str]) -> xarray.Dataset:
     """The table with the attribute that makes some of its columns change linearly between their rows.
 
     Parameters
     ----------
     table : Dataset
-        As for `feed`.
+        As for `input_values`.
     system : System
         With these inputs.
     names : iterable of str
@@ -92,7 +93,8 @@ def interpolated(table: xarray.Dataset, system: System, names) -> xarray.Dataset
     ShipcosimError
         If there is no such column.
     """
-    reals = {name for name in table.data_vars if name in system.inputs and system.inputs[name].type == "Real"}
+    columns = map(str, table.data_vars)
+    reals = {name for name in columns if name in system.inputs and system.inputs[name].type == "Real"}
     table, problems = table.copy(), []
     for pattern in names:
         matching = [name for name in reals if fnmatchcase(name, pattern)]
@@ -159,9 +161,9 @@ def _gaps(table, clock):
         even = len(apart) >= 10 and np.mean(np.abs(apart - usual) <= 0.5 * usual) >= 0.9
         longest = LONGEST_GAP * usual if even else np.inf
     for row in np.flatnonzero(apart > longest * (1.0 + 1e-9))[:5]:
-        span = f"{clock[row]:.9g} s and {clock[row + 1]:.9g} s"
-        found = f"There is no row between {span}; {longest:.3g} s are allowed."
-        remedy = "Run the parts before and after it, fill it, or allow it (max_gap, --max-gap)."
+        between = f"{clock[row]:.9g} s and {clock[row + 1]:.9g} s"
+        found = f"There is no row between {between}; {longest:.3g} s are allowed."
+        remedy = "Run the components before and after it, fill it, or allow it (max_gap, --max-gap)."
         yield Problem("inputs", found, remedy)
 
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def held_back():
+def delayed_interrupt():
     """Hold Ctrl-C back until the callable that this yields is called, which then raises KeyboardInterrupt.
 
     Raised at any moment it would end up in the Python code of an FMU, whose host reports it as an error of the FMU. A

@@ -12,10 +12,10 @@ def stepping_order(plan: Plan, order: str) -> list[str]:
     Jacobi has no order: the system's. Gauss-Seidel puts every component behind those that feed it; where these form a
     loop, the first of it in the system goes first.
     """
-    return list(plan.system.components) if order == "jacobi" else feeders_first(plan.system)
+    return list(plan.system.components) if order == "jacobi" else sources_first(plan.system)
 
 
-def feeders_first(system: System) -> list[str]:
+def sources_first(system: System) -> list[str]:
     """Names of the components, each behind those that feed it as far as these form no loop."""
     names = list(system.components)
     feeds = {name: set() for name in names}

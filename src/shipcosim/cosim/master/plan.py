@@ -1,10 +1,10 @@
-"""Before anything is instantiated: which values travel where, in rows of a few arrays, and what happens when."""
+"""The plan of a run, made before anything is instantiated: which values go where, in rows of a few arrays."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from math import lcm
 
-from shipcosim.cosim.master.signals import Wire
+from shipcosim.cosim.master.signals import InputConnection
 from shipcosim.cosim.slaves.interface_type import interface_type_of, missing_interface_type
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
@@ -13,13 +13,13 @@ from shipcosim.ssp import Connection, System, Variable
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized
 
 KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "Real": "Real"}
-"""Arrays that values of a type travel in."""
+"""Kind of the arrays that hold values of a type."""
 
 WIDE = ("UInt32", "Int64", "UInt64")
-"""Types of FMI 3.0 for which the Integers of a system travel in 64 bits."""
+"""Types of FMI 3.0 for which the Integers of a system are held in 64 bits."""
 
 End = tuple[str | None, str]
-"""Component (None: the outermost system) and variable."""
+"""End of a connection: component (None: the outermost system) and variable."""
 
 
 @dataclass
@@ -30,32 +30,32 @@ class Layout:
     ----------
     outputs : list of End
         Outputs of all components, component by component.
-    settings : dict of End to start value
-        Values from outside: inputs of the system, inputs that hang on no connection but change, and sources of
+    external : dict of End to start value
+        Values from outside: inputs of the system, inputs without connection that events change, and sources of
         another kind.
     inputs : list of End
         Inputs that are set in every step, component by component.
-    wires : list of Wire
+    connections : list of InputConnection
         What feeds each of the inputs.
-    crossings : list of (setting, kind, source)
-        Settings that follow a row of another kind.
+    type_changes : list of (row of external, kind, source)
+        External values that follow a row of another kind.
     """
 
     outputs: list[End] = field(default_factory=list)
-    settings: dict[End, object] = field(default_factory=dict)
+    external: dict[End, object] = field(default_factory=dict)
     inputs: list[End] = field(default_factory=list)
-    wires: list[Wire] = field(default_factory=list)
-    crossings: list[tuple[int, str, int]] = field(default_factory=list)
+    connections: list[InputConnection] = field(default_factory=list)
+    type_changes: list[tuple[int, str, int]] = field(default_factory=list)
 
     @property
-    def names(self):
+    def names(self) -> tuple[list[str], list[str]]:
         """Names of the sources and of the inputs, for messages."""
-        return [label(end) for end in (*self.outputs, *self.settings)], [label(end) for end in self.inputs]
+        return [label(end) for end in (*self.outputs, *self.external)], [label(end) for end in self.inputs]
 
     @property
-    def carried(self):
-        """Names of all that connections carry: the inputs and, behind them, the terms of those that are sums."""
-        sums = [(label(end), len(wire.terms)) for end, wire in zip(self.inputs, self.wires, strict=True)]
+    def transferred_names(self) -> list[str]:
+        """Names of all that connections bring: the inputs and, behind them, the terms of those that are sums."""
+        sums = [(label(end), len(c.terms)) for end, c in zip(self.inputs, self.connections, strict=True)]
         return [label(end) for end in self.inputs] + [f"{name}[{i}]" for name, n in sums for i in range(n)]
 
 
@@ -71,9 +71,9 @@ class Plan:
         Step of each component, in base steps.
     layouts : dict of str to Layout
         By kind.
-    texts, handovers : list of Connection
+    string_connections, parameter_connections : list of Connection
         Between String or Binary variables; from component to component into a parameter, once at the start.
-    fed, touched : set of End
+    connected, modified : set of End
         Inputs that a connection feeds; what events change.
     kinds : mapping of str to str
         KINDS, as this system needs them.
@@ -82,27 +82,38 @@ class Plan:
     system: System
     multiples: dict[str, int]
     layouts: dict[str, Layout]
-    texts: list[Connection]
-    handovers: list[Connection]
-    fed: set[End]
-    touched: set[End]
-    kinds: Mapping
+    string_connections: list[Connection]
+    parameter_connections: list[Connection]
+    connected: set[End]
+    modified: set[End]
+    kinds: Mapping[str, str]
 
     def variable(self, end: End) -> Variable:
         """The FMU's variable."""
-        return self.system.components[end[0]].fmu.variables[end[1]]
+        component, name = end
+        assert component is not None  # variables are those of components
+        return self.system.components[component].fmu.variables[name]
 
     def kind(self, variable: Variable) -> str | None:
-        """Kind of the arrays that a variable's values travel in, or None where they travel in none."""
+        """Kind of the arrays that hold a variable's values, or None where none does."""
         return self.kinds.get(variable.kind)
 
-    def rows(self, kind: str, name: str) -> tuple[tuple, tuple]:
-        """First row and variables of a component's outputs and inputs."""
-        return tuple(self._block(ends, name) for ends in (self.layouts[kind].outputs, self.layouts[kind].inputs))
+    def kind_of(self, end: End) -> str:
+        """Kind of the arrays that hold the values of a component's variable."""
+        return self.kinds[self.variable(end).kind]
 
-    def _block(self, ends, name):
+    def rows(self, kind: str, name: str) -> tuple["Rows", "Rows"]:
+        """Rows of a component's outputs and of its inputs."""
+        layout = self.layouts[kind]
+        return self._rows(layout.outputs, name), self._rows(layout.inputs, name)
+
+    def _rows(self, ends, name):
         rows = [row for row, end in enumerate(ends) if end[0] == name]
         return (rows[0] if rows else 0), [self.variable(ends[row]) for row in rows]
+
+
+Rows = tuple[int, list[Variable]]
+"""First row of a component among those of one kind, and its variables from there on."""
 
 
 def label(end: End) -> str:
@@ -110,7 +121,13 @@ def label(end: End) -> str:
     return end[1] if end[0] is None else f"{end[0]}.{end[1]}"
 
 
-def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time: float = 0.0) -> Plan:
+def make_plan(
+    system: System,
+    scenario: Scenario,
+    from_table: Collection[str] = (),
+    modified: Collection[str] = (),
+    start_time: float = 0.0,
+) -> Plan:
     """Plan of a run.
 
     Parameters
@@ -119,9 +136,9 @@ def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time
         With the scenario's start values.
     scenario : Scenario
         Checked against the system.
-    fed : collection of str
+    from_table : collection of str
         Inputs of the system that a table feeds.
-    changed : collection of str
+    modified : collection of str
         Signals that are overridden or biased from the beginning.
     start_time : float
         Of the run. [s]
@@ -129,30 +146,35 @@ def make_plan(system: System, scenario: Scenario, fed=(), changed=(), start_time
     Raises
     ------
     ShipcosimError
-        If the master cannot run this: no form that it can, steps that do not fit.
+        If the master cannot run this: no interface type that it can run, steps that do not fit.
     """
     base, duration = scenario.step_size, scenario.stop_time - start_time
     problems = [p for c in system.components.values() for p in _component_problems(c, base, duration)]
     if problems := problems + list(_connection_problems(system)):
         raise ShipcosimError(problems)
-    touched = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
-    touched |= {system.split(signal) for signal in changed}
-    multiples = {name: whole_steps(c.step_size or base, base) for name, c in system.components.items()}
+    ends = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
+    ends |= {system.split(signal) for signal in modified}
+    multiples = {name: whole_steps(c.step_size or base, base) or 1 for name, c in system.components.items()}
     layouts = {kind: Layout() for kind in BUFFER_TYPES}
-    plan = Plan(system, multiples, layouts, [], [], set(), touched, _kinds(system))
-    into = {}
-    for connection in system.connections:
-        if connection.target[0] is None or not _is_fed(connection.source, plan, fed):
-            continue
-        plan.fed.add(connection.target)
-        if connection.initial:
-            plan.handovers.append(connection)
-        elif plan.variable(connection.target).kind in ("String", "Binary"):
-            plan.texts.append(connection)
-        else:
-            into.setdefault(connection.target, []).append(connection)
-    _lay_out(plan, into)
+    plan = Plan(system, multiples, layouts, [], [], set(), ends, _kinds(system))
+    _lay_out(plan, _sorted_connections(plan, from_table))
     return plan
+
+
+def _sorted_connections(plan, from_table):
+    """Connections in arrays by the input that they feed; the others go into the plan's lists."""
+    by_input = {}
+    for connection in plan.system.connections:
+        if connection.target[0] is None or not _has_values(connection.source, plan, from_table):
+            continue
+        plan.connected.add(connection.target)
+        if connection.initial:
+            plan.parameter_connections.append(connection)
+        elif plan.variable(connection.target).kind in ("String", "Binary"):
+            plan.string_connections.append(connection)
+        else:
+            by_input.setdefault(connection.target, []).append(connection)
+    return by_input
 
 
 def _kinds(system):
@@ -191,19 +213,20 @@ def _connection_problems(system):
             yield Problem(label(connection.target), found, "Set it as a start value.")
 
 
-def _is_fed(source, plan, fed):
-    """Whether something comes from a source: inputs of the system may have neither start value nor table nor event."""
+def _has_values(source, plan, from_table):
+    """Whether values come from a source: inputs of the system may have neither start value nor table nor event."""
     component, name = source
     if component is not None:
         return True
     signal = plan.system.inputs.get(name)  # what a parameter of the system passes on are start values already
     if signal is None or signal.type == "String":
         return False
-    return signal.start is not None or name in fed or source in plan.touched
+    return signal.start is not None or name in from_table or source in plan.modified
 
 
-def _lay_out(plan, into):
-    sources = {connection.source for connections in into.values() for connection in connections}
+def _lay_out(plan, by_input):
+    """Give each value a row: outputs first, since inputs refer to their rows."""
+    sources = {connection.source for connections in by_input.values() for connection in connections}
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end, kind = (component.name, variable.name), plan.kind(variable)
@@ -212,35 +235,35 @@ def _lay_out(plan, into):
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end = component.name, variable.name
-            if end in into or (end in plan.touched and variable.causality != "output"):
+            if end in by_input or (end in plan.modified and variable.causality != "output"):
                 layout = plan.layouts[plan.kind(variable)]
                 layout.inputs.append(end)
-                first, *more = [_wire(plan, layout, end, connection) for connection in into.get(end, [None])]
-                layout.wires.append(replace(first, added=tuple(more)))
+                first, *more = [_input_connection(plan, layout, end, c) for c in by_input.get(end, [None])]
+                layout.connections.append(replace(first, added=tuple(more)))
 
 
-def _wire(plan, layout, end, connection):
-    """What feeds an input: a connection, or where there is none a setting of its own."""
+def _input_connection(plan, layout, end, connection):
+    """What feeds an input: a connection, or where there is none an external value of its own."""
     own = plan.multiples[end[0]]
     if connection is None:
         start = plan.system.components[end[0]].start_value(end[1])
-        return Wire(_setting(layout, end, start or 0), period=own)
+        return InputConnection(_external_row(layout, end, start or 0), period=own)
     how = connection.factor, connection.offset, connection.mapping
     component, name = connection.source
     if component is None:
-        return Wire(_setting(layout, connection.source, plan.system.inputs[name].start or 0), *how, own)
+        start = plan.system.inputs[name].start or 0
+        return InputConnection(_external_row(layout, connection.source, start), *how, own)
     period = lcm(own, plan.multiples[component])
-    kind = plan.kind(plan.variable(connection.source))
-    outputs = plan.layouts[kind].outputs
-    row = outputs.index(connection.source)
+    kind = plan.kind_of(connection.source)
+    row = plan.layouts[kind].outputs.index(connection.source)
     if plan.layouts[kind] is layout:
-        return Wire(row, *how, period)
-    setting = _setting(layout, connection.source, 0)
-    layout.crossings.append((setting - len(layout.outputs), kind, row))
-    return Wire(setting, *how, period)
+        return InputConnection(row, *how, period)
+    external = _external_row(layout, connection.source, 0)
+    layout.type_changes.append((external - len(layout.outputs), kind, row))
+    return InputConnection(external, *how, period)
 
 
-def _setting(layout, end, start):
-    """Row of a setting among the sources; made if there is none of this name."""
-    layout.settings.setdefault(end, start)
-    return len(layout.outputs) + list(layout.settings).index(end)
+def _external_row(layout, end, start):
+    """Row of an external value among the sources; made if there is none of this name."""
+    layout.external.setdefault(end, start)
+    return len(layout.outputs) + list(layout.external).index(end)

@@ -1,19 +1,27 @@
 """Taking a snapshot of a running system, and putting one back."""
 
+from collections.abc import Mapping, Sequence
+
 from shipcosim.cosim.master.algorithm import Failure
-from shipcosim.cosim.master.events import in_force_after, target_of
-from shipcosim.cosim.master.plan import label
+from shipcosim.cosim.master.component import ComponentInstance
+from shipcosim.cosim.master.connections import StringConnection
+from shipcosim.cosim.master.events import modifiers_after, modifiers_of
+from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.result import hashes, start_values
+from shipcosim.cosim.master.signals import Exchange, Modifier
 from shipcosim.cosim.master.snapshot import Snapshot
+from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import System
 
 ABILITIES = ("canGetAndSetFMUstate", "canSerializeFMUstate"), ("canGetAndSetFMUState", "canSerializeFMUState")
 """What an FMU has to declare so that its state can be stored, in FMI 2.0 and 3.0."""
 
 
-def check_storable(system):
+def check_storable(system: System) -> None:
     """Raise ShipcosimError with the components whose FMUs cannot store their state."""
     problems = []
     for component in system.components.values():
@@ -31,7 +39,7 @@ def check_storable(system):
         raise ShipcosimError(problems)
 
 
-def check_fit(snapshot, system, scenario):
+def check_fit(snapshot: Snapshot, system: System, scenario: Scenario) -> None:
     """Raise ShipcosimError where a system or a scenario cannot go on from a snapshot."""
     where, problems = f"snapshot at {snapshot.time:g} s", []
     if scenario.step_size != snapshot.step_size:
@@ -66,44 +74,77 @@ def _changed_values(snapshot, system, where):
     ]
 
 
-def take(plan, exchanges, parts, span, scenario, in_force):
-    """Snapshot at the end of a span; `in_force` are the changes that were in force at its beginning."""
-    outputs, inputs, changes = {}, {}, in_force_after(scenario, plan, span, in_force)
+def take_snapshot(
+    plan: Plan,
+    exchanges: Mapping[str, Exchange],
+    components: Mapping[str, ComponentInstance],
+    grid: TimeGrid,
+    scenario: Scenario,
+    active: Mapping[str, Modifier],
+) -> Snapshot:
+    """Snapshot at the end of a run.
+
+    Parameters
+    ----------
+    plan, exchanges, components, grid, scenario
+        Of the run.
+    active : mapping of str to (scale, shift)
+        Overrides and biases of signals that acted at its beginning.
+
+    Raises
+    ------
+    Failure
+        If an FMU does not give its state.
+    """
+    outputs, inputs, modifiers = {}, {}, modifiers_after(scenario, plan, grid, active)
     for kind, exchange in exchanges.items():
-        ends = plan.layouts[kind].outputs, plan.layouts[kind].inputs
-        outputs |= zip(map(label, ends[0]), exchange.outputs.tolist(), strict=True)
-        inputs |= zip(plan.layouts[kind].carried, exchange.plain.tolist(), strict=True)
-        for rows, changed in zip(ends, (exchange.output_changes, exchange.input_changes), strict=True):
-            changes |= {label(rows[row]): change for row, change in changed.in_force.items()}
+        layout = plan.layouts[kind]
+        outputs |= zip(map(label, layout.outputs), exchange.outputs.tolist(), strict=True)
+        inputs |= zip(layout.transferred_names, exchange.transferred.tolist(), strict=True)
+        modifiers |= {label(layout.outputs[row]): found for row, found in exchange.output_modifiers.active.items()}
+        modifiers |= {label(layout.inputs[row]): found for row, found in exchange.input_modifiers.active.items()}
     return Snapshot(
         system=plan.system.name,
-        start_time=span.start_time,
+        start_time=grid.start_time,
         step_size=scenario.step_size,
-        step=span.last,
+        step=grid.last,
         fmus=hashes(plan.system),
         start_values=start_values(plan.system),
         outputs=outputs,
         inputs=inputs,
-        changes=changes,
-        states={name: _blamed(part, part.slave.state) for name, part in parts.items()},
+        changes=modifiers,
+        states={name: _stored(component, component.slave.state) for name, component in components.items()},
     )
 
 
-def put_back(snapshot, plan, exchanges, texts, parts):
-    """Bring the values and the FMUs of a system that has been initialised into the state that they had."""
-    for name, part in parts.items():
-        _blamed(part, part.restore, snapshot.states[name])
-    for name, change in snapshot.changes.items():
+def restore_snapshot(
+    snapshot: Snapshot,
+    plan: Plan,
+    exchanges: Mapping[str, Exchange],
+    string_connections: Sequence[StringConnection],
+    components: Mapping[str, ComponentInstance],
+) -> None:
+    """Bring the values and the FMUs of a system that has been initialised into the state that they had.
+
+    Raises
+    ------
+    Failure
+        If an FMU does not take its state.
+    """
+    for name, component in components.items():
+        _stored(component, component.restore, snapshot.states[name])
+    for name, modifier in snapshot.changes.items():
         end = plan.system.split(name)
         if end[0] is not None:
-            target, row = target_of(end, plan, exchanges)
-            target.put(row, *change)
+            modifiers, row = modifiers_of(end, plan, exchanges)
+            modifiers.put(row, *modifier)
     for kind, exchange in exchanges.items():
-        _fill(exchange.outputs, map(label, plan.layouts[kind].outputs), snapshot.outputs)
+        layout = plan.layouts[kind]
+        _fill(exchange.outputs, map(label, layout.outputs), snapshot.outputs)
         exchange.transfer(0)
-        _fill(exchange.plain, plan.layouts[kind].carried, snapshot.inputs)
-    for text in texts:
-        text.last = None
+        _fill(exchange.transferred, layout.transferred_names, snapshot.inputs)
+    for connection in string_connections:
+        connection.last = None
 
 
 def _fill(values, names, known):
@@ -111,9 +152,9 @@ def _fill(values, names, known):
     values[:] = [known.get(name, value) for name, value in zip(names, values, strict=True)]
 
 
-def _blamed(part, call, *arguments):
+def _stored(component, call, *arguments):
     """What a call to a component returns; what goes wrong is a failure of this component."""
     try:
         return call(*arguments)
     except SlaveError as error:
-        raise Failure(Problem(part.name, f"its state cannot be stored or restored. {error}")) from error
+        raise Failure(Problem(component.name, f"its state cannot be stored or restored. {error}")) from error

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import platform
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 
 import numpy as np
@@ -13,37 +14,43 @@ from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 
+Column = tuple[str, np.ndarray, str, str]
+"""Name, (n,) values, unit and long name of a signal."""
+
 
 def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
-    """Settings and inputs of a kind that the table shows: those of the system, and inputs that no output determines."""
+    """External values and inputs of a kind that the table shows.
+
+    They are the inputs of the system, and the components' inputs that no output determines.
+    """
     layout = plan.layouts[kind]
-    settings = [i for i, end in enumerate(layout.settings) if end[0] is None]
-    inputs = [i for i, end in enumerate(layout.inputs) if end not in plan.fed or end in plan.touched]
-    return settings, inputs
+    external = [i for i, end in enumerate(layout.external) if end[0] is None]
+    inputs = [i for i, end in enumerate(layout.inputs) if end not in plan.connected or end in plan.modified]
+    return external, inputs
 
 
-def columns_of(plan: Plan, n_rows: int, recorded: dict) -> list[tuple]:
+def columns_of(plan: Plan, n_rows: int, recorded: Mapping[str, Sequence[np.ndarray]]) -> list[Column]:
     """Columns of the table of a run.
 
     Parameters
     ----------
-    plan
+    plan : Plan
         Of the run.
     n_rows : int
         Rows of the table.
     recorded : dict of str to list of (n_rows,) array
-        By kind: outputs, settings and inputs as the recorder has them.
+        By kind: outputs, external values and inputs as the recorder has them.
 
     Returns
     -------
-    list of (name, (n_rows,) array, unit, long name)
+    list of Column
     """
     values = {}
     for kind, arrays in recorded.items():
         layout = plan.layouts[kind]
-        settings, inputs = recorded_rows(plan, kind)
-        names = list(layout.settings)
-        ends = [*layout.outputs, *(names[i] for i in settings), *(layout.inputs[i] for i in inputs)]
+        external, inputs = recorded_rows(plan, kind)
+        names = list(layout.external)
+        ends = [*layout.outputs, *(names[i] for i in external), *(layout.inputs[i] for i in inputs)]
         values |= zip(ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True)
     return [*_connectors(plan, values), *_variables(plan, values, n_rows)]
 
@@ -69,12 +76,12 @@ def _passed_on(values, connection):
 
 
 def _variables(plan, values, n):
-    """Columns of the components' outputs and settings, in the order of the system and of the FMUs."""
+    """Columns of the components' outputs and external values, in the order of the system and of the FMUs."""
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end, kind = (component.name, variable.name), plan.kind(variable)
             column = values.get(end)
-            if column is None and kind and variable.causality == "input" and end not in plan.fed:
+            if column is None and kind and variable.causality == "input" and end not in plan.connected:
                 start = component.start_value(variable.name) or 0
                 column = np.full(n, start, dtype=bool if kind == "Boolean" else BUFFER_TYPES[kind])
             if column is not None and variable.causality in ("input", "output", "parameter"):
@@ -126,7 +133,7 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
 def fingerprint(system: System) -> str:
     """SHA-256 of how a system is wired: components, connections, connectors; start values are not part of it."""
     wiring = {
-        "components": [(c.name, c.step_size, *_asked(c)) for c in system.components.values()],
+        "components": [(c.name, c.step_size, *_interface_asked_for(c)) for c in system.components.values()],
         "connections": [
             (c.source, c.target, c.factor, c.offset, list((c.mapping or {}).items()), c.initial)
             for c in system.connections
@@ -137,5 +144,5 @@ def fingerprint(system: System) -> str:
     return hashlib.sha256(json.dumps(wiring, default=str).encode()).hexdigest()
 
 
-def _asked(component):
+def _interface_asked_for(component):
     return () if component.implementation == "any" else (component.implementation,)

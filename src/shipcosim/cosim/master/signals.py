@@ -1,12 +1,18 @@
-"""Values of one type on their way from outputs to inputs, as a few array operations for all components together."""
+"""Exchange of values of one type from outputs to inputs, as a few array operations for all components together."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+Modifier = tuple[float, float]
+"""(scale, shift): an override is (0, value), a bias (1, value)."""
+
 
 @dataclass(frozen=True)
-class Wire:
+class InputConnection:
     """What feeds an input: ``factor * source + offset``, passed on at every multiple of `period` base steps.
 
     Parameters
@@ -14,184 +20,197 @@ class Wire:
     source : int
         Row in the sources.
     factor, offset : float
-        Transformation; 1 and 0 leave the value untouched.
-    table : mapping, optional
+        Linear transformation; 1 and 0 leave the value untouched.
+    mapping : mapping, optional
         Replaces values of the source before that; those that are not in it stay as they are.
     period : int
         In base steps.
-    added : tuple of Wire
+    added : tuple of InputConnection
         Whose values are added to this one's, in this order.
     """
 
     source: int
     factor: float = 1.0
     offset: float = 0.0
-    table: dict | None = None
+    mapping: Mapping | None = None
     period: int = 1
-    added: tuple["Wire", ...] = ()
+    added: tuple[InputConnection, ...] = ()
 
     @property
-    def terms(self):
-        """The wires of a sum; none where nothing is added."""
+    def terms(self) -> tuple[InputConnection, ...]:
+        """The connections that make up a sum; none where nothing is added."""
         return (replace(self, added=()), *self.added) if self.added else ()
 
-    def passed_on(self, values):
-        """What arrives of a source over time: (n,) arrays with one value for each base step."""
+    def transferred(self, values: np.ndarray) -> np.ndarray:
+        """What arrives over time of a source: (n,) arrays with one value for each base step."""
         values = values[np.arange(len(values)) // self.period * self.period]
-        passed = values if self.table is None else np.array([self.table.get(v, v) for v in values.tolist()])
+        passed = values if self.mapping is None else np.array([self.mapping.get(v, v) for v in values.tolist()])
         if (self.factor, self.offset) != (1.0, 0.0):
             passed = self.factor * passed + self.offset
         return passed.astype(values.dtype)
 
-    def arriving(self, columns):
-        """What arrives over time of all sources, one column each, together."""
-        arrived = self.passed_on(columns[self.source])
-        return sum((wire.passed_on(columns[wire.source]) for wire in self.added), arrived)
+    def input_values(self, columns: Sequence[np.ndarray]) -> np.ndarray:
+        """What arrives over time of all sources together: (n,) array, from one (n,) array for each source."""
+        arrived = self.transferred(columns[self.source])
+        for connection in self.added:
+            arrived = arrived + connection.transferred(columns[connection.source])
+        return arrived
 
 
-class Changes:
-    """Overrides and biases in force on an array of values: changed = scale * value + shift on some rows."""
+class Modifiers:
+    """Overrides and biases that act on an array of values: scale * value + shift on some rows."""
 
     def __init__(self):
-        self._by_row = {}
-        self._set()
+        self._by_row: dict[int, Modifier] = {}
+        self._update()
 
-    def __bool__(self):
-        return bool(self._by_row)
-
-    def override(self, row, value):
+    def override(self, row: int, value: float) -> None:
         """Hold a row at a value."""
-        self._set(row, (0, value))
+        self.put(row, 0, value)
 
-    def bias(self, row, value):
+    def bias(self, row: int, value: float) -> None:
         """Add a value to a row."""
-        self._set(row, (1, value))
+        self.put(row, 1, value)
 
-    def reset(self, row):
+    def reset(self, row: int) -> None:
         """Let a row follow its source again."""
         self._by_row.pop(row, None)
-        self._set()
+        self._update()
+
+    def put(self, row: int, scale: float, shift: float) -> None:
+        """Let a modifier act on a row."""
+        self._by_row[row] = scale, shift
+        self._update()
 
     @property
-    def in_force(self):
-        """(scale, shift) of the changed rows."""
+    def active(self) -> dict[int, Modifier]:
+        """Modifiers by row."""
         return dict(self._by_row)
 
-    def put(self, row, scale, shift):
-        """Change a row as `in_force` says it."""
-        self._set(row, (scale, shift))
-
-    def apply(self, values):
-        """Change the rows of an array in place."""
+    def apply(self, values: np.ndarray) -> None:
+        """Modify the rows of an array in place."""
         if self._by_row:
             values[self._rows] = self._scale * values[self._rows] + self._shift
 
-    def _set(self, row=None, change=None):
-        if row is not None:
-            self._by_row[row] = change
+    def _update(self):
         self._rows = np.array(list(self._by_row), dtype=int)
         self._scale = np.array([scale for scale, _ in self._by_row.values()])
         self._shift = np.array([shift for _, shift in self._by_row.values()])
 
 
 class Exchange:
-    """Sources and inputs of one type, and the wires between them.
+    """Sources and inputs of one type, and the connections between them.
 
-    Sources are the outputs of all components, which the components write into `outputs`, and after them the settings:
-    values that come from outside any component. Every input has a wire; one that nothing feeds hangs on a setting.
+    Sources are the outputs of all components, which the components write into `outputs`, and behind them the external
+    values, which come from outside any component. Every input has a connection; one that nothing feeds is connected to
+    an external value.
 
     Parameters
     ----------
     n_outputs : int
         Number of outputs.
-    settings : (m,) array
-        Start values of the settings; its type is that of all values.
-    wires : sequence of Wire
+    external : (m,) array
+        Start values of what comes from outside; its type is that of all values.
+    connections : sequence of InputConnection
         One for each input, with those that are added to it.
-    crossings : sequence of (setting, Exchange, source)
-        Settings that follow a source of an exchange of another type.
+    type_changes : sequence of (row of external, Exchange, source)
+        External values that follow a source of an exchange of another type.
 
     Attributes
     ----------
+    sources : (n_outputs + m,) array
+        Outputs as the components put them out, and external values; `outputs` and `external` are its parts.
+    modified_sources : like sources
+        The same with overrides and biases.
+    transferred : (k,) array
+        What connections bring: values of the inputs before overrides and biases, and behind them the terms of sums.
+    inputs : (number of connections,) array
+        Values that the components get.
     version : int
         Grows whenever an input changes; not counted for Real, where every step changes some.
     """
 
-    def __init__(self, n_outputs, settings, wires, crossings=()):
-        kind = settings.dtype
-        self.raw = np.concatenate([np.zeros(n_outputs, dtype=kind), settings])
-        self.outputs, self.settings = self.raw[:n_outputs], self.raw[n_outputs:]
-        self.seen = self.raw.copy()
-        single, self._sums, n = _numbered(wires)
-        self.plain = np.zeros(n, dtype=kind)
-        self.inputs = np.zeros(len(wires), dtype=kind)
-        self._carried = self.plain[: len(wires)]
-        self.output_changes, self.input_changes = Changes(), Changes()
-        self.version, self._counts_versions = 0, kind.kind != "f"
-        self._crossings = crossings
-        periods = sorted({wire.period for _, wire in single})
-        self._groups = [_Group(single, period, n) for period in periods]
+    def __init__(
+        self,
+        n_outputs: int,
+        external: np.ndarray,
+        connections: Sequence[InputConnection],
+        type_changes: Sequence[tuple[int, Exchange, int]] = (),
+    ):
+        dtype = external.dtype
+        self.sources = np.concatenate([np.zeros(n_outputs, dtype=dtype), external])
+        self.outputs, self.external = self.sources[:n_outputs], self.sources[n_outputs:]
+        self.modified_sources = self.sources.copy()
+        single, self._sums, n = _numbered(connections)
+        self.transferred = np.zeros(n, dtype=dtype)
+        self.inputs = np.zeros(len(connections), dtype=dtype)
+        self._unmodified_inputs = self.transferred[: len(connections)]
+        self.output_modifiers, self.input_modifiers = Modifiers(), Modifiers()
+        self.version, self._counts_versions = 0, dtype.kind != "f"
+        self._type_changes = type_changes
+        periods = sorted({connection.period for _, connection in single})
+        self._groups = [_ConnectionGroup(single, period, n) for period in periods]
 
-    def transfer(self, count):
+    def transfer(self, count: int) -> None:
         """Pass on what is due after `count` base steps, transformed and with overrides and biases."""
-        for setting, exchange, source in self._crossings:
-            self.settings[setting] = exchange.seen[source]
-        np.copyto(self.seen, self.raw)
-        self.output_changes.apply(self.seen)
+        for row, exchange, source in self._type_changes:
+            self.external[row] = exchange.modified_sources[source]
+        np.copyto(self.modified_sources, self.sources)
+        self.output_modifiers.apply(self.modified_sources)
         for group in self._groups:
             if count % group.period == 0:
-                group.transfer(self.seen, self.plain)
+                group.transfer(self.modified_sources, self.transferred)
         for row, terms in self._sums:
             total = 0.0
-            for term in self.plain[terms].tolist():
+            for term in self.transferred[terms].tolist():
                 total += term  # one after the other, as libcosim does
-            self.plain[row] = total
+            self.transferred[row] = total
         self.refresh()
 
-    def refresh(self):
+    def refresh(self) -> None:
         """Bring the inputs up to date after a change of overrides and biases."""
         before = self.inputs.tobytes() if self._counts_versions else b""
-        np.copyto(self.inputs, self._carried)
-        self.input_changes.apply(self.inputs)
+        np.copyto(self.inputs, self._unmodified_inputs)
+        self.input_modifiers.apply(self.inputs)
         if self._counts_versions and before != self.inputs.tobytes():
             self.version += 1
 
 
-def _numbered(wires):
-    """(row, wire) of all that carry one value, (row, slice of terms) of the sums, and how many rows that makes.
+def _numbered(connections):
+    """(row, connection) of all that bring one value, (row, slice of terms) of the sums, and the number of rows.
 
     The terms of sums have rows of their own, behind those of the inputs.
     """
-    single = [(row, wire) for row, wire in enumerate(wires) if not wire.added]
-    sums, n = [], len(wires)
-    for row, terms in ((row, wire.terms) for row, wire in enumerate(wires) if wire.added):
+    single = [(row, connection) for row, connection in enumerate(connections) if not connection.added]
+    sums, n = [], len(connections)
+    for row, terms in ((row, connection.terms) for row, connection in enumerate(connections) if connection.added):
         single += enumerate(terms, start=n)
         sums.append((row, slice(n, n + len(terms))))
         n += len(terms)
     return single, sums, n
 
 
-class _Group:
-    """The wires of one period."""
+class _ConnectionGroup:
+    """The connections of one period."""
 
     def __init__(self, single, period, n):
-        rows = [row for row, wire in single if wire.period == period]
-        due = [wire for _, wire in single if wire.period == period]
+        rows = [row for row, connection in single if connection.period == period]
+        due = [connection for _, connection in single if connection.period == period]
         self.period, self.rows, self.is_all = period, np.array(rows, dtype=int), len(rows) == n
-        self.sources = np.array([wire.source for wire in due], dtype=int)
-        linear = [i for i, wire in enumerate(due) if (wire.factor, wire.offset) != (1.0, 0.0)]
+        self.sources = np.array([connection.source for connection in due], dtype=int)
+        linear = [i for i, connection in enumerate(due) if (connection.factor, connection.offset) != (1.0, 0.0)]
         self.linear = np.array(linear, dtype=int)
         self.factor = np.array([due[i].factor for i in linear])
         self.offset = np.array([due[i].offset for i in linear])
-        self.tables = [(i, wire.table) for i, wire in enumerate(due) if wire.table is not None]
+        self.mappings = [(i, connection.mapping) for i, connection in enumerate(due) if connection.mapping is not None]
 
-    def transfer(self, seen, plain):
-        values = plain if self.is_all else np.empty(len(self.rows), dtype=plain.dtype)
-        np.take(seen, self.sources, out=values, mode="clip")
-        for i, table in self.tables:
+    def transfer(self, sources, transferred):
+        values = transferred if self.is_all else np.empty(len(self.rows), dtype=transferred.dtype)
+        np.take(sources, self.sources, out=values, mode="clip")
+        for i, mapping in self.mappings:
             value = values[i].item()
-            values[i] = table.get(value, value)
+            values[i] = mapping.get(value, value)
         if len(self.linear):
             values[self.linear] = self.factor * values[self.linear] + self.offset
         if not self.is_all:
-            plain[self.rows] = values
+            transferred[self.rows] = values

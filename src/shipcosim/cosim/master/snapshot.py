@@ -8,7 +8,9 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+from shipcosim.cosim.master.time_grid import step_times
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import write_file
 
@@ -54,8 +56,6 @@ class Snapshot:
     @property
     def time(self) -> float:
         """Time at which the run was stored. [s]"""
-        from shipcosim.cosim.master.algorithm import step_times
-
         return float(step_times(self.step_size, self.step, self.step, self.start_time)[0])
 
 
@@ -134,7 +134,7 @@ def writer(
 
 def _typed(facts):
     """The facts, each of the type that the snapshot declares."""
-    kinds = {field.name: field.type for field in fields(Snapshot) if field.name != "states"}
+    kinds: dict[str, Any] = {field.name: field.type for field in fields(Snapshot) if field.name != "states"}
     if set(facts) != set(kinds):
         raise ValueError(f"it lacks or adds {', '.join(sorted(set(facts) ^ set(kinds)))}")
     for name, kind in kinds.items():

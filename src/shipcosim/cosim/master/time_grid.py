@@ -1,17 +1,22 @@
-"""The stretch of time that a run covers, in steps."""
+"""The time grid of a run: its communication points, and which of them are rows of the table.
+
+Steps are counted in integers. Time is the quotient of two integers, k p / q for a step size of p / q seconds, so that
+it is the double nearest to the true time at every step, and an FMU is told to step by the difference of two times, so
+that it ends where the next step begins. libcosim, which counts nanoseconds, gets the same numbers.
+"""
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
-from shipcosim.cosim.master.algorithm import step_times
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, whole_steps
 
 
 @dataclass(frozen=True)
-class Span:
-    """Steps `first` to `last` of a run whose step 0 begins at `start_time`.
+class TimeGrid:
+    """Communication steps `first` to `last` of a run whose step 0 begins at `start_time`.
 
     Parameters
     ----------
@@ -22,8 +27,8 @@ class Span:
     first, last : int
         Step that is done first, step before which the run ends.
     times : (n + 1,) array
-        Times of the steps from number 0 on, up to the stop time. [s]
-    every : int
+        Communication points: times of the steps from number 0 on, up to the stop time. [s]
+    steps_per_row : int
         Steps from one row of the table to the next; the rows are at multiples of it.
     """
 
@@ -32,21 +37,53 @@ class Span:
     first: int
     last: int
     times: np.ndarray
-    every: int
+    steps_per_row: int
 
     @property
-    def run_times(self):
+    def run_times(self) -> np.ndarray:
         """Times of the steps that are done, and of the end. [s]"""
         return self.times[self.first : self.last + 1]
 
     @property
-    def row_times(self):
+    def row_times(self) -> np.ndarray:
         """Times of the rows of the table. [s]"""
-        return self.times[-(-self.first // self.every) * self.every : self.last + 1 : self.every]
+        first_row = -(-self.first // self.steps_per_row) * self.steps_per_row
+        return self.times[first_row : self.last + 1 : self.steps_per_row]
 
 
-def span_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: float | None = None) -> Span:
-    """Span of a run.
+def step_times(step_size: float, first: int, last: int, start_time: float = 0.0) -> np.ndarray:
+    """Times of the steps from one number to another, both included.
+
+    Parameters
+    ----------
+    step_size, start_time : float
+        Length of a step, and time of step 0. [s, s]
+    first, last : int
+        Numbers of the steps.
+
+    Returns
+    -------
+    (last - first + 1,) array
+        Times. [s]
+
+    Examples
+    --------
+    >>> step_times(0.05, 0, 3).tolist()
+    [0.0, 0.05, 0.1, 0.15]
+
+    A run that starts on a step of another one has the same times:
+
+    >>> step_times(0.05, 0, 1, start_time=0.15).tolist() == step_times(0.05, 3, 4).tolist()
+    True
+    """
+    step, before = Fraction(step_size).limit_denominator(10**12), whole_steps(start_time, step_size)
+    if before is None:
+        return start_time + step_times(step_size, first, last)
+    return np.arange(before + first, before + last + 1) * float(step.numerator) / float(step.denominator)
+
+
+def time_grid_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: float | None = None) -> TimeGrid:
+    """Time grid of a run.
 
     Parameters
     ----------
@@ -68,7 +105,7 @@ def span_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: 
     n, last = (whole_steps(time - start_time, step) for time in (scenario.stop_time, end))
     ends = {"stop time": (scenario.stop_time, n)} | ({} if until is None else {"until": (until, last)})
     problems = [Problem(name, *_off_step(t, start_time, step)) for name, (t, k) in ends.items() if k is None]
-    if not problems and not first < last <= n:
+    if n is not None and last is not None and not first < last <= n:
         begin = start_time + first * step
         found = f"the run would go from {begin:g} s to {end:g} s."
         remedy = f"Its end must lie after {begin:g} s and not after the stop time, {scenario.stop_time:g} s."
@@ -76,10 +113,11 @@ def span_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: 
     for event in scenario.events:
         if whole_steps(event.time - start_time, step) is None:
             problems.append(Problem("event", *_off_step(event.time, start_time, step)))
-    if problems:
+    if problems or n is None or last is None:
         raise ShipcosimError(problems)
-    every = whole_steps(scenario.output_interval or step, step)
-    return Span(start_time, scenario.stop_time, first, last, step_times(step, 0, n, start_time), every)
+    steps_per_row = whole_steps(scenario.output_interval or step, step) or 1
+    times = step_times(step, 0, n, start_time)
+    return TimeGrid(start_time, scenario.stop_time, first, last, times, steps_per_row)
 
 
 def _off_step(time, start_time, step):

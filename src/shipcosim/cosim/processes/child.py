@@ -8,23 +8,27 @@ import os
 import pickle
 import signal
 import sys
+from collections.abc import Callable, Sequence
+from io import TextIOWrapper
+from typing import Any, BinaryIO, cast
 
 import numpy as np
 
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.slave import SlaveError
+from shipcosim.ssp import Component, Variable
 
 DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does not outlive the run
 
 
-def send(pipe, message):
+def send(pipe: BinaryIO, message: object) -> None:
     """Write a message into a pipe."""
     data = pickle.dumps(message, protocol=5)
     pipe.write(len(data).to_bytes(8, "little") + data)
     pipe.flush()
 
 
-def receive(pipe):
+def receive(pipe: BinaryIO) -> Any:
     """Read a message from a pipe. Raises EOFError where the other end is closed."""
     head = pipe.read(8)
     data = pipe.read(int.from_bytes(head, "little"))
@@ -33,29 +37,29 @@ def receive(pipe):
     return pickle.loads(data)
 
 
-def serve():
+def serve() -> None:
     """Do what comes through stdin, answer through stdout: (whether it went well, what came of it, new log messages).
 
-    The first answer, to no question, says that the process is there. What wants no answer and fails is the answer to
-    the next question.
+    The first answer, to no request, says that the process is there. What wants no answer and fails is the answer to
+    the next request.
     """
     source, target, flush = _own_pipes()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
     with Instances() as instances:
-        desk, failure = Desk(instances), None
+        handler, failure = RequestHandler(instances), None
         send(target, (True, None, []))
         while True:
             try:
-                is_question, function, *arguments = receive(source)
+                wants_answer, function, *arguments = receive(source)
             except EOFError:
                 return
             if failure is None:
-                result, failure = _done(getattr(desk, function), arguments)
-            if is_question:
+                result, failure = _done(getattr(handler, function), arguments)
+            if wants_answer:
                 flush()
-                send(target, (failure is None, result if failure is None else failure, desk.news()))
+                send(target, (failure is None, result if failure is None else failure, handler.new_messages()))
                 failure = None
 
 
@@ -69,46 +73,54 @@ def _done(method, arguments):
         return None, f"{type(error).__name__}: {error}"
 
 
-class Desk:
-    """What can be asked of the process; its methods answer the questions of `isolate.Remote`."""
+class RequestHandler:
+    """What can be asked of the process; its methods answer the requests of `remote_slave.RemoteSlave`.
 
-    def __init__(self, instances):
-        self._instances, self._slave, self._prepared, self._told = instances, None, [], 0
+    Parameters
+    ----------
+    instances : Instances
+        Where the FMU's instance comes from.
+    """
 
-    def make(self, component):
+    def __init__(self, instances: Instances):
+        self._instances, self._n_told = instances, 0
+        self._slave: Any = None
+        self._prepared: list[tuple[Callable, Any]] = []
+
+    def make(self, component: Component) -> None:
         """Instantiate the FMU."""
         self._slave = self._instances.instance_of(component)
 
-    def call(self, method, *arguments):
+    def call(self, method: str, *arguments) -> Any:
         """Call a method of the slave."""
         return getattr(self._slave, method)(*arguments)
 
-    def prepare(self, method, kind, variables, buffer):
+    def prepare(self, method: str, kind: str, variables: Sequence[Variable], buffer: np.ndarray | None) -> int:
         """Prepare a call that is made often, without a buffer a step; its number."""
         arguments = () if buffer is None else (kind, variables, buffer)
         self._prepared.append((getattr(self._slave, method)(*arguments), buffer))
         return len(self._prepared) - 1
 
-    def set(self, what, number, data):
+    def set(self, what: str, number: int, data: bytes) -> None:
         """Make a prepared call that sets values."""
         call, buffer = self._prepared[number]
         buffer[:] = np.frombuffer(data, buffer.dtype)
         self._slave.check(what, call())
 
-    def get(self, number):
+    def get(self, number: int) -> tuple[int, bytes]:
         """Make a prepared call that gets values; its status and the values."""
         call, buffer = self._prepared[number]
         return call(), buffer.tobytes()
 
-    def step(self, number, time, step_size, getters):
+    def step(self, number: int, time: float, step_size: float, getters: Sequence[int]) -> list[tuple[int, bytes]]:
         """Make a prepared step, then get what will be asked for next: what `get` gives for each."""
         self._slave.check("DoStep", self._prepared[number][0](time, step_size))
         return [self.get(getter) for getter in getters]
 
-    def news(self):
+    def new_messages(self) -> list[tuple[int, str]]:
         """Messages logged since the last time."""
         messages = self._slave.messages if self._slave else []
-        first, self._told = self._told, len(messages)
+        first, self._n_told = self._n_told, len(messages)
         return messages[first:]
 
 
@@ -118,7 +130,7 @@ def _own_pipes():
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
-    for stream in (sys.stdout, sys.stderr):
+    for stream in (cast(TextIOWrapper, sys.stdout), cast(TextIOWrapper, sys.stderr)):
         stream.reconfigure(line_buffering=True, errors="replace")
     if os.name != "posix":
         return source, target, sys.stdout.flush

@@ -1,11 +1,11 @@
-"""What Python FMUs leave behind in this process when an engine other than ours has run them."""
+"""Imports that Python FMUs leave behind in this process when an engine other than ours has run them."""
 
 import sys
 from contextlib import contextmanager
 
 
 @contextmanager
-def no_traces():
+def imports_undone():
     """Put `sys.path` back in the end, and forget modules that were imported from what was added to it.
 
     PythonFMU adds the folder of each FMU. A later run would otherwise take a module of the same name from there.

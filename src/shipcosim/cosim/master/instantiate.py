@@ -1,0 +1,114 @@
+"""The components of a run, instantiated, and the arrays and connections between them, from its plan."""
+
+from collections.abc import Callable, Mapping
+from math import lcm
+from typing import Protocol
+
+import numpy as np
+
+from shipcosim.cosim.master.algorithm import Failure
+from shipcosim.cosim.master.component import ComponentInstance, set_start_values
+from shipcosim.cosim.master.connections import ParameterConnection, Port, StringConnection
+from shipcosim.cosim.master.plan import End, Plan
+from shipcosim.cosim.master.signals import Exchange
+from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES, Slave, SlaveError
+from shipcosim.errors import Problem
+from shipcosim.ssp import Component
+
+Components = dict[str, ComponentInstance]
+"""By name."""
+
+
+class SlaveSource(Protocol):
+    """Where the instances of FMUs come from: `Instances` in this process, `IsolatedInstances` in others."""
+
+    def instance_of(self, component: Component) -> Slave:
+        """Instance of a component's FMU in which nothing has been set yet. Raises SlaveError if there is none."""
+        ...
+
+
+def make_exchanges(plan: Plan) -> dict[str, Exchange]:
+    """Exchange of each kind that occurs in a plan."""
+    exchanges = {}
+    for kind, dtype in BUFFER_TYPES.items():  # Real is last: its external values may follow the others
+        layout = plan.layouts[kind]
+        if layout.outputs or layout.inputs:
+            external = np.array(list(layout.external.values()), dtype=dtype)
+            type_changes = [(row, exchanges[source_kind], source) for row, source_kind, source in layout.type_changes]
+            exchanges[kind] = Exchange(len(layout.outputs), external, layout.connections, type_changes)
+    return exchanges
+
+
+def make_components(
+    plan: Plan,
+    exchanges: Mapping[str, Exchange],
+    slaves: SlaveSource,
+    base_step: float,
+    check_interrupt: Callable[[], None],
+) -> Components:
+    """The components of a plan, instantiated, their start values set.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the run.
+    exchanges : mapping of str to Exchange
+        By kind.
+    slaves : SlaveSource
+        Where the FMUs' instances come from.
+    base_step : float
+        Step size of the run. [s]
+    check_interrupt : callable
+        Raises KeyboardInterrupt where the user wants to stop.
+
+    Raises
+    ------
+    Failure
+        If an FMU cannot be instantiated or does not take its start values.
+    """
+    instances = {}
+    for component in plan.system.components.values():
+        check_interrupt()
+        fmu, name, multiple = component.fmu, component.name, plan.multiples[component.name]
+        try:
+            slave = slaves.instance_of(component)
+            set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
+        except SlaveError as error:
+            raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
+        instances[name] = ComponentInstance(name, slave, multiple, _fixed_step(component, base_step * multiple))
+        for kind, exchange in exchanges.items():
+            instances[name].prepare(kind, exchange, *plan.rows(kind, name))
+    return instances
+
+
+def _fixed_step(component, step):
+    """The step, for an FMU that can take no other one."""
+    is_free = component.fmu.capability("canHandleVariableCommunicationStepSize")
+    return None if is_free or interface_type_of(component) == "ModelExchange" else step
+
+
+def make_string_connections(plan: Plan, components: Components) -> list[StringConnection]:
+    """Connections between String or Binary variables."""
+    made = []
+    for connection in plan.string_connections:
+        source, target = (_instance(components, end) for end in (connection.source, connection.target))
+        ends = source.slave, plan.variable(connection.source), target.slave, plan.variable(connection.target)
+        made.append(StringConnection(*ends, connection.mapping, lcm(source.multiple, target.multiple)))
+    return made
+
+
+def make_parameter_connections(plan: Plan, components: Components) -> list[ParameterConnection]:
+    """Connections into parameters."""
+
+    def port(end: End) -> Port:
+        return Port(_instance(components, end).slave, plan.variable(end), plan.kind_of(end))
+
+    return [
+        ParameterConnection(port(c.source), port(c.target), c.factor, c.offset, c.mapping)
+        for c in plan.parameter_connections
+    ]
+
+
+def _instance(components, end):
+    return components[end[0]]

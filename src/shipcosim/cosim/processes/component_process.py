@@ -1,0 +1,172 @@
+"""The process of a component, from the side of the run: started, asked, watched and ended."""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections import deque
+from contextlib import suppress
+from threading import Thread
+from time import monotonic
+from typing import Any, BinaryIO, cast
+
+from shipcosim.cosim.processes.child import receive, send
+from shipcosim.cosim.slaves.slave import SlaveError
+
+START = "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.processes.child import serve; serve()"
+START_TIMEOUT = 60.0
+"""For a process to start. [s]"""
+EXIT_TIMEOUT = 5.0
+"""For a process that has nothing more to do. [s]"""
+MOST_LINES, LAST_LINES = 1000, 3
+"""Lines that a component prints and that are shown at most, and of them those that are told where it fails."""
+MOST_BYTES = 4096
+"""Of a line that a component prints."""
+
+
+class ComponentProcess:
+    """The process of a component, from this side.
+
+    Parameters
+    ----------
+    name : str
+        Name of the component.
+    folder : str
+        For its temporary files; others remove it.
+    timeout : float
+        How long it may take for an answer. [s]
+    """
+
+    def __init__(self, name: str, folder: str, timeout: float):
+        self.messages: list[tuple[int, str]] = []
+        self._name, self._timeout, self._was_late = name, timeout, False
+        self._deadline: float | None = None
+        self._last: deque[str] = deque(maxlen=LAST_LINES)
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", START.format(path=sys.path)],
+            env=os.environ | {"TMPDIR": folder, "TEMP": folder, "TMP": folder},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,  # Ctrl-C is for the run alone; what it starts can be ended with it
+        )
+        self._requests = cast(BinaryIO, self._process.stdin)
+        self._answers = cast(BinaryIO, self._process.stdout)
+        self._reader = Thread(target=self._print_output, daemon=True)
+        self._reader.start()
+
+    def wait_for_start(self) -> None:
+        """Wait until the process is there. Raises SlaveError if it does not come."""
+        self._within("its start", START_TIMEOUT, receive, self._answers)
+
+    def request(self, what: str, function: str, *arguments) -> Any:
+        """What the process answers to a request.
+
+        Parameters
+        ----------
+        what : str
+            What to call it where no answer comes.
+        function : str
+            Method of `child.RequestHandler`.
+        *arguments
+            Its arguments.
+
+        Raises
+        ------
+        SlaveError
+            If the FMU fails in it or in what it was told before, or no answer comes.
+        """
+        self.send_request(what, function, *arguments)
+        return self.receive_answer()
+
+    def send_request(self, what: str, function: str, *arguments) -> None:
+        """Send a request; `receive_answer` has to be called next, and until then other processes can be asked too."""
+        self._requested = what
+        self._within(what, self._timeout, send, self._requests, (True, function, *arguments))
+
+    def receive_answer(self) -> Any:
+        """Answer to the request that was sent."""
+        went_well, result, messages = self._within(self._requested, self._timeout, receive, self._answers)
+        self.messages += messages
+        if not went_well:
+            raise SlaveError(result)
+        return result
+
+    def notify(self, what: str, function: str, *arguments) -> None:
+        """Have the process do something; whether it went well comes with the next answer."""
+        self._within(what, self._timeout, send, self._requests, (False, function, *arguments))
+
+    def _within(self, what, limit, action, *arguments):
+        self._deadline = monotonic() + limit
+        try:
+            return action(*arguments)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            raise SlaveError(self._cause_of_end(what, limit)) from None
+        except BaseException:
+            self._kill()
+            raise
+        finally:
+            self._deadline = None
+
+    def kill_if_late(self) -> None:
+        """End the process if it has not answered for too long, and what it has started if it has ended itself."""
+        deadline = self._deadline
+        if deadline is None:
+            return
+        if self._process.poll() is not None:
+            self._kill()
+        elif monotonic() > deadline:
+            self._was_late = True
+            self._kill()
+
+    def close_input(self) -> None:
+        """Tell the process that it is not needed any more."""
+        with suppress(OSError):
+            self._requests.close()
+
+    def end(self, limit: float) -> None:
+        """Wait for the end of the process, until a time of the monotonic clock; then end it."""
+        try:
+            self._process.wait(max(0.0, limit - monotonic()))
+        except subprocess.TimeoutExpired:
+            self._kill()
+            self._process.wait()
+        self._reader.join(1.0)
+        self._answers.close()
+
+    def _kill(self):
+        """End the process and all that it has started, which may hold the pipes open."""
+        if os.name != "posix":
+            self._process.kill()
+            return
+        with suppress(OSError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+
+    def _cause_of_end(self, what, limit):
+        """What became of the process."""
+        try:
+            code = self._process.wait(EXIT_TIMEOUT)
+        except subprocess.TimeoutExpired:
+            self._kill()
+            code = self._process.wait()
+        self._reader.join(1.0)
+        said = f" It printed last:\n{''.join(self._last).rstrip()}" if self._last else ""
+        if self._was_late:
+            return f"Its process gave no answer to {what} within {limit:g} s and was ended.{said}"
+        if code < 0:
+            return f"Its process was ended in {what} by signal {-code}, {signal.strsignal(-code)}.{said}"
+        return f"Its process ended itself in {what}, with exit code {code if code < 256 else hex(code)}.{said}"
+
+    def _print_output(self):
+        """Pass on to stderr what the component prints, with its name."""
+        pipe, n = cast(BinaryIO, self._process.stderr), 0
+        while line := pipe.readline(MOST_BYTES):
+            text, n = line.decode("utf-8", errors="replace").rstrip() + "\n", n + 1
+            self._last.append(text)
+            if n <= MOST_LINES:
+                print(f"[{self._name}] {text}", end="", file=sys.stderr, flush=True)
+            elif n == MOST_LINES + 1:
+                more = f"[{self._name}] prints more than {MOST_LINES} lines; no more are shown"
+                print(more, file=sys.stderr, flush=True)
+        pipe.close()

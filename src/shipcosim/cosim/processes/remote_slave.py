@@ -1,0 +1,193 @@
+"""Components in processes of their own: one that crashes, hangs or prints takes nothing of the run with it.
+
+The process of a component does what a `Slave` does here, on the same bytes, so results are the same to the last digit.
+"""
+
+import tempfile
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack, suppress
+from threading import Event, Thread
+from time import monotonic
+from typing import Self
+
+import numpy as np
+
+from shipcosim.cosim.processes.component_process import EXIT_TIMEOUT, ComponentProcess
+from shipcosim.cosim.slaves.slave import OK, Slave, SlaveError
+from shipcosim.ssp import Component, System, Variable
+
+
+class RemoteSlave(Slave):
+    """An instance of an FMU in the process of its component.
+
+    Parameters
+    ----------
+    component : Component
+        Whose FMU is instantiated.
+    process : ComponentProcess
+        Of this component.
+
+    Raises
+    ------
+    SlaveError
+        If the FMU cannot be instantiated.
+    """
+
+    def __init__(self, component: Component, process: ComponentProcess):
+        self.name, self._process = component.name, process
+        self._is_stepping = False
+        self._getters: list[int] = []
+        self._fetched: dict[int, tuple[int, bytes]] = {}
+        process.wait_for_start()
+        process.request("its instantiation", "make", component)
+
+    @property
+    def messages(self) -> list[tuple[int, str]]:
+        """What it logged: (status, text)."""
+        return self._process.messages
+
+    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that sets variables of one kind from a buffer; what goes wrong is said by the next call."""
+        what, number = f"Set{kind}", self._prepared("setter", kind, variables, buffer)
+
+        def set_all():
+            self._finish()
+            self._process.notify(what, "set", what, number, buffer.tobytes())
+            return OK
+
+        return set_all
+
+    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that gets variables of one kind into a buffer and returns the status."""
+        what, number = f"Get{kind}", self._prepared("getter", kind, variables, buffer)
+        self._getters.append(number)
+
+        def get_all():
+            if self._is_stepping:
+                self._finish()
+            status, data = self._fetched.pop(number, None) or self._request(what, "get", number)
+            buffer[:] = np.frombuffer(data, buffer.dtype)
+            return status
+
+        return get_all
+
+    def stepper(self) -> Callable[[float, float], int]:
+        """Prepared call that advances from a time by a step size; what goes wrong is said by the next call.
+
+        What the getters get then comes with it.
+        """
+        number = self._prepared("stepper")
+
+        def step(time, step_size):
+            self._finish()
+            self._process.send_request("DoStep", "step", number, time, step_size, self._getters)
+            self._is_stepping = True
+            if not self._getters:  # then nothing waits for it
+                self._finish()
+            return OK
+
+        return step
+
+    def call(self, function: str, *arguments) -> None:
+        """Call a function of the FMU by its name without prefix."""
+        self._call("call", function, *arguments)
+
+    def check(self, function: str, status: int) -> None:
+        """Raise SlaveError if the status, or what was send_request off until now, says that something failed."""
+        self._call("check", function, status)
+
+    def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
+        """Values of String variables."""
+        return self._call("get_strings", tuple(variables))
+
+    def set_strings(self, variables: Sequence[Variable], values: Sequence) -> None:
+        """Set String variables."""
+        self._call("set_strings", tuple(variables), tuple(values))
+
+    def enter_initialisation(self, start_time: float, stop_time: float) -> None:
+        """Enter the initialisation mode for a run between two times."""
+        self._call("enter_initialisation", start_time, stop_time)
+
+    def exit_initialisation(self) -> None:
+        """Leave the initialisation mode."""
+        self._call("exit_initialisation")
+
+    def state(self) -> bytes:
+        """The whole state, which `restore` of any instance of this FMU takes."""
+        return self._call("state")
+
+    def restore(self, data: bytes) -> None:
+        """Bring the instance into a state from `state`."""
+        self._call("restore", data)
+
+    def terminate(self) -> None:
+        """End the simulation. That an FMU fails to is no matter any more."""
+        with suppress(SlaveError):
+            self._call("terminate")
+
+    def _call(self, method, *arguments):
+        return self._request(method, "call", method, *arguments)
+
+    def _prepared(self, method, kind=None, variables=(), buffer=None):
+        blank = None if buffer is None else np.zeros_like(buffer)
+        return self._request("the preparation", "prepare", method, kind, tuple(variables), blank)
+
+    def _request(self, *question):
+        self._finish()
+        return self._process.request(*question)
+
+    def _finish(self):
+        """See that a step has been done; what was got with the last one does not hold any longer."""
+        self._fetched = {}
+        if self._is_stepping:
+            self._is_stepping = False
+            self._fetched = dict(zip(self._getters, self._process.receive_answer(), strict=True))
+
+
+class IsolatedInstances:
+    """Instances of a system's FMUs, each in a process that is started beforehand; see `Instances`.
+
+    Parameters
+    ----------
+    system : System
+        Whose components get a process.
+    timeout : float
+        How long a component may take for an answer. [s]
+    """
+
+    def __init__(self, system: System, timeout: float):
+        self._names, self._timeout = list(system.components), timeout
+
+    def __enter__(self) -> Self:
+        self._processes: dict[str, ComponentProcess] = {}
+        self._over, self._stack = Event(), ExitStack()
+        with self._stack:  # undoes all where a process cannot be started
+            folder = tempfile.TemporaryDirectory(prefix="shipcosim-", ignore_cleanup_errors=True)
+            folder = self._stack.enter_context(folder)
+            self._stack.callback(self._end)
+            for name in self._names:
+                self._processes[name] = ComponentProcess(name, folder, self._timeout)
+            self._watchdog = Thread(target=self._watch, daemon=True)
+            self._watchdog.start()
+            self._stack = self._stack.pop_all()
+        return self
+
+    def __exit__(self, *_):
+        self._stack.close()
+
+    def instance_of(self, component: Component) -> RemoteSlave:
+        """Instance of a component's FMU in which nothing has been set yet. Raises SlaveError if it cannot be made."""
+        return RemoteSlave(component, self._processes[component.name])
+
+    def _watch(self):
+        while not self._over.wait(min(0.2, self._timeout / 4)):
+            for process in self._processes.values():
+                process.kill_if_late()
+
+    def _end(self):
+        self._over.set()
+        for process in self._processes.values():
+            process.close_input()
+        limit = monotonic() + EXIT_TIMEOUT
+        for process in self._processes.values():
+            process.end(limit)
