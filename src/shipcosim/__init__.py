@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         write_ssv,
         write_table,
     )
+    from shipcosim.diagnose.pipeline import diagnose
     from shipcosim.fmi.export.builder import build_fmu
     from shipcosim.report import write_report
 
@@ -38,6 +39,7 @@ __all__ = [
     "System",
     "SystemStructure",
     "build_fmu",
+    "diagnose",
     "judge",
     "new",
     "parameter",
@@ -56,6 +58,8 @@ def __getattr__(name):
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
     if name == "build_fmu":
         from shipcosim.fmi.export.builder import build_fmu as found
+    elif name == "diagnose":
+        import shipcosim.diagnose as found
     elif name == "write_report":
         from shipcosim.report import write_report as found
     else:

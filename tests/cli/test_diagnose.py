@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 import shipcosim.cli.diagnosis as command
 from shipcosim.cli import app
+from shipcosim.diagnose.validation.cosimulation import MOST
 from shipcosim.ssp import read_system
 from truth import draw
 
@@ -111,11 +112,11 @@ def ran(like_the_root):
 
     def run(name, case, *options):
         case.save(like_the_root / f"{name}.csv")
-        stories, diagnose_log = [], command.diagnose_log
+        diagnoses, diagnose_log = [], command.diagnose_log
 
         def kept(*arguments, **more):
-            stories.append(diagnose_log(*arguments, **more))
-            return stories[-1]
+            diagnoses.append(diagnose_log(*arguments, **more))
+            return diagnoses[-1]
 
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(like_the_root)
@@ -125,7 +126,7 @@ def ran(like_the_root):
         assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
         out = like_the_root / "results" / name
         return SimpleNamespace(
-            code=result.exit_code, out=result.stdout, err=result.stderr, folder=out, story=stories[0]
+            code=result.exit_code, out=result.stdout, err=result.stderr, folder=out, diagnosis=diagnoses[0]
         )
 
     return run
@@ -172,9 +173,9 @@ def test_named_cause_gains_over_the_plain_model_and_the_bias_observer(lossy):
     gain = json.loads(lossy.out)["gain"]
     assert gain["after_m"] < 0.5 * gain["before_m"] and gain["after_m"] < gain["bias_observer_m"]
     assert gain["ci95"][0] <= gain["share_of_explainable"] <= gain["ci95"][1]
-    assert lossy.story.simulated is not None  # by co-simulation of the extended system
-    for name, errors in lossy.story.unseen_errors.items():
-        assert errors.sizes["segment"] <= lossy.story.unseen[name].rows.size and "difference" in errors
+    predictions = lossy.diagnosis.predictions
+    assert predictions.is_simulated and predictions.difference > 0.0  # by co-simulation of the extended system
+    assert all(0 < one.predictions <= MOST // 2 and one.gain for one in predictions.held_out)
 
 
 def test_extended_system_differs_from_the_given_one_in_the_named_number_alone(lossy, root, built):
@@ -205,7 +206,7 @@ def test_healthy_log_is_consistent_with_exit_code_0_and_leaves_no_extended_syste
 
 def test_summary_says_cause_size_gain_and_what_to_do(lossy, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
-    command.print_diagnosis(lossy.story, lossy.folder, False)
+    command.print_diagnosis(lossy.diagnosis, lossy.folder, False)
     said = capsys.readouterr().out
     for text in ("NAMED ", "starboard thruster delivers", "Thrust loss of starboard", " ± ", "% ", "bias observer"):
         assert text in said
@@ -213,7 +214,7 @@ def test_summary_says_cause_size_gain_and_what_to_do(lossy, capsys, monkeypatch)
 
 
 def test_summary_of_a_healthy_log_says_what_it_could_not_have_shown(healthy):
-    for name in healthy.story.diagnosis.not_testable:
+    for name in healthy.diagnosis.not_testable:
         assert name.replace("_", " ") in healthy.out
     assert "Errors" in healthy.out and "Page: " in healthy.out
 
@@ -222,12 +223,15 @@ def test_summary_of_a_healthy_log_says_what_it_could_not_have_shown(healthy):
 def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(lossy, like_the_root, call, monkeypatch, error):
     """At the last moment, when the extended system is there and the page is written."""
 
+    def known(*_, out):
+        (out / "extended.ssp").write_bytes(b"new")
+        return lossy.diagnosis
+
     def cut_off(*_):
         raise error
 
     monkeypatch.chdir(like_the_root)
-    monkeypatch.setattr("shipcosim.diagnose.pipeline.find_causes", lambda *_: lossy.story.diagnosis)
-    monkeypatch.setattr(command, "_with_errors", lambda story: story)
+    monkeypatch.setattr("shipcosim.diagnose.pipeline.diagnose", known)
     monkeypatch.setattr("shipcosim.report.diagnosis.page.write_diagnosis", cut_off)
     before = {path.name: path.read_bytes() for path in lossy.folder.iterdir()}
     done = call("diagnose", "lossy.csv")

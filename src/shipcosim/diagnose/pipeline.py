@@ -1,48 +1,120 @@
-"""The diagnosis from end to end: from a log to its causes. Each stage is a function from one value to the next.
+"""The diagnosis from end to end. Each stage is a function from one value to the next.
 
-read_measurements  ReadLog         the log by the roles of its columns, the ship, the catalogue of causes
-checked            CheckedLog      faults of the log that its own channels show, repaired
-identified         Identification  the identification problem: noise, linearisation about the ship without a cause
-corrected          Identification  faults of the log and of connections that only the ship's response shows
-with_causes        ExplainedLog    sets of causes fitted to the log
-with_right_inputs  ExplainedLog    mislabelled channels of thrusters and wind, which look like causes
-with_change_point  ExplainedLog    causes that began during the log
-judged             JudgedLog       the verdict, against unmodelled errors and what healthy ships gain
-stated             Diagnosis       what is said of it, what this log could not have shown, what to sail next
+From a log to its verdict, `verdict_on`:
+
+    read_measurements  ReadLog         the log by the roles of its columns, the ship, the catalogue of causes
+    checked            CheckedLog      faults of the log that its own channels show, repaired
+    identified         Identification  the identification problem: noise, linearisation about the ship without a cause
+    corrected          Identification  faults of the log and of connections that only the ship's response shows
+    with_causes        ExplainedLog    sets of causes fitted to the log
+    with_right_inputs  ExplainedLog    mislabelled channels of thrusters and wind, which look like causes
+    with_change_point  ExplainedLog    causes that began during the log
+    judged             JudgedLog       the verdict, against unmodelled errors and what healthy ships gain
+
+From the verdict to the gain, `diagnose`:
+
+    stated             Diagnosis       findings, what this log could not have shown, what to sail next
+    with_predictions   PredictedLog    predictions on rows that nothing was fitted on, the force that the model lacks
+    with_findings      ExtendedSystem  the system with the named causes in it
+    with_cosimulation  SimulatedLog    the predictions as co-simulations of the given and the extended system
+    completed          Diagnosis       errors, gain, and all that the page shows
 """
 
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
+import xarray
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.experiment.design import design_experiment
-from shipcosim.diagnose.experiment.testability import untestable_causes
+from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
+from shipcosim.diagnose.experiment.testability import log_facts, untestable_causes
+from shipcosim.diagnose.extension.extended_system import with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.change_point import with_change_point
 from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.inference.search import with_causes
+from shipcosim.diagnose.inference.summary import evidence_of
 from shipcosim.diagnose.inference.verdict import judged
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
-from shipcosim.diagnose.result import Diagnosis
+from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.stages import JudgedLog, ReadLog
+from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, ReadLog, SimulatedLog
+from shipcosim.diagnose.validation.conditions import with_predictions
+from shipcosim.diagnose.validation.gain import baseline, gain
+from shipcosim.diagnose.validation.replays import with_cosimulation
+from shipcosim.diagnose.validation.summary import prediction_errors
+from shipcosim.ssp import System, SystemStructure, read
 
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.ssp import System
-
-__all__ = ["find_causes", "read_measurements", "stated", "verdict_on"]
+__all__ = ["Progress", "diagnose", "find_causes", "read_measurements", "verdict_on"]
 
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""
+
+
+def diagnose(
+    log: str | os.PathLike | xarray.Dataset,
+    system: str | os.PathLike | SystemStructure | System,
+    channels: str | os.PathLike | None = None,
+    causes: str | os.PathLike | None = None,
+    progress: Progress | None = None,
+    *,
+    out: str | os.PathLike | None = None,
+) -> Diagnosis:
+    """Diagnose a log: what the simulation gets wrong, by which causes, the system with them, and what that gains.
+
+    Parameters
+    ----------
+    log : path or xarray.Dataset
+        Measured data, see docs/measured-data.md.
+    system : path, SystemStructure or System
+        The ship that the log is held against.
+    channels : path, optional
+        Channel file: which column is what, in which unit.
+    causes : path, optional
+        Folder with further causes.
+    progress : callable, optional
+        Called with what is being done, in words; for the co-simulations also with how many are done and of how many.
+    out : path, optional
+        Folder that gets extended.ssp and extended.ssv, where a cause of the physics is named; a temporary one that is
+        there as long as the diagnosis if not given.
+
+    Returns
+    -------
+    Diagnosis
+
+    Raises
+    ------
+    ShipcosimError
+        Data, system or causes that cannot be used.
+    """
+    say = progress or (lambda *_: None)
+    folder = tempfile.TemporaryDirectory(prefix="shipcosim-") if out is None else None
+    given = _given(system)
+    found = find_causes(log, given.given, channels, causes, say)
+    say("what does the simulation get wrong")
+    predicted = with_predictions(found.basis, found.is_named)
+    say("extending the system")
+    identification = found.basis.explained.identification
+    extended = with_findings(given, found.findings, identification, folder.name if folder else out)
+    say("the gain, by co-simulation")
+    simulated = with_cosimulation(predicted, extended, lambda *done: say("the gain, by co-simulation", *done))
+    return replace(completed(found, predicted, extended, simulated), folder=folder)
+
+
+def _given(system):
+    """A system in whichever form, to be extended."""
+    if isinstance(system, System):
+        return ExtendedSystem(system, system.file)
+    structure = system if isinstance(system, SystemStructure) else read(system)
+    return ExtendedSystem(structure.checked(), structure)
 
 
 def find_causes(
@@ -70,7 +142,8 @@ def find_causes(
     Returns
     -------
     Diagnosis
-        Without the errors of predictions, the extended system and the gain, which `diagnose` adds.
+        Without the errors of predictions, the extended system, the gain and what the page shows besides, which
+        `diagnose` adds.
 
     Raises
     ------
@@ -117,4 +190,48 @@ def stated(log: JudgedLog) -> Diagnosis:
         untestable_causes(log),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         basis=log,
+    )
+
+
+def completed(
+    found: Diagnosis, predicted: PredictedLog, extended: ExtendedSystem, simulated: SimulatedLog
+) -> Diagnosis:
+    """A diagnosis with errors, gain, the extended system, and all that the page shows."""
+    log, errors = predicted.judged, simulated.errors
+    identification, problem = log.explained.identification, log.problem
+    summary = LogSummary(
+        Path(identification.log.encoding.get("source", "log")).name,
+        identification.log,
+        identification.repaired,
+        problem.record.step,
+        tuple(problem.record.remarks),
+        tuple(handled(identification.log)),
+    )
+    complete = replace(
+        found,
+        manoeuvre=manoeuvre_of(found.prescription, problem),
+        causes=identification.causes,
+        facts=log_facts(problem),
+        log=summary,
+        evidence=evidence_of(log),
+        force=predicted.force,
+        extension=extended.extension,
+        extended=extended.system,
+        changes=extended.changes,
+        system=extended.given,
+        remarks=(*extended.remarks, *simulated.remarks),
+    )
+    if errors is None:
+        return complete
+    return replace(
+        complete,
+        baseline=baseline(errors),
+        gain=gain(errors) if found.is_named else None,
+        predictions=prediction_errors(
+            predicted.comparison,
+            errors,
+            simulated.held_out,
+            is_named=found.is_named,
+            is_simulated=simulated.is_simulated,
+        ),
     )

@@ -6,9 +6,19 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.stages import JudgedLog
+    import xarray
 
-__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "ExperimentDesign", "label_of"]
+    from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre
+    from shipcosim.diagnose.extension.extend import Extension
+    from shipcosim.diagnose.extension.extended_system import Change
+    from shipcosim.diagnose.hypotheses.catalogue import Cause
+    from shipcosim.diagnose.inference.summary import Evidence
+    from shipcosim.diagnose.stages import JudgedLog
+    from shipcosim.diagnose.validation.missing_force import MissingForce
+    from shipcosim.diagnose.validation.summary import PredictionErrors
+    from shipcosim.ssp import System
+
+__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "ExperimentDesign", "LogSummary", "label_of"]
 
 SCHEMA = "shipcosim-diagnosis/1"
 
@@ -106,8 +116,34 @@ class ExperimentDesign:
 
 
 @dataclass(frozen=True)
+class LogSummary:
+    """A log as it was read and as it was used.
+
+    Attributes
+    ----------
+    name : str
+        Of its file.
+    measured, repaired : xarray.Dataset
+        As read; and with its faults put right, over even times, with the coordinate `logged_time`.
+    step : float
+        Time from row to row as used. [s]
+    remarks : tuple of str
+        What could not be known from it.
+    handled : tuple of str
+        What is ordinary in a log and was handled without being a fault.
+    """
+
+    name: str
+    measured: xarray.Dataset
+    repaired: xarray.Dataset
+    step: float
+    remarks: tuple[str, ...] = ()
+    handled: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Diagnosis:
-    """Everything that diagnosis.json holds.
+    """What there is to say of a log: the content of diagnosis.json, and all that the page shows.
 
     Attributes
     ----------
@@ -119,10 +155,33 @@ class Diagnosis:
     not_testable : tuple of str
         Causes that this log could not have shown.
     prescription : ExperimentDesign or None
+        What to sail next, in short; `manoeuvre` has it step by step.
     baseline, gain : dict or None
         As in the contract; None where there was too little data.
+    manoeuvre : Manoeuvre or None
+    causes : dict of str to Cause
+        The catalogue.
+    facts : dict of str to float or None
+        What the log has of motion, thrust astern and wind, as from `log_facts`.
+    log : LogSummary or None
+    evidence : Evidence or None
+    predictions : PredictionErrors or None
+        None where there was too little data.
+    force : MissingForce or None
+    extension : Extension or None
+        What was put into the system; None where no cause of the physics was named.
+    extended : System or None
+        The system with it, which can be simulated.
+    changes : tuple of Change
+        Every number in which it differs.
+    system : System or None
+        That the log was held against.
+    remarks : tuple of str
+        What did not work.
     basis : JudgedLog or None
-        What it rests on, for further work: the log, the identification problem, the fits.
+        What the findings rest on, for further work: the log, the identification problem, the fits.
+    folder : TemporaryDirectory or None
+        Keeps the files of the extended system where nobody said where they go.
     """
 
     verdict: str
@@ -133,7 +192,30 @@ class Diagnosis:
     prescription: ExperimentDesign | None = None
     baseline: dict | None = None
     gain: dict | None = None
-    basis: JudgedLog | None = None
+    manoeuvre: Manoeuvre | None = None
+    causes: dict[str, Cause] = field(default_factory=dict, repr=False)
+    facts: dict[str, float | None] = field(default_factory=dict)
+    log: LogSummary | None = field(default=None, repr=False)
+    evidence: Evidence | None = field(default=None, repr=False)
+    predictions: PredictionErrors | None = field(default=None, repr=False)
+    force: MissingForce | None = field(default=None, repr=False)
+    extension: Extension | None = None
+    extended: System | None = field(default=None, repr=False)
+    changes: tuple[Change, ...] = ()
+    system: System | None = field(default=None, repr=False)
+    remarks: tuple[str, ...] = ()
+    basis: JudgedLog | None = field(default=None, repr=False)
+    folder: object = field(default=None, repr=False, compare=False)
+
+    @property
+    def is_named(self) -> bool:
+        """Whether causes of the physics are named, and nothing else is the matter."""
+        return self.verdict == "named" and any(finding.kind == "physics" for finding in self.findings)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What could not be known from this log, and what did not work."""
+        return (*(self.log.remarks if self.log else ()), *self.remarks)
 
     def as_json(self) -> dict:
         """The diagnosis as the content of diagnosis.json."""

@@ -8,13 +8,27 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.diagnose.extension.extend import Extension
+    from shipcosim.diagnose.extension.extended_system import Change
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.inference.verdict import Judgement
     from shipcosim.diagnose.result import Finding
     from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.diagnose.validation.gain import Comparison
+    from shipcosim.diagnose.validation.missing_force import MissingForce
+    from shipcosim.ssp import System, SystemStructure
 
-__all__ = ["CheckedLog", "ExplainedLog", "Identification", "JudgedLog", "ReadLog"]
+__all__ = [
+    "CheckedLog",
+    "ExplainedLog",
+    "ExtendedSystem",
+    "Identification",
+    "JudgedLog",
+    "PredictedLog",
+    "ReadLog",
+    "SimulatedLog",
+]
 
 
 @dataclass(frozen=True)
@@ -122,3 +136,76 @@ class JudgedLog:
     def fit(self) -> Fit:
         """The set of causes that the verdict rests on; empty where nothing is named."""
         return self.judgement.fit
+
+
+@dataclass(frozen=True)
+class PredictedLog:
+    """A judged log with predictions on rows that nothing was fitted on, in array form.
+
+    Attributes
+    ----------
+    judged : JudgedLog
+    is_named : bool
+        Whether causes were named that predictions are made with; else only the plain model is compared.
+    comparison : Comparison or None
+        On the rows that were held out in time; None where there are too few.
+    held_out : dict of str to Comparison
+        By condition that was held out of the fit wherever in the log it is.
+    force : MissingForce
+        What the model lacks.
+    """
+
+    judged: JudgedLog
+    is_named: bool
+    comparison: Comparison | None
+    held_out: dict[str, Comparison]
+    force: MissingForce
+
+
+@dataclass(frozen=True)
+class ExtendedSystem:
+    """A system with the named causes in it.
+
+    Attributes
+    ----------
+    given : System
+        That the log was held against.
+    source : path or SystemStructure
+        What is extended.
+    extension : Extension or None
+        None where no cause of the physics was named, or it could not be made.
+    system : System or None
+        The extended system, which can be simulated.
+    changes : tuple of Change
+        Every number that differs.
+    remarks : tuple of str
+        Why it could not be made.
+    """
+
+    given: System
+    source: SystemStructure | str
+    extension: Extension | None = None
+    system: System | None = None
+    changes: tuple[Change, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class SimulatedLog:
+    """Predictions as co-simulations of the given and the extended system, or in array form where that was not possible.
+
+    Attributes
+    ----------
+    errors : xarray.Dataset or None
+        As of a `Comparison`; None where the log has too few rows.
+    held_out : dict of str to xarray.Dataset
+        By condition that was held out of the fit.
+    is_simulated : bool
+    remarks : tuple of str
+        Why they were not co-simulated.
+    """
+
+    errors: xarray.Dataset | None
+    held_out: dict[str, xarray.Dataset]
+    is_simulated: bool
+    remarks: tuple[str, ...] = ()

@@ -10,17 +10,18 @@ import xarray as xr
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre, library
-from shipcosim.diagnose.pipeline import find_causes
-from shipcosim.diagnose.result import Candidate, Diagnosis, ExperimentDesign, Finding
-from shipcosim.diagnose.validation.gain import baseline, compare, gain, rms
-from shipcosim.diagnose.validation.missing_force import missing_force
-from shipcosim.report.diagnosis.cause_figures import whiteness
+from shipcosim.diagnose.experiment.testability import log_facts
+from shipcosim.diagnose.pipeline import completed, find_causes
+from shipcosim.diagnose.result import Candidate, ExperimentDesign, Finding
+from shipcosim.diagnose.stages import ExtendedSystem, PredictedLog, SimulatedLog
+from shipcosim.diagnose.validation.gain import compare, rms
+from shipcosim.diagnose.validation.missing_force import MissingForce, by_sector, missing_forces
+from shipcosim.diagnose.validation.summary import PredictionErrors, condition_errors, prediction_errors
 from shipcosim.report.diagnosis.force_figures import force_figures
 from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
 from shipcosim.report.diagnosis.page import render, write_diagnosis
 from shipcosim.report.diagnosis.prediction_errors import condition_table, error_figures, error_table
-from shipcosim.report.diagnosis.story import Story
 from shipcosim.report.diagnosis.testability import not_testable_rows
 from shipcosim.report.theme.numbers import metres
 from shipcosim.ssp import read_system
@@ -30,18 +31,21 @@ SECTIONS = ("log", "error", "causes", "extension", "gain")
 
 
 @pytest.fixture(scope="module")
-def story(root, tmp_path_factory):
-    """A thruster that has lost a third of its thrust, from a log of the independent truth."""
+def predicted(root, tmp_path_factory):
+    """A thruster that has lost a third of its thrust, from a log of the independent truth: findings and predictions."""
     path = tmp_path_factory.mktemp("log") / "lossy.csv"
     draw("trial", 3000, among=["thrust_loss"], minutes=12).save(path)
-    system = read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)])
-    diagnosis = find_causes(path, system)
-    details = diagnosis.basis
-    case, fit = details.problem, details.fit
-    comparison = compare(case, fit)
-    diagnosis = replace(diagnosis, baseline=baseline(comparison.errors), gain=gain(comparison.errors))
-    forces = missing_force(case, case.model, case.motion), missing_force(case, fit.model, fit.motion)
-    return Story(diagnosis, details, path.name, system, None, None, comparison, None, *forces)
+    found = find_causes(path, read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)]))
+    problem, fit = found.basis.problem, found.basis.fit
+    return found, PredictedLog(found.basis, True, compare(problem, fit), {}, missing_forces(problem, fit))
+
+
+@pytest.fixture(scope="module")
+def diagnosis(root, predicted):
+    """The same with all that the page shows, in array form, the system not extended."""
+    found, log = predicted
+    system = ExtendedSystem(read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)]), "")
+    return completed(found, log, system, SimulatedLog(log.comparison.errors, {}, False))
 
 
 # the figures
@@ -116,10 +120,13 @@ def errors_of():
 
 
 def test_errors_are_root_mean_squares_by_horizon_and_by_what_the_ship_did():
-    plain = error_figures(errors_of(), ("plain", "floor"))[0].traces[0]
+    each = errors_of()
+    overall, moving = condition_errors("all", each), condition_errors("moving", each.isel(segment=[1, 2]))
+    errors = PredictionErrors(each, overall, (moving,), (), False, None, 0.0, 0.0)
+    plain = error_figures(overall, ("plain", "floor"))[0].traces[0]
     assert plain["x"] == ["10 s", "30 s", "60 s"]
     assert plain["y"][0] == pytest.approx(np.sqrt(np.mean([0, 1, 4, 9])), rel=1e-2)
-    table = error_table(errors_of())
+    table = error_table(errors)
     moving = dict(zip(table.head, next(row for row in table.rows if row[0] == "moving"), strict=True))
     assert moving["Segments"] == "2" and moving["Position [m]"] == "9.5 / 22"  # of 9, 10 and 21, 22
 
@@ -130,31 +137,30 @@ def test_missing_force_against_the_wind_is_its_mean_in_sectors():
     force = {name: ("time", np.zeros(n), {"units": "N"}) for name in ("surge", "sway", "north", "east")}
     force["surge"] = ("time", 1000.0 * np.cos(np.radians(wind)), {"units": "N"})
     force |= {"yaw": ("time", np.zeros(n), {"units": "N.m"}), "heading": ("time", wind), "wind_from": ("time", wind)}
-    panels = by_title(force_figures(xr.Dataset(force, {"time": wind}), None, []))
+    force = xr.Dataset(force, {"time": wind})
+    panels = by_title(force_figures(MissingForce(force, None, {"wind_from": by_sector(force, "wind_from")}, ())))
     surge = panels["Missing force against the wind"].traces[0]
     assert len(surge["x"]) == 24 and surge["x"][0] == 7.5
     assert surge["y"] == pytest.approx(np.cos(np.radians(surge["x"])), abs=0.01)
     assert panels["Missing force, body frame"].traces[0]["y"][0] == pytest.approx(1.0)  # kN
 
 
-def test_innovations_are_whiter_with_the_cause_than_without(story):
-    nothing = next(fit for fit in story.details.fits if not fit.hypotheses)
-    before = whiteness(story.details.problem, nothing, as_it_is=True)
-    after = whiteness(story.details.problem, story.details.fit)
-    band = 2.0 / np.sqrt(story.details.problem.record.time.size)
+def test_innovations_are_whiter_with_the_cause_than_without(diagnosis):
+    before, after = (diagnosis.evidence.whiteness[name] for name in ("before", "after"))
+    band = 2.0 / np.sqrt(diagnosis.evidence.rows)
     assert np.mean(np.abs(after) < band) > np.mean(np.abs(before) < band)
     assert np.mean(np.abs(after) < band) > 0.85
 
 
-def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(story):
-    case = story.details.problem
-    ((name, sentence, why),) = not_testable_rows(case, ["reverse_loss"])
-    astern = max(np.mean(case.record.units[unit][0] < 0.0) for unit in case.model.azimuths)
+def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(diagnosis):
+    problem = diagnosis.basis.problem
+    ((name, sentence, why),) = not_testable_rows(["reverse_loss"], diagnosis.causes, log_facts(problem))
+    astern = max(np.mean(problem.record.units[unit][0] < 0.0) for unit in problem.model.azimuths)
     assert name == "Reverse loss" and "astern" in sentence and f"{100 * astern:.0f} %" in why
 
 
-def test_manoeuvre_is_told_step_by_step_from_start_to_end(story):
-    model = story.details.problem.model
+def test_manoeuvre_is_told_step_by_step_from_start_to_end(diagnosis):
+    model = diagnosis.basis.problem.model
     for manoeuvre in library(model):
         rows = manoeuvre_steps(manoeuvre)
         assert rows[0][0].startswith("0–") and all(doing for _, doing in rows)
@@ -171,12 +177,12 @@ def test_box_is_told_with_its_corners():
     ]
 
 
-def test_ambiguous_log_shows_what_to_sail(story):
+def test_ambiguous_log_shows_what_to_sail(diagnosis):
     alike = Candidate("mass", None, 0.6), Candidate("drag", None, 0.4)
-    manoeuvre = library(story.details.problem.model)[0]
+    manoeuvre = library(diagnosis.basis.problem.model)[0]
     sail = ExperimentDesign(manoeuvre.name, manoeuvre.minutes, (("mass", "drag"),))
-    ambiguous = Diagnosis("ambiguous", candidates=alike, indistinguishable=alike, prescription=sail)
-    text = render(replace(story, diagnosis=ambiguous))
+    said = {"verdict": "ambiguous", "findings": (), "candidates": alike, "indistinguishable": alike, "gain": None}
+    text = render(replace(diagnosis, **said, not_testable=(), prescription=sail, manoeuvre=manoeuvre))
     assert f"To sail and log: {manoeuvre.name}" in text and "It tells mass from drag." in text
     assert "hold position and heading" in text
 
@@ -184,18 +190,22 @@ def test_ambiguous_log_shows_what_to_sail(story):
 # the page
 
 
-def test_every_link_of_the_chain_is_on_the_page(story):
-    text = render(story)
+def test_every_link_of_the_chain_is_on_the_page(diagnosis):
+    text = render(diagnosis)
     for key in SECTIONS:
         assert f'<section id="{key}">' in text and f'href="#{key}"' in text
-    gain = story.diagnosis.gain
+    gain = diagnosis.gain
     assert f"{100 * gain['share_of_explainable']:.0f} %" in text
-    assert "The system could not be extended" in text  # this story has none
+    assert "The system could not be extended" in text  # it was not
 
 
-def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(story):
-    errors, some = story.comparison.errors, story.comparison.errors.isel(segment=slice(0, 12))
-    table = condition_table(errors, {"free drift": some})
+def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(diagnosis, predicted):
+    errors = predicted[1].comparison.errors
+    some = errors.isel(segment=slice(0, 12))
+    summary = prediction_errors(
+        predicted[1].comparison, errors, {"free drift": some}, is_named=True, is_simulated=False
+    )
+    table = condition_table(summary)
     head, rows = table.head, table.rows
     assert [row[0] for row in rows] == [
         "the later part",
@@ -207,33 +217,34 @@ def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(story)
     squares = some["position"].sel(model="extended_observer", horizon=60) ** 2
     assert float(rows[-1][place]) == pytest.approx(float(np.sqrt(squares.mean())), abs=0.06)
     assert rows[-1][-1].endswith(" %")  # a minute of predictions: no interval
-    text = render(replace(story, unseen_errors={"free drift": some}))
+    text = render(replace(diagnosis, predictions=summary))
     assert "free drift, not fitted on" in text and "too little of another quarter of headings for it" in text
     known = metres(rms(errors, "position", "calibrated"))
     assert f"{known} would be missed over the later part instead of" in text
 
 
-def test_diagnosis_without_predictions_or_forces_still_makes_a_page(story):
-    bare = Story(replace(story.diagnosis, baseline=None, gain=None), story.details, "x.csv", story.system)
+def test_diagnosis_without_predictions_or_forces_still_makes_a_page(diagnosis):
+    bare = replace(diagnosis, baseline=None, gain=None, predictions=None, force=None)
     assert "too short, or has too many gaps" in render(bare)
 
 
-def test_texts_from_files_stay_texts(story):
+def test_texts_from_files_stay_texts(diagnosis):
     evil = "</script><script>document.title='owned'</script>.csv"
     finding = Finding("gap", kind="data", note=evil, channels=(evil,))
-    told = replace(story, source=evil, remarks=(evil,), diagnosis=replace(story.diagnosis, findings=(finding,)))
+    log = replace(diagnosis.log, name=evil)
+    told = replace(diagnosis, log=log, remarks=(evil,), findings=(finding,))
     assert "<script>document" not in render(told)
 
 
-def test_data_of_the_page_is_strict_json(story):
-    text = re.search(r'<script type="application/json" id="data">(.*?)</script>', render(story), re.DOTALL).group(1)
+def test_data_of_the_page_is_strict_json(diagnosis):
+    text = re.search(r'<script type="application/json" id="data">(.*?)</script>', render(diagnosis), re.DOTALL).group(1)
     assert len(json.loads(text, parse_constant=lambda name: pytest.fail(name))) > 20
 
 
 @pytest.fixture(scope="module")
-def file(story, tmp_path_factory):
+def file(diagnosis, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "report.html"
-    write_diagnosis(story, path)
+    write_diagnosis(diagnosis, path)
     return path
 
 

@@ -37,7 +37,7 @@ def diagnose(
 
     folder = out or default_folder(data)
     check_targets(folder)
-    story = diagnose_log(data, folder, system=system, channels=channels, effects=effects)
-    print_diagnosis(story, folder, as_json)
-    if story.diagnosis.verdict != "consistent":
+    diagnosis = diagnose_log(data, folder, system=system, channels=channels, effects=effects)
+    print_diagnosis(diagnosis, folder, as_json)
+    if diagnosis.verdict != "consistent":
         raise typer.Exit(FAILED)

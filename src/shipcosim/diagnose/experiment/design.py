@@ -6,7 +6,16 @@ from itertools import combinations
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.experiment.manoeuvres import cannot_turn, library, planned, rows_of, sized, step_for, true_wind
+from shipcosim.diagnose.experiment.manoeuvres import (
+    Manoeuvre,
+    cannot_turn,
+    library,
+    planned,
+    rows_of,
+    sized,
+    step_for,
+    true_wind,
+)
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, probes
 from shipcosim.diagnose.inference.innovations import innovations
@@ -76,6 +85,14 @@ def _differing(one, other):
     return tuple(
         " + ".join(label for label in mine if label not in yours) or "nothing more" for mine, yours in ((a, b), (b, a))
     )
+
+
+def manoeuvre_of(design: ExperimentDesign | None, problem: IdentificationProblem) -> Manoeuvre | None:
+    """The manoeuvre of the library that a design prescribes, step by step."""
+    if design is None:
+        return None
+    known = library(problem.model, cannot_turn(problem.record, problem.model))
+    return next((one for one in known if one.name == design.manoeuvre), None)
 
 
 def separations(problem, fits, manoeuvres):

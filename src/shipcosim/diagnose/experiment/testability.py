@@ -8,14 +8,14 @@ import numpy as np
 
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
 from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.fitting import Regressor, probes
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, probes
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.thresholds import TESTABLE
 from shipcosim.diagnose.log_faults.clock import is_testable
 from shipcosim.diagnose.stages import JudgedLog
 
-__all__ = ["not_testable", "untestable_causes"]
+__all__ = ["log_facts", "not_testable", "untestable_causes"]
 
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
@@ -67,3 +67,26 @@ def not_testable(
         gain = information - 0.5 * float(np.log1p(2.0 * information))
         gains[hypothesis.cause] = max(gains.get(hypothesis.cause, -np.inf), gain)
     return tuple(cause for cause, gain in sorted(gains.items()) if gain < TESTABLE)
+
+
+def log_facts(problem: IdentificationProblem) -> dict[str, float | None]:
+    """What a log has of motion, thrust astern and wind, by the names of `FACTS`; None for what it does not have.
+
+    Root mean squares of speed, surge and sway [m/s], of the acceleration in surge [m/s2] and of the rate of turn
+    [deg/s]; the largest share of the log in which an azimuth thruster ran astern [1]; the mean wind speed [m/s].
+    """
+    record, motion = problem.record, problem.motion
+    astern = [float(np.mean(record.units[name][0] < 0.0)) for name in problem.model.azimuths]
+    return {
+        "astern_share": max(astern, default=0.0),
+        "speed": _rms(np.hypot(motion.u, motion.v)),
+        "surge": _rms(motion.u),
+        "surge_acceleration": _rms(np.gradient(motion.u, record.step)),
+        "sway": _rms(motion.v),
+        "wind_speed": None if record.wind is None else float(np.mean(record.wind[0])),
+        "yaw_rate": _rms(np.degrees(motion.r)),
+    }
+
+
+def _rms(values):
+    return float(np.sqrt(np.nanmean(np.asarray(values) ** 2)))

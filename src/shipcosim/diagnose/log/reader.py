@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,13 +24,13 @@ LATEST = 1e12  # s
 EQUATORIAL_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 6.69437999014e-3  # [m, 1] WGS 84
 
 
-def read_log(path: str | os.PathLike, channels: str | os.PathLike | None = None) -> xarray.Dataset:
+def read_log(log: str | os.PathLike | xarray.Dataset, channels: str | os.PathLike | None = None) -> xarray.Dataset:
     """Read a measured log: every row of the file, in its order, in the units of the roles.
 
     Parameters
     ----------
-    path : path
-        .csv, .csv.gz, .parquet or .nc.
+    log : path or xarray.Dataset
+        .csv, .csv.gz, .parquet or .nc; or such a table, over `time`, with the units of its columns as ``units``.
     channels : path, optional
         Channel file (see `read_channels`); without one the columns are named by roles.
 
@@ -37,38 +39,61 @@ def read_log(path: str | os.PathLike, channels: str | os.PathLike | None = None)
     xarray.Dataset
         Over `time` as it stands in the file. Latitude and longitude become `north` and `east` about the first fix,
         which is in the attributes `latitude_origin` and `longitude_origin` [deg]. Connectors keep the unit that is
-        stated. The attribute `unused_columns` lists the columns that have no role.
+        stated. The attribute `unused_columns` lists the columns that have no role; `source` and `sha256` of the
+        encoding are name and fingerprint of a file.
 
     Raises
     ------
     ShipcosimError
         With all that is wrong: a column that is missing, not numeric or in a unit of something else, no time.
     """
-    columns = read_columns(path)
-    mapping = read_channels(channels) if channels is not None else _by_header(path, columns)
-    problems, signals = [], {}
-    for name, channel in mapping.items():
-        try:
-            signals[name] = _signal(channel, name, columns)
-        except ShipcosimError as error:
-            problems += [Problem(f"{path}, {name}", p.found, p.remedy) for p in error.problems]
-    if not problems and len(mapping) < 2:
-        remedy = "Name them by roles, or say in a channel file which is what: --channels channels.toml."
-        problems = [Problem(str(path), f"no column but time has a role: {_shown(columns)}.", remedy)]
-    if problems:
-        raise ShipcosimError(problems)
+    source, columns, file = _columns_of(log)
+    mapping = read_channels(channels) if channels is not None else _by_header(source, columns)
+    signals = _signals(source, columns, mapping)
     used = {channel.column for channel in mapping.values()}
     attributes = {"unused_columns": [name for name in columns if name and name not in used]}
     if "latitude" in signals:
         attributes |= _local_position(signals)
     time, _ = signals.pop("time")
+    _check_time(source, time)
+    table = make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
+    table.encoding |= file
+    return table
+
+
+def _columns_of(log):
+    """Name of a log for messages, its columns as (values, unit) by name, and what says which file it is."""
+    if isinstance(log, (str, os.PathLike)):
+        columns = read_columns(log)
+        return str(log), columns, {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()}
+    time = {"time": (np.asarray(log["time"].values, float), log["time"].attrs.get("units", ""))}
+    rest = {str(name): (np.asarray(v.values), v.attrs.get("units", "")) for name, v in log.data_vars.items()}
+    return "log", time | rest, {}
+
+
+def _signals(source, columns, mapping):
+    """Values and unit of each channel, by role or connector."""
+    problems, signals = [], {}
+    for name, channel in mapping.items():
+        try:
+            signals[name] = _signal(channel, name, columns)
+        except ShipcosimError as error:
+            problems += [Problem(f"{source}, {name}", p.found, p.remedy) for p in error.problems]
+    if not problems and len(mapping) < 2:
+        remedy = "Name them by roles, or say in a channel file which is what: --channels channels.toml."
+        problems = [Problem(source, f"no column but time has a role: {_shown(columns)}.", remedy)]
+    if problems:
+        raise ShipcosimError(problems)
+    return signals
+
+
+def _check_time(source, time):
     if (beyond := np.abs(time) > LATEST).any() and np.isfinite(time[beyond]).any():
         row = int(np.flatnonzero(beyond)[0])
         found, remedy = f"is {time[row]:g} s in row {row + 2}.", f"Times are at most {LATEST:g} s, say since 1970."
-        raise ShipcosimError(Problem(f"{path}, time", found, remedy))
+        raise ShipcosimError(Problem(f"{source}, time", found, remedy))
     if len(np.unique(time[np.isfinite(time)])) < 2:
-        raise ShipcosimError(Problem(f"{path}, time", "has fewer than two different times.", "A log has many rows."))
-    return make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
+        raise ShipcosimError(Problem(f"{source}, time", "has fewer than two different times.", "A log has many rows."))
 
 
 def _by_header(path, columns):

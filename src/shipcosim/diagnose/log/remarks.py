@@ -12,7 +12,7 @@ from shipcosim.diagnose.log.rows import usable_rows
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["remarks"]
+__all__ = ["handled", "remarks"]
 
 UNEVEN = 0.02  # share of the usual step
 HOLE = 1.5  # usual steps
@@ -42,9 +42,16 @@ def remarks(log: xarray.Dataset) -> list[str]:
         if empty := int(np.sum(~np.isfinite(variable.values[rows]))):
             said.append(f"{name}: {_rows(empty)} without a number.")
     far = outliers({str(name): np.asarray(v.values[rows], float) for name, v in log.data_vars.items()})
-    return said + [
+    said += [
         f"{role}: {_rows(int(bad.sum()))} far off both neighbours: left out." for role, bad in far.items() if bad.any()
     ]
+    return said
+
+
+def handled(log: xarray.Dataset) -> list[str]:
+    """The same, and which columns are not used."""
+    unused = ", ".join(map(str, log.attrs.get("unused_columns", ())))
+    return [*remarks(log), *([f"Columns without a role are not used: {unused}."] if unused else [])]
 
 
 def _rows(count):

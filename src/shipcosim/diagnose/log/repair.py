@@ -51,6 +51,7 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
     ShipcosimError
         If the times span fifty times what the rows can fill.
     """
+    attributes = log.attrs | {key: log.encoding[key] for key in ("source",) if key in log.encoding}
     log = log.isel(time=usable_rows(log["time"].values))
     logged = log["time"].values
     step = usual_step(logged)
@@ -64,7 +65,7 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
         (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"]) for n, v in channels.items()
     ]
     columns = [(n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning) for n, v, unit, meaning in columns]
-    table = make_table(grid, columns, log.attrs)
+    table = make_table(grid, columns, attributes)
     origin = {"units": "s", "long_name": "time as logged"}
     return table.assign_coords(logged_time=("time", np.interp(grid, time, logged), origin))
 

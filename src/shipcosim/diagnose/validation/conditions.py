@@ -1,17 +1,43 @@
 """Gains on conditions that are kept from the fit, wherever in the log they are: other headings, free drift."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.validation.gain import compare
+from shipcosim.diagnose.inference.search import without_causes
+from shipcosim.diagnose.stages import JudgedLog, PredictedLog
+from shipcosim.diagnose.validation.gain import Comparison, compare
+from shipcosim.diagnose.validation.missing_force import missing_forces
 from shipcosim.diagnose.validation.split import is_idle, sorted_by, starts, without_headings
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.ship.inputs import Record
 
 _LEAVES = 0.5  # of the rows, to fit on
 _FEWEST = 12  # predictions
 
 
-def unseen(record):
+def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
+    """A judged log with predictions on rows and conditions that nothing was fitted on.
+
+    Parameters
+    ----------
+    log : JudgedLog
+    is_named : bool
+        Whether causes of the physics are named; else predictions are made with the plain model alone.
+    """
+    problem, fit = log.problem, log.fit if is_named else without_causes(log.fits)
+    comparison = compare(problem, fit)
+    force = missing_forces(problem, fit if is_named else None)
+    held_out = compare_unseen(problem, fit) if is_named and comparison is not None else {}
+    return PredictedLog(log, is_named, comparison, held_out, force)
+
+
+def unseen(record: Record) -> dict[str, np.ndarray]:
     """Training rows for gains on conditions that are kept from the fit, wherever in the log they are.
 
     Parameters
@@ -36,7 +62,7 @@ def unseen(record):
     return found
 
 
-def compare_unseen(problem, fit):
+def compare_unseen(problem: IdentificationProblem, fit: Fit) -> dict[str, Comparison]:
     """Comparisons on conditions that nothing was fitted on, wherever in the log they are.
 
     Parameters

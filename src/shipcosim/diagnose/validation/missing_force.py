@@ -1,6 +1,9 @@
 """The force that a model lacks over a log: what else must have acted on the ship for her to move as she did."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray
@@ -11,10 +14,80 @@ from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.validation.predictions import mass_matrix
 from shipcosim.models.core.kinematics import to_body, to_ned
 
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.models.core.motion import Motion
+
 _LEARNING = 10.0  # s, how fast the force may change; faster, noise is taken for force
+SECTORS = 24
+"""Sectors of an angle in which the force is averaged."""
+_FEWEST_ROWS = 5  # of a sector
 
 
-def missing_force(problem, model, motion, *, learning=_LEARNING):
+@dataclass(frozen=True)
+class MissingForce:
+    """The force that a model lacks.
+
+    Attributes
+    ----------
+    plain : xarray.Dataset
+        What the plain model lacks over the log, as from `missing_force`.
+    extended : xarray.Dataset or None
+        What it lacks with the causes in it.
+    by_angle : dict of str to xarray.Dataset
+        Of ``"heading"`` and ``"wind_from"``: mean and standard deviation in sectors, as from `by_sector`.
+    thrusters : tuple of str
+        Those with a frame of their own.
+    """
+
+    plain: xarray.Dataset
+    extended: xarray.Dataset | None
+    by_angle: dict[str, xarray.Dataset]
+    thrusters: tuple[str, ...]
+
+
+def missing_forces(problem: IdentificationProblem, fit: Fit | None) -> MissingForce:
+    """The force that the plain model lacks, and where there is a fit what it lacks with the causes in it."""
+    plain = missing_force(problem, problem.model, problem.motion)
+    extended = None if fit is None else missing_force(problem, fit.model, fit.motion)
+    angles = [name for name in ("heading", "wind_from") if name in plain]
+    return MissingForce(
+        plain, extended, {name: by_sector(plain, name) for name in angles}, tuple(problem.model.azimuths)
+    )
+
+
+def by_sector(force: xarray.Dataset, angle: str) -> xarray.Dataset:
+    """Mean and standard deviation of the missing force forward and to starboard in sectors of an angle.
+
+    Parameters
+    ----------
+    force : xarray.Dataset
+        As from `missing_force`.
+    angle : str
+        ``"heading"`` or ``"wind_from"``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``sector``, the middle of each [deg]: ``surge``, ``sway``, NaN where there are few rows, and
+        ``surge_std``, ``sway_std`` [N].
+    """
+    width = 360.0 / SECTORS
+    sector = np.minimum((force[angle].values % 360.0 / width).astype(int), SECTORS - 1)
+    columns = {}
+    for name in ("surge", "sway"):
+        values = force[name].values
+        groups = [values[(sector == k) & np.isfinite(values)] for k in range(SECTORS)]
+        mean = [g.mean() if g.size >= _FEWEST_ROWS else np.nan for g in groups]
+        spread = [g.std() if g.size >= _FEWEST_ROWS else 0.0 for g in groups]
+        columns |= {name: ("sector", mean, {"units": "N"}), f"{name}_std": ("sector", spread, {"units": "N"})}
+    return xarray.Dataset(columns, {"sector": (np.arange(SECTORS) + 0.5) * width})
+
+
+def missing_force(
+    problem: IdentificationProblem, model: ShipModel, motion: Motion, *, learning: float = _LEARNING
+) -> xarray.Dataset:
     """Reconstruct what a ship model lacks: the smoothed acceleration that nothing explains, times mass and added mass.
 
     Parameters

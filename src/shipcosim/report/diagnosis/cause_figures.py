@@ -1,14 +1,11 @@
 """Figures of the causes: evidence, estimates, unmodelled errors, and whiteness of the innovations."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.noise import explained
-from shipcosim.diagnose.inference.search import without_causes
+from shipcosim.diagnose.inference.summary import LAGS, Evidence
 from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
 from shipcosim.report.diagnosis.words import title
 from shipcosim.report.theme import palette
@@ -17,7 +14,8 @@ from shipcosim.report.theme.views import Figure
 
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw rate")
 COLOURS = (palette.BLUE, palette.SKY, palette.PURPLE, palette.GREEN, palette.OLIVE, palette.ORANGE)
-MOST_SETS, LAGS = 12, 30
+MOST_SETS = 12
+WHITENESS = {"before": "Before: the plain model", "after": "After: with the causes"}
 UNMODELLED_KINDS = {
     "slow": "a slow force in the ship's frame",
     "with the heading": "a force that goes with the heading",
@@ -28,46 +26,32 @@ UNMODELLED_KINDS = {
 }
 
 
-def label_of(fit: Fit) -> str:
-    """A set of causes as people write it."""
-    return "\n+ ".join(title(s.cause, s.component) for s in fit.hypotheses) or "Nothing"
-
-
-def evidence_figure(fits: Sequence[Fit], chosen: Fit) -> Figure:
-    """How much likelier the log is with each set of causes than with none.
-
-    Parameters
-    ----------
-    fits : sequence of Fit
-        Best first.
-    chosen : Fit
-        That the verdict rests on.
-    """
-    nothing = without_causes(fits).score
-    sets = [fit for fit in fits if fit.hypotheses][:MOST_SETS][::-1]
-    gains = [max(fit.score - nothing, 0.0) for fit in sets]
+def evidence_figure(evidence: Evidence) -> Figure:
+    """How much likelier the log is with each set of causes than with none."""
+    sets = evidence.sets[:MOST_SETS][::-1]
+    names = ["\n+ ".join(title(cause, component) for cause, component in one.causes) for one in sets]
+    gains = [max(one.gain, 0.0) for one in sets]
     bars = {
-        **{"type": "bar", "orientation": "h", "y": [label_of(fit) for fit in sets], "x": rounded(gains, 4)},
-        "marker": {"color": [palette.BLUE if fit is chosen else palette.FAINT for fit in sets]},
+        **{"type": "bar", "orientation": "h", "y": names, "x": rounded(gains, 4)},
+        "marker": {"color": [palette.BLUE if one.is_chosen else palette.FAINT for one in sets]},
         **{"hovertemplate": "%{y}: %{x:.1f} nats", "named": False, "showlegend": False},
-        **{"text": [f"{fit.score - nothing:.1f}" for fit in sets], "textposition": "auto"},
+        **{"text": [f"{one.gain:.1f}" for one in sets], "textposition": "auto"},
     }
     note = (
         f"Log-evidence over the ship without a cause, in nats: {ENOUGH:g} more (dotted) mean {np.exp(ENOUGH):.0f} "
         "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
     )
-    height = 90 + (12 + 16 * max([1, *(len(fit.hypotheses) for fit in sets)])) * max(len(sets), 2)
+    height = 90 + (12 + 16 * max([1, *(len(one.causes) for one in sets)])) * max(len(sets), 2)
     axes = {"xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"}, "yaxis": {"automargin": True}}
     layout = {"shapes": [limit(ENOUGH)], **axes}
     return Figure("Evidence of the best sets of causes", "nats", (bars,), layout, note, height)
 
 
-def estimate_figure(fit: Fit) -> Figure:
+def estimate_figure(evidence: Evidence) -> Figure:
     """Estimates of a set's parameters, in units of the size that matters, with two standard deviations."""
-    parameters = [(s, k) for s in fit.hypotheses for k in s.parameters][::-1]
-    names = [f"{title(s.cause, s.component)}:\n{k.name.replace('_', ' ')}" for s, k in parameters]
-    size = [(fit.values[k.paths[0]] - k.neutral) / k.typical for _, k in parameters]
-    wide = [2.0 * fit.std[k.paths[0]] / k.typical for _, k in parameters]
+    parameters = evidence.sizes[::-1]
+    names = [f"{title(of.cause, of.component)}:\n{of.parameter.replace('_', ' ')}" for of in parameters]
+    size, wide = [of.size for of in parameters], [2.0 * of.std for of in parameters]
     marks = {
         **{"type": "scatter", "mode": "markers", "x": rounded(size, 4), "y": names, "showlegend": False},
         "error_x": {"type": "data", "array": rounded(wide, 3), "color": palette.BLUE, "thickness": 2},
@@ -107,34 +91,17 @@ def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
     return Figure("Errors without a name", "nats", (bars,), layout, note, height=90 + 34 * len(names))
 
 
-def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) -> NDArray:
-    """Autocorrelation of the whitened innovations that a fit leaves.
-
-    Parameters
-    ----------
-    problem : IdentificationProblem
-    fit : Fit
-    as_it_is : bool
-        Without moving known numbers within their tolerances.
-
-    Returns
-    -------
-    (LAGS, 6) array
-        From a lag of one row on; NaN for a channel that was not measured.
-    """
-    theta = 0.0 * fit.left if as_it_is else fit.left
-    white = innovations(explained(fit.linear, theta), problem.noise, problem.record).white[..., 0]
-    white = np.where(fit.linear.whole, white, np.nan)
-    found = np.full((LAGS, white.shape[1]), np.nan)
-    for channel, values in enumerate(white.T):
-        if np.isfinite(values).sum() > 10 * LAGS:
-            values = values - np.nanmean(values)
-            power = np.nanmean(values**2)
-            found[:, channel] = [np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)]
-    return found
+def whiteness_figures(evidence: Evidence) -> tuple[Figure, ...]:
+    """Autocorrelation of the innovations before and after, to one scale."""
+    every = np.stack(list(evidence.whiteness.values()))
+    between = (min(-0.2, 1.05 * float(np.nanmin(every))), max(0.2, 1.05 * float(np.nanmax(every))))
+    return tuple(
+        _whiteness_figure(WHITENESS[name], values, evidence.step, evidence.rows, between)
+        for name, values in evidence.whiteness.items()
+    )
 
 
-def whiteness_figure(
+def _whiteness_figure(
     heading: str, correlation: NDArray, step: float, rows: int, between: tuple[float, float]
 ) -> Figure:
     """Autocorrelation of all channels over the lag, with the band of white noise."""

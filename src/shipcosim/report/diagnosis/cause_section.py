@@ -3,21 +3,15 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
-from shipcosim.diagnose.experiment.manoeuvres import cannot_turn, library
-from shipcosim.diagnose.inference.search import without_causes
-from shipcosim.diagnose.inference.verdict import gained
+from shipcosim.diagnose.inference.summary import Evidence
 from shipcosim.diagnose.result import Candidate, Diagnosis
 from shipcosim.report.diagnosis.cause_figures import (
     estimate_figure,
     evidence_figure,
     unmodelled_figure,
-    whiteness,
-    whiteness_figure,
+    whiteness_figures,
 )
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
-from shipcosim.report.diagnosis.story import Story
 from shipcosim.report.diagnosis.testability import not_testable_rows
 from shipcosim.report.diagnosis.words import estimate_rows, title
 from shipcosim.report.theme.numbers import percent, plain
@@ -70,27 +64,27 @@ class CauseSection:
     not_testable: Table
 
 
-def cause_section(story: Story) -> CauseSection:
+def cause_section(diagnosis: Diagnosis) -> CauseSection:
     """The section as the template fills it in."""
-    diagnosis, details = story.diagnosis, story.details
+    evidence = diagnosis.evidence
     began = sorted({f.onset for f in diagnosis.findings if f.onset is not None})
     named = {(f.cause, f.component) for f in diagnosis.findings}
     alike = diagnosis.indistinguishable
     others = [c for c in diagnosis.candidates if (c.cause, c.component) not in named and c not in alike]
-    weak = not_testable_rows(details.problem, diagnosis.not_testable, story.causes) if diagnosis.not_testable else ()
-    figures = [evidence_figure(details.fits, details.fit)] if len(details.fits) > 1 else []
+    weak = not_testable_rows(diagnosis.not_testable, diagnosis.causes, diagnosis.facts)
+    figures = [evidence_figure(evidence)] if evidence.sets else []
     return CauseSection(
         found=_found(diagnosis),
         change_point=f"{began[0]:.0f}" if began else "",
         estimates=_estimates(diagnosis),
-        gains=_gains(story),
-        figures=(*figures, *([estimate_figure(details.fit)] if details.fit.hypotheses else [])),
-        unmodelled=(unmodelled_figure(details.unmodelled),) if details.unmodelled else (),
-        whiteness=_whiteness(story),
+        gains=_gains(evidence),
+        figures=(*figures, *([estimate_figure(evidence)] if evidence.sizes else [])),
+        unmodelled=(unmodelled_figure(evidence.unmodelled),) if evidence.unmodelled else (),
+        whiteness=whiteness_figures(evidence),
         alike=_chances(alike),
         others=_chances(others),
         is_unknown=diagnosis.verdict == "unknown",
-        sail=_sail(story),
+        sail=_sail(diagnosis),
         not_testable=Table(tuple(weak), head=("Cause", "What it would be", "Why not")),
     )
 
@@ -111,28 +105,15 @@ def _estimates(diagnosis: Diagnosis) -> Table:
     return Table(tuple(rows), head, tight=(1, 2, 3, 4, 5))
 
 
-def _gains(story: Story) -> Table:
-    """What each cause gains, beside what it gains by chance on healthy ships."""
-    details, rows = story.details, []
-    for hypothesis in details.fit.hypotheses:
-        chance = details.null_gains.get(hypothesis.label)
-        by_chance = "far above what healthy ships show" if chance is None else f"up to {plain(chance, 2)} nats"
-        gain = plain(gained(hypothesis, details.fit, details.fits))
-        rows.append((title(hypothesis.cause, hypothesis.component), gain, by_chance))
+def _gains(evidence: Evidence) -> Table:
+    """What each cause gains, beside what it gains on simulated healthy logs."""
+    rows = []
+    for of in evidence.gains:
+        known = of.null_gain is not None
+        healthy = f"up to {plain(of.null_gain, 2)} nats" if known else "far above what healthy ships show"
+        rows.append((title(of.cause, of.component), plain(of.gain), healthy))
     head = ("Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track")
     return Table(tuple(rows), head, tight=(1,))
-
-
-def _whiteness(story: Story) -> tuple[Figure, ...]:
-    """Autocorrelation of the innovations before and after, to one scale."""
-    problem, fit = story.details.problem, story.details.fit
-    found = {"Before: the plain model": whiteness(problem, without_causes(story.details.fits), as_it_is=True)}
-    if fit.hypotheses:
-        found["After: with the causes"] = whiteness(problem, fit)
-    every = np.stack(list(found.values()))
-    between = (min(-0.2, 1.05 * float(np.nanmin(every))), max(0.2, 1.05 * float(np.nanmax(every))))
-    step, rows = problem.record.step, problem.record.time.size
-    return tuple(whiteness_figure(name, values, step, rows, between) for name, values in found.items())
 
 
 def _chances(candidates: Iterable[Candidate]) -> Table:
@@ -140,14 +121,10 @@ def _chances(candidates: Iterable[Candidate]) -> Table:
     return Table(rows, head=("Cause", "Probability"))
 
 
-def _sail(story: Story) -> Sail | None:
+def _sail(diagnosis: Diagnosis) -> Sail | None:
     """The prescribed manoeuvre step by step."""
-    prescription, problem = story.diagnosis.prescription, story.details.problem
-    if prescription is None:
-        return None
-    known = library(problem.model, cannot_turn(problem.record, problem.model))
-    manoeuvre = next((one for one in known if one.name == prescription.manoeuvre), None)
-    if manoeuvre is None:
+    prescription, manoeuvre = diagnosis.prescription, diagnosis.manoeuvre
+    if prescription is None or manoeuvre is None:
         return None
     return Sail(
         name=manoeuvre.name,

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.force_figures import force_figures
 from shipcosim.report.diagnosis.prediction_errors import error_figures, error_table, models_to_show
-from shipcosim.report.diagnosis.story import Story
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.views import Figure, Table
 
@@ -33,16 +33,14 @@ class ErrorSection:
     forces: tuple[Figure, ...]
 
 
-def error_section(story: Story) -> ErrorSection:
+def error_section(diagnosis: Diagnosis) -> ErrorSection:
     """The section as the template fills it in."""
-    base, errors, forces = story.diagnosis.baseline, story.errors, []
-    models = models_to_show(("plain", "floor"), story.diagnosis)
-    if story.force is not None:
-        forces = force_figures(story.force, story.force_left, story.details.problem.model.azimuths)
+    base, errors = diagnosis.baseline, diagnosis.predictions
+    models = models_to_show(("plain", "floor"), diagnosis)
     return ErrorSection(
         found=f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:g} s" if base else "not measured",
-        figures=() if errors is None else tuple(error_figures(errors, models)),
+        figures=() if errors is None else tuple(error_figures(errors.overall, models)),
         errors=Table(()) if errors is None else error_table(errors, models),
         has_floor="floor" in models,
-        forces=tuple(forces),
+        forces=() if diagnosis.force is None else tuple(force_figures(diagnosis.force)),
     )

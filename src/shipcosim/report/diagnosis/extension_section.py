@@ -1,12 +1,11 @@
 """Section 4 of the page: what was changed in the system?"""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-from shipcosim.report.diagnosis.story import Story
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.views import Table
-from shipcosim.ssp import System
 
 
 @dataclass(frozen=True)
@@ -37,14 +36,16 @@ class ExtensionSection:
     remarks: tuple[str, ...] = ()
 
 
-def extension_section(story: Story) -> ExtensionSection:
+def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     """The section as the template fills it in."""
-    extension = story.extension
+    extension = diagnosis.extension
     if extension is None:
-        found = any(f.kind == "physics" for f in story.diagnosis.findings)
+        found = any(f.kind == "physics" for f in diagnosis.findings)
         return ExtensionSection("none", "failed" if found else "no cause")
-    after = story.extended or story.system
-    rows = tuple((name, *_before_after(name, value, story.system, after)) for name, value in extension.values.items())
+    rows = tuple(
+        (of.name, "–" if of.before is None else plain(of.before, 5), plain(of.after, 5), of.unit)
+        for of in diagnosis.changes
+    )
     return ExtensionSection(
         found="extended.ssp",
         state="extended" if extension.values else "log only",
@@ -54,13 +55,3 @@ def extension_section(story: Story) -> ExtensionSection:
         inserted=", ".join(extension.components),
         remarks=tuple(extension.remarks),
     )
-
-
-def _before_after(name: str, value: Any, system: System, extended: System) -> tuple[str, str, str]:
-    """A number before and after, and its unit."""
-    component, _, variable = name.rpartition(".")
-    start = system.components[component].start_value(variable) if component in system.components else None
-    known = extended.components[component].fmu.variables if component in extended.components else extended.inputs
-    unit = known[variable].unit if variable in known else ""
-    was = plain(float(start), 5) if isinstance(start, int | float) else "–"
-    return was, plain(float(value), 5), "" if unit in (None, "1") else unit

@@ -1,11 +1,12 @@
 """Figures of the force that the ship model lacks: over time, against heading, against the wind."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
+from shipcosim.diagnose.validation.missing_force import MissingForce
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, line, rounded
 from shipcosim.report.theme.views import Figure
@@ -18,37 +19,22 @@ FORCES = (
         (("north", "towards north", palette.BLUE), ("east", "towards east", palette.ORANGE)),
     ),
 )
-BINS = 24
+AGAINST = {
+    "heading": ("heading", "Missing force against heading"),
+    "wind_from": ("wind from, clockwise of the bow", "Missing force against the wind"),
+}
 MOST_POINTS = 1200
 
 
-def force_figures(force: Dataset, left: Dataset | None, thrusters: Iterable[str]) -> list[Figure]:
-    """The missing force over time, against heading, and against the direction of the wind.
-
-    Parameters
-    ----------
-    force : xarray.Dataset
-        What the plain model lacks, of `missing_force`.
-    left : xarray.Dataset, optional
-        What the causes leave of it.
-    thrusters : iterable of str
-
-    Returns
-    -------
-    list of Figure
-    """
+def force_figures(force: MissingForce) -> list[Figure]:
+    """The missing force over time, against heading, and against the direction of the wind."""
     groups = list(FORCES)
-    for name in thrusters:
+    for name in force.thrusters:
         along = (f"{name}_along", "along its positive thrust", palette.BLUE)
         pair = (along, (f"{name}_across", "across", palette.ORANGE))
         groups.append((f"Missing force, frame of {name}", pair))
-    figures = [_over_time(force, left, title, lines) for title, lines in groups]
-    figures += [_against(force, "heading", "heading", "Missing force against heading")]
-    if "wind_from" in force:
-        figures.append(
-            _against(force, "wind_from", "wind from, clockwise of the bow", "Missing force against the wind")
-        )
-    return figures
+    figures = [_over_time(force.plain, force.extended, title, lines) for title, lines in groups]
+    return figures + [_against(sectors, *AGAINST[angle]) for angle, sectors in force.by_angle.items()]
 
 
 def _over_time(force: Dataset, left: Dataset | None, title: str, lines: Sequence[tuple[str, str, str]]) -> Figure:
@@ -75,16 +61,11 @@ def _averaged(series: DataArray, edges: NDArray) -> NDArray:
     return np.array([values[a:b].mean() for a, b in pairs])
 
 
-def _against(force: Dataset, angle: str, label: str, title: str) -> Figure:
+def _against(sectors: Dataset, label: str, title: str) -> Figure:
     """Mean and scatter of the missing force in sectors of an angle."""
-    at, traces = force[angle].values % 360.0, []
-    sector = np.minimum((at / (360.0 / BINS)).astype(int), BINS - 1)
-    middle = (np.arange(BINS) + 0.5) * 360.0 / BINS
+    traces, middle = [], sectors["sector"].values
     for name, text, colour in FORCES[0][1]:
-        values = 1e-3 * force[name].values
-        groups = [values[(sector == k) & np.isfinite(values)] for k in range(BINS)]
-        mean = np.array([g.mean() if g.size > 4 else np.nan for g in groups])
-        spread = np.array([g.std() if g.size > 4 else 0.0 for g in groups])
+        mean, spread = (1e-3 * sectors[key].values for key in (name, f"{name}_std"))
         traces.append(
             {
                 **{"type": "scatter", "mode": "lines+markers", "name": text, "x": rounded(middle), "y": rounded(mean)},

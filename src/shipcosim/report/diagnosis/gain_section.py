@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from shipcosim.diagnose.validation.gain import rms
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.prediction_errors import MODELS, condition_table, gain_figures, models_to_show, removed
-from shipcosim.report.diagnosis.story import Story
 from shipcosim.report.theme.numbers import metres, percent
 from shipcosim.report.theme.views import Figure, Table
 
@@ -49,29 +48,27 @@ class GainSection:
     difference: str = ""
 
 
-def gain_section(story: Story) -> GainSection:
+def gain_section(diagnosis: Diagnosis) -> GainSection:
     """The section as the template fills it in."""
-    gain, errors, simulated = story.diagnosis.gain, story.errors, story.simulated
-    models = models_to_show(tuple(MODELS), story.diagnosis)
-    if story.extension is None or gain is None:
+    gain, errors = diagnosis.gain, diagnosis.predictions
+    models = models_to_show(tuple(MODELS), diagnosis)
+    if diagnosis.extension is None or gain is None:
         models = [model for model in models if not model.startswith("extended")]
-    found, is_extended = _found(gain, story.diagnosis.verdict), "extended" in models
+    found, is_extended = _found(gain, diagnosis.verdict), "extended" in models
     if errors is None:
-        return GainSection(found, simulated is not None, is_extended)
-    apart = (
-        simulated["difference"].isel(horizon=-1).max() if simulated is not None and "difference" in simulated else None
-    )
-    without = {"extended": "", "calibrated": ""}
+        return GainSection(found, False, is_extended)
+    held_out = {one.condition for one in errors.held_out}
     return GainSection(
         found,
-        simulated is not None,
+        errors.is_simulated,
         is_extended,
         errors=_errors(gain),
         figures=tuple(gain_figures(errors, models)),
-        conditions=condition_table(errors, story.unseen_errors) if gain else Table(()),
-        missing=" and of ".join(text for name, text in LACKING.items() if name not in story.unseen_errors),
-        **({name: metres(rms(story.comparison.errors, "position", name)) for name in without} if gain else without),
-        difference="" if apart is None else metres(float(apart)),
+        conditions=condition_table(errors) if gain else Table(()),
+        missing=" and of ".join(text for name, text in LACKING.items() if name not in held_out),
+        extended=metres(errors.extended) if gain else "",
+        calibrated=metres(errors.calibrated) if gain else "",
+        difference="" if errors.difference is None else metres(errors.difference),
     )
 
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
-from shipcosim.report.diagnosis.story import Story
 from shipcosim.report.diagnosis.words import title, told, where
 from shipcosim.report.theme.views import Figure, Table
 
@@ -30,19 +30,19 @@ class LogSection:
     handled: tuple[str, ...]
 
 
-def log_section(story: Story) -> LogSection:
+def log_section(diagnosis: Diagnosis) -> LogSection:
     """The section as the template fills it in."""
-    findings, identification = story.diagnosis.findings, story.details.explained.identification
+    findings, log = diagnosis.findings, diagnosis.log
     faults = [f for f in findings if f.kind == "data"]
     rows = (
         (title(f.cause), ", ".join(f.channels) or "all", where(f), f.note or told(f), read_faults()[f.cause].repair)
         for f in faults
     )
-    track = track_figure(identification.repaired)
+    track = track_figure(log.repaired)
     return LogSection(
         found=f"{len(faults)} fault{'s' * (len(faults) != 1)}" if faults else "no fault found",
         faults=Table(tuple(rows), head=("Fault", "Channels", "Where", "What", "Done about it")),
-        notes=tuple(story.notes),
-        figures=(*([track] if track else []), *log_figures(identification.log, identification.repaired, findings)),
-        handled=tuple(story.handled),
+        notes=diagnosis.notes,
+        figures=(*([track] if track else []), *log_figures(log.measured, log.repaired, findings)),
+        handled=log.handled,
     )

@@ -3,13 +3,13 @@
 import os
 from dataclasses import dataclass
 
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.cause_section import CauseSection, cause_section
 from shipcosim.report.diagnosis.error_section import ErrorSection, error_section
 from shipcosim.report.diagnosis.extension_section import ExtensionSection, extension_section
 from shipcosim.report.diagnosis.gain_section import GainSection, gain_section
 from shipcosim.report.diagnosis.key_figures import key_figures
 from shipcosim.report.diagnosis.log_section import LogSection, log_section
-from shipcosim.report.diagnosis.story import Story
 from shipcosim.report.diagnosis.words import next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page
@@ -40,12 +40,13 @@ class DiagnosisPage(Page):
     figures: tuple[Figure, ...]
 
 
-def write_diagnosis(story: Story, path: str | os.PathLike[str]) -> None:
+def write_diagnosis(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> None:
     """Write the page of a diagnosis.
 
     Parameters
     ----------
-    story : Story
+    diagnosis : Diagnosis
+        Complete, as from `shipcosim.diagnose`.
     path : path
         HTML file; it is there completely or not at all.
 
@@ -54,29 +55,29 @@ def write_diagnosis(story: Story, path: str | os.PathLike[str]) -> None:
     ShipcosimError
         If the file cannot be written.
     """
-    write_file(path, render(story).encode())
+    write_file(path, render(diagnosis).encode())
 
 
-def render(story: Story) -> str:
+def render(diagnosis: Diagnosis) -> str:
     """The page as HTML."""
-    return render_template("diagnosis/diagnosis.html.jinja", _page(story))
+    return render_template("diagnosis/diagnosis.html.jinja", _page(diagnosis))
 
 
-def _page(story: Story) -> DiagnosisPage:
-    log, error, cause = log_section(story), error_section(story), cause_section(story)
-    extension, gain = extension_section(story), gain_section(story)
+def _page(diagnosis: Diagnosis) -> DiagnosisPage:
+    log, error, cause = log_section(diagnosis), error_section(diagnosis), cause_section(diagnosis)
+    extension, gain = extension_section(diagnosis), gain_section(diagnosis)
     causes = (*cause.figures, *cause.unmodelled, *cause.whiteness)
     figures = (*log.figures, *error.figures, *error.forces, *causes, *gain.figures)
     links = {"log": ("Log", log), "error": ("Error", error), "causes": ("Cause", cause)}
     links |= {"extension": ("Extension", extension), "gain": ("Gain", gain)}
-    steps = next_steps(story.diagnosis, extension.system if extension.state == "extended" else None, story.causes)
+    steps = next_steps(diagnosis, extension.system if extension.state == "extended" else None, diagnosis.causes)
     return DiagnosisPage(
-        title=f"Diagnosis of {story.source}",
-        facts=_facts(story),
-        outcome=outcome(story.diagnosis, story.causes),
+        title=f"Diagnosis of {diagnosis.log.name}",
+        facts=_facts(diagnosis),
+        outcome=outcome(diagnosis, diagnosis.causes),
         links=tuple(Link(anchor, title, section.found) for anchor, (title, section) in links.items()),
         data=tuple(figure.drawn for figure in figures),
-        key_figures=key_figures(story.diagnosis),
+        key_figures=key_figures(diagnosis),
         next_steps=tuple(steps),
         log=log,
         error=error,
@@ -87,9 +88,9 @@ def _page(story: Story) -> DiagnosisPage:
     )
 
 
-def _facts(story: Story) -> tuple[Fact, ...]:
+def _facts(diagnosis: Diagnosis) -> tuple[Fact, ...]:
     """The system, the length of the log and its step."""
-    time = story.details.explained.identification.log["time"].values
+    time = diagnosis.log.measured["time"].values
     log = f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"
-    facts = (("System", story.system.name), ("Log", log), ("Step", f"{story.details.problem.record.step:g} s"))
+    facts = (("System", diagnosis.system.name), ("Log", log), ("Step", f"{diagnosis.log.step:g} s"))
     return tuple(Fact(name, text) for name, text in facts if text)

@@ -3,12 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike
-from xarray import Dataset
-
 from shipcosim.diagnose.result import Diagnosis
-from shipcosim.diagnose.validation.gain import gain, parts
+from shipcosim.diagnose.validation.summary import ConditionErrors, PredictionErrors
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, bars, line
 from shipcosim.report.theme.numbers import plain
@@ -28,15 +24,7 @@ CHANNELS = {
     "sway": ("Sway", "m/s"),
     "yaw_rate": ("Rate of turn", "°/s"),
 }
-BLOCKS = 3  # of 120 s, for an interval of a part of the predictions
 HELD = {"other headings": "headings not fitted on", "free drift": "free drift, not fitted on"}
-
-
-def rms(values: ArrayLike) -> float:
-    """Root mean square of the finite values; NaN without any."""
-    every = np.asarray(values, float)
-    known = every[np.isfinite(every)]
-    return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
 
 
 def models_to_show(models: Sequence[str], diagnosis: Diagnosis) -> list[str]:
@@ -44,77 +32,49 @@ def models_to_show(models: Sequence[str], diagnosis: Diagnosis) -> list[str]:
     return [m for m in models if m != "floor" or diagnosis.verdict in ("named", "consistent")]
 
 
-def error_figures(errors: Dataset, models: Sequence[str]) -> list[Figure]:
-    """Errors over the horizon, a figure for position and heading each.
-
-    Parameters
-    ----------
-    errors : xarray.Dataset
-        Of a `Comparison`: channels by ``model``, ``horizon`` and ``segment``.
-    models : sequence of str
-
-    Returns
-    -------
-    list of Figure
-    """
-    figures, horizons = [], errors["horizon"].values
+def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figure]:
+    """Root mean square errors over the horizon, a figure for position and heading each."""
+    figures, horizons = [], overall.rms["horizon"].values
     for channel in ("position", "heading"):
         title, unit = CHANNELS[channel]
         traces = []
         for model in models:
             name, colour = MODELS[model]
-            sizes = [rms(errors[channel].sel(model=model, horizon=h)) for h in horizons]
+            sizes = overall.rms[channel].sel(model=model).values
             traces.append(bars(name, [f"{h:.0f} s" for h in horizons], sizes, colour, unit))
         layout = {"barmode": "group", "xaxis": {"type": "category"}, "yaxis": {"rangemode": "tozero"}}
         figures.append(Figure(f"{title} error after 10, 30, 60 s", unit, tuple(traces), layout))
     return figures
 
 
-def error_table(errors: Dataset, models: Sequence[str] = ("plain", "floor")) -> Table:
+def _last(one: ConditionErrors, channel: str, model: str) -> float:
+    """Root mean square error after the longest horizon."""
+    return float(one.rms[channel].sel(model=model).isel(horizon=-1))
+
+
+def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "floor")) -> Table:
     """Root mean square errors after the longest horizon, by what the ship did and channel.
 
-    Returns
-    -------
-    Table
-        Each cell shows the models' errors, the last as the floor.
+    Each cell shows the models' errors, the last as the floor.
     """
     head = ("", "Segments", *(f"{title} [{unit}]" for title, unit in CHANNELS.values()))
-    regimes, last = errors["regime"].values, errors.isel(horizon=-1)
-    groups = [("all", np.arange(regimes.size))]
-    groups += [(str(name), np.flatnonzero(regimes == name)) for name in np.unique(regimes)]
     rows = []
-    for name, which in groups:
-        cells = [
-            " / ".join(plain(rms(last[channel].sel(model=model).isel(segment=which)), 2) for model in models)
-            for channel in CHANNELS
-        ]
-        rows.append((name, str(which.size), *cells))
+    for one in (errors.overall, *errors.by_regime):
+        cells = [" / ".join(plain(_last(one, channel, model), 2) for model in models) for channel in CHANNELS]
+        rows.append((one.condition, str(one.predictions), *cells))
     return Table(tuple(rows), head, tight=tuple(range(2, 9)))
 
 
-def condition_table(errors: Dataset, unseen: Mapping[str, Dataset]) -> Table:
-    """Position errors after the longest horizon with each model, by condition, and the share that the causes remove.
-
-    Parameters
-    ----------
-    errors : xarray.Dataset
-        On the rows that were held out in time.
-    unseen : dict of str to xarray.Dataset
-        By condition that nothing was fitted on.
-
-    Returns
-    -------
-    Table
-    """
+def condition_table(errors: PredictionErrors) -> Table:
+    """Position errors after the longest horizon with each model, by condition, and the share that causes remove."""
     models = (f"{name} [m]" for name, _ in MODELS.values())
     head = ("Held out", "Predictions", *models, "explainable error removed")
-    groups = {"the later part": errors} | {f"of it {name}": part for name, part in parts(errors).items()}
-    groups |= {HELD[name]: part for name, part in unseen.items()}
+    groups = {"the later part": errors.overall} | {f"of it {one.condition}": one for one in errors.by_regime}
+    groups |= {HELD[one.condition]: one for one in errors.held_out}
     rows = []
-    for name, part in groups.items():
-        last = part["position"].isel(horizon=-1)
-        cells = [plain(rms(last.sel(model=model)), 2) for model in MODELS]
-        rows.append((name, str(part.sizes["segment"]), *cells, removed(gain(part, fewest=BLOCKS))))
+    for name, one in groups.items():
+        cells = [plain(_last(one, "position", model), 2) for model in MODELS]
+        rows.append((name, str(one.predictions), *cells, removed(one.gain)))
     return Table(tuple(rows), head, tight=tuple(range(1, 8)))
 
 
@@ -126,14 +86,13 @@ def removed(entry: Mapping[str, Any]) -> str:
     return f"{100 * entry['share_of_explainable']:.0f} %{sure}"
 
 
-def gain_figures(errors: Dataset, models: Sequence[str]) -> list[Figure]:
+def gain_figures(errors: PredictionErrors, models: Sequence[str]) -> list[Figure]:
     """Errors after the longest horizon with each model: by what the ship did, and of each prediction."""
-    regimes, last = errors["regime"].values, errors.isel(horizon=-1)
-    names = [str(name) for name in np.unique(regimes)]
+    last, names = errors.each.isel(horizon=-1), [one.condition for one in errors.by_regime]
     by_regime, each = [], []
     for model in models:
         (name, colour), position = MODELS[model], last["position"].sel(model=model)
-        sizes = [rms(position.isel(segment=regimes == regime)) for regime in names]
+        sizes = [_last(one, "position", model) for one in errors.by_regime]
         by_regime.append(bars(name, names, sizes, colour, "m"))
         dots = {"mode": "markers", "marker": {"color": colour, "size": 5}}
         each.append(line(name, last["start_time"].values, position.values, colour, **dots))

@@ -2,26 +2,42 @@
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.hypotheses.cause import Cause, placeholders
-from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.report.diagnosis.words import title
 from shipcosim.report.theme.numbers import plain
 
+UNITS = {
+    **{"speed": "m/s", "surge": "m/s", "sway": "m/s", "wind_speed": "m/s"},
+    **{"surge_acceleration": "m/s²", "yaw_rate": "°/s"},
+}
+
 
 def not_testable_rows(
-    problem: IdentificationProblem, names: Sequence[str], causes: Mapping[str, Cause] | None = None
+    names: Sequence[str], causes: Mapping[str, Cause], facts: Mapping[str, float | None]
 ) -> list[tuple[str, str, str]]:
-    """Why this log could not have shown some causes: the cause, and what the log has of what would show it."""
-    facts, known, rows = log_facts(problem), read_catalogue() if causes is None else causes, []
+    """Why this log could not have shown some causes: the cause, and what the log has of what would show it.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the causes.
+    causes : dict of str to Cause
+    facts : dict of str to float or None
+        What the log has, as from `log_facts`.
+    """
+    texts, rows = _texts(facts), []
     for name in names:
-        cause = known.get(name)
-        reason = f"{_reason(cause, facts)}an effect of typical size would not have stood out"
+        cause = causes.get(name)
+        reason = f"{_reason(cause, texts)}an effect of typical size would not have stood out"
         rows.append((title(name), cause.sentence if cause else "", reason))
     return rows
+
+
+def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:
+    """What a log has, with units; None for what it does not have."""
+    sizes = {name: facts.get(name) for name in UNITS}
+    texts = {name: None if size is None else f"{plain(size, 2)} {UNITS[name]}" for name, size in sizes.items()}
+    return texts | {"astern_share": f"{100.0 * (facts.get('astern_share') or 0.0):.0f} %"}
 
 
 def _reason(cause: Cause | None, facts: Mapping[str, str | None]) -> str:
@@ -32,26 +48,3 @@ def _reason(cause: Cause | None, facts: Mapping[str, str | None]) -> str:
     if missing:
         return f"there is no {missing[0].partition('_')[0]} in the log; "
     return cause.why_not_testable.format_map(facts) + "; "
-
-
-def log_facts(problem: IdentificationProblem) -> dict[str, str | None]:
-    """What a cause's file can say of a log, see `FACTS`; None for what the log does not have."""
-    record, motion = problem.record, problem.motion
-    return {
-        "astern_share": f"{_reverse(problem):.0f} %",
-        "speed": f"{_rms(np.hypot(motion.u, motion.v))} m/s",
-        "surge": f"{_rms(motion.u)} m/s",
-        "surge_acceleration": f"{_rms(np.gradient(motion.u, record.step))} m/s²",
-        "sway": f"{_rms(motion.v)} m/s",
-        "wind_speed": None if record.wind is None else f"{plain(float(np.mean(record.wind[0])), 2)} m/s",
-        "yaw_rate": f"{_rms(np.degrees(motion.r))} °/s",
-    }
-
-
-def _rms(values: ArrayLike) -> str:
-    return plain(float(np.sqrt(np.nanmean(np.asarray(values) ** 2))), 2)
-
-
-def _reverse(problem: IdentificationProblem) -> float:
-    shares = [np.mean(problem.record.units[name][0] < 0.0) for name in problem.model.azimuths]
-    return 100.0 * max(shares, default=0.0)

@@ -1,0 +1,71 @@
+"""The system extended by the findings of a diagnosis, with every number that differs from the given one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.result import Finding
+from shipcosim.diagnose.stages import ExtendedSystem, Identification
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp import read_system
+
+__all__ = ["Change", "with_findings"]
+
+
+@dataclass(frozen=True)
+class Change:
+    """A number of a system that the extended one has otherwise; before is None where there was none."""
+
+    name: str
+    before: float | None
+    after: float
+    unit: str
+
+
+def with_findings(
+    given: ExtendedSystem, findings: Iterable[Finding], log: Identification, folder: str | os.PathLike
+) -> ExtendedSystem:
+    """The system extended by findings of the physics; the given one where there are none.
+
+    Parameters
+    ----------
+    given : ExtendedSystem
+        Not extended yet.
+    findings : iterable of Finding
+    log : Identification
+        That they were found in; its name and times go into the descriptions.
+    folder : path
+        Gets extended.ssp and extended.ssv.
+
+    Returns
+    -------
+    ExtendedSystem
+        With a remark where the system cannot be extended.
+    """
+    findings = [finding for finding in findings if finding.kind == "physics"]
+    if not findings:
+        return given
+    time, source = log.repaired["time"].values, log.log.encoding.get("source", "")
+    about = {"source": Path(source).name, "sha256": log.log.encoding.get("sha256", "")}
+    about |= {"span": (float(time[0]), float(time[-1]))}
+    try:
+        extension = extend(given.source, findings, folder, log_attributes=about, catalogue=log.causes)
+        system = read_system(str(extension.ssp))
+    except ShipcosimError as error:
+        said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
+        return replace(given, remarks=tuple(f"The system was not extended: {text}" for text in said))
+    changes = (_change(name, value, given.given, system) for name, value in extension.values.items())
+    return replace(given, extension=extension, system=system, changes=tuple(changes))
+
+
+def _change(name, value, given, extended):
+    component, _, variable = name.rpartition(".")
+    start = given.components[component].start_value(variable) if component in given.components else None
+    known = extended.components[component].fmu.variables if component in extended.components else extended.inputs
+    unit = known[variable].unit if variable in known else ""
+    before = float(start) if isinstance(start, int | float) else None
+    return Change(name, before, float(value), "" if unit in (None, "1") else unit)

@@ -1,0 +1,147 @@
+"""The evidence behind a verdict as values: what sets of causes gain, how large they are, what is left of the log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.noise import explained
+from shipcosim.diagnose.inference.search import without_causes
+from shipcosim.diagnose.inference.verdict import gained
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.stages import JudgedLog
+
+__all__ = ["LAGS", "CauseGain", "Evidence", "SetEvidence", "SizeEstimate", "evidence_of", "whiteness"]
+
+LAGS = 30
+"""Lags of the autocorrelation of the innovations. [rows]"""
+
+
+@dataclass(frozen=True)
+class SetEvidence:
+    """A set of causes, each with its component, and its log-evidence over the ship without a cause. [nats]"""
+
+    causes: tuple[tuple[str, str | None], ...]
+    gain: float
+    is_chosen: bool
+
+
+@dataclass(frozen=True)
+class SizeEstimate:
+    """A parameter of a cause in units of its typical size off neutral, with its standard deviation."""
+
+    cause: str
+    component: str | None
+    parameter: str
+    size: float
+    std: float
+
+
+@dataclass(frozen=True)
+class CauseGain:
+    """Log-evidence that a cause gains, and on simulated healthy logs; None where that was not computed. [nats]"""
+
+    cause: str
+    component: str | None
+    gain: float
+    null_gain: float | None
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a verdict on causes rests on.
+
+    Attributes
+    ----------
+    sets : tuple of SetEvidence
+        Best first, without the empty set.
+    sizes : tuple of SizeEstimate
+        Of the set that the verdict rests on.
+    gains : tuple of CauseGain
+        Of the same.
+    unmodelled : dict of str to float
+        Gain of unmodelled errors beside it, by kind. [nats]
+    whiteness : dict of str to (LAGS, 6) array
+        Autocorrelation of the whitened innovations ``"before"``, by the plain model, and ``"after"``, with the causes;
+        from a lag of one row on, NaN for a channel that was not measured.
+    step : float
+        Time from row to row. [s]
+    rows : int
+    change_point : float or None
+        From when on the causes act. [s]
+    """
+
+    sets: tuple[SetEvidence, ...]
+    sizes: tuple[SizeEstimate, ...]
+    gains: tuple[CauseGain, ...]
+    unmodelled: dict[str, float]
+    whiteness: dict[str, np.ndarray]
+    step: float
+    rows: int
+    change_point: float | None = None
+
+
+def evidence_of(log: JudgedLog) -> Evidence:
+    """The evidence behind a verdict."""
+    problem, fit, nothing = log.problem, log.fit, without_causes(log.fits)
+    white = {"before": whiteness(problem, nothing, as_it_is=True)}
+    if fit.hypotheses:
+        white["after"] = whiteness(problem, fit)
+    return Evidence(
+        tuple(
+            SetEvidence(tuple((s.cause, s.component) for s in one.hypotheses), one.score - nothing.score, one is fit)
+            for one in log.fits
+            if one.hypotheses
+        ),
+        tuple(_sizes(fit)),
+        tuple(
+            CauseGain(s.cause, s.component, gained(s, fit, log.fits), log.null_gains.get(s.label))
+            for s in fit.hypotheses
+        ),
+        log.unmodelled,
+        white,
+        problem.record.step,
+        problem.record.time.size,
+        log.explained.change_point,
+    )
+
+
+def _sizes(fit):
+    for hypothesis in fit.hypotheses:
+        for parameter in hypothesis.parameters:
+            path = parameter.paths[0]
+            size = (fit.values[path] - parameter.neutral) / parameter.typical
+            std = fit.std[path] / parameter.typical
+            yield SizeEstimate(hypothesis.cause, hypothesis.component, parameter.name, size, std)
+
+
+def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) -> np.ndarray:
+    """Autocorrelation of the whitened innovations that a fit leaves.
+
+    Parameters
+    ----------
+    problem : IdentificationProblem
+    fit : Fit
+    as_it_is : bool
+        Without moving known numbers within their tolerances.
+
+    Returns
+    -------
+    (LAGS, 6) array
+        From a lag of one row on; NaN for a channel that was not measured.
+    """
+    theta = 0.0 * fit.left if as_it_is else fit.left
+    white = innovations(explained(fit.linear, theta), problem.noise, problem.record).white[..., 0]
+    white = np.where(fit.linear.whole, white, np.nan)
+    found = np.full((LAGS, white.shape[1]), np.nan)
+    for channel, values in enumerate(white.T):
+        if np.isfinite(values).sum() > 10 * LAGS:
+            values = values - np.nanmean(values)
+            power = np.nanmean(values**2)
+            found[:, channel] = [np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)]
+    return found

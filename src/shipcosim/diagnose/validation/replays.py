@@ -1,0 +1,72 @@
+"""The errors of predictions again as co-simulations: the given system, and the one extended by what was fitted."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from functools import partial
+
+from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.inference.fitting import Fit
+from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.stages import ExtendedSystem, PredictedLog, SimulatedLog
+from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp import read_system
+
+__all__ = ["findings_of", "with_cosimulation"]
+
+
+def with_cosimulation(
+    log: PredictedLog, extended: ExtendedSystem, progress: Callable[[int, int], None] | None = None
+) -> SimulatedLog:
+    """Predictions as co-simulations, with what was fitted on the training rows.
+
+    Parameters
+    ----------
+    log : PredictedLog
+    extended : ExtendedSystem
+        Where causes were named but the system could not be extended, the predictions stay in array form.
+    progress : callable, optional
+        Called with (segments done, segments in all).
+    """
+    if log.comparison is None:
+        return SimulatedLog(None, {}, False)
+    in_array_form = {name: one.errors for name, one in log.held_out.items()}
+    if log.comparison.fit.hypotheses and extended.extension is None:
+        return SimulatedLog(log.comparison.errors, in_array_form, False)
+    run = partial(_cosimulated, extended, log.judged.explained.identification.causes, progress)
+    try:
+        errors = run(log.comparison, MOST)
+        held_out = {name: run(one, MOST // 2) for name, one in log.held_out.items()}
+    except ShipcosimError as error:
+        said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
+        remarks = tuple(f"The system was not co-simulated: {text}" for text in said)
+        return SimulatedLog(log.comparison.errors, in_array_form, False, remarks)
+    return SimulatedLog(errors, held_out, True)
+
+
+def _cosimulated(extended, causes, progress, comparison, most):
+    """Errors of one comparison, by the given system and by the one extended by what the comparison was fitted with."""
+    fitted = None
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        if comparison.fit.hypotheses:
+            about = {"span": comparison.fit.model.span}
+            made = extend(extended.source, findings_of(comparison.fit), folder, log_attributes=about, catalogue=causes)
+            fitted = Replayed(read_system(str(made.ssp)), made.signals)
+        return simulated(comparison, Replayed(extended.given), fitted, most=most, progress=progress)
+
+
+def findings_of(fit: Fit) -> list[Finding]:
+    """The causes of a fit as findings."""
+    return [
+        Finding(
+            hypothesis.cause,
+            hypothesis.component,
+            parameters={
+                of.name: Estimate(fit.values[of.paths[0]] * of.factor, abs(fit.std[of.paths[0]] * of.factor), of.unit)
+                for of in hypothesis.parameters
+            },
+        )
+        for hypothesis in fit.hypotheses
+    ]
