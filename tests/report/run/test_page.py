@@ -197,3 +197,45 @@ def test_same_run_makes_the_same_page(four_corner):
     assert render(four_corner().isel(time=slice(None, None, 20))) == render(
         four_corner().isel(time=slice(None, None, 20))
     )
+
+
+def test_names_are_drawn_as_they_are_written(browse, tmp_path):
+    """Plotly reads some HTML in texts: a name with angle brackets must not become formatting."""
+    time = np.linspace(0.0, 10.0, 101)
+    name = "mass.<b>x</b> & y"
+    write_report(
+        xr.Dataset({name: ("time", np.cos(time), {"units": "<m>"})}, coords={"time": time}), tmp_path / "page.html"
+    )
+    page = browse(tmp_path / "page.html")
+    title = page.ask("return document.querySelector('#chosen .panel .gtitle').textContent")
+    assert title == f"{name} [<m>]"
+    assert page.errors() == []
+
+
+def test_dark_page_is_dark_and_its_figures_too(browse, chromium, file):
+    seen = {}
+    for scheme in ("light", "dark"):
+        media = {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", media)
+        page = browse(file)
+        seen[scheme] = page.ask(
+            "const panel = document.getElementById('panel-0')._fullLayout;"
+            "return [getComputedStyle(document.body).backgroundColor, panel.paper_bgcolor, panel.font.color]"
+        )
+    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    assert all(light != dark for light, dark in zip(*seen.values(), strict=True))
+    assert seen["light"][1] == "#ffffff" and seen["dark"][1] == "#182028"
+
+
+def test_open_page_follows_when_the_browser_turns_dark(browse, chromium, file):
+    set_scheme = lambda scheme: chromium.execute_cdp_cmd(  # noqa: E731
+        "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
+    )
+    set_scheme("light")
+    page = browse(file)
+    page.ask("Plotly.relayout(document.getElementById('panel-0'), {'xaxis.range[0]': 200, 'xaxis.range[1]': 300})")
+    set_scheme("dark")
+    page.wait("return document.getElementById('panel-0')._fullLayout.paper_bgcolor === '#182028'")
+    page.wait("return document.body.dataset.drawn === 'all'")
+    assert page.ask("return document.getElementById('panel-0')._fullLayout.xaxis.range") == [200, 300]
+    set_scheme("light")

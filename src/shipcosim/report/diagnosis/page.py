@@ -60,7 +60,7 @@ def write_diagnosis(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> None:
 
 def render(diagnosis: Diagnosis) -> str:
     """The page as HTML."""
-    return render_template("diagnosis/diagnosis.html.jinja", _page(diagnosis))
+    return render_template("diagnosis/templates/diagnosis.html.jinja", _page(diagnosis))
 
 
 def _page(diagnosis: Diagnosis) -> DiagnosisPage:

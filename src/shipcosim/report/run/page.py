@@ -113,7 +113,7 @@ def render(
     system: System | None = None,
 ) -> str:
     """The page as HTML; arguments as for `write_report`."""
-    return render_template("run/run.html.jinja", _page(table, scenario, verdicts, system))
+    return render_template("run/templates/run.html.jinja", _page(table, scenario, verdicts, system))
 
 
 def digest(table: Dataset, verdicts: Sequence[Verdict] = ()) -> Digest:

@@ -1,1 +1,1 @@
-"""What all pages share: colours, units as people read them, pieces of HTML."""
+"""What all pages share: frame and parts as templates, colours, units and numbers as people read them."""

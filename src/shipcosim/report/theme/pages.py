@@ -16,7 +16,7 @@ def render(template: str, page: Page) -> str:
     Parameters
     ----------
     template : str
-        File below `report/`, as in ``"run/run.html.jinja"``.
+        File below `report/`, as in ``"run/templates/run.html.jinja"``.
     page : Page
         What it shows.
 

@@ -1,6 +1,6 @@
-"""Colours of the figures, by the names that `theme.css` gives them: Okabe and Ito's, light and dark.
+"""Colours of the figures, by the names that `templates/theme.css` gives them: Okabe and Ito's, light and dark.
 
-They can be told apart with every kind of colour vision. `theme/figures.js` looks a name up in the style sheet.
+They can be told apart with every kind of colour vision. `templates/figures.js` looks a name up in the style sheet.
 """
 
 BLUE, VERMILLION, GREEN, ORANGE = "@blue", "@vermillion", "@green", "@orange"

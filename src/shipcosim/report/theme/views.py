@@ -54,8 +54,9 @@ class Figure:
     ----------
     title, unit, note : str
     traces : tuple of dict
-        Traces of plotly. A text is plain text: `theme/figures.js` turns line breaks and special characters into what
-        plotly wants. A colour is a name of `palette`.
+        Traces of plotly. A text is plain text: `templates/figures.js` turns line breaks and special characters into
+        what plotly wants. A colour is a name of `palette`. `named`: whether the name of the trace is shown at the
+        pointer, yes by default.
     layout : dict
         Layout of plotly, as far as it is this figure's own.
     height : int, optional
