@@ -1,23 +1,32 @@
 """A package whose SSD is held in memory: changed as a whole or not at all, checked, and its files brought together."""
 
 from collections import Counter
+from collections.abc import Iterator
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import replace
 from filecmp import cmp
 from pathlib import Path
+from typing import TypeVar
 from urllib.parse import quote
+
+import lxml.etree as etree
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.parameter_sets import Sets
 from shipcosim.ssp.edit.write import write_file
 from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
-from shipcosim.ssp.read.package import SYSTEM_STRUCTURE
+from shipcosim.ssp.read.package import SYSTEM_STRUCTURE, Package
+from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.read.structure import FMU
 from shipcosim.ssp.xml.archive import write_archive
-from shipcosim.ssp.xml.document import Document, Findings, child
+from shipcosim.ssp.xml.document import Document, Findings, children
 from shipcosim.ssp.xml.markup import free_name, to_bytes
+
+Content = TypeVar("Content")
 
 
 class Draft:
@@ -33,38 +42,47 @@ class Draft:
         Name of the system as the user knows it.
     """
 
-    def __init__(self, package, document, file):
+    def __init__(self, package: Package, document: Document, file: str):
         self.file = file
         self.package = replace(package, held={}, located={})
         self.path = (package.folder / package.ssd).resolve()
         self.package.held[self.path] = document
-        self._described, self._assembled, self._changing = {}, None, False
+        self._described: dict[tuple[Path, int], FmuDescription | None] = {}
+        self._assembled: tuple[System | None, Findings] | None = None
+        self._changing = False
         self.assemble()
         self._came_with = set(self.package.located)
 
-    def copy(self):
-        """One more of it, changed independently."""
-        twin = Draft(self.package, self.package.held[self.path], self.file)
-        twin.package.held.update(self._snapshot())
-        twin._came_with = set(self._came_with)
-        return twin
+    def copy(self) -> "Draft":
+        """The same draft once more, changed independently."""
+        copied = Draft(self.package, self.document, self.file)
+        copied.package.held.update(self._snapshot())
+        copied._came_with = set(self._came_with)
+        return copied
 
     @property
-    def root(self):
+    def document(self) -> Document:
+        """The SSD."""
+        document = self.package.held[self.path]
+        assert isinstance(document, Document)  # put there on creation; changes only exchange it for a copy
+        return document
+
+    @property
+    def root(self) -> etree._Element:
         """Outermost element of the SSD."""
-        return self.package.held[self.path].root
+        return self.document.root
 
     @property
-    def system(self):
-        """The outermost System element."""
-        return child(self.root, "ssd:System")
+    def system(self) -> etree._Element:
+        """The outermost System element, without which there is no draft."""
+        return children(self.root, "ssd:System")[0]
 
     @property
-    def sets(self):
+    def sets(self) -> Sets:
         """The parameter sets that it binds."""
-        return Sets(self.package, self.package.held[self.path])
+        return Sets(self.package, self.document)
 
-    def problem(self, what, found, remedy=""):
+    def problem(self, what: str, found: str, remedy: str = "") -> Problem:
         """Problem with something in the SSD."""
         return Problem(f"{self.package.show(self.path)}: {what}", found, remedy)
 
@@ -74,25 +92,24 @@ class Draft:
 
     # ---------------------------------------------------------------- reading
 
-    def assemble(self, parameters=()):
+    def assemble(self, parameters: ParameterSets = ()) -> tuple[System | None, Findings]:
         """System (None or incomplete where there are errors) and findings, as it is now."""
         findings = Findings()
         self.package.located.clear()
         system = assemble_package(self.package, parameters, self.file, findings, self._described)
         return system, findings
 
-    def assembled(self):
+    def assembled(self) -> tuple[System | None, Findings]:
         """Like `assemble`, but the same as before where nothing was changed since through `changes`."""
         if self._assembled is None or self._changing:
             self._assembled = self.assemble()
         return self._assembled
 
-    def fmu_of(self, element):
+    def fmu_of(self, element: etree._Element) -> FmuDescription | None:
         """Description of a component's FMU; None for anything else, or where it cannot be read."""
         if element.get("type", FMU) != FMU or not element.get("source"):
             return None
-        folder = self.package.held[self.path].folder
-        file = self.package.locate(element.get("source"), folder, "", Findings())
+        file = self.package.locate(element.get("source", ""), self.document.folder, "", Findings())
         if file is None:
             return None
         key = file, file.stat().st_mtime_ns
@@ -101,7 +118,7 @@ class Draft:
     # ---------------------------------------------------------------- changing
 
     @contextmanager
-    def changes(self):
+    def changes(self) -> Iterator[None]:
         """Changes within are checked at the end, and all undone if they bring new errors; nested ones are part."""
         if self._changing:
             yield
@@ -121,13 +138,13 @@ class Draft:
         finally:
             self._changing = False
 
-    def _snapshot(self):
+    def _snapshot(self) -> dict[Path, Document | Path]:
         return {
             path: replace(held, root=_copied(held.root)) if isinstance(held, Document) else held
             for path, held in self.package.held.items()
         }
 
-    def resource(self, file):
+    def resource(self, file: Path) -> str:
         """Address under which a file from elsewhere belongs to the package from now on."""
         folder, top = self.path.parent / "resources", self.package.folder.resolve()
         known = {top / name: path for name, path in self.package.located.items()}
@@ -142,7 +159,7 @@ class Draft:
 
     # ---------------------------------------------------------------- writing
 
-    def write(self, path, fmus):
+    def write(self, path: Path, fmus: bool) -> None:
         """Write the package: packed into a .ssp, as a .ssd with its files beside it, or as a folder."""
         files = self._files()
         packed = path.suffix.lower() == ".ssp"
@@ -159,11 +176,11 @@ class Draft:
             if not (isinstance(file, Path) and target.exists() and target.samefile(file)):
                 write_file(target, file.read_bytes() if isinstance(file, Path) else file)
 
-    def _files(self):
+    def _files(self) -> dict[str, Path | bytes]:
         """Contents, or where they are, by name in the package; FMUs of removed components left out."""
         self.assemble()
         folder = self.package.folder.resolve()
-        files = {}
+        files: dict[str, Path | bytes] = {}
         if not self.file.partition("#")[0].lower().endswith(".ssd"):  # a single .ssd says nothing about its neighbours
             found = {path.relative_to(folder): path for path in sorted(folder.rglob("*")) if path.is_file()}
             files = {name.as_posix(): path for name, path in found.items() if not _is_hidden(name)}
@@ -178,20 +195,20 @@ class Draft:
 PREFIXES = {".ssd": ("ssd", "ssc", "ssv", "osp"), ".ssv": ("ssv", "ssc")}
 
 
-def _copied(root):
+def _copied(root: etree._Element) -> etree._Element:
     """Copy of an element with what stands before and after it in its file."""
     return deepcopy(root.getroottree()).getroot()
 
 
-def _is_hidden(name):
+def _is_hidden(name: Path) -> bool:
     return any(part.startswith(".") for part in name.parts)
 
 
-def _is_elsewhere(file, folder):
+def _is_elsewhere(file: Path | bytes, folder: Path) -> bool:
     return isinstance(file, Path) and file.suffix == ".fmu" and not file.resolve().is_relative_to(folder)
 
 
-def _with_ssd(files, name, wanted):
+def _with_ssd(files: dict[str, Content], name: str, wanted: str) -> dict[str, Content]:
     """Files with the SSD under the name that it is looked for, unless another one has it."""
     if wanted == SYSTEM_STRUCTURE and SYSTEM_STRUCTURE in files:
         return files

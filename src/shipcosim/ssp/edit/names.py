@@ -1,5 +1,6 @@
 """Elements of an SSD by their names as users write them: ``"ship.vessel"``, ``"vessel.psi"``."""
 
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import lxml.etree as etree
@@ -20,20 +21,20 @@ class Reading(NamedTuple):
     connector: str
 
     @property
-    def owner(self):
+    def owner(self) -> etree._Element:
         """The element that has the connector."""
         return self.system if self.element is None else self.element
 
     @property
-    def element_name(self):
+    def element_name(self) -> str | None:
         """Of the element, as in a connection; None for the system itself."""
         return None if self.element is None else self.element.get("name")
 
-    def declared(self):
+    def declared(self) -> etree._Element | None:
         """The Connector element, or None."""
         return connector_of(self.owner, self.connector)
 
-    def gives(self):
+    def gives(self) -> bool | None:
         """Whether a value comes from here; None where the connector does not say."""
         connector = self.declared()
         kind = None if connector is None else connector.get("kind")
@@ -42,13 +43,13 @@ class Reading(NamedTuple):
         return (kind in SOURCES_OUTSIDE) == (self.element is not None)
 
 
-def parts(system):
+def parts(system: etree._Element) -> list[etree._Element]:
     """Elements that a system consists of."""
     listed = child(system, "ssd:Elements")
     return [] if listed is None else [part for part in listed if local(part) in ELEMENTS]
 
 
-def walk(system, name=""):
+def walk(system: etree._Element, name: str = "") -> Iterator[tuple[str, etree._Element]]:
     """(full name, element) of a system, nameless where it is the outermost one, and of everything in it."""
     yield name, system
     for part in parts(system):
@@ -59,39 +60,40 @@ def walk(system, name=""):
             yield inner, part
 
 
-def connector_of(element, name):
+def connector_of(element: etree._Element, name: str) -> etree._Element | None:
     """Connector element of this name, or None."""
     listed = children(element, "ssd:Connectors", "ssd:Connector")
     return next((part for part in listed if part.get("name") == name), None)
 
 
-def find_element(system, name):
+def find_element(system: etree._Element, name: str) -> etree._Element | None:
     """Element of a full name (empty: the system itself), or None."""
     return next((element for known, element in walk(system) if known == name), None)
 
 
-def find_connector(system, name):
+def find_connector(system: etree._Element, name: str) -> etree._Element | None:
     """Connector element of a full name, or None."""
     found = (reading.declared() for reading in readings(name, system))
     return next((connector for connector in found if connector is not None), None)
 
 
-def split_owner(system, name):
+def split_owner(system: etree._Element, name: str) -> tuple[etree._Element | None, str]:
     """The system that something of this full name belongs to (None: there is none), and its own name there."""
     outer, _, short = name.rpartition(".")
     owner = find_element(system, outer)
     return (owner if owner is not None and local(owner) == "System" else None), short
 
 
-def connections(system):
+def connections(system: etree._Element) -> Iterator[tuple[tuple[str, str], etree._Element]]:
     """((source, target), element) of all connections, nested ones included, by the full names of what they join."""
     for name, element in walk(system):
         for connection in children(element, "ssd:Connections", "ssd:Connection"):
             ends = ((connection.get(f"{s}Element"), connection.get(f"{s}Connector")) for s in ("start", "end"))
-            yield tuple(".".join(filter(None, (name, *end))) for end in ends), connection
+            start, end = (".".join(filter(None, (name, *end))) for end in ends)
+            yield (start, end), connection
 
 
-def attached(system, name, is_element):
+def attached(system: etree._Element, name: str, is_element: bool) -> Iterator[tuple[etree._Element, str]]:
     """(connection, attribute with its name) of all ends at an element or, else, at a connector."""
     for owner, element in walk(system):
         for connection in children(element, "ssd:Connections", "ssd:Connection"):
@@ -102,7 +104,7 @@ def attached(system, name, is_element):
                     yield connection, f"{side}{'Element' if is_element else 'Connector'}"
 
 
-def readings(signal, system):
+def readings(signal: str, system: etree._Element) -> Iterator[Reading]:
     """Every way to read the name of a signal; names of elements and of connectors can have dots themselves."""
     yield Reading(system, None, signal)
     for part in parts(system):
@@ -113,7 +115,9 @@ def readings(signal, system):
                 yield from readings(signal.removeprefix(start), part)
 
 
-def best_pair(source, target, system, exists, where):
+def best_pair(
+    source: str, target: str, system: etree._Element, exists: Callable[[Reading], bool], where: str
+) -> tuple[Reading, Reading]:
     """Readings of two signals that a connection can join: both in one system, and existing as far as possible.
 
     Parameters
@@ -142,16 +146,18 @@ def best_pair(source, target, system, exists, where):
     return start, end
 
 
-def _likely(reading, exists):
+def _likely(reading: Reading, exists: Callable[[Reading], bool]) -> int:
     return 2 if exists(reading) else 0 if _names_an_element(reading) else 1
 
 
-def _names_an_element(reading):
+def _names_an_element(reading: Reading) -> bool:
     """Whether what is taken for a connector's name looks like one of a component that is not there."""
     return reading.element is None and "." in reading.connector
 
 
-def _refuse_if_elsewhere(signal, reading, system, exists, where):
+def _refuse_if_elsewhere(
+    signal: str, reading: Reading, system: etree._Element, exists: Callable[[Reading], bool], where: str
+) -> None:
     """Raise where a signal is in another system, or of an element that is not there; the check finds all else."""
     if any(exists(other) for other in readings(signal, system)):
         remedy = "A connection stays within one system: go through connectors of the systems between."

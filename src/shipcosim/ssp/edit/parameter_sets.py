@@ -1,6 +1,7 @@
 """Parameter sets that an SSD binds, changed where they stand: inline, or in files beside it."""
 
 from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -9,9 +10,10 @@ from urllib.parse import unquote, urlsplit
 import lxml.etree as etree
 
 from shipcosim.ssp.edit.names import walk
-from shipcosim.ssp.read.parameters import TOLERANCE
+from shipcosim.ssp.read.package import Package
+from shipcosim.ssp.read.parameters import TOLERANCE, ParameterValue
 from shipcosim.ssp.xml.definitions import define_unit
-from shipcosim.ssp.xml.document import Document, Findings, child, children, local, read_document
+from shipcosim.ssp.xml.document import Document, Findings, child, children, local, parent_of, read_document
 from shipcosim.ssp.xml.markup import add, drop, ensure, put
 from shipcosim.ssp.xml.values import KINDS, text_of
 
@@ -41,16 +43,16 @@ class Bound:
     shared: bool
 
     @property
-    def prefix(self):
+    def prefix(self) -> str:
         """What its names start with, seen from the outermost system."""
         return (f"{self.owner}." if self.owner else "") + self.binding.get("prefix", "")
 
     @property
-    def mapped(self):
+    def mapped(self) -> bool:
         """Whether its names are not those of the parameters."""
         return child(self.binding, "ssd:ParameterMapping") is not None
 
-    def parameter(self, name):
+    def parameter(self, name: str) -> etree._Element | None:
         """Parameter element by its full name, or None."""
         if self.mapped or not name.startswith(self.prefix):
             return None
@@ -69,7 +71,7 @@ class Sets:
         The SSD.
     """
 
-    def __init__(self, package, document):
+    def __init__(self, package: Package, document: Document):
         self.package, self.document = package, document
         system = child(document.root, "ssd:System")
         self.elements = {} if system is None else dict(walk(system))
@@ -83,34 +85,34 @@ class Sets:
         depths = {name: self._depth(element) for name, element in self.elements.items()}
         self.bound = sorted((one for one in bound if one is not None), key=lambda one: -depths[one.owner])
 
-    def _depth(self, element):
+    def _depth(self, element: etree._Element) -> int:
         return sum(1 for _ in element.iterancestors())
 
-    def _file(self, binding, element=None):
+    def _file(self, binding: etree._Element) -> Path | None:
         """File in the package that a binding or mapping names, or None."""
-        source = (binding if element is None else element).get("source")
+        source = binding.get("source")
         if not source or binding.get("sourceBase") == "component":
             return None
         return (self.document.folder / unquote(urlsplit(source).path)).resolve()
 
-    def _bound(self, owner, binding, counts):
+    def _bound(self, owner: str, binding: etree._Element, counts: Mapping[Path | None, int]) -> Bound | None:
         file = self._file(binding)
         inline = child(binding, "ssd:ParameterValues")
         root = self._root(file) if file else None if inline is None else child(inline, "ssv:ParameterSet")
         return None if root is None else Bound(owner, binding, root, file, counts[file] > 1 and file is not None)
 
-    def _root(self, file):
+    def _root(self, file: Path) -> etree._Element | None:
         held = self.package.held.get(file, file)
         if isinstance(held, Path):
             held = read_document(held, self.package.show(file), Findings())
         return None if held is None else held.root
 
-    def keep(self, file, root):
+    def keep(self, file: Path | None, root: etree._Element) -> None:
         """Hold a changed file."""
         if file is not None:
             self.package.held[file] = Document(self.package.show(file), root, file.parent)
 
-    def put(self, name, value):
+    def put(self, name: str, value: ParameterValue) -> None:
         """Give a parameter a value where it has one, else in a set of its element's own.
 
         Parameters
@@ -134,7 +136,7 @@ class Sets:
         else:
             self.append(owner, name, value)
 
-    def append(self, owner, name, value):
+    def append(self, owner: str, name: str, value: ParameterValue) -> None:
         """Give a parameter a value in a new set behind all others of an element."""
         element = self.elements[owner]
         binding = add(ensure(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
@@ -143,15 +145,15 @@ class Sets:
         ensure(root, "ssv:Parameters")
         self._add(root, name.removeprefix(f"{owner}.") if owner else name, value)
 
-    def _add(self, root, name, value):
+    def _add(self, root: etree._Element, name: str, value: ParameterValue) -> None:
         parameter = add(ensure(root, "ssv:Parameters"), "ssv:Parameter", name=name)
         write_value(root, parameter, value)
 
-    def _owner(self, name):
+    def _owner(self, name: str) -> str:
         """Innermost element of this SSD that a parameter's full name begins with."""
         return max((owner for owner in self.elements if not owner or name.startswith(f"{owner}.")), key=len)
 
-    def clear(self, name):
+    def clear(self, name: str) -> bool:
         """Take a parameter out of all sets; false where it is in none, or in one that is bound more than once."""
         places = [one for one in self.bound if one.parameter(name) is not None]
         for one in places:
@@ -161,7 +163,7 @@ class Sets:
             self.keep(one.file, one.root)
         return bool(places)
 
-    def rename(self, old, new, *, exact=False):
+    def rename(self, old: str, new: str | None, *, exact: bool = False) -> None:
         """Follow a new full name in the sets of the systems around; None: what had it goes, and its values.
 
         Parameters
@@ -172,7 +174,8 @@ class Sets:
         for one in self.bound:
             if one.owner and not old.startswith(f"{one.owner}."):
                 continue
-            names = _Names(*(name and name.removeprefix(f"{one.owner}.") for name in (old, new)), exact)
+            owner = f"{one.owner}."
+            names = _Names(old.removeprefix(owner), new and new.removeprefix(owner), exact)
             mapping = child(one.binding, "ssd:ParameterMapping")
             if mapping is not None:
                 self._rename_targets(mapping, names)
@@ -183,11 +186,12 @@ class Sets:
                 if any([names.follow(part, "name", remove_parameter) for part in listed]):
                     self.keep(one.file, one.root)
 
-    def _rename_targets(self, mapping, names):
+    def _rename_targets(self, mapping: etree._Element, names: "_Names") -> None:
         file = self._file(mapping)
         root = self._root(file) if file else child(mapping, "ssm:ParameterMapping")
-        listed = () if root is None else children(root, "ssm:MappingEntry")
-        if any([names.follow(part, "target", root.remove) for part in listed]):
+        if root is None:
+            return
+        if any([names.follow(part, "target", root.remove) for part in children(root, "ssm:MappingEntry")]):
             self.keep(file, root)
 
 
@@ -198,7 +202,7 @@ class _Names(NamedTuple):
     new: str | None
     exact: bool
 
-    def follow(self, element, attribute, remove):
+    def follow(self, element: etree._Element, attribute: str, remove: Callable[[etree._Element], None]) -> bool:
         """Change an attribute that has the old name; whether it had."""
         text = element.get(attribute, "")
         if text != self.old if self.exact else not text.startswith(f"{self.old}."):
@@ -210,12 +214,12 @@ class _Names(NamedTuple):
         return True
 
 
-def remove_parameter(parameter):
+def remove_parameter(parameter: etree._Element) -> None:
     """Take a Parameter out of its set, which may be empty then."""
-    parameter.getparent().remove(parameter)
+    parent_of(parameter).remove(parameter)
 
 
-def write_value(root, parameter, value):
+def write_value(root: etree._Element, parameter: etree._Element, value: ParameterValue) -> None:
     """Write a value into a Parameter element; description and tolerance are the new value's, other things stay.
 
     Parameters

@@ -1,18 +1,23 @@
 """Start values of a system that is edited, as a mapping of names to values in the FMUs' units."""
 
-from collections.abc import MutableMapping
+from collections.abc import Iterator, Mapping, MutableMapping
 from math import isfinite
+from typing import Any
 
 from shipcosim.errors import ShipcosimError, suggestion
+from shipcosim.ssp.edit.draft import Draft
+from shipcosim.ssp.edit.parameter_sets import Bound
 from shipcosim.ssp.edit.write import KIND_OF
+from shipcosim.ssp.flatten.system import Signal, System
 from shipcosim.ssp.read.parameters import ParameterValue, tolerance_of
 from shipcosim.ssp.xml.definitions import read_units
 from shipcosim.ssp.xml.document import children, qualified
 from shipcosim.ssp.xml.markup import drop
-from shipcosim.units import conversion, find_unit, relation
+from shipcosim.ssp.xml.values import Value
+from shipcosim.units import Unit, conversion, find_unit, relation
 
 
-class StartValues(MutableMapping):
+class StartValues(MutableMapping[str, Value]):
     """Start values by full name: ``values["vessel.mass"]``.
 
     Every parameter, input and other variable with a start value can be read and, where it is settable, set; what the
@@ -24,48 +29,50 @@ class StartValues(MutableMapping):
         The system.
     """
 
-    def __init__(self, draft):
+    def __init__(self, draft: Draft):
         self._draft = draft
 
-    def _system(self):
+    def _system(self) -> System:
         system, findings = self._draft.assembled()
         if system is None:
             raise ShipcosimError(findings.errors)
         return system
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Value | None:
         return _value(self._system(), name)
 
-    def __setitem__(self, name, value):
+    def __setitem__(self, name: str, value: Value) -> None:
         with self._draft.changes():
             self.put(name, value)
 
-    def __delitem__(self, name):
+    def __delitem__(self, name: str) -> None:
         with self._draft.changes():
             if not self._draft.sets.clear(name) or name in self:
                 where = "It is set in a set that is bound more than once, or by a mapping."
                 found, remedy = (where, "") if name in self else ("The system does not set it.", suggestion(name, self))
                 raise ShipcosimError(self._draft.problem(name, found, remedy))
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         system = self._system()
         bound = self._draft.sets.bound
-        for name in system.inputs | system.parameters:
+        for name in {**system.inputs, **system.parameters}:
             if any(one.parameter(name) is not None for one in bound):
                 yield name
         for component in system.components.values():
             yield from (f"{component.name}.{variable}" for variable in component.start)
 
-    def __contains__(self, name):
+    def __contains__(self, name: object) -> bool:
         return name in set(self)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(set(self))
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return repr(dict(self))
 
-    def put(self, name, value, unit=None, description="", tolerance=None):
+    def put(
+        self, name: str, value: Value, unit: str | None = None, description: str = "", tolerance: float | None = None
+    ) -> None:
         """Set a value where it stands or, if that has no effect, over everything; see `SystemStructure.set`."""
         kind, own, items = _target(self._system(), name)
         value = getattr(value, "item", lambda: value)()  # NumPy's scalars
@@ -79,10 +86,10 @@ class StartValues(MutableMapping):
         self._draft.sets.put(name, given)
         system, findings = self._draft.assembled()
         wanted = items.get(value, value) if kind == "Enumeration" else value
-        if len(findings.errors) <= before and _value(system, name) != wanted:
+        if system is not None and len(findings.errors) <= before and _value(system, name) != wanted:
             self._draft.sets.append("", name, given)  # a mapping or a connector of a system has the last word
 
-    def bind_to_components(self):
+    def bind_to_components(self) -> None:
         """See `SystemStructure.bind_to_components`."""
         system, bound = self._system(), self._draft.sets.bound
         values = {name: _given(system, bound, name) for name in self}
@@ -93,7 +100,7 @@ class StartValues(MutableMapping):
         for one in self._draft.sets.bound:
             one.root.set("name", self._draft.root.get("name") or "values")  # ecos applies the sets of one name alone
 
-    def _kind(self, name, value, kind):
+    def _kind(self, name: str, value: Value, kind: str | None) -> str:
         if type(value) not in KIND_OF:
             found = f"{value!r} is no value."
             raise ShipcosimError(self._draft.problem(name, found, "A value is a number, true or false, or a text."))
@@ -101,9 +108,9 @@ class StartValues(MutableMapping):
             raise ShipcosimError(self._draft.problem(name, f"{value} is not a finite number."))
         own = KIND_OF[type(value)]
         fits = (own, kind) in (("Integer", "Real"), ("String", "Enumeration"))
-        return kind if fits else own
+        return kind if fits and kind else own
 
-    def _converted(self, name, value, unit, own):
+    def _converted(self, name: str, value: Value, unit: str | None, own: Unit | None) -> Value:
         if unit is None:
             return value
         given = find_unit(unit, read_units(children(self._draft.root, "ssd:Units", "ssc:Unit")))
@@ -114,7 +121,7 @@ class StartValues(MutableMapping):
         return factor * value + offset
 
 
-def _value(system, name):
+def _value(system: System, name: str) -> Value | None:
     """Start value of a signal; None where nobody gives one."""
     component, variable = system.split(name)
     if component is None:
@@ -122,7 +129,7 @@ def _value(system, name):
     return system.components[component].start_value(variable)
 
 
-def _target(system, name):
+def _target(system: System, name: str) -> tuple[str | None, Unit | None, Mapping[str, int]]:
     """Type, unit and items of a signal."""
     component, variable = system.split(name)
     if component is None:
@@ -133,7 +140,7 @@ def _target(system, name):
     return variable.kind, find_unit(variable.unit, fmu.units), variable.items
 
 
-def _given(system, bound, name):
+def _given(system: System, bound: list[Bound], name: str) -> ParameterValue:
     """Start value of a signal as it goes into a set, with what the set that it comes from says about it."""
     kind, unit, items = _target(system, name)
     value = _value(system, name)
@@ -141,13 +148,13 @@ def _given(system, bound, name):
         value = next(item for item, number in items.items() if number == value)
     found = [one.parameter(name) for one in bound]
     origin = next((part for part in reversed(found) if part is not None), None)
-    described = {}
+    described: dict[str, Any] = {}
     if origin is not None:
         same_unit = unit is None or any(part.get("unit") == unit.name for part in origin)
         described = {"description": origin.get("description", "")}
         described["tolerance"] = tolerance_of(origin) if same_unit else None
-    return ParameterValue(name, kind, value, unit if kind == "Real" else None, **described)
+    return ParameterValue(name, kind or "", value, unit if kind == "Real" else None, **described)
 
 
-def _signal(system, name):
-    return (system.inputs | system.outputs | system.parameters)[name]
+def _signal(system: System, name: str) -> Signal:
+    return {**system.inputs, **system.outputs, **system.parameters}[name]

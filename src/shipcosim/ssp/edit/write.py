@@ -1,7 +1,9 @@
 """Parameter sets written, and systems packed into an .ssp."""
 
 import os
+from collections.abc import Iterable
 from contextlib import suppress
+from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
@@ -14,12 +16,15 @@ from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.xml.archive import write_archive
 from shipcosim.ssp.xml.document import Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
+from shipcosim.ssp.xml.values import Value
 from shipcosim.units import find_unit
 
 KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes: "Binary"}
 
 
-def parameter(name, value, unit=None, description="", *, tolerance=None):
+def parameter(
+    name: str, value: Value, unit: str | None = None, description: str = "", *, tolerance: float | None = None
+) -> ParameterValue:
     """A value for a parameter set, of the kind of its Python type.
 
     Parameters
@@ -51,7 +56,7 @@ def parameter(name, value, unit=None, description="", *, tolerance=None):
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
 
-def write_ssv(path, name, values):
+def write_ssv(path: str | PathLike[str], name: str, values: Iterable[ParameterValue]) -> None:
     """Write a parameter set; complete or not at all.
 
     Parameters
@@ -75,8 +80,14 @@ def write_ssv(path, name, values):
     write_file(Path(path), to_bytes(root, "ssv", "ssc"))
 
 
-def write_file(path, data):
-    """Write a file, complete or not at all; its folder is made if needed."""
+def write_file(path: Path, data: bytes) -> None:
+    """Write a file, complete or not at all; its folder is made if needed.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
     partial = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -88,7 +99,7 @@ def write_file(path, data):
         raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None
 
 
-def pack(folder, fmus, out):
+def pack(folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: str | PathLike[str]) -> None:
     """Pack a folder with a SystemStructure.ssd and its FMUs into an .ssp; the same input gives the same bytes.
 
     Parameters

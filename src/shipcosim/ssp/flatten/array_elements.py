@@ -40,11 +40,13 @@ def element_connectors(
     found, known = [], {}
     for connector in connectors:
         written = connector.dimensions
-        dimensions = arrays.get(connector.name, written)
-        if dimensions and None not in dimensions and (min(dimensions) < 1 or prod(dimensions) > MOST_ELEMENTS):
+        given = arrays.get(connector.name, written)
+        dimensions = tuple(size for size in given if size is not None)
+        is_open = len(dimensions) < len(given)
+        if dimensions and not is_open and (min(dimensions) < 1 or prod(dimensions) > MOST_ELEMENTS):
             remedy = f"Arrays have from 1 to {MOST_ELEMENTS} elements."
             findings.error(connector.place, f"The connector is {shape_text(dimensions)}.", remedy)
-        elif written and (None in dimensions or not _fits(written, dimensions)):
+        elif written and (is_open or not _fits(written, dimensions)):
             shown = "x".join("?" if size is None else str(size) for size in written)
             remedy = f"Write {shape_text(arrays[connector.name])}." if connector.name in arrays else "Give its sizes."
             findings.error(connector.place, f"The connector is an array of {shown}.", remedy)

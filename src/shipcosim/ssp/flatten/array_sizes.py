@@ -23,7 +23,8 @@ def sizes_wanted(components: Mapping[str, Component]) -> dict[str, dict[str, Val
     """Values of the structural parameters that the system sets and that give sizes, by component and name."""
     wanted = {}
     for name, component in components.items():
-        structural = {size for variable in component.fmu.variables.values() for size in variable.sizes}
+        sizes = {size for variable in component.fmu.variables.values() for size in variable.sizes}
+        structural = {size for size in sizes if isinstance(size, str)}
         values = {size: component.start[size] for size in structural & set(component.start)}
         wanted |= {name: values} if values else {}
     return wanted

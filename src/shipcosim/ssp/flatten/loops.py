@@ -141,7 +141,8 @@ def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
     """Links of the shortest way round."""
     graph, ways, known = _graph(edges), [], set(links)
     for source, target in links[:MOST_STARTS]:
-        before, queue = {target: None}, deque([target])
+        before: dict[Node, Node | None] = {target: None}
+        queue = deque([target])
         while queue and source not in before:
             node = queue.popleft()
             for following in graph[node]:

@@ -62,7 +62,7 @@ class OuterSignals:
         starts = set()
         for _, connection in ends:
             name, variable = connection.target
-            value = self.components[name].start_value(variable)
+            value = self.components[name or ""].start_value(variable)
             if value is None or connection.mapping is not None or connection.factor == 0.0:
                 return None
             linear = (connection.factor, connection.offset) != (1.0, 0.0)

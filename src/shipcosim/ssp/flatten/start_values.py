@@ -105,6 +105,7 @@ class Settings:
         if key in self.tree.ports:
             return self.tree.ports[key]
         _, fmu = self.tree.components[key.path]
+        assert fmu is not None  # only variables of known FMUs have a name
         return variable_port(fmu.variables[key.name], fmu, "")
 
     def _number(
@@ -169,12 +170,12 @@ class Settings:
                 return start + prefix[:-1], self._settable(inside, start)
         return None, names
 
-    def _settable(self, names, start):
+    def _settable(self, names: Iterable[str], start: str) -> list[str]:
         ports = {name: self._port(self.named[start + name][0]) for name in names}
         return [name for name, port in ports.items() if port.variable is None or port.variable.settable]
 
 
-def _differ_in_number(one, other):
+def _differ_in_number(one: str, other: str) -> bool:
     """Whether two names are meant to be different: ``thruster_1`` and ``thruster_2``."""
     return re.sub(r"\d+", "", one).strip("_") == re.sub(r"\d+", "", other).strip("_")
 

@@ -6,7 +6,8 @@ from math import isfinite
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.flatten.start_values import check_bounds
-from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.flatten.system import Signal, System
+from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
 
@@ -59,7 +60,7 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
     return replace(system, components=components, inputs=inputs)
 
 
-PYTHON = {"Real": (int, float), "Integer": (int,), "Boolean": (bool,), "String": (str,), "Enumeration": (int,)}
+TYPES_OF = {"Real": (int, float), "Integer": (int,), "Boolean": (bool,), "String": (str,), "Enumeration": (int,)}
 WANTED = {
     "Real": "Give a number, with a decimal point",
     "Integer": "Give a whole number",
@@ -68,7 +69,7 @@ WANTED = {
 LARGEST = 2**31  # FMI's integers have 32 bits
 
 
-def _set(start, variable, value, place, findings):
+def _set(start: dict[str, Value], variable: Variable, value: Value, place: str, findings: Findings) -> None:
     """Put a value for a variable into `start`, checked and in the variable's type."""
     if variable.items and isinstance(value, str):
         value = variable.items.get(value, value)
@@ -81,9 +82,9 @@ def _set(start, variable, value, place, findings):
         start[variable.name] = float(value) if variable.kind == "Real" else value
 
 
-def _fits(value, owner, kind, place, findings):
+def _fits(value: Value, owner: Variable | Signal, kind: str | None, place: str, findings: Findings) -> bool:
     """Whether a value is of a kind, with an error if not; `owner` has the items of an enumeration."""
-    right = kind is None or isinstance(value, PYTHON.get(kind, (bytes,)))
+    right = kind is None or isinstance(value, TYPES_OF.get(kind, (bytes,)))
     if not right or (isinstance(value, bool) and kind not in ("Boolean", None)):
         remedy = f"Items: {', '.join(owner.items)}." if owner.items else _wanted(kind, owner.unit)
         findings.error(place, f"{value!r} is no {kind}.", remedy)
@@ -97,5 +98,5 @@ def _fits(value, owner, kind, place, findings):
     return True
 
 
-def _wanted(kind, unit):
+def _wanted(kind: str | None, unit: str | None) -> str:
     return f"{WANTED[kind]}{f', in {unit}' if kind == 'Real' and unit else ''}." if kind in WANTED else ""

@@ -61,11 +61,12 @@ def without_arrays(
 def _with_sizes(variable: Variable, sizes: Mapping[str, int]) -> Variable:
     """An array with other values of the structural parameters that size it; its start values are unknown then."""
     pairs = zip(variable.sizes, variable.dimensions, strict=True)
-    dimensions = tuple(max(sizes.get(name, size), 0) for name, size in pairs)
+    dimensions = tuple(max(sizes.get(name, size) if isinstance(name, str) else size, 0) for name, size in pairs)
     return variable if dimensions == variable.dimensions else replace(variable, dimensions=dimensions, start=None)
 
 
 def _elements(variable: Variable) -> Iterator[Variable]:
+    """Elements of an array as variables of their own."""
     names = element_names(variable.name, variable.dimensions)
     starts = variable.start if isinstance(variable.start, tuple) else (variable.start,)
     starts = starts if len(starts) == len(names) else starts[:1] * len(names)  # one value for all of them

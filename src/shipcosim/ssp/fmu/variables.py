@@ -64,6 +64,7 @@ def _variable(
     is_first: bool,
 ) -> Variable:
     typed = _type_element(element)
+    assert typed is not None  # the others were left out
     declared = types.get(typed.get("declaredType"))
     kind = KINDS[local(typed)]
     written = [part for part in element if local(part) == "Dimension"]

@@ -17,7 +17,7 @@ from shipcosim.units import find_unit, relation
 SOURCES = ("output", "calculatedParameter")
 """Causalities of variables that a connection can start from."""
 
-End = tuple[str | None, str]
+End = tuple[str, str]
 """Simulator and variable."""
 
 
@@ -48,7 +48,7 @@ class ConnectionReader:
         self.connections: list[Connection] = []
         self.wiring = Wiring(functions, findings)
         self._groups: dict[Path, dict[str, Group] | None] = {}
-        self._fed: dict[End, tuple[str, ...]] = {}  # where what feeds a target comes from
+        self._fed: dict[tuple[str | None, str], tuple[str, ...]] = {}  # where what feeds a target comes from
 
     def read(self, elements: Iterable[etree._Element]) -> list[Connection]:
         """Connections of connection elements; what is wrong is left out, with an error."""
@@ -63,7 +63,8 @@ class ConnectionReader:
                 variable = ends["Variable" if kind == "Signal" else "VariableGroup"]
                 kinds[kind](variable, ends[kind], place)
             else:
-                self._pair(*(part for part in element if local(part)), place)
+                one, other = (part for part in element if local(part))
+                self._pair(one, other, place)
         for signal, connection in self.wiring.connections():
             self._add(connection, signal)
         return self.connections
@@ -71,12 +72,12 @@ class ConnectionReader:
     def _pair(self, one: etree._Element, other: etree._Element, place: str) -> None:
         """A connection of two variables, or of the variables of two groups one by one."""
         if local(one) == "Variable":
-            ends = [self._end(part, place) for part in (one, other)]
-            if None not in ends:
+            ends = [end for part in (one, other) if (end := self._end(part, place)) is not None]
+            if len(ends) == 2:
                 self._direct(ends[0], ends[1], place)
             return
-        groups = [self._group(part, place) for part in (one, other)]
-        if None not in groups:
+        groups = [group for part in (one, other) if (group := self._group(part, place)) is not None]
+        if len(groups) == 2:
             self._join(groups, [one.get("simulator"), other.get("simulator")], place)
 
     def _join(self, groups: Sequence[Group], simulators: Sequence[str], place: str) -> None:
@@ -105,7 +106,8 @@ class ConnectionReader:
     def _add(self, connection: Connection, signal: tuple[str, str] | None = None) -> None:
         """Keep a connection; `signal` is the one of a function that it comes from, which may add up several."""
         source, target = (self._variable(end) for end in (connection.source, connection.target))
-        names, place = [".".join(end) for end in (connection.source, connection.target)], connection.place
+        names = [".".join(filter(None, end)) for end in (connection.source, connection.target)]
+        place = connection.place
         feeding = self._fed.get(connection.target)
         self._fed[connection.target] = signal or (place,)
         if source.causality not in SOURCES or target.causality != "input":
@@ -191,9 +193,11 @@ class ConnectionReader:
 
     def _fmu(self, simulator: str | None) -> FmuDescription:
         """FMU of a simulator that has one."""
-        return self.simulators.tree.components[simulator,][1]
+        fmu = self.simulators.tree.components[simulator or "",][1]
+        assert fmu is not None  # ends of connections without one were refused
+        return fmu
 
-    def _variable(self, end: End) -> Variable:
+    def _variable(self, end: tuple[str | None, str]) -> Variable:
         return self._fmu(end[0]).variables[end[1]]
 
     def _has(self, end: End) -> bool:

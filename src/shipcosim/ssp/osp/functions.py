@@ -1,15 +1,18 @@
 """Functions of an OspSystemStructure.xml: what they take and give, and which connections they amount to."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+
+import lxml.etree as etree
 
 from shipcosim.errors import it_has
 from shipcosim.ssp.flatten.connections import Connection
-from shipcosim.ssp.xml.document import local
+from shipcosim.ssp.xml.document import Findings, local
 
 
 @dataclass(frozen=True)
 class Function:
-    """A function between variables. Real numbers only.
+    """A function of an OspSystemStructure.xml, between variables of type Real.
 
     Parameters
     ----------
@@ -32,7 +35,7 @@ class Function:
     place: str = ""
 
     @property
-    def rows(self):
+    def rows(self) -> list[tuple[list[str], str]]:
         """For each number that it gives: the names of the signals that go into it, and of its own."""
         if self.kind == "LinearTransformation":
             return [(["in"], "out")]
@@ -42,12 +45,12 @@ class Function:
         return [([f"{name}[{j}]" for name in inputs], f"out[{j}]") for j in range(self.dimension)]
 
     @property
-    def signals(self):
+    def signals(self) -> list[str]:
         """Names that a SignalConnection can have."""
         return [name for inputs, output in self.rows for name in (*inputs, output)]
 
     @property
-    def groups(self):
+    def groups(self) -> list[str]:
         """Names that a SignalGroupConnection can have."""
         return [f"in[{i}]" for i in range(self.inputs)] + ["out"] if self.kind == "VectorSum" else []
 
@@ -56,7 +59,7 @@ MOST_SIGNALS = 10_000
 """Of one function: a few digits in a file can ask for more than any memory holds."""
 
 
-def read_function(element, place, findings):
+def read_function(element: etree._Element, place: str, findings: Findings) -> Function | None:
     """Function of its element, checked against the schema before; None with an error where it is too large."""
     inputs, dimension = (int(element.get(name, 1)) for name in ("inputCount", "dimension"))
     if inputs * dimension > MOST_SIGNALS:
@@ -77,15 +80,16 @@ class Wiring:
         Takes what is wrong.
     """
 
-    def __init__(self, functions, findings):
+    def __init__(self, functions: Mapping[str, Function], findings: Findings):
         self.functions, self.findings = functions, findings
-        self._ends, self._given_up = {}, set()
+        self._ends: dict[tuple[str, str], list[tuple[tuple[str, str], str]]] = {}
+        self._given_up: set[str] = set()
 
-    def give_up(self, function):
-        """Note that something is wrong with a function already, so that what it misses is no news."""
+    def give_up(self, function: str) -> None:
+        """Note that something is wrong with a function already, so that missing connections are not reported too."""
         self._given_up.add(function)
 
-    def take(self, function, signal, end, place):
+    def take(self, function: str, signal: str, end: tuple[str, str] | None, place: str) -> None:
         """Note that a variable (None: one with an error) is connected with a signal."""
         if end is None:
             self.give_up(function)
@@ -103,7 +107,7 @@ class Wiring:
             self.findings.remark(place, found, "Give each target a function of its own.")
         ends.append((end, place))
 
-    def connections(self):
+    def connections(self) -> Iterator[tuple[tuple[str, str], Connection]]:
         """(output signal, connection from variable to variable) of all functions; a sum is several into one."""
         for function in self.functions.values():
             for inputs, output in function.rows if function.name not in self._given_up else ():

@@ -1,10 +1,14 @@
 """Variable groups of an FMU, from the OspModelDescription.xml beside it."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import lxml.etree as etree
+
 from shipcosim.errors import it_has
-from shipcosim.ssp.xml.document import local, read_document
+from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.xml.document import Document, Findings, local, read_document
 
 ENDING = "_OspModelDescription.xml"
 
@@ -28,14 +32,14 @@ class Group:
     variables: tuple[str, ...]
     groups: tuple["Group", ...] = ()
 
-    def all(self):
+    def all(self) -> Iterator["Group"]:
         """The group and all in it."""
         yield self
         for group in self.groups:
             yield from group.all()
 
 
-def read_groups(fmu, folder, findings):
+def read_groups(fmu: FmuDescription, folder: Path, findings: Findings) -> dict[str, Group] | None:
     """Groups of an FMU by name; those within groups too, under the name of their own, as libcosim finds them.
 
     Parameters
@@ -65,12 +69,12 @@ def read_groups(fmu, folder, findings):
     return found
 
 
-def file_names(fmu):
+def file_names(fmu: FmuDescription) -> list[str]:
     """Names that the file can have: by the model's name, as libcosim looks for it, or by the FMU's file."""
     return list(dict.fromkeys(f"{name}{ENDING}" for name in (fmu.model_name, fmu.path.stem)))
 
 
-def _file(fmu, folder, findings):
+def _file(fmu: FmuDescription, folder: Path, findings: Findings) -> Path | None:
     wanted, *others = file_names(fmu)
     places = [fmu.path.parent, Path(folder)]
     for name in (wanted, *others):
@@ -83,7 +87,7 @@ def _file(fmu, folder, findings):
     return None
 
 
-def _group(element, fmu, document, findings):
+def _group(element: etree._Element, fmu: FmuDescription, document: Document, findings: Findings) -> Group:
     variables, groups = [], []
     for part in filter(local, element):
         if local(part) == "Variable":

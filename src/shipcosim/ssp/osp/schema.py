@@ -7,6 +7,7 @@ from functools import cache
 
 import lxml.etree as etree
 
+from shipcosim.ssp.xml.document import Document, Findings
 from shipcosim.ssp.xml.schemas import report_schema
 
 NAMESPACE = "http://opensimulationplatform.com/MSMI/OSPSystemStructure"
@@ -21,27 +22,27 @@ _SIZES = ("SafetyFactor StepSize MinimumStepSize MaximumStepSize MinimumChangeRa
 _GAINS = "ProportionalGain IntegralGain RelativeTolerance AbsoluteTolerance".split()
 
 
-def _pair(tag, end):
+def _pair(tag: str, end: str) -> str:
     """Connection of two ends of one kind."""
     return f"""<xs:element name="{tag}"><xs:complexType>
       <xs:sequence><xs:element name="{end}" type="VariableEnd" minOccurs="2" maxOccurs="2"/></xs:sequence>
       <xs:attribute name="powerBond" type="xs:string"/></xs:complexType></xs:element>"""
 
 
-def _mixed(tag, variable, signal):
+def _mixed(tag: str, variable: str, signal: str) -> str:
     """Connection of a variable or group with a signal of a function, in any order."""
     return f"""<xs:element name="{tag}"><xs:complexType><xs:all>
       <xs:element name="{variable}" type="VariableEnd"/><xs:element name="{signal}" type="SignalEnd"/>
       </xs:all></xs:complexType></xs:element>"""
 
 
-def _function(tag, *attributes):
+def _function(tag: str, *attributes: tuple[str, str, str]) -> str:
     more = "".join(f'<xs:attribute name="{n}" type="xs:{t}" {u}/>' for n, t, u in attributes)
     return f"""<xs:element name="{tag}" minOccurs="0" maxOccurs="unbounded">
       <xs:complexType>{_END}{more}</xs:complexType></xs:element>"""
 
 
-def _count(name):
+def _count(name: str) -> tuple[str, str, str]:
     return name, "positiveInteger", 'use="required"'
 
 
@@ -84,11 +85,11 @@ SCHEMA = f"""<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema" xmlns="{NAME
 </xs:schema>"""
 
 
-def validate_osp(document, findings):
+def validate_osp(document: Document, findings: Findings) -> None:
     """Check a document's root against the schema, with an error for each place where it breaks it."""
     report_schema(_checker(), document.root, document.file, findings)
 
 
 @cache
-def _checker():
+def _checker() -> etree.XMLSchema:
     return etree.XMLSchema(etree.fromstring(SCHEMA))

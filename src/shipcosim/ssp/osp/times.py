@@ -1,13 +1,15 @@
 """Times, steps and the algorithm of an OspSystemStructure.xml."""
 
+import lxml.etree as etree
+
 from shipcosim.ssp.read.structure import Experiment
-from shipcosim.ssp.xml.document import local, reporting
+from shipcosim.ssp.xml.document import Document, Findings, local, reporting
 from shipcosim.ssp.xml.values import read_value
 
 DEFAULT_STEP = 0.1  # s; libcosim's where a file states none
 
 
-def read_experiment(document, findings):
+def read_experiment(document: Document, findings: Findings) -> Experiment:
     """Start, end and base step of a document; remarks on what is not used of it."""
     root = document.root
     times = {local(part): part for part in root if local(part).endswith(("Time", "StepSize"))}
@@ -23,7 +25,7 @@ def read_experiment(document, findings):
     return Experiment(read.get("StartTime") or 0.0, read.get("EndTime"), step or None)
 
 
-def own_step(document, element, findings):
+def own_step(document: Document, element: etree._Element, findings: Findings) -> float | None:
     """Step size of a simulator, or None where it is the base step. [s]"""
     if element.get("stepSize") is None:
         return None
@@ -34,7 +36,7 @@ def own_step(document, element, findings):
     return step or None
 
 
-def _remark_algorithm(document, findings):
+def _remark_algorithm(document: Document, findings: Findings) -> None:
     parts = {local(part): part for part in document.root}
     if "Algorithm" not in parts:
         found = "It names no algorithm, and libcosim refuses such a file."
@@ -47,7 +49,7 @@ def _remark_algorithm(document, findings):
         findings.remark(place, "The configuration of the algorithm ecco is not used.")
 
 
-def _seconds(document, element, text, findings):
+def _seconds(document: Document, element: etree._Element, text: str | None, findings: Findings) -> float | None:
     """Time in whole nanoseconds, in which OSP counts; None with an error. [s]"""
     with reporting(document, element, findings, local(element)):
         return round(read_value("Real", text or "") * 1e9) / 1e9

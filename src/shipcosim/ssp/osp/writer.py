@@ -1,13 +1,14 @@
 """OspSystemStructure.xml written, so that libcosim reads back every digit."""
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
+from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.osp.schema import NAMESPACE
 from shipcosim.ssp.xml.markup import free_name
-from shipcosim.ssp.xml.values import text_of
+from shipcosim.ssp.xml.values import Value, text_of
 
 
 @dataclass(frozen=True)
@@ -27,10 +28,12 @@ class Simulator:
     name: str
     source: str
     step_size: float
-    values: Mapping = field(default_factory=dict)
+    values: Mapping[str, tuple[str, Value]] = field(default_factory=dict)
 
 
-def structure_text(simulators, connections, step_size, end_time=None):
+def structure_text(
+    simulators: Sequence[Simulator], connections: Iterable[Connection], step_size: float, end_time: float | None = None
+) -> str:
     """Text of an OspSystemStructure.xml.
 
     Parameters
@@ -61,7 +64,7 @@ def structure_text(simulators, connections, step_size, end_time=None):
     )
 
 
-def seconds_text(seconds):
+def seconds_text(seconds: float) -> str:
     """Seconds as libcosim, which counts nanoseconds and cuts off fractions of one, reads them without losing one.
 
     Examples
@@ -73,7 +76,7 @@ def seconds_text(seconds):
     return f"{nanoseconds // 10**9}.{nanoseconds % 10**9:09d}25"
 
 
-def _lines(simulator):
+def _lines(simulator: Simulator) -> list[str]:
     step = seconds_text(simulator.step_size)
     head = f'<Simulator name={quoteattr(simulator.name)} source={quoteattr(simulator.source)} stepSize="{step}"'
     if not simulator.values:
@@ -85,7 +88,7 @@ def _lines(simulator):
     return [f"{head}>", "  <InitialValues>", *values, "  </InitialValues>", "</Simulator>"]
 
 
-def _connections(connections, taken):
+def _connections(connections: Iterable[Connection], taken: Container[str]) -> tuple[list[str], list[str]]:
     """Elements of the functions, in the order that libcosim wants, and of the connections."""
     into, linear, sums, joined = defaultdict(list), [], [], []
     for connection in connections:
@@ -107,14 +110,14 @@ def _connections(connections, taken):
     return linear + sums, joined
 
 
-def _signal(end, function, name):
+def _signal(end: tuple[str | None, str], function: str, name: str) -> str:
     signal = f'<Signal function="{function}" name="{name}"/>'
     return f"<SignalConnection>{_variable(end)}{signal}</SignalConnection>"
 
 
-def _variable(end):
-    return f"<Variable simulator={quoteattr(end[0])} name={quoteattr(end[1])}/>"
+def _variable(end: tuple[str | None, str]) -> str:
+    return f"<Variable simulator={quoteattr(end[0] or '')} name={quoteattr(end[1])}/>"
 
 
-def _group(name, lines):
+def _group(name: str, lines: list[str]) -> str:
     return f"\n  <{name}>" + "".join(f"\n    {line}" for line in lines) + f"\n  </{name}>" if lines else ""

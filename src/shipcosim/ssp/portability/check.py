@@ -71,4 +71,4 @@ def _osp_subject(path: Path, fmus: Iterable[str | PathLike[str]]) -> Subject | N
     findings = Findings()
     system = assemble_osp(path, (), fmus, findings)
     document = read_document(path, str(path), findings)
-    return None if system is None or findings.errors else Subject(None, None, None, None, system, document)
+    return None if system is None or document is None or findings.errors else Subject(document, system)

@@ -16,8 +16,8 @@ def reversed_links(subject: Subject) -> Found:
     if subject.tree is not None:
         wires = {(wire.source, wire.target) for wire in subject.tree.wires}
         for link, _, _ in subject.links:
-            ends = Key((link.end_element,), link.end_connector), Key((link.start_element,), link.start_connector)
-            if ends in wires:
+            start = Key((link.start_element or "",), link.start_connector)
+            if (Key((link.end_element or "",), link.end_connector), start) in wires:
                 yield link.place, ""
 
 
@@ -27,7 +27,7 @@ def undeclared_connectors(subject: Subject) -> Found:
     for link, _, _ in subject.links:
         for end in ((link.start_element, link.start_connector), (link.end_element, link.end_connector)):
             if end not in declared:
-                yield link.place, f"{'.'.join(end)} is not declared as a connector"
+                yield link.place, f"{'.'.join(filter(None, end))} is not declared as a connector"
 
 
 def _connectors(part: object) -> tuple[Connector, ...]:
@@ -95,7 +95,7 @@ def unit_conversions(subject: Subject) -> Found:
     flat = {(c.source, c.target): c for c in subject.system.connections}
     for link, _, _ in subject.links:
         ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
-        whole = flat.get(ends) or flat.get(ends[::-1])
+        whole = flat.get(ends) or flat.get((ends[1], ends[0]))
         how = link.transformation
         if whole is None or (how is not None and how.kind != "Linear"):
             continue

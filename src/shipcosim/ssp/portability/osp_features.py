@@ -11,13 +11,13 @@ from shipcosim.ssp.xml.document import local
 
 
 def _osp(subject: Subject, *tags: str) -> list[etree._Element]:
-    return [] if subject.osp is None else [part for part in subject.osp.root.iter(etree.Element) if local(part) in tags]
+    return [] if subject.is_ssp else [part for part in subject.document.root.iter(etree.Element) if local(part) in tags]
 
 
 def osp_without_algorithm(subject: Subject) -> Found:
     """An OspSystemStructure.xml without an algorithm."""
-    if subject.osp is not None and not _osp(subject, "Algorithm"):
-        yield subject.osp.place(subject.osp.root), ""
+    if not subject.is_ssp and not _osp(subject, "Algorithm"):
+        yield subject.document.place(subject.document.root), ""
 
 
 def osp_second_targets(subject: Subject) -> Found:
@@ -26,7 +26,7 @@ def osp_second_targets(subject: Subject) -> Found:
     for part in _osp(subject, "Signal", "SignalGroup"):
         end = part.get("function"), part.get("name")
         if end in seen and end[1].startswith("out"):
-            yield subject.osp.place(part), f"a second connection from {end[0]}:{end[1]}"
+            yield subject.document.place(part), f"a second connection from {end[0]}:{end[1]}"
         seen.add(end)
 
 
@@ -34,6 +34,6 @@ def osp_group_files(subject: Subject) -> Found:
     """Variable groups in a file that has not the model's name."""
     for name in dict.fromkeys(part.get("simulator") for part in _osp(subject, "VariableGroup")):
         fmu = subject.system.components[name].fmu
-        places = [folder / file_names(fmu)[0] for folder in (fmu.path.parent, subject.osp.folder)]
+        places = [folder / file_names(fmu)[0] for folder in (fmu.path.parent, subject.document.folder)]
         if not any(place.is_file() for place in places):
             yield name, f"variable groups that are not in {places[0].name}"

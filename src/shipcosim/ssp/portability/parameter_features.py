@@ -12,8 +12,9 @@ from shipcosim.units import find_unit, relation
 
 def sets_on_systems(subject: Subject) -> Found:
     """A parameter set bound to a system."""
-    for binding in () if subject.structure is None else subject.structure.system.bindings:
-        yield binding.values.place or subject.structure.system.place, ""
+    if subject.structure is not None:
+        system = subject.structure.system
+        yield from ((binding.values.place or system.place, "") for binding in system.bindings)
 
 
 def several_sets(subject: Subject) -> Found:
@@ -25,7 +26,7 @@ def several_sets(subject: Subject) -> Found:
 def set_names(subject: Subject) -> Found:
     """A parameter set."""
     names = dict.fromkeys(values.name for *_, values in subject.sets)
-    if names:
+    if names and subject.structure is not None:
         yield subject.structure.system.place, f"parameter sets {', '.join(map(repr, names))}"
 
 

@@ -81,19 +81,19 @@ def _osp_steps(subject: Subject) -> Iterator[etree._Element]:
 
 def steps_of_others(subject: Subject) -> Found:
     """A step size that only another tool's annotation states."""
-    if subject.document is not None and not list(_osp_steps(subject)) and subject.system.experiment.step_size:
+    if subject.is_ssp and not list(_osp_steps(subject)) and subject.system.experiment.step_size:
         yield next(_stated(subject)), ""
 
 
 def no_steps(subject: Subject) -> Found:
     """No step size."""
-    if subject.document is not None and not list(_osp_steps(subject)) and not subject.system.experiment.step_size:
+    if subject.is_ssp and not list(_osp_steps(subject)) and not subject.system.experiment.step_size:
         yield subject.document.place(subject.document.root), ""
 
 
 def steps(subject: Subject) -> Found:
     """A step size."""
-    if subject.document is not None and subject.system.experiment.step_size:
+    if subject.is_ssp and subject.system.experiment.step_size:
         yield next(_stated(subject)), f"the step size {subject.system.experiment.step_size:g} s"
 
 
@@ -107,9 +107,9 @@ def _stated(subject: Subject) -> Iterator[str]:
 
 def osp_annotations(subject: Subject) -> Found:
     """OSP's algorithm with another prefix than osp:, or with the prefix declared on itself."""
-    for step in _osp_steps(subject) if subject.document is not None else ():
+    for step in _osp_steps(subject) if subject.package is not None else ():
         algorithm = step.getparent()
-        declares = DECLARING.search((subject.package.folder / subject.package.ssd).read_bytes())
+        declares = subject.package and DECLARING.search((subject.package.folder / subject.package.ssd).read_bytes())
         if declares or algorithm.attrib or algorithm.prefix != "osp" or step.prefix != "osp":
             yield subject.document.place(algorithm), ""
 
@@ -125,8 +125,9 @@ def hints_of_others(subject: Subject) -> Found:
 
 def start_times(subject: Subject) -> Found:
     """A start time other than 0."""
-    if subject.document is not None and subject.system.experiment.start_time:
-        place = subject.document.place(child(subject.document.root, "ssd:DefaultExperiment"))
+    if subject.is_ssp and subject.system.experiment.start_time:
+        (experiment,) = children(subject.document.root, "ssd:DefaultExperiment")
+        place = subject.document.place(experiment)
         yield place, f"the start time {subject.system.experiment.start_time:g} s"
 
 

@@ -30,20 +30,28 @@ class Subject:
 
     Parameters
     ----------
-    document, structure, package, tree
-        Of an SSP; None for an OspSystemStructure.xml.
+    document : Document
+        The SSD or OspSystemStructure.xml.
     system : System
         Flat.
-    osp : Document or None
-        The OspSystemStructure.xml, where it is one.
+    structure : Structure or None
+        What an SSD says; None for an OspSystemStructure.xml.
+    package : Package or None
+        An SSP's files.
+    tree : Hierarchy or None
+        An SSP's ports and wires.
     """
 
-    document: Document | None
-    structure: Structure | None
-    package: Package | None
-    tree: Hierarchy | None
+    document: Document
     system: System
-    osp: Document | None = None
+    structure: Structure | None = None
+    package: Package | None = None
+    tree: Hierarchy | None = None
+
+    @property
+    def is_ssp(self) -> bool:
+        """Whether it is an SSP rather than an OspSystemStructure.xml."""
+        return self.structure is not None
 
     @cached_property
     def elements(self) -> tuple[ComponentElement | DictionaryReference | SystemElement, ...]:
@@ -83,16 +91,16 @@ class Subject:
     def _file(self, binding: Binding) -> Document | None:
         """File of a set that is bound by its address in the package."""
         source = binding.values
-        if self.package is None or self.document is None or not source.uri or source.in_component:
+        if self.package is None or not source.uri or source.in_component:
             return None
         file = self.package.locate(source.uri, self.document.folder, "", Findings())
         return None if file is None else self.package.read(file, Findings())
 
     @cached_property
     def documents(self) -> list[Document]:
-        """The outermost file, and the files of the sets that are bound to its components."""
+        """The SSD, and the files of the sets that are bound to its components; none for an OspSystemStructure.xml."""
         files = [self._file(binding) for part in self.components for binding in part.bindings]
-        return [document for document in (self.document, *files) if document is not None]
+        return [document for document in (self.document, *files) if document is not None] if self.is_ssp else []
 
     @cached_property
     def values(self) -> list[tuple[ParameterValue, Variable, FmuDescription]]:
@@ -119,17 +127,17 @@ def subject_of(path: str | PathLike[str], fmus: Iterable[str | PathLike[str]] = 
     package = open_package(path, findings, fmus)
     document = None if package is None else package.document(findings)
     structure = None if document is None else read_structure(document, findings)
-    if package is None or structure is None:
+    if package is None or document is None or structure is None:
         return None
     tree = Hierarchy(findings)
     take_in(tree, structure, package)
     system = assemble_package(package, (), str(path), findings)
-    return None if system is None or findings.errors else Subject(document, structure, package, tree, system)
+    return None if system is None or findings.errors else Subject(document, system, structure, package, tree)
 
 
 def elements_of(subject: Subject, *tags: str) -> Iterator[etree._Element]:
-    """Elements of the outermost file of these local names."""
-    if subject.document is not None:
+    """Elements of an SSD of these local names; none of an OspSystemStructure.xml."""
+    if subject.is_ssp:
         yield from (part for part in subject.document.root.iter(etree.Element) if local(part) in tags)
 
 

@@ -100,7 +100,7 @@ class Library:
         return None if file is None else self._once(("file", file), lambda: place.package.read(file, self.findings))
 
     def _inside(self, fmu: FmuDescription, source: Source) -> Document | None:
-        return read_in_component(fmu, source.uri, source.place, self.findings)
+        return read_in_component(fmu, source.uri or "", source.place, self.findings)
 
     def parameter_set(self, document: Document) -> ParameterSet:
         """Parameter set of a document."""

@@ -101,8 +101,9 @@ class Package:
             what = "is a folder, not a file" if is_folder else "does not exist"
             findings.error(place, f"The file '{uri}' {what}.", self._present(paths[0]))
             return None
-        if isinstance(self.held.get(found), Path):
-            found, name = self.held[found], found
+        held = self.held.get(found)
+        if isinstance(held, Path):
+            found, name = held, found
         else:
             name = found if found in paths else paths[0]
         self.located[name.relative_to(folder).as_posix()] = found

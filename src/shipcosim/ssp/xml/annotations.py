@@ -1,12 +1,15 @@
-"""What annotations of other tools ask for: step sizes, which are honoured, and algorithms, which are named as ignored.
+"""Annotations of other tools: step sizes, which are used, and algorithms, which are reported as not used.
 
 The standard leaves step size and algorithm to the tools. Known are those of OSP (libcosim), ecos and Vico, and
 OMSimulator; elements are found by their names in any namespace, since ecos and older versions of OSP use their own.
 """
 
 import re
+from collections.abc import Iterator, Mapping
 
-from shipcosim.ssp.xml.document import child, children, local, qualified
+import lxml.etree as etree
+
+from shipcosim.ssp.xml.document import Document, Findings, child, children, local, parent_of, qualified
 
 STEP_SIZES = {"FixedStepAlgorithm": "baseStepSize", "FixedStepMaster": "stepSize"}
 """Where annotations give the base step size: libcosim and ecos; OMSimulator and older OSP."""
@@ -17,14 +20,14 @@ STEP_SIZE_HINTS = {"StepSizeHint": "value"}
 ASKS = re.compile(r"(Algorithm|Master|Solver|StepSizeHint|Bus|^Connection)$")
 
 
-def step_sizes(root):
-    """(element, attribute) of all that state the base step size in an SSD, the one that counts first."""
+def step_sizes(root: etree._Element) -> Iterator[tuple[etree._Element, str]]:
+    """Elements and attributes that state the base step size in an SSD; the first one counts."""
     for owner in (child(root, "ssd:DefaultExperiment"), child(root, "ssd:System")):
         yield from stated(owner, STEP_SIZES)
 
 
-def stated(owner, names):
-    """(element, attribute) of all in an element's own annotations that give a number under one of these names."""
+def stated(owner: etree._Element | None, names: Mapping[str, str]) -> Iterator[tuple[etree._Element, str]]:
+    """Elements and attributes in an element's own annotations that give a number under one of these names."""
     for annotation in () if owner is None else children(owner, "ssd:Annotations", "ssc:Annotation"):
         for part in annotation.iter("{*}*"):
             attribute = names.get(local(part))
@@ -32,7 +35,7 @@ def stated(owner, names):
                 yield part, attribute
 
 
-def remark_ignored(document, findings):
+def remark_ignored(document: Document, findings: Findings) -> None:
     """Name every algorithm, step size and connection that annotations of an SSD ask for and do not get."""
     honoured = [part for part, _ in list(step_sizes(document.root))[:1]]
     for component in document.root.iter(qualified("ssd:Component")):
@@ -43,20 +46,20 @@ def remark_ignored(document, findings):
                 _remark(part, annotation, document, findings)
 
 
-def _asks(part):
+def _asks(part: etree._Element) -> bool:
     """Whether an element asks for an algorithm or a step itself, rather than through one in it."""
     within = [inner for inner in part.iterdescendants("{*}*") if ASKS.search(local(inner))]
     return bool(ASKS.search(local(part))) and not within
 
 
-def _repeats(part, honoured):
+def _repeats(part: etree._Element, honoured: list[etree._Element]) -> bool:
     """Whether an element states the step size that holds anyway."""
     sizes = [one.get(STEP_SIZES.get(local(one), "stepSize")) for one in (part, *honoured)]
     return len(sizes) == 2 and sizes[0] is not None and sizes[0] == sizes[1]
 
 
-def _remark(part, annotation, document, findings):
-    owner = annotation.getparent().getparent()
+def _remark(part: etree._Element, annotation: etree._Element, document: Document, findings: Findings) -> None:
+    owner = parent_of(parent_of(annotation))
     numbers = STEP_SIZES | STEP_SIZE_HINTS
     attribute = "description" if part.get("description") else numbers.get(local(part), "description")
     detail = f" ({part.get(attribute)})" if part.get(attribute) else ""

@@ -6,7 +6,9 @@ import struct
 import zipfile
 import zlib
 from collections import Counter
+from collections.abc import Mapping
 from contextlib import suppress
+from os import PathLike
 from pathlib import Path, PurePosixPath
 
 from shipcosim.errors import Problem, ShipcosimError
@@ -19,7 +21,7 @@ BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, struct.error, NotImplemented
 CANNOT = (*BROKEN, OSError, MemoryError)  # sizes and places that a damaged directory states can be absurd
 
 
-def unpack(path, folder, shown=None):
+def unpack(path: str | PathLike[str], folder: str | PathLike[str], shown: str | None = None) -> None:
     """Unpack an archive into a folder, nothing outside it and nothing beyond the limits.
 
     Parameters
@@ -49,15 +51,21 @@ def unpack(path, folder, shown=None):
             raise ShipcosimError(Problem(shown, found, "Make room there, or name another folder in TMPDIR.")) from None
 
 
-def entries(path, shown=None):
-    """Names of an archive's files, checked like those of `unpack`."""
+def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
+    """Names of an archive's files, without unpacking it.
+
+    Raises
+    ------
+    ShipcosimError
+        Like `unpack`, but for the room.
+    """
     shown = shown or str(path)
     with _opened(path, shown) as archive:
         _check(archive, shown)
         return [entry.filename for entry in archive.infolist() if not entry.is_dir()]
 
 
-def read_entry(path, name, limit, shown=None):
+def read_entry(path: str | PathLike[str], name: str, limit: int, shown: str | None = None) -> bytes | None:
     """Bytes of one file of an archive, or None where the archive has no such file.
 
     Parameters
@@ -70,6 +78,15 @@ def read_entry(path, name, limit, shown=None):
         Largest size. [bytes]
     shown : str, optional
         Name of the archive in messages.
+
+    Returns
+    -------
+    bytes or None
+
+    Raises
+    ------
+    ShipcosimError
+        If the archive is damaged or the file too large.
     """
     shown = shown or str(path)
     with _opened(path, shown) as archive:
@@ -83,7 +100,7 @@ def read_entry(path, name, limit, shown=None):
             raise _damaged(shown, error) from None
 
 
-def _opened(path, shown):
+def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
     try:
         archive = zipfile.ZipFile(path)
     except BROKEN as error:
@@ -96,11 +113,11 @@ def _opened(path, shown):
     return archive
 
 
-def _damaged(shown, error):
+def _damaged(shown: str, error: object) -> ShipcosimError:
     return ShipcosimError(Problem(shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."))
 
 
-def _check(archive, shown):
+def _check(archive: zipfile.ZipFile, shown: str) -> None:
     listed = archive.infolist()
     problems = [Problem(shown, found) for entry in listed if (found := _unsafe(entry))]
     total, packed = sum(e.file_size for e in listed), sum(e.compress_size for e in listed)
@@ -118,7 +135,7 @@ def _check(archive, shown):
         raise ShipcosimError(problems[:20])
 
 
-def _unsafe(entry):
+def _unsafe(entry: zipfile.ZipInfo) -> str | None:
     """Sentence on what makes an entry unsafe, or None."""
     name = PurePosixPath(entry.orig_filename.replace("\\", "/"))
     if name.is_absolute() or ".." in name.parts or ":" in name.as_posix() or "\0" in entry.orig_filename:
@@ -130,7 +147,7 @@ def _unsafe(entry):
     return None
 
 
-def write_archive(path, files):
+def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None:
     """Write an archive whose bytes depend on names and contents alone; complete or not at all.
 
     Parameters

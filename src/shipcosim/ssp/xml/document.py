@@ -1,8 +1,10 @@
 """XML read safely and checked against its schema: no entities, no network, every finding with file and line."""
 
 import re
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
@@ -34,36 +36,36 @@ LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild a
 
 
 class Findings:
-    """What has been found so far, collected so that a user sees all of it at once."""
+    """Problems found so far, collected so that a user sees all of them at once."""
 
     def __init__(self):
-        self.problems = []
-        self._errors, self._looked_at = [], 0
-        self.refused_lines = set()  # by a schema: what else is wrong with a value there has been said
+        self.problems: list[Problem] = []
+        self._errors, self._looked_at = list[Problem](), 0
+        self.refused_lines: set[str] = set()  # by a schema: what else is wrong with a value there has been said
 
-    def error(self, where, found, remedy=""):
+    def error(self, where: str, found: str, remedy: str = "") -> None:
         """Note what makes the input unusable."""
         self.problems.append(Problem(where, found, remedy))
 
-    def remark(self, where, found, remedy=""):
+    def remark(self, where: str, found: str, remedy: str = "") -> None:
         """Note what a user should know although it stops nothing."""
         self.problems.append(Problem(where, found, remedy, severity="remark"))
 
-    def back_to(self, count):
+    def back_to(self, count: int) -> None:
         """Forget all but the first problems."""
         del self.problems[count:]
         self._errors, self._looked_at = [], 0
 
     @property
-    def errors(self):
+    def errors(self) -> list[Problem]:
         """Those of the problems that make the input unusable."""
         self._errors += [problem for problem in self.problems[self._looked_at :] if problem.severity == "error"]
         self._looked_at = len(self.problems)
         return self._errors
 
     @property
-    def remarks(self):
-        """The other ones."""
+    def remarks(self) -> list[Problem]:
+        """Those of the problems that stop nothing."""
         return [problem for problem in self.problems if problem.severity != "error"]
 
 
@@ -85,14 +87,14 @@ class Document:
     root: etree._Element
     folder: Path = Path()
 
-    def place(self, element, what=""):
+    def place(self, element: etree._Element, what: str = "") -> str:
         """Where an element stands, for the user to look it up."""
         line = f", line {element.sourceline}" if element.sourceline else ""  # none where it was made in memory
         return f"{self.file}{line}" + (f": {what}" if what else "")
 
 
 @contextmanager
-def reporting(document, element, findings, what=""):
+def reporting(document: Document, element: etree._Element, findings: Findings, what: str = "") -> Iterator[None]:
     """Turn a ValueError of reading an attribute into a finding about this element."""
     try:
         yield
@@ -101,7 +103,7 @@ def reporting(document, element, findings, what=""):
             findings.error(document.place(element, what), str(error), remedy_for(str(error)))
 
 
-def remedy_for(found):
+def remedy_for(found: str) -> str:
     """What would be right instead of a value of the wrong form.
 
     Examples
@@ -112,23 +114,23 @@ def remedy_for(found):
     return next((remedy for part, remedy in REMEDIES.items() if part in found), "Correct it.")
 
 
-def qualified(tag):
+def qualified(tag: str) -> str:
     """Tag in lxml's notation from one with our prefix: ``ssd:System``."""
     prefix, name = tag.split(":")
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
-def child(element, tag):
+def child(element: etree._Element, tag: str) -> etree._Element | None:
     """First child of this tag, whatever prefix the file uses, or None."""
     return element.find(qualified(tag))
 
 
-def children(element, *path):
+def children(element: etree._Element, *path: str) -> list[etree._Element]:
     """Children of the last tag of a path, ``"ssd:Connectors", "ssd:Connector"``; none where the path ends early."""
     return element.findall("/".join(qualified(tag) for tag in path))
 
 
-def local(element):
+def local(element: etree._Element) -> str:
     """Name of an element without its namespace; empty for comments and the like."""
     return etree.QName(element).localname if isinstance(element.tag, str) else ""
 
@@ -152,12 +154,12 @@ def parent_of(element: etree._Element) -> etree._Element:
     return parent
 
 
-def is_true(text):
+def is_true(text: str | None) -> bool:
     """Truth of an xs:boolean attribute; a missing one is false."""
     return (text or "").strip() in ("true", "1")
 
 
-def parse(data, file, findings, *, utf8=True):
+def parse(data: bytes, file: str, findings: Findings, *, utf8: bool = True) -> etree._Element | None:
     """Root element of an XML text.
 
     Parameters
@@ -197,7 +199,7 @@ def parse(data, file, findings, *, utf8=True):
     return root
 
 
-def read_document(path, shown, findings):
+def read_document(path: str | PathLike[str], shown: str, findings: Findings) -> Document | None:
     """Document of a file on disk, relative addresses from its folder; None where there is no usable one."""
     path = Path(path)
     try:
@@ -210,7 +212,7 @@ def read_document(path, shown, findings):
     return None if root is None else Document(shown, root, path.parent)
 
 
-def _is_utf8(data):
+def _is_utf8(data: bytes) -> bool:
     try:
         data.decode("utf-8")
     except UnicodeDecodeError:

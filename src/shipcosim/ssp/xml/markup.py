@@ -8,7 +8,7 @@ from copy import deepcopy
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import NAMESPACES, child, children, local, qualified
+from shipcosim.ssp.xml.document import NAMESPACES, child, children, local, parent_of, qualified
 
 INDENT = "  "
 ORDER = {
@@ -35,7 +35,7 @@ OSP_TYPE = "com.opensimulationplatform"
 OSP_MARK = "opensimulationplatform"
 
 
-def add(parent, tag, **attributes):
+def add(parent: etree._Element, tag: str, **attributes: str | None) -> etree._Element:
     """Put a new element into a parent, where the schema wants it: behind its likes, before what comes later.
 
     Parameters
@@ -57,7 +57,7 @@ def add(parent, tag, **attributes):
     return element
 
 
-def put(parent, element):
+def put(parent: etree._Element, element: etree._Element) -> None:
     """Put an element into a parent, where the schema wants it."""
     order = ORDER.get(local(parent), ())
     later = order[order.index(local(element)) + 1 :] if local(element) in order else ()
@@ -73,7 +73,7 @@ def put(parent, element):
     element.tail = "\n" + INDENT * (level + (index + 1 < len(parent)))
 
 
-def ensure(parent, *tags):
+def ensure(parent: etree._Element, *tags: str) -> etree._Element:
     """Child of the last tag of a path, made if it is not there."""
     for tag in tags:
         found = child(parent, tag)
@@ -81,9 +81,9 @@ def ensure(parent, *tags):
     return parent
 
 
-def drop(element):
+def drop(element: etree._Element) -> None:
     """Remove an element, and the list that it was the last one of: the schema has no empty ones."""
-    parent, before = element.getparent(), element.getprevious()
+    parent, before = parent_of(element), element.getprevious()
     if element.getnext() is None and before is not None:
         before.tail = element.tail
     parent.remove(element)
@@ -91,7 +91,7 @@ def drop(element):
         drop(parent)
 
 
-def add_osp(root, parent, *names, **attributes):
+def add_osp(root: etree._Element, parent: etree._Element, *names: str, **attributes: str) -> None:
     """Put an OSP annotation into an element of an SSD: nested elements of these names, the attributes on the last."""
     listed = ensure(parent, "ssd:Annotations")
     marked = [part for part in children(listed, "ssc:Annotation") if part.get("type") == OSP_TYPE]
@@ -104,7 +104,7 @@ def add_osp(root, parent, *names, **attributes):
     element.attrib.update(attributes)
 
 
-def to_bytes(root, *prefixes):
+def to_bytes(root: etree._Element, *prefixes: str) -> bytes:
     """File of an element, with the prefixes of the standard declared on the root.
 
     libcosim knows elements by these very prefixes, and those of OSP only where the root declares theirs. Everything
@@ -132,7 +132,7 @@ def to_bytes(root, *prefixes):
     return etree.tostring(copied.getroottree(), xml_declaration=True, encoding="UTF-8").rstrip() + b"\n"
 
 
-def osp_namespace(root):
+def osp_namespace(root: etree._Element) -> str:
     """Namespace of the OSP annotations in a file, first of all of the algorithm; the usual one where there are none."""
     found = [element.tag for element in root.iter("{*}Algorithm", "{*}*") if OSP_MARK in element.tag]
     found.sort(key=lambda tag: not tag.endswith("}Algorithm"))

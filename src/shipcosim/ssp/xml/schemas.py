@@ -1,4 +1,4 @@
-"""Schemas of SSP 1.0 and FMI, as FMPy brings them, and their findings in our words."""
+"""Schemas of SSP 1.0 and FMI, as FMPy brings them; where a file breaks one is said in words that an engineer knows."""
 
 import re
 from functools import cache
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import remedy_for
+from shipcosim.ssp.xml.document import Findings, remedy_for
 
 SCHEMAS = {
     "ssd": "ssp/schema/SystemStructureDescription.xsd",
@@ -21,7 +21,7 @@ SCHEMAS = {
 WORDS = {"double": "a number", "int": "a whole number", "boolean": "a Boolean (true, false, 1, 0)"}
 
 
-def report_schema(checker, root, file, findings):
+def report_schema(checker: etree.XMLSchema, root: etree._Element, file: str, findings: Findings) -> None:
     """Note where an element breaks a schema of lxml's, in our words."""
     if checker.validate(root):
         return
@@ -39,8 +39,9 @@ def report_schema(checker, root, file, findings):
 
 
 @cache
-def schema_of(name):
+def schema_of(name: str) -> etree.XMLSchema:
     """Schema by its name in SCHEMAS."""
-    folder = Path(find_spec("fmpy").submodule_search_locations[0])  # finds FMPy without running its slow import
+    fmpy = find_spec("fmpy")  # finds FMPy without running its slow import
+    folder = Path((fmpy and fmpy.submodule_search_locations or [""])[0])
     parser = etree.XMLParser(no_network=True)
     return etree.XMLSchema(etree.parse(str(folder / SCHEMAS[name]), parser))

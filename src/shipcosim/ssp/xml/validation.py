@@ -1,10 +1,13 @@
 """Elements held against their schema, whatever version of SSP or FMI they are of."""
 
+import lxml.etree as etree
+
+from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.schemas import report_schema, schema_of
 from shipcosim.ssp.xml.version_2 import validate_2
 
 
-def validate(root, schema, file, findings):
+def validate(root: etree._Element, schema: str, file: str, findings: Findings) -> None:
     """Check an element against a schema of FMPy, or SSP 2.0 as `shipcosim.ssp.xml.version_2` does.
 
     Parameters

@@ -8,6 +8,8 @@ Reference: System Structure and Parameterization 2.0, sections 4 to 8.
 
 from copy import deepcopy
 
+import lxml.etree as etree
+
 from shipcosim.ssp.xml.document import NAMESPACES, Findings, local
 from shipcosim.ssp.xml.schemas import report_schema, schema_of
 from shipcosim.ssp.xml.values import KINDS, read_value
@@ -19,7 +21,7 @@ ADDED_ATTRIBUTES = ("startIndices", "endIndices", "systemInnerX", "systemInnerY"
 UNKNOWN = ("is not expected", "is not allowed")
 
 
-def validate_2(root, schema, file, findings):
+def validate_2(root: etree._Element, schema: str, file: str, findings: Findings) -> None:
     """Check an element of SSP 2.0; see `shipcosim.ssp.xml.validation.validate`."""
     reduced = deepcopy(root)
     for element in list(reduced.iter("{*}*")):
@@ -37,7 +39,7 @@ def validate_2(root, schema, file, findings):
             findings.error(problem.where, problem.found, problem.remedy)
 
 
-def _reduce(element):
+def _reduce(element: etree._Element) -> None:
     """Make an element one of SSP 1.0 or, where that has nothing of the kind, take it out."""
     name, parent = local(element), element.getparent()
     if name in ADDED and parent is not None:
@@ -57,7 +59,7 @@ def _reduce(element):
         _reduce_type(element, name)
 
 
-def _reduce_type(element, name):
+def _reduce_type(element: etree._Element, name: str) -> None:
     """A type under its name in 1.0, with one value that has its form where there are several."""
     space = element.tag.partition("}")[0]
     listed = [part for part in element if local(part) == "Value"]
@@ -73,16 +75,18 @@ def _reduce_type(element, name):
     element.tag = f"{space}}}{kind}"
 
 
-def _is(kind, text):
+def _is(kind: str, text: str) -> bool:
     try:
         return read_value(kind, text) is not None
     except ValueError:
         return False
 
 
-def _out_of_range(element):
+def _out_of_range(element: etree._Element) -> tuple[str, str] | None:
     """Found and remedy where an integer of so many bits cannot have a value that it is given, or None."""
     low, high = RANGES.get(local(element), (0, 0))
     texts = (element.get("value") or "").split() if high else []
     bad = [text for text in texts if _is("Integer", text) and not low <= read_value("Integer", text) <= high]
-    return bad and (f"'{bad[0]}' is not a value of {local(element)}.", f"It has those from {low} to {high}.")
+    if not bad:
+        return None
+    return f"'{bad[0]}' is not a value of {local(element)}.", f"It has those from {low} to {high}."
