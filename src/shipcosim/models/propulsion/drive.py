@@ -46,12 +46,12 @@ class Thruster(NamedTuple):
         True at a limit of force, of its rate, or of the motor. [1]
     """
 
-    n: Any
-    integral: Any
-    thrust_cmd: Any
-    azimuth: Any
-    torque: Any
-    saturated: Any
+    n: Arithmetic
+    integral: Arithmetic
+    thrust_cmd: Arithmetic
+    azimuth: Arithmetic
+    torque: Arithmetic
+    saturated: Arithmetic
 
 
 def at_rest(azimuth: Arithmetic) -> Thruster:
@@ -74,7 +74,7 @@ def at_rest(azimuth: Arithmetic) -> Thruster:
 def drive_step(
     thruster: Thruster,
     thrust_cmd: Arithmetic,
-    failed: Any,
+    failed: Arithmetic,
     h: float,
     drive: Any,
     loads: Callable,

@@ -5,13 +5,13 @@ Limits, drive and motor are in `drive`, the propeller in `propeller`; here is wh
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import load_at, velocity_at
-from shipcosim.models.core.maths import clip, cos, exp, hypot, pi, sin, sqrt, where
+from shipcosim.models.core.maths import Arithmetic, clip, cos, exp, hypot, pi, sin, sqrt, where
 from shipcosim.models.core.parameters import acts, quantity
-from shipcosim.models.propulsion.drive import at_rest, drive_step
+from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
 from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
 from shipcosim.models.propulsion.slipstream import slipstream_share
 
@@ -130,7 +130,7 @@ class TunnelParameters:
 
 
 class Loads(NamedTuple):
-    """What a thruster does to the ship.
+    """Loads of a thruster on the ship.
 
     Parameters
     ----------
@@ -140,26 +140,37 @@ class Loads(NamedTuple):
         Load about the origin. [N, N, N.m]
     """
 
-    thrust: Any
-    side_force: Any
-    tau_X: Any
-    tau_Y: Any
-    tau_N: Any
+    thrust: Arithmetic
+    side_force: Arithmetic
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
 
 
-def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, unit):
-    """The azimuth thruster a step later.
+def azimuth_step(
+    thruster: Thruster,
+    thrust_cmd: Arithmetic,
+    azimuth_cmd: Arithmetic,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    failed: Arithmetic,
+    h: float,
+    *,
+    unit: AzimuthParameters,
+) -> Thruster:
+    """State of an azimuth thruster one step later.
 
     Parameters
     ----------
     thruster : Thruster
         State at the start.
     thrust_cmd, azimuth_cmd : like the state
-        Commanded thrust and direction; the direction is taken the shortest way. [N, rad]
+        Commanded thrust and direction, which is reached the shorter way. [N, rad]
     u_r, v_r, r : like the state
-        Velocity of the ship through the water. [m/s, m/s, rad/s]
-    failed : bool or array
-        Without power: no motor torque, the shaft runs free, the unit keeps its direction.
+        Velocity of the ship relative to the water and yaw rate. [m/s, m/s, rad/s]
+    failed : bool or (...) array or tensor of bool
+        Without power: no motor torque, the shaft runs free, the unit keeps its direction. [1]
     h : float
         Step. [s]
     unit : AzimuthParameters
@@ -169,6 +180,10 @@ def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, u
     -------
     Thruster
         State at the end.
+
+    References
+    ----------
+    As `drive.drive_step` and `propeller.propeller_loads`.
     """
     azimuth = turned(thruster.azimuth, azimuth_cmd, where(failed, 0.0, unit.azimuth_rate * h))
     u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
@@ -184,16 +199,19 @@ def azimuth_step(thruster, thrust_cmd, azimuth_cmd, u_r, v_r, r, failed, h, *, u
     )
 
 
-def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
-    """An azimuth thruster at a given shaft speed and direction, for replays; friction and propeller set its torque.
+def azimuth_replay(
+    n: Arithmetic, azimuth: Arithmetic, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, unit: AzimuthParameters
+) -> Thruster:
+    """State of an azimuth thruster at a given shaft speed and direction, for replays.
+
+    The motor torque is that of propeller and friction at constant shaft speed.
 
     Parameters
     ----------
     n, azimuth : float or (...) array or tensor
-        Shaft speed and direction of positive thrust as given: less and plus the unit's offsets are the real ones.
-        [rev/s, rad]
+        Given shaft speed and direction of positive thrust; the real ones differ by the unit's offsets. [rev/s, rad]
     u_r, v_r, r : like n
-        Velocity of the ship through the water. [m/s, m/s, rad/s]
+        Velocity of the ship relative to the water and yaw rate. [m/s, m/s, rad/s]
     unit : AzimuthParameters
         The thruster.
 
@@ -201,6 +219,10 @@ def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
     -------
     Thruster
         With the real shaft speed and the given direction.
+
+    References
+    ----------
+    As `propeller.propeller_loads`; a constant shaft speed within the step is assumed.
     """
     thruster = azimuth_given(n, azimuth, unit=unit)
     n = thruster.n
@@ -209,27 +231,41 @@ def azimuth_replay(n, azimuth, u_r, v_r, r, *, unit):
     return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n)
 
 
-def azimuth_given(n, azimuth, *, unit):
-    """As `azimuth_replay`, where its thrust and torque are not asked for: both 0.
+def azimuth_given(n: Arithmetic, azimuth: Arithmetic, *, unit: AzimuthParameters) -> Thruster:
+    """As `azimuth_replay`, without command and torque, which are 0.
 
     Parameters
     ----------
     n, azimuth : float or (...) array or tensor
-        Shaft speed and direction of positive thrust as given. [rev/s, rad]
+        Given shaft speed and direction of positive thrust. [rev/s, rad]
     unit : AzimuthParameters
         The thruster.
 
     Returns
     -------
     Thruster
+        With the real shaft speed and the given direction.
+
+    References
+    ----------
+    As `azimuth_replay`.
     """
     return at_rest(azimuth)._replace(n=n - unit.rpm_offset / 60.0)
 
 
-def azimuth_loads(thruster, u_r, v_r, r, neighbour_azimuth=0.0, neighbour_rpm=0.0, *, unit):
-    """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, on the ship.
+def azimuth_loads(
+    thruster: Thruster,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    neighbour_azimuth: Arithmetic = 0.0,
+    neighbour_rpm: Arithmetic = 0.0,
+    *,
+    unit: AzimuthParameters,
+) -> Loads:
+    """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, with their load on the ship.
 
-    The thrust is that of the propeller less what is lost:
+    The thrust is that of the propeller less its losses:
     (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - interaction_loss · `slipstream_share`).
 
     Parameters
@@ -237,7 +273,7 @@ def azimuth_loads(thruster, u_r, v_r, r, neighbour_azimuth=0.0, neighbour_rpm=0.
     thruster : Thruster
         State.
     u_r, v_r, r : like the state
-        Velocity of the ship through the water. [m/s, m/s, rad/s]
+        Velocity of the ship relative to the water and yaw rate. [m/s, m/s, rad/s]
     neighbour_azimuth, neighbour_rpm : like the state
         Direction of positive thrust and shaft speed of the unit whose slipstream can meet this one. [rad, rpm]
     unit : AzimuthParameters
@@ -246,6 +282,11 @@ def azimuth_loads(thruster, u_r, v_r, r, neighbour_azimuth=0.0, neighbour_rpm=0.
     Returns
     -------
     Loads
+        Forces and load.
+
+    References
+    ----------
+    Side force: nominal model, azimuth thrusters, fitted to the FMU of the unit; losses: definition.
     """
     n, azimuth = thruster.n, thruster.azimuth + unit.azimuth_offset
     u_a, u_s = _inflow(azimuth, u_r, v_r, r, unit)
@@ -258,8 +299,16 @@ def azimuth_loads(thruster, u_r, v_r, r, neighbour_azimuth=0.0, neighbour_rpm=0.
     return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
 
 
-def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
-    """The tunnel thruster a step later.
+def tunnel_step(
+    thruster: Thruster,
+    thrust_cmd: Arithmetic,
+    u_r: Arithmetic,
+    failed: Arithmetic,
+    h: float,
+    *,
+    tunnel: TunnelParameters,
+) -> Thruster:
+    """State of a tunnel thruster one step later.
 
     Parameters
     ----------
@@ -269,8 +318,8 @@ def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
         Commanded thrust, positive to starboard. [N]
     u_r : like the state
         Forward speed of the ship through the water. [m/s]
-    failed : bool or array
-        Without power: no motor torque, the shaft runs free.
+    failed : bool or (...) array or tensor of bool
+        Without power: no motor torque, the shaft runs free. [1]
     h : float
         Step. [s]
     tunnel : TunnelParameters
@@ -280,6 +329,10 @@ def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
     -------
     Thruster
         State at the end.
+
+    References
+    ----------
+    As `drive.drive_step`; quadratic thrust and torque curves: nominal model, tunnel thruster.
     """
     loss = exp(-tunnel.speed_loss * u_r * u_r)
     k_T, k_Q = 3600.0 * tunnel.thrust_coefficient, 3600.0 * tunnel.torque_coefficient
@@ -295,13 +348,13 @@ def tunnel_step(thruster, thrust_cmd, u_r, failed, h, *, tunnel):
     return drive_step(thruster, thrust_cmd, failed, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
 
 
-def tunnel_replay(n, *, tunnel):
-    """A tunnel thruster at a given motor speed, for replays.
+def tunnel_replay(n: Arithmetic, *, tunnel: TunnelParameters) -> Thruster:
+    """State of a tunnel thruster at a given motor speed, for replays.
 
     Parameters
     ----------
     n : float or (...) array or tensor
-        Motor speed as given; less the offset it is the real one. [rev/s]
+        Given motor speed; the real one differs by the offset of the thruster. [rev/s]
     tunnel : TunnelParameters
         The thruster.
 
@@ -309,6 +362,10 @@ def tunnel_replay(n, *, tunnel):
     -------
     Thruster
         With the real speed.
+
+    References
+    ----------
+    As `tunnel_step`.
     """
     n = n - tunnel.rpm_offset / 60.0
     square = 3600.0 * n * abs(n)
@@ -316,7 +373,7 @@ def tunnel_replay(n, *, tunnel):
     return at_rest(0.5 * pi + 0.0 * n)._replace(n=n, thrust_cmd=tunnel.thrust_coefficient * square, torque=torque)
 
 
-def tunnel_loads(thruster, u_r, *, tunnel):
+def tunnel_loads(thruster: Thruster, u_r: Arithmetic, *, tunnel: TunnelParameters) -> Loads:
     """Thrust of a tunnel thruster and its load on the ship.
 
     Parameters
@@ -331,6 +388,11 @@ def tunnel_loads(thruster, u_r, *, tunnel):
     Returns
     -------
     Loads
+        Forces and load.
+
+    References
+    ----------
+    As `tunnel_step`.
     """
     n = 60.0 * thruster.n
     kept = (1.0 - tunnel.thrust_loss) * exp(-tunnel.speed_loss * u_r * u_r)
@@ -338,13 +400,13 @@ def tunnel_loads(thruster, u_r, *, tunnel):
     return Loads(thrust, 0.0 * n, 0.0 * n, thrust, tunnel.x * thrust)
 
 
-def turned(azimuth, azimuth_cmd, most):
-    """A direction after turning towards the commanded one, the shortest way round.
+def turned(azimuth: Arithmetic, azimuth_cmd: Arithmetic, most: Arithmetic) -> Arithmetic:
+    """Direction after turning towards the commanded one the shorter way.
 
     Parameters
     ----------
     azimuth, azimuth_cmd : float or (...) array or tensor
-        Where it points, and where it shall. [rad]
+        Present and commanded direction. [rad]
     most : like azimuth
         Largest turn. [rad]
 
@@ -352,6 +414,10 @@ def turned(azimuth, azimuth_cmd, most):
     -------
     like azimuth
         In [-π, π). [rad]
+
+    References
+    ----------
+    Definition.
 
     Examples
     --------
