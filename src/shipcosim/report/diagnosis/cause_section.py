@@ -64,9 +64,8 @@ class CauseSection:
     not_testable: Table
 
 
-def cause_section(diagnosis: Diagnosis) -> CauseSection:
+def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
     """The section as the template fills it in."""
-    evidence = diagnosis.evidence
     began = sorted({f.onset for f in diagnosis.findings if f.onset is not None})
     named = {(f.cause, f.component) for f in diagnosis.findings}
     alike = diagnosis.indistinguishable

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
-from shipcosim.diagnose.result import Diagnosis
+from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
 from shipcosim.report.diagnosis.words import title, told, where
 from shipcosim.report.theme.views import Figure, Table
@@ -30,9 +30,9 @@ class LogSection:
     handled: tuple[str, ...]
 
 
-def log_section(diagnosis: Diagnosis) -> LogSection:
+def log_section(diagnosis: Diagnosis, log: LogSummary) -> LogSection:
     """The section as the template fills it in."""
-    findings, log = diagnosis.findings, diagnosis.log
+    findings = diagnosis.findings
     faults = [f for f in findings if f.kind == "data"]
     rows = (
         (title(f.cause), ", ".join(f.channels) or "all", where(f), f.note or told(f), read_faults()[f.cause].repair)

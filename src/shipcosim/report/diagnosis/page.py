@@ -3,7 +3,7 @@
 import os
 from dataclasses import dataclass
 
-from shipcosim.diagnose.result import Diagnosis
+from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.report.diagnosis.cause_section import CauseSection, cause_section
 from shipcosim.report.diagnosis.error_section import ErrorSection, error_section
 from shipcosim.report.diagnosis.extension_section import ExtensionSection, extension_section
@@ -14,6 +14,7 @@ from shipcosim.report.diagnosis.words import next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page
 from shipcosim.series import write_file
+from shipcosim.ssp import System
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,10 @@ def render(diagnosis: Diagnosis) -> str:
 
 
 def _page(diagnosis: Diagnosis) -> DiagnosisPage:
-    log, error, cause = log_section(diagnosis), error_section(diagnosis), cause_section(diagnosis)
+    if diagnosis.log is None or diagnosis.evidence is None:
+        raise ValueError("only a diagnosis with its log and evidence has a page; shipcosim.diagnose makes one")
+    log, cause = log_section(diagnosis, diagnosis.log), cause_section(diagnosis, diagnosis.evidence)
+    error = error_section(diagnosis)
     extension, gain = extension_section(diagnosis), gain_section(diagnosis)
     causes = (*cause.figures, *cause.unmodelled, *cause.whiteness)
     figures = (*log.figures, *error.figures, *error.forces, *causes, *gain.figures)
@@ -73,7 +77,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     steps = next_steps(diagnosis, extension.system if extension.state == "extended" else None, diagnosis.causes)
     return DiagnosisPage(
         title=f"Diagnosis of {diagnosis.log.name}",
-        facts=_facts(diagnosis),
+        facts=_facts(diagnosis.log, diagnosis.system),
         outcome=outcome(diagnosis, diagnosis.causes),
         links=tuple(Link(anchor, title, section.found) for anchor, (title, section) in links.items()),
         data=tuple(figure.drawn for figure in figures),
@@ -88,9 +92,9 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     )
 
 
-def _facts(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+def _facts(log: LogSummary, system: System | None) -> tuple[Fact, ...]:
     """The system, the length of the log and its step."""
-    time = diagnosis.log.measured["time"].values
-    log = f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"
-    facts = (("System", diagnosis.system.name), ("Log", log), ("Step", f"{diagnosis.log.step:g} s"))
+    time = log.measured["time"].values
+    length = f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"
+    facts = (("System", system.name if system else ""), ("Log", length), ("Step", f"{log.step:g} s"))
     return tuple(Fact(name, text) for name, text in facts if text)

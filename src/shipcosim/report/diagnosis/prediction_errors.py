@@ -78,9 +78,9 @@ def condition_table(errors: PredictionErrors) -> Table:
     return Table(tuple(rows), head, tight=tuple(range(1, 8)))
 
 
-def removed(entry: Mapping[str, Any]) -> str:
+def removed(entry: Mapping[str, Any] | None) -> str:
     """Share of the explainable error that causes remove, with its interval, of an entry of `gain`."""
-    if entry["share_of_explainable"] is None:
+    if entry is None or entry["share_of_explainable"] is None:
         return "nothing to remove"
     sure = " ({:.0f} to {:.0f} %)".format(*(100 * end for end in entry["ci95"])) if entry["ci95"] else ""
     return f"{100 * entry['share_of_explainable']:.0f} %{sure}"
