@@ -76,6 +76,13 @@ def worth_showing(problems: Iterable[Problem]) -> list[Problem]:
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Remedy for an unknown name: what there is, and the nearest of it.
 
+    Parameters
+    ----------
+    name : str
+        That was not found.
+    known : iterable of str
+        Names that there are.
+
     Examples
     --------
     >>> suggestion("thrust_comand", ["thrust_cmd"])
@@ -90,7 +97,14 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 
 def it_has(name: str, known: Iterable[str]) -> str:
-    """Remedy for a name that something does not have.
+    """Remedy for a name that something does not have: what it has, and the nearest of it.
+
+    Parameters
+    ----------
+    name : str
+        That was not found.
+    known : iterable of str
+        Names that it has.
 
     Examples
     --------

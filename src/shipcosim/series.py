@@ -57,10 +57,17 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
 
     Equal tables give equal bytes. Either the whole file is there afterwards or none under this name.
 
+    Parameters
+    ----------
+    table : xarray.Dataset
+        With the coordinate `time`.
+    path : path
+        The file; its ending says the format.
+
     Raises
     ------
     ShipcosimError
-        If the suffix is another one, or the file cannot be written (a full disk, no such folder).
+        If the ending is another one, or the file cannot be written (a full disk, no such folder).
     """
     writers = {".nc": _netcdf, ".csv": _csv}
     path = Path(path)
@@ -71,6 +78,16 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
 
 def read_table(path: str | os.PathLike) -> xarray.Dataset:
     """Read a table from NetCDF (.nc), CSV (.csv, .csv.gz; header `name [unit]`) or Parquet (.parquet, headers alike).
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the coordinate `time` in seconds.
 
     Raises
     ------
@@ -84,10 +101,20 @@ def read_table(path: str | os.PathLike) -> xarray.Dataset:
 
 
 def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
-    """Columns of any table of measurements, as they stand in the file: (values, unit) by name.
+    """Columns of any table of measurements, as they stand in the file.
 
     Numbers become float64, missing ones NaN, stamps of date and time seconds after the first; a column of texts stays
     one of texts. Nothing is left out and nothing is asked of the names.
+
+    Parameters
+    ----------
+    path : path
+        NetCDF, CSV or Parquet.
+
+    Returns
+    -------
+    dict of str to (array, str)
+        Values and unit by the column's name.
 
     Raises
     ------
@@ -119,6 +146,13 @@ def _suffix(path, known):
 def write_file(path: str | os.PathLike, content: bytes) -> None:
     """Write a file so that it is there completely or not at all.
 
+    Parameters
+    ----------
+    path : path
+        The file; its folder must be there.
+    content : bytes
+        What it holds.
+
     Raises
     ------
     ShipcosimError
@@ -145,8 +179,16 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
 def conversion(unit_from: str | None, unit_to: str | None) -> tuple[float, float]:
     """Factor and offset that turn a value in one unit into another: ``factor * value + offset``.
 
-    Knows the spellings of FMI ("N.m", "kg.m2", "rad/s") and "rpm", "deg", "kn", "1". A unit that is not stated
-    (None or empty) is taken to be right.
+    Knows the spellings of FMI ("N.m", "kg.m2", "rad/s"), "rpm", "deg", "kn", "1", and those of pint.
+
+    Parameters
+    ----------
+    unit_from, unit_to : str or None
+        A unit that is not stated (None or empty) is taken to be right.
+
+    Returns
+    -------
+    tuple of two float
 
     Raises
     ------

@@ -224,7 +224,19 @@ def find_unit(name: str | None, *definitions: Mapping[str, Unit]) -> Unit | None
 
 
 def relation(source: Unit, target: Unit) -> str:
-    """How two units relate: ``same``, ``convertible``, ``angle`` (all but rad equal), ``unknown``, ``incompatible``."""
+    """How two units relate.
+
+    Parameters
+    ----------
+    source, target : Unit
+        The units.
+
+    Returns
+    -------
+    str
+        ``"same"``; ``"convertible"``; ``"angle"`` where they are equal but for the radian; ``"unknown"`` where one of
+        them has no definition; ``"incompatible"``.
+    """
     if source.exponents is None or target.exponents is None:
         return "same" if source.name == target.name else "unknown"
     if source.exponents == target.exponents:
@@ -235,7 +247,15 @@ def relation(source: Unit, target: Unit) -> str:
 def conversion(source: Unit | None, target: Unit | None) -> tuple[float, float]:
     """Factor and offset from one unit to the other: target value = factor * source value + offset.
 
-    A value without a unit, or one of a unit that cannot be converted into the other, is left as it is: (1, 0).
+    Parameters
+    ----------
+    source, target : Unit or None
+        None: no unit.
+
+    Returns
+    -------
+    tuple of two float
+        (1, 0), which changes nothing, where one of them is missing or they cannot be converted.
 
     Examples
     --------

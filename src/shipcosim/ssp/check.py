@@ -37,7 +37,19 @@ def check_system(
 
 
 def problems_of(system: System | None, findings: Findings) -> list[Problem]:
-    """Findings about a system, each once, with remarks on what its FMUs lack; the system may be None."""
+    """Findings about a system, each once, with remarks on what its FMUs lack and on algebraic loops.
+
+    Parameters
+    ----------
+    system : System or None
+        None where it cannot be read.
+    findings : Findings
+        Of reading it.
+
+    Returns
+    -------
+    list of Problem
+    """
     described = {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
     for fmu in described.values():
         _remark_platform(fmu, fmu.path.name, findings)

@@ -47,6 +47,11 @@ def assemble(
 ) -> tuple[System | None, Findings]:
     """Like `read_system`, but collecting what is wrong.
 
+    Parameters
+    ----------
+    path, parameters, fmus
+        As for `read_system`.
+
     Returns
     -------
     tuple of System or None, and Findings

@@ -160,7 +160,15 @@ class Draft:
     # ---------------------------------------------------------------- writing
 
     def write(self, path: Path, fmus: bool) -> None:
-        """Write the package: packed into a .ssp, as a .ssd with its files beside it, or as a folder."""
+        """Write the package: packed into a .ssp, as a .ssd with its files beside it, or as a folder.
+
+        Parameters
+        ----------
+        path : Path
+            Its ending says which.
+        fmus : bool
+            Whether FMUs that were not in the package come along; a .ssp always has them.
+        """
         files = self._files()
         packed = path.suffix.lower() == ".ssp"
         if not (packed or fmus):

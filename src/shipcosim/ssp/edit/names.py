@@ -94,7 +94,22 @@ def connections(system: etree._Element) -> Iterator[tuple[tuple[str, str], etree
 
 
 def attached(system: etree._Element, name: str, is_element: bool) -> Iterator[tuple[etree._Element, str]]:
-    """(connection, attribute with its name) of all ends at an element or, else, at a connector."""
+    """Ends of connections at an element or, else, at a connector.
+
+    Parameters
+    ----------
+    system : lxml element
+        The outermost one.
+    name : str
+        Full name of the element or connector.
+    is_element : bool
+        Which of the two it is.
+
+    Returns
+    -------
+    iterator of (lxml element, str)
+        The connection, and its attribute with the name.
+    """
     for owner, element in walk(system):
         for connection in children(element, "ssd:Connections", "ssd:Connection"):
             for side in ("start", "end"):

@@ -117,7 +117,19 @@ def _end_names(
 
 
 def element_values(value: ParameterValue, findings: Findings) -> list[ParameterValue]:
-    """Parameter values of the elements, where a parameter is an array; else the value itself."""
+    """Parameter values of an array's elements; the value itself where it is no array.
+
+    Parameters
+    ----------
+    value : ParameterValue
+        As the parameter set has it.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    list of ParameterValue, empty with an error where their number does not fit
+    """
     if not value.dimensions:
         return [value]
     if min(value.dimensions) < 1 or prod(value.dimensions) != len(value.value):

@@ -60,7 +60,15 @@ def assemble_package(
 
 
 def parameter_sets(parameters: ParameterSets, findings: Findings) -> Iterator[ParameterSet]:
-    """Sets given for this run, read where they are paths."""
+    """Parameter sets given for a run, read where they are paths.
+
+    Parameters
+    ----------
+    parameters : path or ParameterSet, or iterable of them
+        The last one wins.
+    findings : Findings
+        Takes what is wrong.
+    """
     if isinstance(parameters, (str, PathLike, ParameterSet)):
         parameters = (parameters,)
     for given in parameters:
@@ -100,7 +108,19 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
 
 
 def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:
-    """Components of a hierarchy by full name, with their start values; those whose FMU cannot be read are left out."""
+    """Components of a hierarchy by full name; those whose FMU cannot be read are left out.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Has the components.
+    settings : Settings
+        Applied; has their start values.
+
+    Returns
+    -------
+    dict of str to Component
+    """
     return {
         ".".join(path): Component(
             ".".join(path),
@@ -139,7 +159,17 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
 def remark_unconnected(
     components: Mapping[str, Component], connections: Iterable[Connection], findings: Findings
 ) -> None:
-    """Note which inputs nothing feeds."""
+    """Add a remark for each component with inputs that nothing feeds.
+
+    Parameters
+    ----------
+    components : mapping of str to Component
+        By full name.
+    connections : iterable of Connection
+        All of the system.
+    findings : Findings
+        Takes what is wrong.
+    """
     connected = {connection.target for connection in connections}
     for component in components.values():
         free = [name for name in component.fmu.named("input") if (component.name, name) not in connected]

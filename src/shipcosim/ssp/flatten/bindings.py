@@ -53,7 +53,15 @@ def take_bindings(
 
 
 def apply_set(tree: Hierarchy, values: ParameterSet) -> None:
-    """Set the values of a parameter set on the outermost system, over everything set before."""
+    """Set the values of a parameter set on the outermost system, over everything set before.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Takes the values.
+    values : ParameterSet
+        Given for this run.
+    """
     tree.settings += _settings(tree, values, (), "", False)
 
 

@@ -107,7 +107,21 @@ class Setting:
 
 
 def variable_port(variable: Variable, fmu: FmuDescription, place: str) -> Port:
-    """Port of an FMU's variable as the FMU describes it."""
+    """Port of a component, as its FMU describes the variable.
+
+    Parameters
+    ----------
+    variable : Variable
+        Of the FMU.
+    fmu : FmuDescription
+        Has the definition of its unit.
+    place : str
+        Where it is used, for messages.
+
+    Returns
+    -------
+    Port
+    """
     unit = find_unit(variable.unit, fmu.units)
     fields = (variable.causality, variable.kind, "component", unit, variable.items, variable, unit)
     return Port(*fields, variable.description, place)

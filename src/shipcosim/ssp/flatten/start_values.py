@@ -181,7 +181,19 @@ def _differ_in_number(one: str, other: str) -> bool:
 
 
 def check_bounds(value: Value, variable: Variable, place: str, name: str, findings: Findings) -> bool:
-    """Whether a value is one that a variable can have, with an error if not."""
+    """Whether a variable can have a value, with an error if not.
+
+    Parameters
+    ----------
+    value : value
+        In the variable's unit.
+    variable : Variable
+        Has the bounds or the items of its enumeration.
+    place, name : str
+        Where the value stands and what it is for, for messages.
+    findings : Findings
+        Takes what is wrong.
+    """
     if variable.items and value not in variable.items.values():
         findings.error(place, f"{name} cannot be {value}.", f"Items: {dict(variable.items)}.")
         return False

@@ -60,7 +60,21 @@ MOST_SIGNALS = 10_000
 
 
 def read_function(element: etree._Element, place: str, findings: Findings) -> Function | None:
-    """Function of its element, checked against the schema before; None with an error where it is too large."""
+    """Function of its element; None with an error where it has too many signals.
+
+    Parameters
+    ----------
+    element : lxml element
+        Keeps the schema.
+    place : str
+        Where it stands, for messages.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    Function or None
+    """
     inputs, dimension = (int(element.get(name, 1)) for name in ("inputCount", "dimension"))
     if inputs * dimension > MOST_SIGNALS:
         findings.error(place, f"It has {inputs * dimension} inputs.", f"At most {MOST_SIGNALS} are taken.")
@@ -90,7 +104,17 @@ class Wiring:
         self._given_up.add(function)
 
     def take(self, function: str, signal: str, end: tuple[str, str] | None, place: str) -> None:
-        """Note that a variable (None: one with an error) is connected with a signal."""
+        """Note that a variable is connected with a signal of a function.
+
+        Parameters
+        ----------
+        function, signal : str
+            Their names.
+        end : tuple of two str or None
+            Simulator and variable; None: one with an error.
+        place : str
+            Where the connection stands, for messages.
+        """
         if end is None:
             self.give_up(function)
             return

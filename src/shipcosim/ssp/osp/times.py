@@ -10,7 +10,19 @@ DEFAULT_STEP = 0.1  # s; libcosim's where a file states none
 
 
 def read_experiment(document: Document, findings: Findings) -> Experiment:
-    """Start, end and base step of a document; remarks on what is not used of it."""
+    """Start, end and base step of an OspSystemStructure.xml, with remarks on what of it is not used.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    Experiment
+    """
     root = document.root
     times = {local(part): part for part in root if local(part).endswith(("Time", "StepSize"))}
     read = {name: _seconds(document, part, part.text, findings) for name, part in times.items()}

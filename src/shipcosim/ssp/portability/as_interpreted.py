@@ -34,7 +34,17 @@ class Taken:
 
 
 def told_set(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> str | None:
-    """Name of the first parameter set on a component, which ecos is told; None where there is none."""
+    """Name of the first parameter set on a component, which ecos is told, or None.
+
+    Parameters
+    ----------
+    path, fmus
+        As for `shipcosim.ssp.read_system`.
+
+    Returns
+    -------
+    str or None
+    """
     subject = subject_of(path, fmus)
     return next((values.name for *_, values in subject.sets), None) if subject is not None else None
 

@@ -122,7 +122,17 @@ class Subject:
 
 
 def subject_of(path: str | PathLike[str], fmus: Iterable[str | PathLike[str]] = ()) -> Subject | None:
-    """Subject of an SSP, or None where it has errors."""
+    """Subject of an SSP, or None where it has errors.
+
+    Parameters
+    ----------
+    path, fmus
+        As for `shipcosim.ssp.read_system`.
+
+    Returns
+    -------
+    Subject or None
+    """
     findings = Findings()
     package = open_package(path, findings, fmus)
     document = None if package is None else package.document(findings)

@@ -163,7 +163,23 @@ def open_package(
 
 
 def read_in_component(fmu: FmuDescription, uri: str, place: str, findings: Findings) -> Document | None:
-    """Document inside an FMU (``sourceBase="component"``), or None with an error."""
+    """Document inside an FMU (``sourceBase="component"``), or None with an error.
+
+    Parameters
+    ----------
+    fmu : FmuDescription
+        The FMU.
+    uri : str
+        Address from the FMU's top.
+    place : str
+        Where the address stands, for messages.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    Document or None
+    """
     name = unquote(uri)
     try:
         data = read_entry(fmu.path, name, LARGEST_FILE)

@@ -139,7 +139,17 @@ class DictionaryEntry:
 
 
 def has_root(document: Document, tag: str, findings: Findings) -> bool:
-    """Whether the outermost element of a document is the one of this tag, with an error if not."""
+    """Whether the outermost element of a document is the one of this tag, with an error if not.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    tag : str
+        With our prefix: ``"ssv:ParameterSet"``.
+    findings : Findings
+        Takes what is wrong.
+    """
     if document.root.tag == qualified(tag):
         return True
     found = f"Its outermost element is <{local(document.root)}>."
@@ -224,7 +234,19 @@ def tolerance_of(element: etree._Element) -> float | None:
 
 
 def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, ...]:
-    """Entries of an SSM document, as a tuple of MappingEntry."""
+    """Entries of a parameter mapping (SSM).
+
+    Parameters
+    ----------
+    document : Document
+        File or inline element.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    tuple of MappingEntry, empty where the document is no such thing
+    """
     if not has_root(document, "ssm:ParameterMapping", findings):
         return ()
     before = len(findings.errors)
@@ -245,7 +267,21 @@ def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, 
 
 
 def read_transformation(document: Document, element: etree._Element, findings: Findings) -> Transformation | None:
-    """Transformation that an element (connection or mapping entry) contains, or None."""
+    """Transformation that a connection or a mapping entry contains, or None.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    element : lxml element
+        The Connection or MappingEntry.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    Transformation or None
+    """
     for part in element:
         if local(part) == "LinearTransformation":
             numbers = [_attribute_of(document, part, name, "Real", findings) for name in ("factor", "offset")]
@@ -274,7 +310,19 @@ def _attribute_of(
 
 
 def read_dictionary(document: Document, findings: Findings) -> dict[str, DictionaryEntry]:
-    """Entries of an SSB document by name."""
+    """Entries of a signal dictionary (SSB) by name.
+
+    Parameters
+    ----------
+    document : Document
+        File or inline element.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    dict of str to DictionaryEntry, empty where the document is no such thing
+    """
     if not has_root(document, "ssb:SignalDictionary", findings):
         return {}
     root = document.root

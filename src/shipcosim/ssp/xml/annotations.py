@@ -36,7 +36,15 @@ def stated(owner: etree._Element | None, names: Mapping[str, str]) -> Iterator[t
 
 
 def remark_ignored(document: Document, findings: Findings) -> None:
-    """Name every algorithm, step size and connection that annotations of an SSD ask for and do not get."""
+    """Add a remark on each algorithm, step size and connection that annotations of an SSD ask for and do not get.
+
+    Parameters
+    ----------
+    document : Document
+        The SSD.
+    findings : Findings
+        Takes what is wrong.
+    """
     honoured = [part for part, _ in list(step_sizes(document.root))[:1]]
     for component in document.root.iter(qualified("ssd:Component")):
         honoured += [part for part, _ in list(stated(component, STEP_SIZE_HINTS))[:1]]

@@ -95,7 +95,19 @@ class Document:
 
 @contextmanager
 def reporting(document: Document, element: etree._Element, findings: Findings, what: str = "") -> Iterator[None]:
-    """Turn a ValueError of reading an attribute into a finding about this element."""
+    """Turn a ValueError within a ``with`` block into an error of the file.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    element : lxml element
+        What is read.
+    findings : Findings
+        Takes what is wrong.
+    what : str
+        What of it, for messages.
+    """
     try:
         yield
     except ValueError as error:
@@ -200,7 +212,21 @@ def parse(data: bytes, file: str, findings: Findings, *, utf8: bool = True) -> e
 
 
 def read_document(path: str | PathLike[str], shown: str, findings: Findings) -> Document | None:
-    """Document of a file on disk, relative addresses from its folder; None where there is no usable one."""
+    """Document of a file on disk, or None with an error.
+
+    Parameters
+    ----------
+    path : path
+        The file; relative addresses in it start from its folder.
+    shown : str
+        Its name in messages.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    Document or None
+    """
     path = Path(path)
     try:
         with path.open("rb") as file:

@@ -92,7 +92,17 @@ def drop(element: etree._Element) -> None:
 
 
 def add_osp(root: etree._Element, parent: etree._Element, *names: str, **attributes: str) -> None:
-    """Put an OSP annotation into an element of an SSD: nested elements of these names, the attributes on the last."""
+    """Put an OSP annotation into an element of an SSD.
+
+    Parameters
+    ----------
+    root, parent : lxml element
+        The SSD's outermost element, and the one that is annotated.
+    *names : str
+        Elements within the annotation, each in the one before.
+    **attributes : str
+        Of the last of them.
+    """
     listed = ensure(parent, "ssd:Annotations")
     marked = [part for part in children(listed, "ssc:Annotation") if part.get("type") == OSP_TYPE]
     element = marked[0] if marked else add(listed, "ssc:Annotation", type=OSP_TYPE)

@@ -22,7 +22,19 @@ WORDS = {"double": "a number", "int": "a whole number", "boolean": "a Boolean (t
 
 
 def report_schema(checker: etree.XMLSchema, root: etree._Element, file: str, findings: Findings) -> None:
-    """Note where an element breaks a schema of lxml's, in our words."""
+    """Note every place where an element breaks a schema.
+
+    Parameters
+    ----------
+    checker : lxml.etree.XMLSchema
+        The schema.
+    root : lxml element
+        To be checked.
+    file : str
+        Name for messages.
+    findings : Findings
+        Takes what is wrong.
+    """
     if checker.validate(root):
         return
     for entry in checker.error_log:
