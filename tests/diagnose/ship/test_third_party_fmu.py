@@ -280,7 +280,7 @@ def test_a_stranger_that_nothing_of_a_log_feeds_is_refused_with_what_would_be_ri
 
 def test_a_log_without_its_speed_is_refused_and_one_with_it_is_said_what_it_rests_on():
     model, record, _ = along()
-    assert any("'left' is somebody else's FMU (screw)" in remark for remark in record.remarks)
+    assert any("'left' is a third-party FMU (screw)" in remark for remark in record.remarks)
     with pytest.raises(ShipcosimError, match="no channel left_rpm, which drives 'left'"):
         record_of(logged().drop_vars("left_rpm"), model)
 

@@ -1,7 +1,11 @@
-"""Which manoeuvre would tell causes apart: every one of the library is kept_on_track in array form and scored."""
+"""Experiment design: every manoeuvre of the library is simulated in array form, and scored by what it separates."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import fields, replace
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -17,7 +21,7 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     true_wind,
 )
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, probes
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, probes
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import beside, linearise, rows_first
 from shipcosim.diagnose.result import ExperimentDesign
@@ -25,6 +29,11 @@ from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.instruments import readings
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+    from shipcosim.diagnose.inference.innovations import Noise
+    from shipcosim.diagnose.ship.model import ShipModel
 
 CLEAR = 10.0
 """Expected difference in log-evidence that separates two causes. [nats]
@@ -38,7 +47,9 @@ _ASTRAY = 0.5  # lengths that a ship may be off her track
 _ROOM = 3.0  # lengths that a ship may get away from where she started
 
 
-def design_experiment(problem, fit, rivals, manoeuvres=None):
+def design_experiment(
+    problem: IdentificationProblem, fit: Fit, rivals: Sequence[Fit], manoeuvres: Sequence[Manoeuvre] | None = None
+) -> ExperimentDesign | None:
     """A manoeuvre that is expected to tell a fit and its rivals apart.
 
     Of those that separate all pairs, one of the shortest; among manoeuvres about as short the one with most nats per
@@ -79,7 +90,7 @@ def design_experiment(problem, fit, rivals, manoeuvres=None):
     return ExperimentDesign(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
 
 
-def _differing(one, other):
+def _differing(one: Fit, other: Fit) -> tuple[str, ...]:
     """What two sets of causes do not share."""
     a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
     return tuple(
@@ -95,7 +106,9 @@ def manoeuvre_of(design: ExperimentDesign | None, problem: IdentificationProblem
     return next((one for one in known if one.name == design.manoeuvre), None)
 
 
-def separations(problem, fits, manoeuvres):
+def separations(
+    problem: IdentificationProblem, fits: Sequence[Fit], manoeuvres: Sequence[Manoeuvre]
+) -> dict[tuple[int, int], np.ndarray]:
     """How far apart manoeuvres would bring the log-evidence of fits.
 
     Each fit in turn is the truth; the others may take whatever values their posterior from the log allows, as may all
@@ -113,8 +126,8 @@ def separations(problem, fits, manoeuvres):
         By places of two fits, lower first: the expected difference by manoeuvre, the smaller of both being true;
         NaN where the ship does not get through. [nats]
     """
-    models = [_whole(fit) for fit in fits]
-    motions, records, through = _sailings(problem, models, manoeuvres)
+    models = [_fitted_ship(fit) for fit in fits]
+    motions, records, through = _simulated(problem, models, manoeuvres)
     noise = sized(problem.noise, step_for(problem.model) / problem.record.step)
     known = _shared_columns(fits)
     ends = [rows_of(one, records[0].step) for one in manoeuvres]
@@ -137,13 +150,13 @@ def _readings(motion, model):
     return np.moveaxis(rows_first(readings(motion, model)), 0, -2)
 
 
-def _in_true_wind(model):
+def _in_true_wind(model: ShipModel) -> ShipModel:
     """The ship in a wind that is given over ground."""
     return replace(model, wind_is_true=True)
 
 
-def _whole(fit):
-    """The ship that a fit believes in: its causes, and all known numbers at their most likely."""
+def _fitted_ship(fit: Fit) -> ShipModel:
+    """The ship of a fit: its causes, and all known numbers at their most likely."""
     values = {}
     for column, share in zip(fit.columns, fit.left, strict=True):
         for path, size in column.changes.items():
@@ -197,14 +210,14 @@ def _products(white):
     return rows.T @ rows
 
 
-def _sailings(problem, models, manoeuvres):
+def _simulated(problem, models, manoeuvres):
     """Motions and records of every manoeuvre by every ship, and whether she gets through; lists by ship."""
     start = float(problem.record.time[-1]), *(float(value[-1]) for value in problem.motion[:3])
     wind = true_wind(problem.record, problem.motion, problem.model)
     dp = DpController(_in_true_wind(problem.model), step_for(problem.model), cannot_turn(problem.record, problem.model))
     track, record, held = planned(manoeuvres, dp, start, wind)
     motions, records, through = [], [], []
-    many, ships = len(manoeuvres), _abreast(models, start[0], len(manoeuvres))
+    many, ships = len(manoeuvres), _side_by_side(models, start[0], len(manoeuvres))
     times = (len(models), 1)
     side_by_side = replace(
         record,
@@ -213,18 +226,18 @@ def _sailings(problem, models, manoeuvres):
     )
     held = {name: np.tile(where, times) for name, where in held.items()}
     tracks = Motion(*(np.tile(value, times) for value in track))
-    sailing, units = kept_on_track(ships, many * len(models), tracks, side_by_side, dp, held=held)
+    motion, units = kept_on_track(ships, many * len(models), tracks, side_by_side, dp, held=held)
     for i in range(len(models)):
         part = slice(i * many, (i + 1) * many)
-        motions.append(Motion(*(value[part] for value in sailing)))
+        motions.append(Motion(*(value[part] for value in motion)))
         here = {name: tuple(series[part] for series in pair) for name, pair in units.items()}
         records.append(replace(record, units=here))
-        through.append(_through(motions[-1], track, manoeuvres, dp))
+        through.append(_keeps_track(motions[-1], track, manoeuvres, dp))
     return motions, records, through
 
 
-def _abreast(models, time, many):
-    """One ship model with the numbers of several as arrays, each repeated: ships that sail side by side."""
+def _side_by_side(models, time, many):
+    """One ship model with the numbers of several as arrays, each repeated: to simulate ships side by side."""
     models = [with_steady_current(model, time) for model in models]
     values = {}
     for name, part in models[0].parts.items():
@@ -236,7 +249,7 @@ def _abreast(models, time, many):
     return models[0].with_values(values)
 
 
-def _through(motion, track, manoeuvres, dp):
+def _keeps_track(motion, track, manoeuvres, dp):
     """Whether the ship keeps near her track, and in the area where she drifts or is pushed. (c,)"""
     length, found = dp.model.parts["hull"].length, []
     off = np.hypot(motion.x - track.x, motion.y - track.y) / length
@@ -248,7 +261,13 @@ def _through(motion, track, manoeuvres, dp):
     return np.array(found)
 
 
-def testability(model, hypotheses, noise, manoeuvres, wind=None):
+def testability(
+    model: ShipModel,
+    hypotheses: Sequence[Hypothesis],
+    noise: Noise,
+    manoeuvres: Sequence[Manoeuvre],
+    wind: tuple[float, float] | None = None,
+) -> dict[str, np.ndarray]:
     """What each cause of typical size would gain in manoeuvres of a healthy ship.
 
     Parameters
@@ -278,7 +297,7 @@ def testability(model, hypotheses, noise, manoeuvres, wind=None):
     with threadpool_limits(1):
         white = innovations(linearise(motion, record, model, columns), noise, record).white
     found = {hypothesis.label: np.full(len(manoeuvres), np.inf) for hypothesis in hypotheses}
-    through = _through(motion, track, manoeuvres, dp)
+    through = _keeps_track(motion, track, manoeuvres, dp)
     for i, one in enumerate(manoeuvres):
         products, place = _products(white[: rows_of(one, record.step), i]), len(known)
         for hypothesis, group in groups:

@@ -1,9 +1,13 @@
-"""A small library of manoeuvres that tell causes apart, as tracks and thruster settings for any ship.
+"""Manoeuvres by which causes can be told from each other, as tracks and thruster settings for any ship.
 
 Lengths are proportional to the ship's, times to the root of her length: every ship meets the same accelerations.
 """
 
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -13,11 +17,16 @@ from shipcosim.diagnose.ship.inputs import Inputs, Record
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.motion import Motion
 
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.innovations import Noise
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.diagnose.ship.track_keeping import DpController
+
 LONGEST = 15.0
 """No manoeuvre takes longer. [min]"""
 _LENGTH = 33.9  # m, of the ship that the figures of the library are for
 _PUSH = 0.012  # m/s2, of the ship by one thruster's push
-_APART = 0.004  # m/s2: azimuths push against each other that much, so that they point somewhere
+_OPPOSED = 0.004  # m/s2: azimuth thrusters push against each other that much, so that each has a direction
 _STRAIGHT = 0.01  # rad
 _STEP = 2.0  # s
 _STEADY = 2.0  # steps: thrusters follow the plan that smoothly
@@ -25,7 +34,7 @@ _STEADY = 2.0  # steps: thrusters follow the plan that smoothly
 
 @dataclass(frozen=True)
 class Push:
-    """One thruster does as planned, whatever the DP wants.
+    """A thruster that does as planned while the DP controller leaves it alone.
 
     Attributes
     ----------
@@ -42,12 +51,12 @@ class Push:
     start: float
     end: float
     force: float
-    azimuth: tuple = (0.0, 0.0)
+    azimuth: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """What the ship is to do.
+    """A track and pushes of thrusters, and when the DP controller is off.
 
     Attributes
     ----------
@@ -61,17 +70,17 @@ class Manoeuvre:
     """
 
     name: str
-    legs: tuple
-    pushes: tuple = ()
-    free: tuple = ()
+    legs: tuple[tuple[float, float, float, float], ...]
+    pushes: tuple[Push, ...] = ()
+    free: tuple[tuple[float, float], ...] = ()
 
     @property
-    def minutes(self):
+    def minutes(self) -> float:
         """Duration. [min]"""
         return sum(leg[0] for leg in self.legs) / 60.0
 
 
-def library(model, fixed=()):
+def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
     """All manoeuvres for a ship, none longer than `LONGEST`.
 
     Parameters
@@ -154,13 +163,18 @@ def _is_at(unit, x, y):
     return np.hypot(unit.x - x, unit.y - y) < 1e-6
 
 
-def step_for(model):
-    """From row to row of a manoeuvre. [s]"""
+def step_for(model: ShipModel) -> float:
+    """Time from row to row of a manoeuvre. [s]"""
     return _STEP * float(np.sqrt(model.parts["hull"].length / _LENGTH))
 
 
-def planned(manoeuvres, dp, start, wind):
-    """Tracks, thruster settings and where the DP has no say over them, of several manoeuvres side by side.
+def planned(
+    manoeuvres: Sequence[Manoeuvre],
+    dp: DpController,
+    start: tuple[float, float, float, float],
+    wind: tuple[float, float] | None,
+) -> tuple[Motion, Record, dict[str, np.ndarray]]:
+    """Tracks, thruster settings, and where the DP controller leaves them alone, of several manoeuvres side by side.
 
     Parameters
     ----------
@@ -196,7 +210,7 @@ def _held(manoeuvre, name, time):
     return _inside((*manoeuvre.free, *((p.start, p.end) for p in manoeuvre.pushes if p.thruster == name)), time)
 
 
-def rows_of(manoeuvre, step):
+def rows_of(manoeuvre: Manoeuvre, step: float) -> int:
     """Number of rows of a manoeuvre."""
     return 1 + int(round(60.0 * manoeuvre.minutes / step))
 
@@ -228,7 +242,7 @@ def _thrusters(manoeuvre, time, track, start, wind, dp):
         azimuth = push.azimuth[0] + share * (push.azimuth[1] - push.azimuth[0])
         alone.setdefault(push.thruster, []).append((inside, push.force, azimuth))
     load = _needed(track, time, start, wind, dp)
-    apart = _pushing_apart(dp)
+    opposed = _opposed_forces(dp)
     wishes = {name: np.zeros((2, time.size)) for name in model.thrusters}
     for rows, left in _stretches(alone, time.size):
         rest = load[:, rows]
@@ -237,7 +251,7 @@ def _thrusters(manoeuvre, time, track, start, wind, dp):
             rest = rest - _load_of(name, force, azimuth[rows], model)
         axes_here = {name: np.zeros(rows.size) for name in model.thrusters}
         for name, forces in dp.shared(rest, axes_here, dict.fromkeys(left, True)).items():
-            wishes[name][:, rows] = np.where(free[rows], 0.0, forces + (0.0 if left else apart[name][:, None]))
+            wishes[name][:, rows] = np.where(free[rows], 0.0, forces + (0.0 if left else opposed[name][:, None]))
     return {name: _setting(name, wishes[name], alone.get(name, ()), time, dp) for name in model.thrusters}
 
 
@@ -265,7 +279,7 @@ def _load_of(name, force, azimuth, model):
     return np.stack([X, Y, unit.x * Y - getattr(unit, "y", 0.0) * X])
 
 
-def _pushing_apart(dp):
+def _opposed_forces(dp):
     """Forces of the azimuth thrusters against each other, slipstreams outwards, that leave no load on the ship."""
     model, found = dp.model, {name: np.zeros(2) for name in dp.model.thrusters}
     able = [name for name in model.azimuths if name not in dp.fixed]
@@ -276,7 +290,7 @@ def _pushing_apart(dp):
     inwards /= np.maximum(np.linalg.norm(inwards, axis=1), 1e-9)[:, None]
     B = np.hstack([[[1.0, 0.0], [0.0, 1.0], [-y, x]] for x, y in places])
     wish = inwards.ravel() - np.linalg.pinv(B) @ (B @ inwards.ravel())
-    size = _APART * model.parts["hull"].mass
+    size = _OPPOSED * model.parts["hull"].mass
     return found | {name: size * force for name, force in zip(able, wish.reshape(-1, 2), strict=True)}
 
 
@@ -295,13 +309,13 @@ def _setting(name, wish, pushes, time, dp):
     return tuple(gaussian_filter1d(series, _STEADY, mode="nearest") for series in (speed, azimuth))
 
 
-def cannot_turn(record, model):
+def cannot_turn(record: Record, model: ShipModel) -> tuple[str, ...]:
     """Azimuth thrusters without a rate of turning, or that point straight ahead or astern throughout a log."""
     across = {name: np.abs(np.sin(record.units[name][1])).max() for name in model.azimuths}
     return tuple(n for n in model.azimuths if model.parts[n].azimuth_rate == 0.0 or across[n] < _STRAIGHT)
 
 
-def true_wind(record, motion, model):
+def true_wind(record: Record, motion: Motion, model: ShipModel) -> tuple[float, float] | None:
     """Mean wind over ground of a log: speed, and where it comes from. [m/s, rad]; None where it has no wind."""
     if record.wind is None:
         return None
@@ -316,7 +330,7 @@ def true_wind(record, motion, model):
     return float(np.hypot(north, east)), float(np.arctan2(-east, -north))
 
 
-def sized(noise, factor):
+def sized(noise: Noise, factor: float) -> Noise:
     """The noise of rows that are that many times as far apart, averages of as many."""
     less = np.sqrt(factor)
     return replace(noise, white=np.asarray(noise.white) / less, wave=np.asarray(noise.wave) / less)

@@ -1,18 +1,24 @@
 """The catalogue of causes, read from one file each, and the hypotheses that they are on one ship."""
 
+from __future__ import annotations
+
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
-from shipcosim.diagnose.hypotheses.cause import Cause, Fault
+from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.result import label_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["Hypothesis", "HypothesisParameter", "hypotheses_of", "read_catalogue", "read_faults"]
 
@@ -45,18 +51,28 @@ class HypothesisParameter:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A cause at one place of one ship."""
+    """A cause at one place of one ship.
+
+    Attributes
+    ----------
+    definition : Cause
+        As its file has it.
+    component : str or None
+        Where it sits, if it can sit at several.
+    parameters : tuple of HypothesisParameter
+    """
 
     definition: Cause
     component: str | None
     parameters: tuple[HypothesisParameter, ...]
 
     @property
-    def cause(self):
+    def cause(self) -> str:
+        """Name of the cause."""
         return self.definition.cause
 
     @property
-    def label(self):
+    def label(self) -> str:
         """``thrust_loss of port``."""
         return label_of(self.cause, self.component)
 
@@ -120,7 +136,7 @@ def _contents(*folder: str) -> Iterator[dict]:
             yield tomllib.loads(path.read_text(encoding="utf-8"))
 
 
-def hypotheses_of(catalogue, model):
+def hypotheses_of(catalogue: Mapping[str, Cause], model: ShipModel) -> list[Hypothesis]:
     """Every cause at every place of a ship where it can be.
 
     Parameters
@@ -134,21 +150,23 @@ def hypotheses_of(catalogue, model):
         Without causes whose numbers the ship does not have.
     """
     places = {"ship": [None], "thruster": model.thrusters, "azimuth": model.azimuths}
-    found = [_on(effect, place, model) for effect in catalogue.values() for place in places[effect.for_each]]
+    found = [_on(cause, place, model) for cause in catalogue.values() for place in places[cause.for_each]]
     return [hypothesis for hypothesis in found if hypothesis]
 
 
-def _on(effect, component, model):
+def _on(cause: Cause, component: str | None, model: ShipModel) -> Hypothesis | None:
+    """A cause at one place of a ship; None where she lacks one of its numbers."""
     parameters = []
-    for name, parameter in effect.parameters.items():
+    for name, parameter in cause.parameters.items():
         paths = [path for pattern in parameter.of for path in _paths(pattern, component, model)]
         if not paths or not all(model.has(path) for path in paths):
             return None
         parameters.append(_parameter(name, parameter, tuple(paths), component, model))
-    return Hypothesis(effect, component, tuple(parameters))
+    return Hypothesis(cause, component, tuple(parameters))
 
 
-def _paths(pattern, component, model):
+def _paths(pattern: str, component: str | None, model: ShipModel) -> list[str]:
+    """Numbers of the ship that a pattern of a cause's file means."""
     pattern = pattern.replace("vessel.", f"{model.vessel}.", 1) if pattern.startswith("vessel.") else pattern
     if "{azimuths}" in pattern:
         found = (pattern.replace("{azimuths}", name) for name in model.thrusters)
@@ -156,7 +174,10 @@ def _paths(pattern, component, model):
     return [pattern.replace("{thruster}", component or "")]
 
 
-def _parameter(name, parameter, paths, component, model):
+def _parameter(
+    name: str, parameter: CauseParameter, paths: tuple[str, ...], component: str | None, model: ShipModel
+) -> HypothesisParameter:
+    """A parameter of a cause in the unit of the ship's numbers."""
     per_model, _ = conversion(parameter.unit, model.about(paths[0])["unit"])
     size = per_model
     if parameter.relative_to:

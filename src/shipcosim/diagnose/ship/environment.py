@@ -1,9 +1,11 @@
 """What surrounds the ship, and what is between her and her log: neutral unless a cause acts."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.hull import HullParameters
 
@@ -11,11 +13,11 @@ __all__ = ["Water", "piecewise_linear_basis", "share_of", "swell_of", "water_of"
 
 _NEUTRAL = "neutral"
 _SWELLS = 8
-_STERN = -17.0  # m, of the lengthened Gunnerus
+_STERN = -17.0  # m, of a ship of 33.9 m
 _DRIFT_ARM = -1.5  # m, of the same
 
 
-def _swell(k):
+def _swell(k: int) -> Any:
     """What wave drift swells by about one of some places in the log, evenly spaced from its first to its last row."""
     means = f"by what share the drift swells at place {k} of {_SWELLS} along the log"
     return quantity(0.0, "1", means, "groups of waves over minutes, assumed", tolerance=0.15)
@@ -68,19 +70,22 @@ def water_of(length: float) -> Water:
     return Water(tow_x=stern, drift_yaw_arm=_DRIFT_ARM * length / ours)
 
 
-def share_of(time, span):
+def share_of(time: Arithmetic, span: tuple[float, float]) -> Arithmetic:
     """How much of a log has passed at some times: 0 before its first row, 1 after its last."""
     first, last = span
     return np.clip((time - first) / (last - first), 0.0, 1.0)
 
 
-def piecewise_linear_basis(share, count):
-    """Hat functions over shares of a log, of which each is 1 at its own of evenly spaced places: (count, ...) array."""
+def piecewise_linear_basis(share: Arithmetic, count: int) -> np.ndarray:
+    """Piecewise linear basis functions of the share of a log that has passed: (count, ...) array.
+
+    Each is 1 at its own of evenly spaced places and 0 at the others.
+    """
     places = np.arange(count).reshape(-1, *[1] * np.ndim(share))
     return np.clip(1.0 - np.abs(np.asarray(share) * (count - 1) - places), 0.0, None)
 
 
-def swell_of(time, span, water):
+def swell_of(time: Arithmetic, span: tuple[float, float], water: Water) -> Arithmetic:
     """The drift over its mean, piecewise linear between the places where it swells.
 
     Parameters

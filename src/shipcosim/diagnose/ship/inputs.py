@@ -1,24 +1,33 @@
 """A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from shipcosim.angles import unwrap_series
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 
 __all__ = ["CHANNELS", "Inputs", "Record", "first_motion", "record_of"]
 
-_SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s on Gunnerus
+_SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s for 33.9 m
 _ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
 
 class Inputs(NamedTuple):
-    """What acts on the ship at some times, arrays of one shape.
+    """Inputs of the ship model at some times, arrays of one shape.
 
     Attributes
     ----------
@@ -30,10 +39,10 @@ class Inputs(NamedTuple):
         Wind at the mast, apparent or true as `ShipModel.wind_is_true` says. [m/s, rad]
     """
 
-    time: Any
-    units: dict
-    wind_speed: Any
-    wind_from: Any
+    time: Arithmetic
+    units: dict[str, tuple[Arithmetic, Arithmetic]]
+    wind_speed: Arithmetic | None
+    wind_from: Arithmetic | None
 
 
 @dataclass(frozen=True)
@@ -56,23 +65,23 @@ class Record:
 
     time: np.ndarray
     measured: np.ndarray
-    units: dict
-    wind: Any
+    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    wind: tuple[np.ndarray, np.ndarray] | None
     known: np.ndarray
-    remarks: tuple = field(default=())
+    remarks: tuple[str, ...] = field(default=())
 
     @property
-    def step(self):
+    def step(self) -> float:
         """Time from row to row. [s]"""
         return float(self.time[1] - self.time[0])
 
-    def substeps(self, model):
-        """Into how many equal steps a row is parted to move a ship, so that one small or stiff does not run away."""
+    def substeps(self, model: ShipModel) -> int:
+        """Number of integration steps from row to row; more than one for a small or stiff ship."""
         rows = self.step / (_ONE_STEP * np.sqrt(model.parts["hull"].length))
         return 2 ** int(np.ceil(np.log2(max(rows, 1.0)) - 1e-9))
 
-    def inputs(self, model, share=0.0):
-        """What drives the ship at each row but the last, or a share of a step after it.
+    def inputs(self, model: ShipModel, share: float = 0.0) -> Inputs:
+        """Inputs of the ship model at each row but the last, or a share of a step after it.
 
         Late channels are taken that much later; where the navigation is late, all others are taken earlier.
         """
@@ -85,7 +94,7 @@ class Record:
         wind = (None, None) if self.wind is None else (self._shifted(s, late + lags.wind_lag) for s in self.wind)
         return Inputs(self.time[:-1] + share * self.step, units, *wind)
 
-    def _shifted(self, series, seconds):
+    def _shifted(self, series: np.ndarray, seconds: float) -> np.ndarray:
         """A series that much later, linear between rows."""
         rows = self.time.size
         at = np.clip(np.arange(rows - 1) + seconds / self.step, 0.0, rows - 1.0)
@@ -94,7 +103,7 @@ class Record:
         return series[..., low] * (1.0 - share) + series[..., low + 1] * share
 
 
-def record_of(log, model):
+def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     """Arrays of a repaired log.
 
     Parameters
@@ -135,7 +144,7 @@ def record_of(log, model):
     return _thinned(record, max(int(slow / record.step + 1e-6), 1))
 
 
-def _thinned(record, rows):
+def _thinned(record: Record, rows: int) -> Record:
     """The record with every so many rows averaged into one."""
     if rows == 1:
         return record
@@ -151,7 +160,7 @@ def _thinned(record, rows):
     return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
 
 
-def _column(log, role, rows):
+def _column(log: xarray.Dataset, role: str, rows: int) -> np.ndarray:
     return log[role].values.astype(float) if role in log else np.full(rows, np.nan)
 
 
@@ -171,11 +180,11 @@ def _unit(log, name, model, rows, remarks):
     if name not in model.azimuths or f"{name}_azimuth" not in log:
         direction = np.full(rows, model.fixed.get(name, 0.0))
     whole = np.isfinite(speed) & np.isfinite(direction)
-    return (_calmed(speed), _calmed(unwrap_series(direction))), whole
+    return (_averaged(speed), _averaged(unwrap_series(direction))), whole
 
 
-def _check_third_party(log, model):
-    """Raise ShipcosimError where the log lacks what drives an FMU of somebody else: nobody knows its load then."""
+def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
+    """Raise ShipcosimError where the log lacks what drives a third-party FMU: nobody knows its load then."""
     drives = [(name, f"{name}_{kind}") for name, one in model.third_party.items() for kind in one.drives]
     where, remedy = str(log.attrs.get("source", "log")), "Log it under this name, or name its column in a channel file."
     lacking = [
@@ -185,11 +194,11 @@ def _check_third_party(log, model):
         raise ShipcosimError(lacking)
 
 
-def _about_third_party(name, one):
-    """What to know of a part that somebody else's FMU moves."""
+def _about_third_party(name: str, one: ThirdPartyFmu) -> str:
+    """What the user should know of a third-party FMU."""
     idle = f" What the log does not tell keeps its start value: {', '.join(one.idle)}." if one.idle else ""
-    law = f"'{name}' is somebody else's FMU ({one.component.fmu.model_name}), known by its co-simulation along the log."
-    return f"{law}{idle} No manoeuvre can be prescribed with it."
+    text = f"'{name}' is a third-party FMU ({one.component.fmu.model_name}), known by its co-simulation along the log."
+    return f"{text}{idle} No manoeuvre can be prescribed with it."
 
 
 def _wind(log, rows, remarks):
@@ -198,12 +207,12 @@ def _wind(log, rows, remarks):
             pair = _column(log, speed, rows), unwrap_series(_column(log, direction, rows) * np.pi / 180.0)
             whole = np.isfinite(pair[0]) & np.isfinite(pair[1])
             if whole.any():
-                return tuple(_calmed(series) for series in pair), whole
+                return tuple(_averaged(series) for series in pair), whole
     remarks.append("No wind in the log: forces of the wind, of waves, of a current and of a line cannot be told apart.")
     return None, np.ones(rows, bool)
 
 
-def _calmed(series):
+def _averaged(series: np.ndarray) -> np.ndarray:
     """The series without gaps, averaged over neighbouring rows.
 
     So the noise of a channel does not get less, and the log likelier, when the channel is taken half a row later.
@@ -213,7 +222,7 @@ def _calmed(series):
     return 0.25 * ends[:-2] + 0.5 * ends[1:-1] + 0.25 * ends[2:]
 
 
-def _filled(series):
+def _filled(series: np.ndarray) -> np.ndarray:
     """The series with linear interpolation where it has no value."""
     whole = np.isfinite(series)
     if not whole.any():
@@ -221,7 +230,7 @@ def _filled(series):
     return np.interp(np.arange(series.size), np.flatnonzero(whole), series[whole])
 
 
-def first_motion(record, model, smooth=4.0):
+def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motion:
     """A motion near the measured one, to start from: smoothed measurements, rates from positions where not measured.
 
     Returns

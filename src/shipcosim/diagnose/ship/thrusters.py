@@ -33,7 +33,7 @@ class DpThruster(NamedTuple):
     pointed, turns : bool
         Whether it has a direction, and whether the DP may change that.
     ahead, astern : float
-        QuadraticThrust thrust over squared speed; 0 where the DP has to leave it alone. [N.s2]
+        Bollard thrust over squared speed; 0 where the DP controller has to leave it alone. [N.s2]
     most : float
         Largest speed. [rev/s]
     """

@@ -1,13 +1,20 @@
 """How well each number of a ship is known: as her parameter sets say, else in proportion to what is known of ours."""
 
-from dataclasses import fields
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import Field, fields
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
 
 __all__ = ["tolerances_of"]
 
 _COEFFICIENT = 0.05  # of a hull's coefficient that ours does not use, as of her damping in surge (assumed)
 
 
-def tolerances_of(system, parts, vessel):
+def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict[str, float]:
     """Tolerances of the system's parameter sets, where they are silent those of our ship's relative to size.
 
     Parameters
@@ -36,13 +43,13 @@ def tolerances_of(system, parts, vessel):
     return {path: tolerance for path, tolerance in found.items() if tolerance > 0.0}
 
 
-def _size(values, item, value):
+def _size(values: Any, item: Field, value: float) -> float:
     """How large a number is against that of our ship; one that is neutral at nought as large as its scale."""
     if item.name == "rpm_offset":
         return values.rpm_max / type(values).rpm_max
     return abs(value / item.default) if item.default else 1.0
 
 
-def _assumed(item, value):
+def _assumed(item: Field, value: float) -> float:
     """Tolerance of a hull's coefficient that our ship does not use."""
     return _COEFFICIENT * abs(value) if item.name[:2] in ("X_", "Y_", "N_") else 0.0

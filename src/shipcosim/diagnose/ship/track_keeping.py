@@ -1,8 +1,13 @@
-"""Ships that keep to a track under a DP, many at once, in array form.
+"""Ships that a DP controller keeps on a track, many at once, in array form.
 
-Feedback is what a bridge would add to thrusters that are already told something: the logged speeds and directions, or
-those of a planned manoeuvre.
+The controller adds its feedback to what the thrusters do anyway: the logged speeds and directions, or those of a
+planned manoeuvre.
 """
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,17 +15,33 @@ from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.integrate import euler
+from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 
-_FREQUENCY = 0.5  # rad/s times the square root of the length in m over gravity, of the DP: 0.09 rad/s on Gunnerus
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["DpController", "kept_on_track"]
+
+_FREQUENCY = 0.5  # rad/s times the root of length in m over gravity, of the controller: 0.09 rad/s for 33.9 m
 _DAMPING = 0.8
 _INTEGRAL = 0.1  # of the frequency
 _ACROSS = 0.2  # how readily a unit turns, against how readily it changes its speed
 _ANSWER = 4.0  # s, until the thrusters of a ship of 33.9 m do as told; others by the root of their length
 
 
-def kept_on_track(ships, count, track, record, dp, *, jolts=None, held=None):
-    """Motion and thrusters of ships that a DP brings along a track.
+def kept_on_track(
+    ships: ShipModel,
+    count: int,
+    track: Motion,
+    record: Record,
+    dp: DpController,
+    *,
+    jolts: np.ndarray | None = None,
+    held: Mapping[str, np.ndarray] | None = None,
+) -> tuple[Motion, dict[str, tuple[np.ndarray, np.ndarray]]]:
+    """Motion and thrusters of ships that a DP controller keeps on a track.
 
     Parameters
     ----------
@@ -31,12 +52,12 @@ def kept_on_track(ships, count, track, record, dp, *, jolts=None, held=None):
     track : Motion
         (n,) or (m, n) arrays.
     record : Record
-        What the thrusters are told anyway, (n,) or (m, n) arrays, and the wind.
+        What the thrusters do anyway, (n,) or (m, n) arrays, and the wind.
     dp : DpController
     jolts : (n, 3, m) array, optional
         Changes of velocity at each row. [m/s, m/s, rad/s]
     held : dict of str to (n,) or (m, n) bool array, optional
-        Where the DP has no say over a thruster.
+        Where a thruster does as it is told and the controller leaves it alone.
 
     Returns
     -------
@@ -95,19 +116,19 @@ def _moved(ship, last, inputs, model, h, dp):
 
 
 class DpController:
-    """Proportional, derivative and slow integral action, shared out to the thrusters that the ship has.
+    """Proportional, derivative and slow integral action, allocated to the thrusters of a ship.
 
     Parameters
     ----------
     model : ShipModel
-        The ship as the DP knows her.
+        The ship as the controller knows her.
     h : float
         Step. [s]
     fixed : collection of str
         Azimuth thrusters that cannot turn.
     """
 
-    def __init__(self, model, h, fixed=()):
+    def __init__(self, model: ShipModel, h: float, fixed: Collection[str] = ()) -> None:
         hull = model.parts["hull"]
         self.thrusters = {name: dp_thruster_of(model, name) for name in model.thrusters}
         self.h, self.model, self.fixed = h, model, fixed
@@ -116,13 +137,13 @@ class DpController:
         self.mass = np.array([hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66])
         self.most = 0.05 * self.mass * np.array([1.0, 1.0, 4.0 / hull.length])
 
-    def bounded(self, ship):
-        """The ships no faster than any ship is: one that a DP of this kind cannot steer gets lost, not infinite."""
+    def bounded(self, ship: Motion) -> Motion:
+        """The ships no faster than any ship is: one that cannot be steered so gets lost, not infinite."""
         most = np.sqrt(9.81 * self.model.parts["hull"].length)
         u, v, r = (np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.model.parts["hull"].length))
         return ship._replace(u=u, v=v, r=r / self.model.parts["hull"].length)
 
-    def load(self, ship, want, integral):
+    def load(self, ship: Motion, want: Motion, integral: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Load that brings the ships back to the track, in their body frames; and the integral action."""
         c, s = np.cos(ship.psi), np.sin(ship.psi)
         dx, dy = want.x - ship.x, want.y - ship.y
@@ -133,11 +154,11 @@ class DpController:
         wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
         return np.clip(wanted, -self.most[:, None], self.most[:, None]), integral
 
-    def answer(self, told, load, shares):
-        """Change of the thrusters' forces after a step, (k, m) array. [N]"""
+    def answer(self, told: np.ndarray, load: np.ndarray, shares: np.ndarray) -> np.ndarray:
+        """Forces that the controller adds a step later, of first order towards those of a load; (k, m) array. [N]"""
         return told + min(self.h / self.delay, 1.0) * (_times(shares, load) - told)
 
-    def shares(self, azimuths, held):
+    def shares(self, azimuths: Mapping[str, np.ndarray], held: Mapping[str, np.ndarray]) -> np.ndarray:
         """What each thruster takes of a load on the ship, along and, where it turns, across its axis.
 
         Parameters
@@ -165,15 +186,17 @@ class DpController:
         Bt = ease * scale * np.stack(np.broadcast_arrays(*columns), axis=-2)
         return ease * scale * (Bt @ np.linalg.inv(np.swapaxes(Bt, -1, -2) @ Bt + 1e-2 * np.eye(3)))
 
-    def shared(self, load, azimuths, held):
+    def shared(
+        self, load: np.ndarray, azimuths: Mapping[str, np.ndarray], held: Mapping[str, np.ndarray]
+    ) -> dict[str, np.ndarray]:
         """A load on the ship, (3, m) array, as forces along and across the axes of her thrusters, (2, m) arrays. [N]"""
         return self._by_thruster(_times(self.shares(azimuths, held), load))
 
-    def _forces(self, name):
-        """In how many directions a thruster pushes as the DP wants."""
+    def _forces(self, name: str) -> int:
+        """Number of directions in which the controller can have a thruster push."""
         return 2 if self.thrusters[name].turns and name not in self.fixed else 1
 
-    def _by_thruster(self, forces):
+    def _by_thruster(self, forces: np.ndarray) -> dict[str, np.ndarray]:
         """Forces along and across the axis of each thruster."""
         found, place = {}, 0
         for name in self.thrusters:
@@ -182,8 +205,8 @@ class DpController:
             place += len(own)
         return found
 
-    def speeds(self, told, record, k):
-        """Speed and direction of each thruster: those that it is told anyway, changed by what the DP adds.
+    def speeds(self, told: np.ndarray, record: Record, k: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Speed and direction of each thruster: those of the record, changed by what the controller adds.
 
         The row may be a broken number, for a time between two.
         """
@@ -200,17 +223,17 @@ class DpController:
             found[name] = np.clip(self.speed(name, size), -unit.most, unit.most), azimuth + turn * np.sign(size)
         return found
 
-    def force(self, name, n):
-        """QuadraticThrust thrust of a thruster at a speed in rev/s. [N]"""
+    def force(self, name: str, n: Arithmetic) -> np.ndarray:
+        """Bollard thrust of a thruster at a speed in rev/s. [N]"""
         unit = self.thrusters[name]
         return np.where(n >= 0, unit.ahead, unit.astern) * n * np.abs(n)
 
-    def speed(self, name, force):
+    def speed(self, name: str, force: Arithmetic) -> np.ndarray:
         """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
         unit = self.thrusters[name]
         return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern))
 
 
-def _times(shares, load):
+def _times(shares: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Forces (k, m) of a load (3, m) by shares (1 or m, k, 3) or (k, 3)."""
     return (shares @ load.T[..., None])[..., 0].T

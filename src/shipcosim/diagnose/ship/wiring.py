@@ -1,10 +1,19 @@
 """How a system wires her thrusters, where that is not what their connectors' names say: a hypothesis like any other."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.motion import Load
 from shipcosim.series import conversion
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
 
 __all__ = ["Wiring", "put_right", "wiring_of"]
 
@@ -26,17 +35,17 @@ class Wiring:
         What is wrong, by thruster.
     """
 
-    loads: dict
-    drives: dict
-    odd: dict
+    loads: dict[str, np.ndarray]
+    drives: dict[str, dict[str, tuple[str, float]]]
+    odd: dict[str, str]
 
-    def loaded(self, name, load):
+    def loaded(self, name: str, load: Load) -> Load:
         """The load that the ship gets of a thruster's."""
         if name not in self.loads:
             return load
         return tuple(sum(share * axis for share, axis in zip(row, load, strict=True)) for row in self.loads[name])
 
-    def driven(self, name, units):
+    def driven(self, name: str, units: Mapping[str, tuple[Arithmetic, Arithmetic]]) -> tuple[Arithmetic, Arithmetic]:
         """Speed and direction that a thruster gets, of those logged by thruster."""
         found = list(units[name])
         for i, (source, factor) in enumerate(self.drives.get(name, {}).get(kind, (name, 1.0)) for kind in _DRIVES):
@@ -44,7 +53,7 @@ class Wiring:
         return tuple(found)
 
 
-def wiring_of(system, vessel, thrusters):
+def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring | None:
     """What a system wires otherwise than its connectors' names say.
 
     Parameters
@@ -72,14 +81,14 @@ def wiring_of(system, vessel, thrusters):
     return Wiring(loads, drives, odd) if odd else None
 
 
-def put_right(wiring, name):
+def put_right(wiring: Wiring, name: str) -> Wiring | None:
     """The wiring with one thruster's as its connectors' names say; None where nothing odd is left."""
     rest = {other: told for other, told in wiring.odd.items() if other != name}
     loads, drives = ({k: v for k, v in part.items() if k != name} for part in (wiring.loads, wiring.drives))
     return replace(wiring, loads=loads, drives=drives, odd=rest) if rest else None
 
 
-def _matrix(system, vessel, name):
+def _matrix(system: System, vessel: str, name: str) -> np.ndarray:
     """Share of each axis of a thruster's load in each axis of the ship's."""
     matrix = np.zeros((3, 3))
     for connection in system.connections:
@@ -89,7 +98,7 @@ def _matrix(system, vessel, name):
     return matrix
 
 
-def _told(matrix):
+def _told(matrix: np.ndarray) -> str:
     """A matrix in words: ``X: Y, Y: -1 Y, N: nothing``."""
     rows = []
     for axis, row in zip(_AXES, matrix, strict=True):
@@ -98,7 +107,7 @@ def _told(matrix):
     return ", ".join(rows)
 
 
-def _driven(system, name, thrusters):
+def _driven(system: System, name: str, thrusters: Sequence[str]) -> dict[str, tuple[str, float]]:
     """Whose logged speed and direction a thruster gets from the system's inputs, and by which factor."""
     found = {}
     for connection in system.connections:
