@@ -9,7 +9,8 @@ from typer.testing import CliRunner
 
 from shipcosim.cli import app
 from shipcosim.cosim import ENGINES, RunError, engines_missing, simulate
-from shipcosim.cosim.compare import compare, explained, halved
+from shipcosim.cosim.compare import compare, halved
+from shipcosim.cosim.differences import explained
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.cosim.differences import TOLERANCE, Difference, difference, differs, explained, listed
 from shipcosim.cosim.engines.registry import ENGINES, engines_missing
 from shipcosim.cosim.master.run import RunError
 from shipcosim.cosim.simulate import simulate
@@ -17,31 +17,7 @@ from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 
-if TYPE_CHECKING:
-    import xarray
-
 OURS = "fmpy"
-TOLERANCE = 1e-9  # of a signal's range
-TURN = {"rad": 2.0 * np.pi, "deg": 360.0}
-
-
-@dataclass(frozen=True)
-class Difference:
-    """Largest difference of a signal between two runs.
-
-    Parameters
-    ----------
-    largest : float
-        In the signal's unit. NaN where a value is no number.
-    relative : float
-        To the signal's range in our run; the largest itself where that is 0.
-    time : float
-        When. [s]
-    """
-
-    largest: float
-    relative: float
-    time: float
 
 
 @dataclass(frozen=True)
@@ -158,49 +134,46 @@ def compare(
     known = [name for name in ours.data_vars if not tables or any(name in table for table in tables.values())]
     signals = [_signal(name, ours, tables, half, tolerance) for name in known]
     remarks = {name: explained(ours, table, scenario.step_size, tolerance) for name, table in tables.items()}
-    for name in (name for name in tables if taken is not None and remarks[name]):
-        found, causes = _traced(name, taken(name), ours, tables[name], scenario, tolerance)
+    for name in [name for name in tables if remarks[name]]:
+        if taken is None:
+            break
+        found, causes = _explained_by_reading(name, taken(name), ours, tables[name], scenario, tolerance)
         remarks[name] = [remarks[name][0], *found] if found else remarks[name]
-        signals = [replace(s, causes=s.causes | {name: causes[s.name]}) if s.name in causes else s for s in signals]
+        signals = [_with_cause(signal, name, causes) for signal in signals]
     signals.sort(key=lambda signal: (signal.worst, signal.step.relative), reverse=True)
     return Comparison(signals, seconds, left_out, remarks, tolerance, tuple(failed))
 
 
-def _traced(host, taken, ours, theirs, scenario, tolerance):
+def _with_cause(signal, engine, causes):
+    found = causes.get(signal.name)
+    return signal if found is None else replace(signal, causes={**signal.causes, engine: found})
+
+
+def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
     """What a tool takes otherwise, each run here by itself and all of it together, as remarks and by signal."""
     respects, whole = taken
     remarks, causes = [], {}
     names = [name for name in ours.data_vars if name in theirs]
-    differing = [name for name in names if _differs(name, ours, theirs, tolerance)]
+    differing = [name for name in names if differs(name, ours, theirs, tolerance)]
     try:
         for respect in respects:
             alone = simulate(respect.system, scenario)
-            changed = [name for name in differing if _differs(name, ours, alone, tolerance)]
-            remarks.append(f"{respect.what}. This changes {_listed(changed)}.")
+            changed = [name for name in differing if differs(name, ours, alone, tolerance)]
+            remarks.append(f"{respect.what}. This changes {listed(changed)}.")
             for name in changed:
                 causes.setdefault(str(name), []).append(respect.what)
         together = simulate(whole, scenario) if respects else ours
     except ShipcosimError:
         return [], {}
-    left = [name for name in names if _differs(name, together, theirs, tolerance)]
+    left = [name for name in names if differs(name, together, theirs, tolerance)]
     if respects and not left:
         remarks.append(f"Run here with that, every signal is that of {host}.")
     elif respects:
-        remarks.append(f"That does not explain all of {_listed(left)}.")
+        remarks.append(f"That does not explain all of {listed(left)}.")
     return remarks, causes
 
 
-def _listed(names):
-    shown = ", ".join(map(str, names[:5])) or "nothing that differs"
-    return shown + (f" and {len(names) - 5} more" if len(names) > 5 else "")
-
-
-def _differs(name, ours, theirs, tolerance):
-    spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
-    return not bool(np.all(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
-
-
-def halved(scenario):
+def halved(scenario: Scenario) -> Scenario:
     """The scenario with half the step and a row at every whole one."""
     step = scenario.step_size
     return scenario.model_copy(update={"step_size": step / 2.0, "output_interval": step})
@@ -232,8 +205,8 @@ def _signal(name, ours, tables, half, tolerance):
     values = ours[name].values.astype(float)
     spread = float(np.ptp(values)) if len(values) else 0.0
     having = {engine: table for engine, table in tables.items() if name in table}
-    engines = {engine: _difference(name, ours, table, spread) for engine, table in having.items()}
-    step = _difference(name, ours, half, spread)
+    engines = {engine: difference(name, ours, table, spread) for engine, table in having.items()}
+    step = difference(name, ours, half, spread)
     groups = _groups(name, {OURS: ours} | having, tolerance)
     return Signal(str(name), ours[name].attrs.get("units", ""), spread, engines, step, groups)
 
@@ -243,96 +216,9 @@ def _groups(name, tables, tolerance):
     groups = []
     for engine, table in tables.items():
         for group in groups:
-            if not _differs(name, tables[group[0]], table, tolerance):
+            if not differs(name, tables[group[0]], table, tolerance):
                 group.append(engine)
                 break
         else:
             groups.append([engine])
     return groups
-
-
-def _difference(name, ours, theirs, spread):
-    distance = np.abs(_distance(name, ours, theirs))
-    row = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
-    largest = float(distance[row])
-    return Difference(largest, largest / spread if spread else largest, float(theirs["time"].values[row]))
-
-
-def _distance(name, ours, theirs):
-    """Theirs minus ours in the rows that both have at the end, angles the shorter way round; (n,)."""
-    n = min(len(ours["time"]), len(theirs["time"]))
-    distance = theirs[name].values[-n:].astype(float) - ours[name].values[-n:].astype(float)
-    turn = TURN.get(ours[name].attrs.get("units"))
-    return distance if turn is None else (distance + turn / 2.0) % turn - turn / 2.0
-
-
-def explained(
-    ours: xarray.Dataset, theirs: xarray.Dataset, step_size: float, tolerance: float = TOLERANCE
-) -> list[str]:
-    """What explains the differences of a run from ours, in words.
-
-    Only the signals that differ first are looked at: what differs later may follow from them.
-
-    Parameters
-    ----------
-    ours, theirs : Dataset
-        Tables of the same signals and times.
-    step_size : float
-        Of both. [s]
-    tolerance : float
-        Relative to a signal's range.
-
-    Returns
-    -------
-    list of str
-        Empty if no signal differs.
-    """
-    first = {}
-    ours = ours.isel(time=slice(len(ours["time"]) - len(theirs["time"]), None))
-    for name in (name for name in ours.data_vars if name in theirs):
-        spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
-        beyond = np.flatnonzero(~(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
-        if len(beyond):
-            first[str(name)] = int(beyond[0])
-    if not first:
-        return []
-    row = min(first.values())
-    names = [name for name in first if first[name] == row]
-    time = float(ours["time"].values[row])
-    where = "from the start" if row == 0 else f"from t = {time:.9g} s on"
-    listed = ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
-    causes = list(dict.fromkeys(_cause(name, ours, theirs, step_size) for name in names[:5]))
-    return [f"{len(first)} signals differ, {where}: {listed}.", *causes]
-
-
-def _cause(name, ours, theirs, step_size):
-    """The simplest relation that makes most of a signal's difference disappear."""
-    x, y = (table[name].values.astype(float) for table in (ours, theirs))
-    time, distance = ours["time"].values, _distance(name, ours, theirs)
-    largest = np.max(np.abs(distance))
-    if not np.isfinite(largest):
-        return f"{name} is no number somewhere."
-    if len(x) > 2 and np.ptp(x) > 0.0:
-        if np.max(np.abs(y[1:] - x[:-1])) < 0.01 * largest:
-            return f"{name} comes one row late: a connection passes it on a step later."
-        if np.max(np.abs(y[:-1] - x[1:])) < 0.01 * largest:
-            return f"{name} comes one row early: a component gets it within the step, not at its end."
-        factor, offset = np.polyfit(x, y, 1)
-        if np.max(np.abs(factor * x + offset - y)) < 0.01 * largest:
-            return (
-                f"{name} is ours times {factor:.6g} plus {offset:.6g}: "
-                "a transformation, a unit or a parameter is not applied."
-            )
-        drift = _drift_of_sums(time, step_size)
-        if np.max(np.abs(np.gradient(x, time) * drift - distance)) < 0.3 * largest:
-            return f"{name} differs as its rate times {drift[-1]:.1e} s: the engine's time, a sum of steps, drifts."
-    if np.abs(distance[0]) > 0.0:
-        return f"{name} differs at the start: a parameter or start value is not applied, or settled otherwise."
-    return f"{name} was the same before: something is decided otherwise there, e.g. a sample, a limit or an event."
-
-
-def _drift_of_sums(time, step_size):
-    """What is wrong with a time that was summed up step by step, at each time; (n,). [s]"""
-    counts = np.rint(time / step_size).astype(int)
-    summed = np.concatenate([[0.0], np.cumsum(np.full(counts[-1], step_size))])
-    return summed[counts] - time

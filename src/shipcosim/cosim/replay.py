@@ -113,7 +113,7 @@ class _Segments:
         self.how = {"step_size": step_size, "output_interval": output_interval}
         self.states = {name: _per_segment(name, given, system, len(starts)) for name, given in states.items()}
 
-    def check(self):
+    def check(self) -> None:
         """Raise ShipcosimError with what is wrong with any segment."""
         problems = []
         for number in range(len(self.starts)):

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -104,7 +104,7 @@ class Job:
         """Number of steps."""
         return len(self.times) - 1
 
-    def starts(self, name: str) -> dict[str, object]:
+    def starts(self, name: str) -> dict[str, Any]:
         """Start values of a component, those of its external inputs among them."""
         external = {end[1]: found.start for end, found in self.external.items() if end[0] == name}
         return dict(self.system.components[name].start) | external

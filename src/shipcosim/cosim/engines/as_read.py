@@ -3,25 +3,37 @@
 As a script this is that process: it gets a job in JSON and leaves the values of all outputs.
 """
 
+from __future__ import annotations
+
 import json
+import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.cosim.engines.adapter import EngineError
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
+from shipcosim.ssp import System
+
+if TYPE_CHECKING:
+    import xarray
 
 LIMIT = 600.0  # s
 KINDS = ("Real", "Integer", "Boolean")
 
 
-def readers(path, scenario, *, set_name=None):
+def readers(
+    path: str | os.PathLike[str], scenario: Scenario, *, set_name: str | None = None
+) -> dict[str, Callable[[System], xarray.Dataset]]:
     """Functions that run a file in the tools that are installed and take it, by tool.
 
     Parameters
@@ -83,17 +95,17 @@ def _values(host, job, folder):
 # the process
 
 
-def main(folder):
+def main(folder: str) -> None:
     """Run the job in a folder."""
-    folder = Path(folder)
-    job = json.loads((folder / "job.json").read_text())
+    place = Path(folder)
+    job = json.loads((place / "job.json").read_text())
     try:
         rows = list({"libcosim": _libcosim, "ecos": _ecos}[job["host"]](job))
     except (Exception, AssertionError) as error:
-        (folder / "refused.txt").write_text(str(error).splitlines()[0][:300] if str(error) else type(error).__name__)
+        (place / "refused.txt").write_text(str(error).splitlines()[0][:300] if str(error) else type(error).__name__)
         return
-    np.save(folder / "partial.npy", np.array(rows, dtype=float))
-    (folder / "partial.npy").rename(folder / "values.npy")
+    np.save(place / "partial.npy", np.array(rows, dtype=float))
+    (place / "partial.npy").rename(place / "values.npy")
 
 
 def _libcosim(job):

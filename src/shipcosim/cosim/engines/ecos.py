@@ -43,7 +43,7 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     if problems := unsupported("ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)):
         raise ShipcosimError(problems)
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
-    return run_on("ecos", Session, job, about)
+    return run_on("ecos", EcosSession, job, about)
 
 
 def check_installed() -> None:
@@ -94,7 +94,7 @@ def _modified(value, modifier):
     return value if modifier == (1, 0) else modifier[0] * value + modifier[1]
 
 
-class Session:
+class EcosSession:
     """A simulation of ecos.
 
     Parameters
@@ -213,7 +213,7 @@ class _Record:
             raise EngineError("It does not give all values.")
         self._rows[row] = self._row
 
-    def columns(self, n_rows):
+    def columns(self, n_rows: int) -> list[np.ndarray]:
         """(n_rows,) arrays, one for each output."""
         return list(np.ascontiguousarray(self._rows[:n_rows].T))
 

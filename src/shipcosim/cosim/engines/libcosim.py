@@ -8,7 +8,6 @@ texts may be long. Events become a scenario of its own.
 
 from __future__ import annotations
 
-import json
 import re
 import tempfile
 from collections.abc import Mapping
@@ -16,19 +15,19 @@ from contextlib import ExitStack
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from shipcosim.cosim.engines.adapter import EngineError, Job, held, indices, is_linear, run_on, sums, unsupported
+from shipcosim.cosim.engines.adapter import EngineError, Job, held, indices, run_on
+from shipcosim.cosim.engines.osp_job import events_json, nanoseconds, structure_of, unsupported_by_libcosim
 from shipcosim.cosim.engines.python_imports import imports_undone
-from shipcosim.cosim.master.events import Change
 from shipcosim.cosim.master.plan import End
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
-from shipcosim.ssp import Simulator, System, seconds_text, structure_text
+from shipcosim.ssp import System
 
 if TYPE_CHECKING:
     import xarray
@@ -43,7 +42,7 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     job = Job(system, scenario, options)
     if problems := unsupported_by_libcosim(job):
         raise ShipcosimError(problems)
-    return run_on("libcosim", Session, job, {"libcosimpy_version": version("libcosimpy")})
+    return run_on("libcosim", LibcosimSession, job, {"libcosimpy_version": version("libcosimpy")})
 
 
 def check_installed() -> None:
@@ -57,35 +56,7 @@ def check_installed() -> None:
         raise ShipcosimError(Problem("libcosim", f"is not installed: {error}.", remedy)) from error
 
 
-def unsupported_by_libcosim(job: Job) -> list[Problem]:
-    """What libcosim cannot do of a job."""
-    return unsupported("libcosim", job, _complaint_of(job), _problems(job))
-
-
-def _problems(job):
-    """What libcosim would ignore or die of, beside connections."""
-    if abs(job.scenario.step_size * 1e9 - _nanoseconds(job.scenario.step_size)) > 1e-6:
-        found = (
-            f"The step size {job.scenario.step_size!r} s is no whole number of nanoseconds, in which libcosim counts."
-        )
-        yield Problem("step_size", found)
-    for component in job.system.components.values():
-        if component.fmu.fmi_version != "2.0":
-            yield Problem(component.name, f"is an FMU of FMI {component.fmu.fmi_version}; libcosim runs FMI 2.0.")
-
-
-def _complaint_of(job):
-    def complaint(connection):
-        source, target = (job.plan.variable(end).causality for end in (connection.source, connection.target))
-        if (source, target) != ("output", "input"):
-            return f"it goes from {source} to {target}"
-        return "it is transformed and added to others" if connection in added and is_linear(connection) else None
-
-    added = sums(job.connections)
-    return complaint
-
-
-class Session:
+class LibcosimSession:
     """An execution of libcosim.
 
     Parameters
@@ -96,7 +67,10 @@ class Session:
 
     def __init__(self, job: Job):
         self._job, self._stack = job, ExitStack()
-        self._step = _nanoseconds(job.scenario.step_size)
+        self._execution: Any = None
+        self._series: Any = None
+        self._override: Any = None
+        self._step = nanoseconds(job.scenario.step_size)
         self._stack.enter_context(imports_undone())
         self._folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-")))
         try:
@@ -116,7 +90,7 @@ class Session:
         """Set an input that no component feeds, from the next step on."""
         name, variable = end[0], self._job.plan.variable(end)
         set_values = getattr(self._override, f"slave_{variable.kind.lower()}_values")
-        self._check(set_values(self._indices[name], [variable.value_reference], [value]))
+        self._check(set_values(self._indices[str(name)], [variable.value_reference], [value]))
 
     def advance(self, last: int) -> None:
         """Go on to the step of this number."""
@@ -150,7 +124,7 @@ class Session:
             self._execution = CosimExecution.from_osp_config_file(str(structure))
         except AssertionError as error:
             raise EngineError(str(error)) from error
-        self._indices = {
+        self._indices: dict[str, int] = {
             name: self._execution.slave_index_from_instance_name(name) for name in self._job.system.components
         }
         for name in self._job.system.components:
@@ -173,7 +147,7 @@ class Session:
         self._check(self._execution.add_manipulator(self._events))
         if self._job.changes:
             file = self._folder / "events.json"
-            file.write_text(_events(self._job), encoding="utf-8")
+            file.write_text(events_json(self._job), encoding="utf-8")
             self._check(self._execution.load_scenario(self._events, str(file)))
 
     def _observe(self):
@@ -245,7 +219,7 @@ class FlagObserver:
         Names of variables by component.
     """
 
-    def __init__(self, folder, flags):
+    def __init__(self, folder: Path, flags: Mapping[str, list[str]]):
         lines = [
             f'<simulator name={quoteattr(name)} decimationFactor="1">'
             + "".join(f"<variable name={quoteattr(variable)}/>" for variable in variables)
@@ -257,7 +231,7 @@ class FlagObserver:
         create = _function("cosim_file_observer_create_from_cfg", _observer_pointer(), [c_char_p, c_char_p])
         self._pointer = create(str(folder).encode(), str(file).encode())
 
-    def ptr(self):
+    def ptr(self) -> Any:
         """Pointer to it, as libcosimpy's observers have."""
         return self._pointer
 
@@ -267,59 +241,6 @@ class FlagObserver:
 
 def _flag_file(folder, name):
     return next(f for f in folder.iterdir() if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name))
-
-
-def structure_of(
-    job: Job,
-    sources: Mapping[str, str] | None = None,
-    values: Mapping[str, dict] | None = None,
-    end_time: float | None = None,
-) -> str:
-    """OspSystemStructure.xml of a job, no events in it.
-
-    Parameters
-    ----------
-    job : Job
-        Without complaints.
-    sources : mapping of str to str, optional
-        Addresses of the FMUs by component; where they are if not given.
-    values : mapping of str to dict, optional
-        Initial values by component, as in Simulator; none if not given.
-    end_time : float, optional
-        [s]
-    """
-    step, sources, values = job.scenario.step_size, sources or {}, values or {}
-    simulators = [
-        Simulator(
-            name,
-            sources.get(name) or component.fmu.path.resolve().as_uri(),
-            step * job.plan.multiples[name],
-            values.get(name, {}),
-        )
-        for name, component in job.system.components.items()
-    ]
-    return structure_text(simulators, job.connections, step, end_time)
-
-
-def event_of(job: Job, change: Change) -> dict[str, object]:
-    """Event of OSP that makes a change of a job."""
-    component, variable = change.end
-    time = float(seconds_text(job.scenario.step_size * change.step))
-    event = {"time": time, "model": component, "variable": variable, "action": change.action}
-    if change.action != "reset":
-        event["value"] = {"Real": float, "Boolean": bool}.get(job.plan.variable(change.end).kind, int)(change.value)
-    return event
-
-
-def _events(job):
-    """Scenario of OSP, in JSON, with the changes that a job makes to what travels between components."""
-    events = [event_of(job, change) for change in job.changes]
-    after = 2.0 * job.times[-1]  # all changes are taken back at this time
-    return json.dumps({"description": job.scenario.description, "events": events, "end": after})
-
-
-def _nanoseconds(seconds):
-    return round(seconds * 1e9)
 
 
 def _function(name, result, arguments):

@@ -1,11 +1,12 @@
 """Imports that Python FMUs leave behind in this process when an engine other than ours has run them."""
 
 import sys
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 
 @contextmanager
-def imports_undone():
+def imports_undone() -> Iterator[None]:
     """Put `sys.path` back in the end, and forget modules that were imported from what was added to it.
 
     PythonFMU adds the folder of each FMU. A later run would otherwise take a module of the same name from there.

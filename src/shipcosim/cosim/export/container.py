@@ -13,7 +13,7 @@ import zipfile
 from pathlib import Path
 
 from shipcosim.cosim.export.container_description import BINARY, container_description
-from shipcosim.cosim.export.container_face import Face, face_of, library_type
+from shipcosim.cosim.export.container_variables import ContainerVariable, exposed_variables, library_type
 from shipcosim.cosim.master.order import sources_first
 from shipcosim.cosim.master.plan import label
 from shipcosim.errors import Problem, ShipcosimError
@@ -55,15 +55,15 @@ def write_container(
         With everything that the container cannot express.
     """
     problems = list(_problems(system, step_size))
-    face = face_of(system, connectors_only, problems)
+    exposed = exposed_variables(system, connectors_only, problems)
     if errors := [problem for problem in problems if problem.severity == "error"]:
         raise ShipcosimError(errors)
     paths = _paths(system)
     files = {f"resources/{paths[fmu]}/{name}": data for fmu in paths for name, data in _files(fmu)}
     files |= {f"binaries/{folder}/{Path(own).name}": _library(own) for folder, own in PLATFORMS.items()}
-    configuration = _configuration(system, face, paths, step_size, sweeps)
+    configuration = _configuration(system, exposed, paths, step_size, sweeps)
     token = _token(configuration, files)
-    description = container_description(system, face, token, step_size)
+    description = container_description(system, exposed, token, step_size)
     files["modelDescription.xml"] = description
     files["resources/container.json"] = json.dumps({"instantiationToken": token, **configuration}, indent=1).encode()
     write_archive(path, files)
@@ -135,7 +135,7 @@ def _connection_faults(connection, system, targets):
     if None in types:
         yield "its type is an array, Binary or Clock."
     elif len(types) > 1:
-        yield f"its ends are of different types, {' and '.join(types)}."
+        yield f"its ends are of different types, {' and '.join(map(str, types))}."
 
 
 def _paths(system):
@@ -157,7 +157,7 @@ def _library(own):
     return (Path(fmpy.container_fmu.__file__).parent / "binaries" / own).read_bytes()
 
 
-def _configuration(system, face, paths, step_size, sweeps):
+def _configuration(system, exposed, paths, step_size, sweeps):
     """What the library reads, but for the token."""
     numbers = {name: number for number, name in enumerate(system.components)}
     return {
@@ -165,7 +165,7 @@ def _configuration(system, face, paths, step_size, sweeps):
         "fixedStepSize": step_size,
         "parallelDoStep": False,
         "components": [_component(component, paths) for component in system.components.values()],
-        "variables": [_variable(one, system, numbers) for one in [*face, *_hidden(system, face)]],
+        "variables": [_variable(one, system, numbers) for one in [*exposed, *_hidden(system, exposed)]],
         "connections": list(_connections(system, numbers)) * sweeps,
     }
 
@@ -181,14 +181,14 @@ def _component(component, paths):
     }
 
 
-def _hidden(system, face):
+def _hidden(system, exposed):
     """Start values that the system sets on variables which the container does not show."""
-    shown = {end for one in face for end in one.ends}
+    shown = {end for one in exposed for end in one.ends}
     for component in system.components.values():
         for name, value in component.start.items():
             if (component.name, name) not in shown:
                 variable = component.fmu.variables[name]
-                yield Face("", "local", variable, ((component.name, name),), start=value)
+                yield ContainerVariable("", "local", variable, ((component.name, name),), start=value)
 
 
 def _variable(one, system, numbers):

@@ -3,7 +3,7 @@
 from xml.etree import ElementTree as xml
 
 from shipcosim import __version__
-from shipcosim.cosim.export.container_face import SHOWN, Face, is_structured, library_type
+from shipcosim.cosim.export.container_variables import FMI2_TYPES, ContainerVariable, is_structured, library_type
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import System
 from shipcosim.ssp.xml.values import text_of
@@ -12,14 +12,14 @@ BINARY = "container_fmu"
 """modelIdentifier, which is the name of the library."""
 
 
-def container_description(system: System, face: list[Face], token: str, step_size: float) -> bytes:
+def container_description(system: System, exposed: list[ContainerVariable], token: str, step_size: float) -> bytes:
     """The model description, the same bytes for the same system.
 
     Parameters
     ----------
     system : System
         As read.
-    face : list of Face
+    exposed : list of ContainerVariable
         Its variables.
     token : str
         GUID.
@@ -33,20 +33,20 @@ def container_description(system: System, face: list[Face], token: str, step_siz
         guid=token,
         description=f"{len(system.components)} components of the system {system.name}",
         generationTool=f"shipcosim {__version__}",
-        variableNamingConvention="structured" if all(is_structured(one.name) for one in face) else "flat",
+        variableNamingConvention="structured" if all(is_structured(one.name) for one in exposed) else "flat",
         numberOfEventIndicators="0",
     )
     xml.SubElement(root, "CoSimulation", _abilities(system))
-    _add_units(root, system, face)
-    types = _add_types(root, face)
+    _add_units(root, system, exposed)
+    types = _add_types(root, exposed)
     _add_experiment(root, system, step_size)
     variables = xml.SubElement(root, "ModelVariables")
-    time = xml.SubElement(variables, "ScalarVariable", name=_time_name(face), valueReference="0")
+    time = xml.SubElement(variables, "ScalarVariable", name=_time_name(exposed), valueReference="0")
     time.attrib |= {"causality": "independent", "variability": "continuous", "description": "time"}
     xml.SubElement(time, "Real")
-    for reference, one in enumerate(face, start=1):
+    for reference, one in enumerate(exposed, start=1):
         variables.append(_scalar_variable(reference, one, system, types))
-    _add_structure(root, face)
+    _add_structure(root, exposed)
     xml.indent(root)
     return xml.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
 
@@ -63,8 +63,8 @@ def _abilities(system):
     }
 
 
-def _add_units(root, system, face):
-    used = sorted({one.unit for one in face if one.unit and one.variable.kind == "Real"})
+def _add_units(root, system, exposed):
+    used = sorted({one.unit for one in exposed if one.unit and one.variable.kind == "Real"})
     if not used:
         return
     definitions = xml.SubElement(root, "UnitDefinitions")
@@ -79,9 +79,9 @@ def _add_units(root, system, face):
             break
 
 
-def _add_types(root, face):
+def _add_types(root, exposed):
     """Enumerations, each with a name of its own; returns the names by items."""
-    kinds = dict.fromkeys(tuple(one.variable.items.items()) for one in face if one.variable.items)
+    kinds = dict.fromkeys(tuple(one.variable.items.items()) for one in exposed if one.variable.items)
     names = {items: f"Enumeration{number}" for number, items in enumerate(kinds, start=1)}
     if names:
         definitions = xml.SubElement(root, "TypeDefinitions")
@@ -98,8 +98,8 @@ def _add_experiment(root, system, step_size):
     xml.SubElement(root, "DefaultExperiment", given)
 
 
-def _time_name(face):
-    names = {one.name for one in face}
+def _time_name(exposed):
+    names = {one.name for one in exposed}
     return next(name for name in ("time", "simulation_time", "_time") if name not in names)
 
 
@@ -113,7 +113,7 @@ def _scalar_variable(reference, one, system, types):
         element.set("initial", "calculated" if one.causality == "output" else "exact")
     values = {"start": text_of(one.start)} if one.start is not None and one.causality != "output" else {}
     name, own = one.ends[0]
-    kind = "Enumeration" if variable.items else SHOWN[library_type(system.components[name].fmu, own)]
+    kind = "Enumeration" if variable.items else FMI2_TYPES[str(library_type(system.components[name].fmu, own))]
     if kind == "Enumeration":
         values["declaredType"] = types[tuple(variable.items.items())]
     if kind == "Real" and one.unit:
@@ -132,9 +132,9 @@ def _variability(one):
     return "continuous" if one.variable.kind == "Real" and one.variable.variability == "continuous" else "discrete"
 
 
-def _add_structure(root, face):
+def _add_structure(root, exposed):
     structure = xml.SubElement(root, "ModelStructure")
-    indices = [str(index) for index, one in enumerate(face, start=2) if one.causality == "output"]
+    indices = [str(index) for index, one in enumerate(exposed, start=2) if one.causality == "output"]
     for kind in ("Outputs", "InitialUnknowns") if indices else ():
         unknowns = xml.SubElement(structure, kind)
         for index in indices:

@@ -7,7 +7,7 @@ from urllib.parse import quote
 import numpy as np
 
 from shipcosim.cosim.engines.adapter import Job
-from shipcosim.cosim.engines.libcosim import event_of, structure_of, unsupported_by_libcosim
+from shipcosim.cosim.engines.osp_job import event_of, structure_of, unsupported_by_libcosim
 from shipcosim.cosim.master.events import Change
 from shipcosim.cosim.master.plan import KINDS
 from shipcosim.errors import Problem, ShipcosimError

@@ -2,11 +2,12 @@
 
 import signal
 import threading
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 
 @contextmanager
-def delayed_interrupt():
+def delayed_interrupt() -> Iterator[Callable[[], None]]:
     """Hold Ctrl-C back until the callable that this yields is called, which then raises KeyboardInterrupt.
 
     Raised at any moment it would end up in the Python code of an FMU, whose host reports it as an error of the FMU. A

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from shipcosim.cosim.slaves.slave import FATAL, OK
 from shipcosim.ssp import Variable
 
 
-def python_object_of(folder: Path, name: str):
+def python_object_of(folder: Path, name: str) -> Any:
     """The object behind the instance made last of an unpacked FMU, or None where it has none of our shell's.
 
     The module that an FMU of ours enters by has a name unique to its content, so it does not matter from which folder

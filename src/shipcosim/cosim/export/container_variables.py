@@ -1,4 +1,4 @@
-"""What a system shows when it is one FMU: its connectors, and what of its components can be seen from outside."""
+"""Variables of a system that is one FMU: its connectors, and what of its components can be seen from outside."""
 
 import re
 from dataclasses import dataclass
@@ -7,15 +7,15 @@ from shipcosim.cosim.master.plan import End, label
 from shipcosim.errors import Problem
 from shipcosim.ssp import FmuDescription, System, Variable
 
-TYPES = {"Real": "Float64", "Integer": "Int32"}
+LIBRARY_TYPES = {"Real": "Float64", "Integer": "Int32"}
 """What the container's library calls types of FMI 2.0."""
 
-SHOWN = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
+FMI2_TYPES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 """Types of FMI 2.0 for the library's."""
 
 
 @dataclass(frozen=True)
-class Face:
+class ContainerVariable:
     """A variable of the container.
 
     Parameters
@@ -48,33 +48,34 @@ def library_type(fmu: FmuDescription, name: str) -> str | None:
         return None
     if variable.kind == "Enumeration":
         return "Int64" if fmu.fmi_version.startswith("3") else "Int32"
-    return TYPES.get(variable.type, variable.type)
+    return LIBRARY_TYPES.get(variable.type, variable.type)
 
 
-def face_of(system: System, connectors_only: bool, problems: list[Problem]) -> list[Face]:
+def exposed_variables(system: System, connectors_only: bool, problems: list[Problem]) -> list[ContainerVariable]:
     """Variables of the container, in the order of the system.
 
     Parameters
     ----------
-    system
+    system : System
         As read.
-    connectors_only
+    connectors_only : bool
         Whether to leave out what is no connector of the system.
-    problems
+    problems : list of Problem
         Takes what a connector cannot be, and remarks on what is left out.
     """
-    face = [one for one in _connectors(system, problems) if _is_shown(one, system, problems, "error")]
+    exposed = [one for one in _connectors(system, problems) if _is_shown(one, system, problems, "error")]
     if connectors_only:
-        return face
-    names, inside = {one.name for one in face}, {end for one in face if one.causality != "output" for end in one.ends}
-    fed = {connection.target for connection in system.connections}
-    for one in _variables(system, fed | inside):
+        return exposed
+    names = {one.name for one in exposed}
+    fed = {end for one in exposed if one.causality != "output" for end in one.ends}
+    fed |= {connection.target for connection in system.connections}
+    for one in _variables(system, fed):
         if one.name in names:
             found = f"A connector of the system and a variable of a component are both called {one.name}."
             problems.append(Problem(system.name, found, "Rename the connector."))
         elif _is_shown(one, system, problems, "remark"):
-            face.append(one)
-    return face
+            exposed.append(one)
+    return exposed
 
 
 def _connectors(system, problems):
@@ -89,7 +90,7 @@ def _connectors(system, problems):
             start = _common_start(system, signal, ends, problems)
         shown = start if causality != "output" else None
         description = signal.description or (variable.description if len(ends) == 1 else "")
-        yield Face(signal.name, causality, variable, ends, shown, signal.unit, description)
+        yield ContainerVariable(signal.name, causality, variable, ends, shown, signal.unit, description)
 
 
 def _signals(system):
@@ -126,14 +127,16 @@ def _variables(system, fed):
                 start = None
             else:
                 continue
-            yield Face(label(end), variable.causality, variable, (end,), start, variable.unit, variable.description)
+            yield ContainerVariable(
+                label(end), variable.causality, variable, (end,), start, variable.unit, variable.description
+            )
 
 
 def _is_shown(one, system, problems, severity):
     """Whether FMI 2.0 has a type for a variable; says so where it has not."""
     name, variable = one.ends[0]
     kind = library_type(system.components[name].fmu, variable)
-    if kind in SHOWN:
+    if kind in FMI2_TYPES:
         return True
     what = "an element of an array" if one.variable.whole is not None else f"of type {one.variable.type}"
     found = f"{one.name} is {what}, which FMI 2.0 has not"

@@ -1,0 +1,134 @@
+"""Differences between the tables of two runs, and what explains them, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray
+
+TOLERANCE = 1e-9
+"""Of a signal's range."""
+FULL_TURN = {"rad": 2.0 * np.pi, "deg": 360.0}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Largest difference of a signal between two runs.
+
+    Parameters
+    ----------
+    largest : float
+        In the signal's unit. NaN where a value is no number.
+    relative : float
+        To the signal's range in our run; the largest itself where that is 0.
+    time : float
+        When. [s]
+    """
+
+    largest: float
+    relative: float
+    time: float
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names for a sentence, at most five of them."""
+    shown = ", ".join(map(str, names[:5])) or "nothing that differs"
+    return shown + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+
+
+def differs(name: str, ours: xarray.Dataset, theirs: xarray.Dataset, tolerance: float) -> bool:
+    """Whether a signal differs somewhere by more than a tolerance, relative to its range in ours."""
+    spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
+    return not bool(np.all(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
+
+
+def difference(name: str, ours: xarray.Dataset, theirs: xarray.Dataset, spread: float) -> Difference:
+    """Largest difference of a signal between two tables; `spread` is its range in ours."""
+    distance = np.abs(_distance(name, ours, theirs))
+    row = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
+    largest = float(distance[row])
+    return Difference(largest, largest / spread if spread else largest, float(theirs["time"].values[row]))
+
+
+def _distance(name, ours, theirs):
+    """Theirs minus ours in the rows that both have at the end, angles the shorter way round; (n,)."""
+    n = min(len(ours["time"]), len(theirs["time"]))
+    distance = theirs[name].values[-n:].astype(float) - ours[name].values[-n:].astype(float)
+    turn = FULL_TURN.get(ours[name].attrs.get("units"))
+    return distance if turn is None else (distance + turn / 2.0) % turn - turn / 2.0
+
+
+def explained(
+    ours: xarray.Dataset, theirs: xarray.Dataset, step_size: float, tolerance: float = TOLERANCE
+) -> list[str]:
+    """What explains the differences of a run from ours, in words.
+
+    Only the signals that differ first are looked at: what differs later may follow from them.
+
+    Parameters
+    ----------
+    ours, theirs : Dataset
+        Tables of the same signals and times.
+    step_size : float
+        Of both. [s]
+    tolerance : float
+        Relative to a signal's range.
+
+    Returns
+    -------
+    list of str
+        Empty if no signal differs.
+    """
+    first = {}
+    ours = ours.isel(time=slice(len(ours["time"]) - len(theirs["time"]), None))
+    for name in (name for name in ours.data_vars if name in theirs):
+        spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
+        beyond = np.flatnonzero(~(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
+        if len(beyond):
+            first[str(name)] = int(beyond[0])
+    if not first:
+        return []
+    row = min(first.values())
+    names = [name for name in first if first[name] == row]
+    time = float(ours["time"].values[row])
+    where = "from the start" if row == 0 else f"from t = {time:.9g} s on"
+    causes = list(dict.fromkeys(_cause(name, ours, theirs, step_size) for name in names[:5]))
+    return [f"{len(first)} signals differ, {where}: {listed(names)}.", *causes]
+
+
+def _cause(name, ours, theirs, step_size):
+    """The simplest relation that makes most of a signal's difference disappear."""
+    x, y = (table[name].values.astype(float) for table in (ours, theirs))
+    time, distance = ours["time"].values, _distance(name, ours, theirs)
+    largest = np.max(np.abs(distance))
+    if not np.isfinite(largest):
+        return f"{name} is no number somewhere."
+    if len(x) > 2 and np.ptp(x) > 0.0:
+        if np.max(np.abs(y[1:] - x[:-1])) < 0.01 * largest:
+            return f"{name} comes one row late: a connection passes it on a step later."
+        if np.max(np.abs(y[:-1] - x[1:])) < 0.01 * largest:
+            return f"{name} comes one row early: a component gets it within the step, not at its end."
+        factor, offset = np.polyfit(x, y, 1)
+        if np.max(np.abs(factor * x + offset - y)) < 0.01 * largest:
+            return (
+                f"{name} is ours times {factor:.6g} plus {offset:.6g}: "
+                "a transformation, a unit or a parameter is not applied."
+            )
+        drift = _drift_of_sums(time, step_size)
+        if np.max(np.abs(np.gradient(x, time) * drift - distance)) < 0.3 * largest:
+            return f"{name} differs as its rate times {drift[-1]:.1e} s: the engine's time, a sum of steps, drifts."
+    if np.abs(distance[0]) > 0.0:
+        return f"{name} differs at the start: a parameter or start value is not applied, or settled otherwise."
+    return f"{name} was the same before: something is decided otherwise there, e.g. a sample, a limit or an event."
+
+
+def _drift_of_sums(time, step_size):
+    """What is wrong with a time that was summed up step by step, at each time; (n,). [s]"""
+    counts = np.rint(time / step_size).astype(int)
+    summed = np.concatenate([[0.0], np.cumsum(np.full(counts[-1], step_size))])
+    return summed[counts] - time
