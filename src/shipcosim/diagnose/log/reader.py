@@ -12,6 +12,7 @@ import numpy as np
 from shipcosim.angles import TURN, wrap_series
 from shipcosim.diagnose.log.channels import Channel, read_channels
 from shipcosim.diagnose.log.roles import role_of
+from shipcosim.diagnose.log.thresholds import LATEST
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.series import conversion, make_table, read_columns
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["read_log"]
 
-LATEST = 1e12  # s
 EQUATORIAL_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 6.69437999014e-3  # [m, 1] WGS 84
 
 

@@ -8,14 +8,12 @@ import numpy as np
 
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.rows import usable_rows
+from shipcosim.diagnose.log.thresholds import HOLE, UNEVEN
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["handled", "remarks"]
-
-UNEVEN = 0.02  # share of the usual step
-HOLE = 1.5  # usual steps
 
 
 def remarks(log: xarray.Dataset) -> list[str]:

@@ -11,6 +11,7 @@ from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.rows import inside, usable_rows, usual_step
+from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
 
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["repaired"]
 
-HOLE = 1.5  # over the usual spacing: rows are missing between
-LONGEST = 50.0  # times as long as its rows: some of its stamps are wrong
 CUT_OUT = ("gap", "heading_wrap")
 
 
@@ -72,7 +71,7 @@ def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Datase
 
 def _check_span(time, step):
     """A stamp far off all others would make a log of years."""
-    if time[-1] - time[0] > LONGEST * step * len(time):
+    if time[-1] - time[0] > LONGEST_SPAN * step * len(time):
         row = int(np.argmax(np.diff(time)))
         found = f"{time[row]:g} s is followed by {time[row + 1]:g} s, with a usual step of {step:g} s."
         raise ShipcosimError(Problem("time", found, "Leave out the rows whose times are wrong, or cut the log there."))

@@ -12,13 +12,11 @@ from shipcosim.diagnose.stages import JudgedLog, PredictedLog
 from shipcosim.diagnose.validation.gain import Comparison, compare
 from shipcosim.diagnose.validation.missing_force import missing_forces
 from shipcosim.diagnose.validation.split import is_idle, sorted_by, starts, without_headings
+from shipcosim.diagnose.validation.thresholds import FEWEST_PREDICTIONS, LEAST_TRAINED
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.ship.inputs import Record
-
-_LEAVES = 0.5  # of the rows, to fit on
-_FEWEST = 12  # predictions
 
 
 def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
@@ -52,12 +50,12 @@ def unseen(record: Record) -> dict[str, np.ndarray]:
     """
     rows, found = starts(record), {}
     sectors = [without_headings(record, middle) for middle in np.radians(np.arange(0.0, 360.0, 30.0))]
-    tries = [(sorted_by(train, rows, record)[1].size, train) for train in sectors if train.mean() >= _LEAVES]
+    tries = [(sorted_by(train, rows, record)[1].size, train) for train in sectors if train.mean() >= LEAST_TRAINED]
     most = max(tries, key=lambda one: one[0], default=(0, None))
     if most[0]:
         found["other headings"] = most[1]
     powered = ~is_idle(record)
-    if sorted_by(powered, rows, record)[1].size and powered.mean() >= _LEAVES:
+    if sorted_by(powered, rows, record)[1].size and powered.mean() >= LEAST_TRAINED:
         found["free drift"] = powered
     return found
 
@@ -81,7 +79,7 @@ def compare_unseen(problem: IdentificationProblem, fit: Fit) -> dict[str, Compar
         comparison = compare(problem, fit, train=train)
         if comparison is not None and name == "other headings":
             comparison = _only(comparison, ~comparison.errors["heading_known"].values)
-        if comparison is not None and comparison.rows.size >= _FEWEST:
+        if comparison is not None and comparison.rows.size >= FEWEST_PREDICTIONS:
             found[name] = comparison
     return found
 

@@ -10,17 +10,17 @@ from shipcosim.diagnose.ship.instruments import readings
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
 from shipcosim.diagnose.validation.predictions import missing, predicted
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
+from shipcosim.diagnose.validation.thresholds import INPUT_DELAY, MOST, STEP, WEATHER_RATE
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.motion import Motion
 from shipcosim.series import make_table
 
-STEP = 0.1
-"""Step of the co-simulations. [s]"""
-MOST = 24
-"""Segments that are simulated."""
-_LATE = 1.5  # steps, from a row of the table until what it drives has moved the ship
-_FAST = 1e3  # so that the weather follows a log at once
-_CALM = {"gust_scale": 0.0, "significant_wave_height": 0.0, "wind_speed_rate": _FAST, "wind_turn_rate": _FAST}
+_CALM = {
+    "gust_scale": 0.0,
+    "significant_wave_height": 0.0,
+    "wind_speed_rate": WEATHER_RATE,
+    "wind_turn_rate": WEATHER_RATE,
+}
 _SHOWN = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 
 
@@ -190,7 +190,7 @@ def driving_table(system, predictor, step_size, lag=0.0):
         raise ShipcosimError(problems)
     weather, calm = _weather(system, model.vessel, record)
     columns, last = columns + weather, record.time[-1] + record.step
-    time = np.append(record.time, last) - lag - _LATE * step_size
+    time = np.append(record.time, last) - lag - INPUT_DELAY * step_size
     table = make_table(time, [(name, np.append(values, values[-1]), *more) for name, values, *more in columns])
     for column in table.data_vars.values():
         column.attrs["interpolation"] = "linear"

@@ -19,6 +19,7 @@ from shipcosim.diagnose.validation.predictions import (
     restarted,
 )
 from shipcosim.diagnose.validation.split import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
+from shipcosim.diagnose.validation.thresholds import BLOCK, DRAWS, FADES
 from shipcosim.models.core.motion import Motion
 
 MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
@@ -26,9 +27,6 @@ _HELD = {"plain": "bias_observer", "extended": "extended_observer", "calibrated"
 CHANNELS = {"position": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
 _EARTH = tuple(("earth", time) for time in (10.0, 40.0, 160.0))  # s, within which an observer learns a force
 _BOTH = _EARTH + tuple(("body", time) for _, time in _EARTH)
-_FADES = (0.0, 1.0 / 40.0)  # 1/s, rates at which the force of a bias observer fades in a prediction
-_BLOCK = 120.0  # s, two of the longest horizon, for the bootstrap
-_DRAWS = 1000
 
 
 @dataclass(frozen=True)
@@ -104,7 +102,7 @@ def compare(problem, fit, *, train=None):
     record = problem.record
     train = first_rows(record) if train is None else train
     inside, rows = sorted_by(train, starts(record), record)
-    if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < _BLOCK:
+    if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < BLOCK:
         return None
     part = fitted(trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1)
     linear = linearise(fit.motion, record, fit.model, [])
@@ -147,7 +145,7 @@ def _judged(model, inside, rows, seen, holds):
     for some in (slice(0, 1), slice(1, None)) if holds else (slice(0, 1),):
         fade, number = np.unravel_index(tuning[some].argmin(), tuning[some].shape)
         errors = {channel: values[:, some][:, fade, number, len(inside) :] for channel, values in missed.items()}
-        found.append((errors, (*model.choices[number], _FADES[fade] if some.start else None), number))
+        found.append((errors, (*model.choices[number], FADES[fade] if some.start else None), number))
     return found
 
 
@@ -172,12 +170,12 @@ class _Model:
         return Predictor(self.record, self.model, original, Motion(*(value[number] for value in self.known.motion)))
 
     def missed(self, rows, seen, holds):
-        """Errors of predictions from some rows, without a force and where it `holds` one by each of `_FADES`.
+        """Errors of predictions from some rows, without a force and where it `holds` one by each of `FADES`.
 
         By channel, (horizons, 1 or 1 + fades, observers, s) arrays.
         """
-        shares = np.array([0.0] + [1.0] * len(_FADES) if holds else [0.0])[:, None, None]
-        fades = np.array([0.0, *_FADES])[: len(shares), None, None]
+        shares = np.array([0.0] + [1.0] * len(FADES) if holds else [0.0])[:, None, None]
+        fades = np.array([0.0, *FADES])[: len(shares), None, None]
         motion = Motion(*(value[:, rows] + 0.0 * shares for value in self.known.motion))
         force = shares[..., None] * self.known.force[:, rows] if holds else None
         earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
@@ -340,7 +338,7 @@ def _share(before, after, floor):
 
 def _blocks(times):
     """Number of the block that each segment is in."""
-    return np.unique((times - times[0]) // _BLOCK, return_inverse=True)[1]
+    return np.unique((times - times[0]) // BLOCK, return_inverse=True)[1]
 
 
 def _resampled(squares, times, seed):
@@ -348,6 +346,6 @@ def _resampled(squares, times, seed):
     block = _blocks(times)
     blocks = block.max() + 1
     sums = np.stack([np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))])
-    draws = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=_DRAWS)
+    draws = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=DRAWS)
     drawn = sums @ draws.T
     return drawn[:-1] / drawn[-1]

@@ -12,17 +12,13 @@ from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.validation.predictions import mass_matrix
+from shipcosim.diagnose.validation.thresholds import FEWEST_SECTOR_ROWS, FORCE_TIME, SECTORS
 from shipcosim.models.core.kinematics import to_body, to_ned
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
-
-_LEARNING = 10.0  # s, how fast the force may change; faster, noise is taken for force
-SECTORS = 24
-"""Sectors of an angle in which the force is averaged."""
-_FEWEST_ROWS = 5  # of a sector
 
 
 @dataclass(frozen=True)
@@ -79,14 +75,14 @@ def by_sector(force: xarray.Dataset, angle: str) -> xarray.Dataset:
     for name in ("surge", "sway"):
         values = force[name].values
         groups = [values[(sector == k) & np.isfinite(values)] for k in range(SECTORS)]
-        mean = [g.mean() if g.size >= _FEWEST_ROWS else np.nan for g in groups]
-        spread = [g.std() if g.size >= _FEWEST_ROWS else 0.0 for g in groups]
+        mean = [g.mean() if g.size >= FEWEST_SECTOR_ROWS else np.nan for g in groups]
+        spread = [g.std() if g.size >= FEWEST_SECTOR_ROWS else 0.0 for g in groups]
         columns |= {name: ("sector", mean, {"units": "N"}), f"{name}_std": ("sector", spread, {"units": "N"})}
     return xarray.Dataset(columns, {"sector": (np.arange(SECTORS) + 0.5) * width})
 
 
 def missing_force(
-    problem: IdentificationProblem, model: ShipModel, motion: Motion, *, learning: float = _LEARNING
+    problem: IdentificationProblem, model: ShipModel, motion: Motion, *, learning: float = FORCE_TIME
 ) -> xarray.Dataset:
     """Reconstruct what a ship model lacks: the smoothed acceleration that nothing explains, times mass and added mass.
 

@@ -8,12 +8,11 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.ship.instruments import LAGS, readings, true_motion
+from shipcosim.diagnose.validation.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.motion import Motion
 
-_FASTEST, _FASTEST_TURN = 20.0, 0.5  # m/s, rad/s
 _FORCE = slice(6, 9)
-_FREE = 3.0  # times the jolts, and seconds in which the force changes: the model moves the reference by some 2 cm then
 
 
 @dataclass(frozen=True)
@@ -131,8 +130,10 @@ def reference(linear, motion, noise, record, model):
     Motion
         (n,) arrays.
     """
-    jolt = _FREE * noise.jolt
-    return readings(innovations(linear, replace(noise, jolt=jolt, walk=jolt / _FREE), record, motion).motion, model)
+    jolt = REFERENCE_JOLTS * noise.jolt
+    return readings(
+        innovations(linear, replace(noise, jolt=jolt, walk=jolt / REFERENCE_JOLTS), record, motion).motion, model
+    )
 
 
 def stacked(problems):
@@ -224,8 +225,8 @@ def _held(motion, force, earth, fades):
 
 def _bounded(motion):
     """A motion no faster than any ship, so that a prediction that runs away stays a number."""
-    u, v = np.clip(motion.u, -_FASTEST, _FASTEST), np.clip(motion.v, -_FASTEST, _FASTEST)
-    return motion._replace(u=u, v=v, r=np.clip(motion.r, -_FASTEST_TURN, _FASTEST_TURN))
+    u, v = np.clip(motion.u, -FASTEST, FASTEST), np.clip(motion.v, -FASTEST, FASTEST)
+    return motion._replace(u=u, v=v, r=np.clip(motion.r, -FASTEST_TURN, FASTEST_TURN))
 
 
 def _at(inputs, rows):

@@ -5,18 +5,19 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.diagnose.inference.linearisation import Linear
+from shipcosim.diagnose.validation.thresholds import (
+    IDLE,
+    MEASURED_WITHIN,
+    MOVING,
+    SETTLED,
+    START_STEP,
+    TRAINED,
+    TURNING,
+)
 from shipcosim.models.core.motion import Motion
 
 HORIZONS = (10.0, 30.0, 60.0)
 """Of the predictions. [s]"""
-TRAINED = 0.65
-"""Share of the log, from its start, that is fitted on if nobody says otherwise."""
-_EVERY = 5.0  # s, from one prediction's start to the next
-_SETTLED = 120.0  # s, after which observers have learnt
-_NEAR = 2.0  # s, within which a measurement has to be where a prediction ends
-_TURNING = np.radians(15.0)  # within a prediction
-_MOVING = 0.25  # m/s on the average
-_IDLE = 0.05  # of the largest speed of a thruster in the log
 
 
 def first_rows(record, share=TRAINED):
@@ -43,7 +44,7 @@ def without_headings(record, middle, width=np.pi / 2.0):
 def is_idle(record):
     """Rows on which no thruster turns, (n,) bool array."""
     speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
-    return np.all([n < _IDLE * n.max() for n in speeds], axis=0) if speeds else np.ones(record.time.size, bool)
+    return np.all([n < IDLE * n.max() for n in speeds], axis=0) if speeds else np.ones(record.time.size, bool)
 
 
 def in_rows(record):
@@ -64,10 +65,10 @@ def starts(record):
         After observers have settled, where all that drives the ship is known and position and heading are measured.
     """
     horizons, h = in_rows(record), record.step
-    rows = np.arange(round(_SETTLED / h), record.time.size - horizons[-1], max(1, round(_EVERY / h)))
+    rows = np.arange(round(SETTLED / h), record.time.size - horizons[-1], max(1, round(START_STEP / h)))
     lost = np.concatenate([[0], np.cumsum(~record.known)])
     measured = np.isfinite(record.measured[:, :3]).all(-1)
-    near = np.convolve(measured, np.ones(2 * round(_NEAR / h) + 1), "same") > 0.0
+    near = np.convolve(measured, np.ones(2 * round(MEASURED_WITHIN / h) + 1), "same") > 0.0
     sound = (lost[rows + horizons[-1]] == lost[rows]) & near[rows]
     for k in horizons:
         sound &= near[rows + k]
@@ -154,7 +155,7 @@ def conditions(record, seen, rows, train, model):
     turn = np.ptp(seen.psi[spans], axis=1)
     idle = is_idle(record)[spans].all(1)
     regime = np.select(
-        [idle, turn > _TURNING, way > _MOVING * HORIZONS[-1]], ["drifting", "turning", "moving"], "holding"
+        [idle, turn > TURNING, way > MOVING * HORIZONS[-1]], ["drifting", "turning", "moving"], "holding"
     )
     heading = np.degrees(seen.psi[rows]) % 360.0
     used = np.bincount(np.degrees(seen.psi[train]).astype(int) % 360, minlength=360) > 0

@@ -9,10 +9,9 @@ import numpy as np
 import xarray
 
 from shipcosim.diagnose.validation.gain import CHANNELS, Comparison, gain, parts, rms
+from shipcosim.diagnose.validation.thresholds import FEWEST_INTERVAL_BLOCKS
 
 __all__ = ["ConditionErrors", "PredictionErrors", "condition_errors", "prediction_errors"]
-
-_BLOCKS = 3  # of 120 s, for an interval of a part of the predictions
 
 
 @dataclass(frozen=True)
@@ -111,5 +110,5 @@ def condition_errors(condition: str, errors: xarray.Dataset, is_named: bool = Fa
         condition,
         errors.sizes["segment"],
         np.sqrt(squares),
-        gain(errors, fewest=_BLOCKS) if is_named else None,
+        gain(errors, fewest=FEWEST_INTERVAL_BLOCKS) if is_named else None,
     )

@@ -19,22 +19,25 @@ from shipcosim.diagnose.log.checks.kinematics import (
     position_motion,
     whiteness,
 )
+from shipcosim.diagnose.log.thresholds import (
+    CLOCK_CLIP,
+    CLOCK_GAIN,
+    CLOCK_REACH,
+    CLOCK_SLAB,
+    CLOCK_TOLERANCE,
+    FEWEST_BLOCKS,
+    LARGEST_SHARE,
+    MOST_BLOCKS,
+    MOST_SEGMENTS,
+    PLAUSIBLE_RATES,
+    RATE_UNSURE,
+    ROUGHEST,
+    SCALE_SLAB,
+    SHORTEST_BLOCK,
+)
 from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["wrong_clock"]
-
-SLAB = 0.25  # typical size of ρ - 1
-SCALE_SLAB = {1: 0.03, 2: 0.1}  # of a scale of the whole log, by number of axes: of the yaw rate, of the velocity
-LEAST_GAIN = 8.0  # nats, after the cost of choosing the segment
-TOLERANCE = 0.05  # of ρ, below which it is no fault
-PLAUSIBLE = 0.65, 1.5  # ρ; noise alone, where a ship hardly moves, looks like a clock of a half
-BLOCKS, SHORTEST_BLOCK, FEWEST_BLOCKS = 160, 12.0, 3  # [1, s, 1]
-LARGEST_SHARE = 0.5  # of the log: longer is a scale, not a segment
-REACH = 30  # rows about an end, in which it is sought
-MOST = 4  # segments
-CLIP = 25.0  # standard deviations beyond which an innovation counts no more
-UNSURE = 0.03  # of ρ - 1, for what the ends of segments and the scale of the whole log leave open
-ROUGHEST = 3.5  # innovations that hang together more, after all that was found, say nothing about a clock
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,7 @@ def wrong_clock(log: dict) -> list[Finding]:
     blocks = [side.column(edges[:-1], edges[1:]) for side in sides]
     gram = sum(side.gram(columns) for side, columns in zip(sides, blocks, strict=True))
     segments = []
-    for _ in range(MOST):
+    for _ in range(MOST_SEGMENTS):
         segment = _best(sides, blocks, gram, edges)
         if segment is None:
             break
@@ -118,13 +121,13 @@ def wrong_clock(log: dict) -> list[Finding]:
 
 def _block_edges(sides):
     start, end = min(s.motion.time[0] for s in sides), max(s.motion.time[-1] for s in sides)
-    count = int(np.clip((end - start) / SHORTEST_BLOCK, 2 * FEWEST_BLOCKS, BLOCKS))
+    count = int(np.clip((end - start) / SHORTEST_BLOCK, 2 * FEWEST_BLOCKS, MOST_BLOCKS))
     return np.linspace(start, end, count + 1)
 
 
 def _side(motion):
     whitener = filter_for(motion)[0]
-    rest = np.clip(whitener(motion.level), -CLIP, CLIP)
+    rest = np.clip(whitener(motion.level), -CLOCK_CLIP, CLOCK_CLIP)
     way = motion.way(motion.slow(motion.velocity))
     return _Side(motion, whitener, rest, whitener(way), np.diff(way, axis=0, prepend=way[:1]), whiteness(rest))
 
@@ -145,24 +148,24 @@ def _best(sides, blocks, gram, edges):
     own = np.diag(grams)
     span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
     nats, value, _ = _evidence(matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T)
-    nats[(span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < TOLERANCE)] = -np.inf
+    nats[(span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < CLOCK_TOLERANCE)] = -np.inf
     first, last = np.unravel_index(np.argmax(nats), nats.shape)
     cost = 2.0 * np.log(count)
-    if not nats[first, last] - cost > LEAST_GAIN:
+    if not nats[first, last] - cost > CLOCK_GAIN:
         return None
     return _refined(sides, edges[first], edges[last], cost)
 
 
 def _evidence(match, energy):
     """Nats, estimate and standard deviation of ρ - 1 from the match of a column with the data and its energy."""
-    precision = np.maximum(energy, 0.0) + 1.0 / SLAB**2
-    return 0.5 * match**2 / precision - 0.5 * np.log(precision * SLAB**2), match / precision, precision**-0.5
+    precision = np.maximum(energy, 0.0) + 1.0 / CLOCK_SLAB**2
+    return 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2), match / precision, precision**-0.5
 
 
 def _refined(sides, first, last, cost):
     """The segment with its ends where the evidence puts them."""
     time = sides[0].motion.time
-    for reach, stride in ((3 * REACH, 6), (REACH // 2, 1)):
+    for reach, stride in ((3 * CLOCK_REACH, 6), (CLOCK_REACH // 2, 1)):
         for end in (0, 1):
             near = np.abs(np.searchsorted(time, (first, last)[end]) - np.arange(len(time))) <= reach
             places = time[near][::stride]
@@ -196,7 +199,7 @@ def _alone(side, first, last):
 def _is_said_by_both(segment):
     """Whether positions and headings both say so, by about the same rate: a single side can have a fault of its own."""
     telling = [value / segment.value > 0.4 and abs(value) > 2.5 * std for value, std in segment.apart]
-    plausible = PLAUSIBLE[0] < 1.0 + segment.value < PLAUSIBLE[1]
+    plausible = PLAUSIBLE_RATES[0] < 1.0 + segment.value < PLAUSIBLE_RATES[1]
     return plausible and len(telling) == 2 and all(telling) and _agree(segment.apart, segment.value)
 
 
@@ -222,7 +225,7 @@ def _findings(segments):
         rate = 1.0 + float(weight @ [s.value for s in same] / weight.sum())
         spans = tuple(sorted((s.first, s.last) for s in same))
         probability = float(0.98 / (1.0 + np.exp(-lead.gain)))
-        std = float(np.hypot(weight.sum() ** -0.5, UNSURE * abs(rate - 1.0)))
+        std = float(np.hypot(weight.sum() ** -0.5, RATE_UNSURE * abs(rate - 1.0)))
         rates = {"rate": Estimate(rate, std, "1")}
         note = "positions and headings go at another rate than speeds and yaw rates say"
         found.append(Finding("clock", None, "data", probability, rates, spans, ("time",), note=note))

@@ -14,14 +14,11 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import solve_banded
 from scipy.ndimage import gaussian_filter1d
 
+from shipcosim.diagnose.log.thresholds import CLEAR_MOTION, LONGEST_BRIDGE, NOISE_WINDOWS, SLOW_MOTION, WHITENESS_LAGS
+
 __all__ = ["Filter", "Motion", "filter_for", "heading_motion", "is_clear", "position_motion", "whiteness"]
 
-LONGEST_BRIDGE = 4.5  # usual steps across which a motion is integrated
 RATIOS = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 0.8, 1.6, 6.0, 50.0)  # variance of wander over noise
-SLOW = 4.0  # [s] of a bell over which noise and waves are averaged out
-CLEAR = 4.0  # slow motion over its noise, from which on its size can be judged
-WINDOWS = 24  # of a log, in which the noise is looked at
-LAGS = 12  # rows over which innovations may hang together
 
 
 @dataclass(frozen=True)
@@ -55,7 +52,7 @@ class Motion:
 
     def slow(self, velocity: np.ndarray) -> np.ndarray:
         """A velocity without its noise and waves."""
-        return gaussian_filter1d(velocity, SLOW / np.median(np.diff(self.time)), axis=0)
+        return gaussian_filter1d(velocity, SLOW_MOTION / np.median(np.diff(self.time)), axis=0)
 
     @property
     def level(self) -> np.ndarray:
@@ -171,7 +168,7 @@ def _filters(motion):
 
 def _spreads(white):
     """Standard deviation in calm windows, and mean of its logarithm over the calmer ones, of (n, a, k): two of (k,)."""
-    count = max(1, min(WINDOWS, len(white) // 40))
+    count = max(1, min(NOISE_WINDOWS, len(white) // 40))
     spreads = np.array([1.4826 * np.median(np.abs(w), axis=(0, 1)) for w in np.array_split(white, count)])
     spreads = np.sort(np.maximum(spreads, 1e-9), axis=0)
     return np.quantile(spreads, 0.4, axis=0), np.mean(np.log(spreads[: max(1, int(0.6 * count))]), axis=0)
@@ -179,14 +176,14 @@ def _spreads(white):
 
 def whiteness(white: np.ndarray) -> float:
     """By how much to divide evidence because innovations (n, a) hang together, in the median window; 1 if white."""
-    count = max(1, min(WINDOWS, len(white) // 80))
+    count = max(1, min(NOISE_WINDOWS, len(white) // 80))
     return float(np.median([_togetherness(window) for window in np.array_split(white, count)]))
 
 
 def _togetherness(white):
     tame = np.clip(white, -4.0, 4.0)
     power = np.mean(tame**2) + 1e-12
-    together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in range(1, LAGS + 1)]
+    together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in range(1, WHITENESS_LAGS + 1)]
     return max(1.0, 1.0 + 2.0 * sum(together))
 
 
@@ -197,4 +194,4 @@ def is_clear(motion: Motion, whitener: Filter, segment: tuple[float, float] | No
     slow = motion.slow(motion.velocity)[inner]
     gain, std = np.median(whitener.gains[moving]), whitener.std * np.median(whitener.scale[moving])
     wander = (gain * std) ** 2 / np.median(np.diff(time))
-    return bool(np.mean(slow**2) > CLEAR**2 * wander / (2.0 * np.sqrt(np.pi) * SLOW))
+    return bool(np.mean(slow**2) > CLEAR_MOTION**2 * wander / (2.0 * np.sqrt(np.pi) * SLOW_MOTION))

@@ -30,17 +30,20 @@ from shipcosim.diagnose.log.mislabels import (
     undone,
 )
 from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.log.thresholds import (
+    CLEAR_LABEL_GAIN,
+    LABEL_CLIP,
+    LABEL_GAIN,
+    LABEL_REACH,
+    LABEL_SLOPE_FAR,
+    LABEL_SLOPE_NEAR,
+    LABEL_SLOPE_STD,
+    SEGMENT_COST,
+    SHORTEST_LABEL,
+)
 from shipcosim.diagnose.result import Finding
 
 __all__ = ["best_segment", "in_segment", "mislabelled"]
-
-LEAST_GAIN = 14.0  # nats, of the whole log
-CLEAR_GAIN = 100.0  # nats, from which on a frame may differ from another by less than its slopes
-SEGMENT_COST = 16.0  # nats, for the choice of both ends
-CLIP = 5.0  # standard deviations beyond which an innovation counts no more
-NEAR, FAR, SURE = 0.3, 0.35, 0.2  # slopes nearer to 1 than this agree, farther off they do not; largest deviation
-SHORTEST = 60.0  # [s] of a segment
-REACH = 25  # rows on both sides in which an end of a segment is sought; and where the log leaps
 
 
 @dataclass(frozen=True)
@@ -87,7 +90,7 @@ def _best(log, motion_of, labels):
         gain, segment = best_segment(plain.time, likely[:, number] - likely[:, 0])
         rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, segment))
         hypothesis = _LabelHypothesis(label, gain, segment, rough)
-        if gain / rough > LEAST_GAIN and _explains(plain, others[number - 1], filters[number], hypothesis):
+        if gain / rough > LABEL_GAIN and _explains(plain, others[number - 1], filters[number], hypothesis):
             hypotheses.append(hypothesis)
     if not hypotheses:
         return None
@@ -111,7 +114,7 @@ def _is_alike(log, hypothesis):
 
 def _log_likelihood(whitener: Filter, level):
     """Of each row, with single rows counting only so much."""
-    white = np.clip(whitener(level), -CLIP, CLIP)
+    white = np.clip(whitener(level), -LABEL_CLIP, LABEL_CLIP)
     return -np.sum(0.5 * white**2 + np.log(whitener.std * whitener.scale)[:, None], axis=1)
 
 
@@ -128,7 +131,7 @@ def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, tuple[floa
     last = int(np.argmax(total - lowest))
     first = int(np.argmin(total[: last + 1]))
     part = total[last] - total[first] - SEGMENT_COST
-    if total[-1] >= part or last <= first or time[last - 1] - time[first] < SHORTEST:
+    if total[-1] >= part or last <= first or time[last - 1] - time[first] < SHORTEST_LABEL:
         return float(total[-1]), None
     return float(part), (float(time[first]), float(time[last - 1]))
 
@@ -147,16 +150,16 @@ def _explains(plain: Motion, other: Motion, whitener: Filter, hypothesis) -> boo
     channels, is_unit = hypothesis.mislabel.channels, hypothesis.mislabel.scale is not None
     under = _slopes(other, channels, whitener, hypothesis.segment)
     given = _slopes(plain, channels, whitener, hypothesis.segment)
-    lowest, highest = (1.0 - NEAR, 1.0 + NEAR) if is_unit else (0.3, 1.7)
+    lowest, highest = (1.0 - LABEL_SLOPE_NEAR, 1.0 + LABEL_SLOPE_NEAR) if is_unit else (0.3, 1.7)
     if is_unit and not is_clear(other, whitener, hypothesis.segment):
         return False
     near = [lowest < slope < highest or abs(slope - 1.0) < 2.0 * std for slope, std in under]
-    sure = [std < SURE for _, std in under]
+    sure = [std < LABEL_SLOPE_STD for _, std in under]
     apart = [
-        abs(was - now) > max(FAR, 4.0 * std) and abs(was - 1.0) > abs(now - 1.0)
+        abs(was - now) > max(LABEL_SLOPE_FAR, 4.0 * std) and abs(was - 1.0) > abs(now - 1.0)
         for (was, std), (now, _) in zip(given, under, strict=True)
     ]
-    clear = hypothesis.gain > CLEAR_GAIN and hypothesis.rough < 1.5 and all(sure)
+    clear = hypothesis.gain > CLEAR_LABEL_GAIN and hypothesis.rough < 1.5 and all(sure)
     return all(near) and (clear or any(a and s for a, s in zip(apart, sure, strict=True)))
 
 
@@ -168,7 +171,7 @@ def _slopes(motion: Motion, channels, whitener: Filter, segment):
     y, x = white[:, 0], white[:, 1:]
     spread = np.linalg.pinv(x.T @ x + 1e-9 * np.eye(len(ways)))
     slopes = spread @ (x.T @ y)
-    rest = np.clip(y - x @ slopes, -CLIP, CLIP)
+    rest = np.clip(y - x @ slopes, -LABEL_CLIP, LABEL_CLIP)
     return list(zip(slopes.tolist(), np.sqrt(np.mean(rest**2) * np.diag(spread)).tolist(), strict=True))
 
 
@@ -179,12 +182,12 @@ def _refined(log, motion_of, whitener, best):
     motion, ends = motion_of(log), [int(i) for i in np.searchsorted(log["time"], best.segment)]
     leaps = np.searchsorted(log["time"], motion.time[motion.starts])
     for end in (0, 1):
-        places = sorted({*range(ends[end] - REACH, ends[end] + REACH + 1), *(leaps - end)})
+        places = sorted({*range(ends[end] - LABEL_REACH, ends[end] + LABEL_REACH + 1), *(leaps - end)})
         places = [k for k in places if 0 <= k < len(log["time"]) and (k < ends[1] if end == 0 else k > ends[0])]
         segments = [log["time"][[k, ends[1]] if end == 0 else [ends[0], k]] for k in places]
         tried = [motion_of(undone(log, best.mislabel, [one])) for one in segments]
-        white = np.clip(whitener(np.stack([one.level for one in tried], axis=2)), -CLIP, CLIP)
-        left = CLIP**2 * np.array([one.starts.sum() for one in tried])
+        white = np.clip(whitener(np.stack([one.level for one in tried], axis=2)), -LABEL_CLIP, LABEL_CLIP)
+        left = LABEL_CLIP**2 * np.array([one.starts.sum() for one in tried])
         ends[end] = places[int(np.argmin(np.sum(white**2, axis=(0, 1)) + left))]
     return tuple(float(t) for t in log["time"][ends])
 
@@ -192,5 +195,5 @@ def _refined(log, motion_of, whitener, best):
 def _finding(segment, best, hypotheses):
     rough = max(s.rough for s in hypotheses)
     others = [(s.gain - best.gain) / rough for s in hypotheses if s is not best]
-    probability = float(1.0 / (1.0 + np.exp(LEAST_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others))))
+    probability = float(1.0 / (1.0 + np.exp(LABEL_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others))))
     return finding_of(best.mislabel, probability, segment)

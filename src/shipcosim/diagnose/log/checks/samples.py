@@ -8,16 +8,20 @@ import numpy as np
 
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.roles import NAVIGATION
+from shipcosim.diagnose.log.thresholds import (
+    FEWEST_GAP_ROWS,
+    FEWEST_LEAPS,
+    LEAP,
+    LONGEST_WRAP,
+    NEAR_NORTH,
+    RUN_CHANCE,
+    SHORTEST_GAP,
+    SPINNING,
+)
 from shipcosim.diagnose.result import Finding
 
 __all__ = ["gaps", "outliers", "runs", "wraps"]
 
-SHORTEST_GAP = 10.0  # [s] below it is an ordinary dropout
-FEWEST_ROWS = 5
-CHANCE = 1e-7  # of a run that long anywhere in the log
-LONGEST_WRAP = 6  # samples
-NEAR_NORTH, SPINNING = 45.0, 15.0  # deg off north; deg/s, faster than a ship turns
-LEAP, FEWEST_LEAPS = 5.0, 3  # times the way told, rows: a single leap can be another reference
 LEAPING = "the ship leaps many times faster than she goes"
 NO_ROWS, NO_VALUES, HELD, STRAIGHT = (
     "there are no rows",
@@ -78,7 +82,7 @@ def _leaps(log):
 def _missing(log):
     time = log["time"]
     steps = np.diff(time)
-    lost = (steps > SHORTEST_GAP) & (steps > (FEWEST_ROWS + 0.5) * np.median(steps))
+    lost = (steps > SHORTEST_GAP) & (steps > (FEWEST_GAP_ROWS + 0.5) * np.median(steps))
     every = tuple(role for role in log if role != "time")
     return [_Run(int(row), int(row) + 1, every, NO_ROWS) for row in np.flatnonzero(lost)]
 
@@ -117,7 +121,7 @@ def _flat_runs(log, roles):
     bends = np.column_stack([_bend(log[role], role) for role in roles])
     limits = [_straight(log[role], role) for role in roles]
     straight = ((bends <= limits) | np.isinf(bends)).all(axis=1) & np.isfinite(bends).any(axis=1)
-    least = max(FEWEST_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))) - 2)
+    least = max(FEWEST_GAP_ROWS, int(SHORTEST_GAP / np.median(np.diff(time))) - 2)
     for first, last in _long_runs(straight | _same(values), least):
         kind = _kind(values[first:last])
         last = min(last + (kind == STRAIGHT), len(time) - 1)  # rows of the line, both ends included
@@ -183,7 +187,7 @@ def _long_runs(flags, least):
     ordinary = lengths[lengths < least]
     chance = ((ordinary - 1).sum() + 0.2) / (ordinary.sum() + 2.0)
     for (first, last), length in zip(spans, lengths, strict=True):
-        if length >= least and len(flags) * chance ** (length - 1) < CHANCE:
+        if length >= least and len(flags) * chance ** (length - 1) < RUN_CHANCE:
             yield int(first), int(last)
 
 

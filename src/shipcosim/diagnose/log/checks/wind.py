@@ -5,20 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from shipcosim.diagnose.log.checks.kinematics import Filter, Motion, filter_for, whiteness
-from shipcosim.diagnose.log.checks.labels import CLIP, LEAST_GAIN, best_segment, in_segment
+from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.log.thresholds import (
+    BESIDE_SEGMENT,
+    LABEL_CLIP,
+    LABEL_GAIN,
+    STEADIER,
+    WIND_AVERAGING,
+    WIND_GOES_ON,
+    WIND_JUMP,
+    WIND_SLOPE_NEAR,
+    WIND_SLOPE_STD,
+    WIND_UNIT_GAIN,
+)
 from shipcosim.diagnose.result import Finding
 
 __all__ = ["leaps", "mislabelled_wind"]
 
 ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
-LEAST_GAIN_WHOLE = 5.0  # nats, of a unit of the whole log, among three
-AVERAGING = 8.0  # [s] of a bell over the ship's velocity; wind sensors average, and waves shake the mast
-NEAR, SURE = 0.3, 0.18  # of the slope of the wind on the ship's velocity: agreement, largest deviation
-BESIDE, JUMP = 240.0, 0.35  # [s] beside an end of a segment; of the logarithm of the wind speed, against another unit
-ON = 0.6  # of the change of the wind over ground at the ends of a segment as labelled, that may be left put right
-STEADIER = 0.08  # by which the steadiness of the wind must grow; so the ship must have turned
 BOW, MIRRORED, NORTH = "from the bow", "mirrored", "from north"
 SLOPES = {BOW: {"apparent": 1.0, "kn": 1852.0 / 3600.0, "m/s": 3600.0 / 1852.0, "over ground": 0.0}}
 SLOPES |= {MIRRORED: {"apparent": 1.0}, NORTH: {"apparent": 1.0, "over ground": 0.0}}
@@ -73,7 +79,7 @@ class _Wind(Motion):
     def slow(self, velocity):
         from scipy.ndimage import gaussian_filter1d
 
-        return gaussian_filter1d(velocity, AVERAGING / np.median(np.diff(self.time)), axis=0)
+        return gaussian_filter1d(velocity, WIND_AVERAGING / np.median(np.diff(self.time)), axis=0)
 
 
 def _frame(time, winds, slow, filters):
@@ -81,14 +87,14 @@ def _frame(time, winds, slow, filters):
     likely = {}
     for name, whitener in filters.items():
         white = [whitener(wind_less) for wind_less in (winds[name] - slow, winds[name])]
-        rows = [-0.5 * np.sum(np.clip(w, -CLIP, CLIP) ** 2, axis=1) for w in white]
+        rows = [-0.5 * np.sum(np.clip(w, -LABEL_CLIP, LABEL_CLIP) ** 2, axis=1) for w in white]
         likely[name] = rows[int(rows[1].sum() > rows[0].sum())] - 2.0 * np.log(whitener.std * whitener.scale)
     best = (BOW, None, 0.0)
     for name in (MIRRORED, NORTH):
         gain, segment = best_segment(time, likely[name] - likely[BOW])
         rough = whiteness(in_segment(filters[name](winds[name] - slow), time, segment))
         steadier = _steadiness(winds[name], time, segment) - _steadiness(winds[BOW], time, segment)
-        if gain / rough > max(LEAST_GAIN, best[2]) and steadier > STEADIER:
+        if gain / rough > max(LABEL_GAIN, best[2]) and steadier > STEADIER:
             best = (name, segment, gain / rough)
     return best
 
@@ -115,17 +121,19 @@ def _unit(time, y, x, smooth, wind, slow):
     """Another unit, or the wind over ground with its direction from the bow, if the slope clearly says so."""
     found = []
     for kind, b in SLOPES[BOW].items():
-        gains = 0.5 * np.sum(np.clip(y - x, -CLIP, CLIP) ** 2 - np.clip(y - b * x, -CLIP, CLIP) ** 2, axis=1)
+        gains = 0.5 * np.sum(
+            np.clip(y - x, -LABEL_CLIP, LABEL_CLIP) ** 2 - np.clip(y - b * x, -LABEL_CLIP, LABEL_CLIP) ** 2, axis=1
+        )
         gain, segment = best_segment(time, gains)
         rough = whiteness(in_segment(y - b * x, time, segment))
-        if kind == "apparent" or gain / rough < (LEAST_GAIN if segment else LEAST_GAIN_WHOLE):
+        if kind == "apparent" or gain / rough < (LABEL_GAIN if segment else WIND_UNIT_GAIN):
             continue
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
-        near = all(abs(one - b) < max(NEAR * b, 0.2) for one in (slope, also))
+        near = all(abs(one - b) < max(WIND_SLOPE_NEAR * b, 0.2) for one in (slope, also))
         near &= b == 0.0 or leaps(time, np.hypot(*wind.T), segment, b)
         near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
-        if near and std < SURE * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
+        if near and std < WIND_SLOPE_STD * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
             found.append(_named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0))
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 
@@ -145,7 +153,7 @@ def leaps(time, speed, segment, factor):
     here, beside = _about(time, segment)
     if not here.any() or not beside.any():
         return True
-    return bool(abs(np.log(np.median(speed[here]) / np.median(speed[beside]) / factor)) < JUMP)
+    return bool(abs(np.log(np.median(speed[here]) / np.median(speed[beside]) / factor)) < WIND_JUMP)
 
 
 def _goes_on(time, labelled, right, segment):
@@ -158,14 +166,17 @@ def _goes_on(time, labelled, right, segment):
         return True
     usual = labelled[beside].mean(axis=0)
     off, off_labelled = (np.hypot(*(wind[here].mean(axis=0) - usual)) for wind in (right, labelled))
-    return bool(off < ON * off_labelled)
+    return bool(off < WIND_GOES_ON * off_labelled)
 
 
 def _about(time, segment):
     """Rows of a segment that are near one of its ends, and those outside of it; none of the whole log."""
     if segment is None:
         return np.zeros((2, len(time)), bool)
-    here, near = inside(time, [segment]), inside(time, [(end - BESIDE, end + BESIDE) for end in segment])
+    here, near = (
+        inside(time, [segment]),
+        inside(time, [(end - BESIDE_SEGMENT, end + BESIDE_SEGMENT) for end in segment]),
+    )
     return near & here, near & ~here
 
 
@@ -175,5 +186,5 @@ def _slope(y, x):
 
 
 def _named(label, segment, gain, share):
-    probability = float(share / (1.0 + np.exp(LEAST_GAIN - 6.0 - gain)))
+    probability = float(share / (1.0 + np.exp(LABEL_GAIN - 6.0 - gain)))
     return finding_of(label, probability, segment)

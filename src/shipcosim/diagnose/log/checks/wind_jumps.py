@@ -9,18 +9,20 @@ from __future__ import annotations
 import numpy as np
 
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
+from shipcosim.diagnose.log.thresholds import (
+    BESIDE_JUMP,
+    BETWEEN_JUMPS,
+    CALM_WIND,
+    JUMP_GAIN,
+    JUMPS_GAIN,
+    JUMPS_TIED,
+    STEADINESS_LAG,
+)
 from shipcosim.diagnose.result import Finding
 
 __all__ = ["jumping_wind"]
 
 ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
-BESIDE = 8  # rows on either side of a jump, over which gusts are averaged out
-SHORTEST = 60  # rows between two jumps
-LEAST_GAIN = 8.0  # nats, beyond the cost of choosing both ends
-EITHER = 6.0  # nats that each end has to gain
-CALM = 0.5  # m/s, of wind that has no direction
-TIED = 8.0  # nats, within which the ends cannot tell labels apart
-LATER = 30  # rows, over which the wind over ground is compared with itself
 
 
 def jumping_wind(log: dict) -> list[Finding]:
@@ -34,20 +36,22 @@ def jumping_wind(log: dict) -> list[Finding]:
     if not set(ROLES) <= set(log):
         return []
     rows = np.flatnonzero(np.all([np.isfinite(log[role]) for role in ROLES], axis=0))
-    if len(rows) < 4 * SHORTEST:
+    if len(rows) < 4 * BETWEEN_JUMPS:
         return []
     part = {role: log[role][rows] for role in ("time", *ROLES)}
     logged, found = _wind(part), []
     for label in WIND_LABELS:
         undone = _wind(part | label.undo(part))
         gain, first, last = _best_pair(logged, undone)
-        if gain > LEAST_GAIN:
+        if gain > JUMPS_GAIN:
             segment = float(part["time"][first]), float(part["time"][last])
             found.append((gain, label, segment, _unsteadiness(undone[first:last])))
     if not found:
         return []
     most = max(gain for gain, *_ in found)
-    gain, label, segment, _ = min((entry for entry in found if entry[0] > most - TIED), key=lambda entry: entry[3])
+    gain, label, segment, _ = min(
+        (entry for entry in found if entry[0] > most - JUMPS_TIED), key=lambda entry: entry[3]
+    )
     probability = float(0.99 / (1.0 + np.exp(-gain)))
     return [finding_of(label, probability, segment)]
 
@@ -60,7 +64,7 @@ def _wind(part):
 
 def _unsteadiness(wind):
     """Change of the wind over ground in a segment: what is too much in it goes with the ship. [m2/s2]"""
-    return float(np.mean(np.abs(wind[LATER:] - wind[:-LATER]) ** 2))
+    return float(np.mean(np.abs(wind[STEADINESS_LAG:] - wind[:-STEADINESS_LAG]) ** 2))
 
 
 def _best_pair(logged, undone):
@@ -70,25 +74,25 @@ def _best_pair(logged, undone):
     scale = _spread(_jump(before, after))
     begins = _gain(_jump(before, after), _jump(before, after_undone), scale)
     ends = _gain(_jump(before, after), _jump(before_undone, after), scale)
-    begins, ends = (np.where(gain > EITHER, gain, -np.inf) for gain in (begins, ends))
-    best = np.maximum.accumulate(begins)[: len(begins) - SHORTEST] + ends[SHORTEST:]
+    begins, ends = (np.where(gain > JUMP_GAIN, gain, -np.inf) for gain in (begins, ends))
+    best = np.maximum.accumulate(begins)[: len(begins) - BETWEEN_JUMPS] + ends[BETWEEN_JUMPS:]
     if not np.isfinite(best).any():
         return -np.inf, 0, 0
     end = int(np.argmax(best))
-    first, last = int(np.argmax(begins[: end + 1])) + BESIDE, end + SHORTEST + BESIDE - 1
+    first, last = int(np.argmax(begins[: end + 1])) + BESIDE_JUMP, end + BETWEEN_JUMPS + BESIDE_JUMP - 1
     return float(best[end]) - 2.0 * np.log(len(begins)), first, last
 
 
 def _means(wind):
     """Mean wind over the rows before each row, and over those from it on."""
     total = np.cumsum(np.r_[0.0, wind])
-    means = (total[BESIDE:] - total[:-BESIDE]) / BESIDE
-    return means[:-BESIDE], means[BESIDE:]
+    means = (total[BESIDE_JUMP:] - total[:-BESIDE_JUMP]) / BESIDE_JUMP
+    return means[:-BESIDE_JUMP], means[BESIDE_JUMP:]
 
 
 def _jump(before, after):
     """Change of speed as a logarithm, and of direction in radians: (n, 2)."""
-    speeds = [np.log(np.maximum(np.abs(mean), CALM)) for mean in (before, after)]
+    speeds = [np.log(np.maximum(np.abs(mean), CALM_WIND)) for mean in (before, after)]
     return np.column_stack([speeds[1] - speeds[0], np.angle(after * np.conj(before))])
 
 

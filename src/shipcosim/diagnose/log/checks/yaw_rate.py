@@ -10,15 +10,12 @@ from shipcosim.diagnose.log.checks.kinematics import heading_motion
 from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
 from shipcosim.diagnose.log.checks.samples import quantum
 from shipcosim.diagnose.log.mislabels import HEADING_LABELS, finding_of
+from shipcosim.diagnose.log.thresholds import LIKELY_SIGNS, QUIET_CLIP, QUIET_GAIN, QUIETER
 from shipcosim.diagnose.result import Finding
 
 __all__ = ["silent_rate"]
 
 RADIAN = HEADING_LABELS[1]
-LEAST_GAIN = 60.0  # nats, of a stretch with so little noise
-QUIETER = 0.2  # noise within such a stretch over the noise elsewhere, at most
-CLIP = 4.0  # nats of a row
-LIKELY_SIGNS = 0.3  # correlation of the rate's signs with the heading's own rate; noise alone stays below 0.2
 
 
 def silent_rate(log: dict) -> list[Finding]:
@@ -42,9 +39,9 @@ def silent_rate(log: dict) -> list[Finding]:
     if usual <= 3.0 * fine:
         return []
     quiet = max(usual / (RADIAN.scale or 1.0), 0.25 * fine)
-    gains = np.clip(np.log(usual / quiet) - bends / quiet + bends / usual, -CLIP, CLIP)
+    gains = np.clip(np.log(usual / quiet) - bends / quiet + bends / usual, -QUIET_CLIP, QUIET_CLIP)
     gain, segment = best_segment(motion.time, gains)
-    if segment is None or gain < LEAST_GAIN:
+    if segment is None or gain < QUIET_GAIN:
         return []
     inner, outer = in_segment(bends, motion.time, segment).mean(), usual
     told = np.std(in_segment(motion.slow(rate), motion.time, segment))

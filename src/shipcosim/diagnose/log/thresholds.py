@@ -1,0 +1,147 @@
+"""Thresholds of the checks of a log by its own channels, each with its unit and what it was set on.
+
+The checks were developed on logs of the independent truth (tests/bench/truth, seeds below 1000); where nothing is said,
+what a number was set on was not recorded. "Assumed" is what nobody has measured.
+"""
+
+# Rows that are no measurement
+
+SHORTEST_GAP = 10.0
+"""Shortest gap; below it is an ordinary dropout. [s] Assumed."""
+FEWEST_GAP_ROWS = 5
+"""Fewest rows of a gap. Assumed."""
+RUN_CHANCE = 1e-7
+"""Probability of a run of equal or straight values that long anywhere in a log, below which data was lost."""
+LONGEST_WRAP = 6
+"""Most samples of the heading that are interpolated across north. Assumed."""
+NEAR_NORTH = 45.0
+"""Headings that are near north. [deg]"""
+SPINNING = 15.0
+"""Rate of turn that no ship reaches. [deg/s] Assumed."""
+LEAP = 5.0
+"""Way between two rows over that by the logged velocity, from which on rows were lost. Assumed."""
+FEWEST_LEAPS = 3
+"""Rows in which the ship leaps: a single leap can be another reference."""
+
+# Position against velocity, heading against rate
+
+LONGEST_BRIDGE = 4.5
+"""Usual steps across which a motion is integrated. Assumed."""
+SLOW_MOTION = 4.0
+"""Standard deviation of the bell over which noise and waves are averaged out. [s]"""
+CLEAR_MOTION = 4.0
+"""Slow motion over its noise, from which on its size can be judged."""
+NOISE_WINDOWS = 24
+"""Windows of a log in which the noise is looked at."""
+WHITENESS_LAGS = 12
+"""Rows over which innovations may be correlated."""
+
+# Labels of the navigation
+
+LABEL_GAIN = 14.0
+"""What a label must gain over the log, divided by how correlated its innovations are. [nats]"""
+CLEAR_LABEL_GAIN = 100.0
+"""From here on a frame may differ from another by less than its slopes. [nats]"""
+SEGMENT_COST = 16.0
+"""Cost of choosing both ends of a segment. [nats]"""
+LABEL_CLIP = 5.0
+"""Standard deviations beyond which an innovation counts no more."""
+LABEL_SLOPE_NEAR = 0.3
+"""Slopes of the way seen on the way logged agree if they are nearer to 1 than this."""
+LABEL_SLOPE_FAR = 0.35
+"""They disagree if they are farther off."""
+LABEL_SLOPE_STD = 0.2
+"""Largest standard deviation of a slope that decides."""
+SHORTEST_LABEL = 60.0
+"""Shortest segment. [s] Assumed."""
+LABEL_REACH = 25
+"""Rows on both sides in which an end of a segment is sought."""
+
+# A yaw rate in rad/s
+
+QUIET_GAIN = 60.0
+"""What a stretch with so little noise must gain. [nats]"""
+QUIETER = 0.2
+"""Largest noise within such a stretch over the noise elsewhere; in rad/s it is 1/57."""
+QUIET_CLIP = 4.0
+"""Most that a row counts. [nats]"""
+LIKELY_SIGNS = 0.3
+"""Correlation of the signs of the rate with the rate of the heading; noise alone stayed below 0.2."""
+
+# Labels of the wind
+
+WIND_UNIT_GAIN = 5.0
+"""What a unit of the whole log must gain, among three. [nats]"""
+WIND_AVERAGING = 8.0
+"""Standard deviation of the bell over the ship's velocity: wind sensors average, and waves shake the mast. [s]"""
+WIND_SLOPE_NEAR = 0.3
+"""Agreement of the slope of the wind on the ship's velocity."""
+WIND_SLOPE_STD = 0.18
+"""Largest standard deviation of that slope."""
+BESIDE_SEGMENT = 240.0
+"""Time beside an end of a segment, over which the wind is compared. [s]"""
+WIND_JUMP = 0.35
+"""Logarithm of the wind speed by which another unit may miss the jump at the ends of a segment."""
+WIND_GOES_ON = 0.6
+"""Share of the change of the wind over ground at the ends of a segment that may be left once it is put right."""
+STEADIER = 0.08
+"""By which the steadiness of the wind must grow; so the ship must have turned."""
+
+# Jumps of the wind
+
+BESIDE_JUMP = 8
+"""Rows on either side of a jump, over which gusts are averaged out."""
+BETWEEN_JUMPS = 60
+"""Fewest rows between two jumps."""
+JUMPS_GAIN = 8.0
+"""What two jumps must gain beyond the cost of choosing them. [nats]"""
+JUMP_GAIN = 6.0
+"""What each of them must gain. [nats]"""
+CALM_WIND = 0.5
+"""Wind that has no direction. [m/s] Assumed."""
+JUMPS_TIED = 8.0
+"""Within which jumps cannot tell labels apart. [nats]"""
+STEADINESS_LAG = 30
+"""Rows after which the wind over ground is compared with itself."""
+
+# The clock by the channels alone
+
+CLOCK_SLAB = 0.25
+"""Prior standard deviation of ρ - 1, with ρ true seconds per logged second."""
+SCALE_SLAB = {1: 0.03, 2: 0.1}
+"""Prior standard deviation of a scale of the whole log, by number of axes: of the yaw rate, of the velocity."""
+CLOCK_GAIN = 8.0
+"""What a segment must gain after the cost of choosing it. [nats]"""
+CLOCK_TOLERANCE = 0.05
+"""Of ρ, below which it is no fault. Assumed."""
+PLAUSIBLE_RATES = (0.65, 1.5)
+"""ρ of a clock; noise alone, where a ship hardly moves, looks like a clock of a half."""
+MOST_BLOCKS = 160
+"""Most blocks of which segments consist."""
+SHORTEST_BLOCK = 12.0
+"""Shortest block. [s]"""
+FEWEST_BLOCKS = 3
+"""Fewest blocks of a segment."""
+LARGEST_SHARE = 0.5
+"""Largest share of the log; what is longer is a scale, not a segment."""
+CLOCK_REACH = 30
+"""Rows about an end, in which it is sought."""
+MOST_SEGMENTS = 4
+"""Segments in one log. Assumed."""
+CLOCK_CLIP = 25.0
+"""Standard deviations beyond which an innovation counts no more."""
+RATE_UNSURE = 0.03
+"""Of ρ - 1, what the ends of segments and the scale of the whole log leave open, as a standard deviation. Assumed."""
+ROUGHEST = 3.5
+"""Innovations that are more correlated, after all that was found, say nothing about a clock."""
+
+# Repair
+
+HOLE = 1.5
+"""Step over the usual one, from which on rows are missing between."""
+LONGEST_SPAN = 50.0
+"""Span of a log over what its rows can fill, from which on some of its stamps are wrong. Assumed."""
+UNEVEN = 0.02
+"""Spread of the steps as a share of the usual one, from which on it is remarked. Assumed."""
+LATEST = 1e12
+"""Latest time that is one. [s]"""

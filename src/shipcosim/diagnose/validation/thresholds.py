@@ -1,0 +1,68 @@
+"""Settings and thresholds of predictions and gains, each with its unit and what it was set on.
+
+"Assumed" is what nobody has measured.
+"""
+
+import numpy as np
+
+# Rows to fit on and to check on
+
+TRAINED = 0.65
+"""Share of the log, from its start, that is fitted on if nobody says otherwise."""
+START_STEP = 5.0
+"""Time from the start of one prediction to the next. [s]"""
+SETTLED = 120.0
+"""Time after which observers have learnt. [s] Assumed."""
+MEASURED_WITHIN = 2.0
+"""Within which a measurement has to be where a prediction starts or ends. [s]"""
+TURNING = np.radians(15.0)
+"""Turn within a prediction that makes it a turn. [rad]"""
+MOVING = 0.25
+"""Mean speed that makes it a move. [m/s]"""
+IDLE = 0.05
+"""Share of its largest speed in the log below which a thruster is idle."""
+LEAST_TRAINED = 0.5
+"""Share of the rows that must be left to fit on where a condition is held out."""
+FEWEST_PREDICTIONS = 12
+"""Fewest predictions on such a condition."""
+
+# Observers and intervals
+
+FADES = (0.0, 1.0 / 40.0)
+"""Rates at which the force of a bias observer fades in a prediction; the best on the training rows is taken. [1/s]"""
+BLOCK = 120.0
+"""Blocks of the bootstrap: two of the longest horizon. [s]"""
+DRAWS = 1000
+"""Draws of the bootstrap."""
+FEWEST_INTERVAL_BLOCKS = 3
+"""Fewest blocks for an interval of a part of the predictions."""
+
+# Missing force
+
+FORCE_TIME = 10.0
+"""Time within which the missing force may change; faster, noise is taken for force. [s]"""
+SECTORS = 24
+"""Sectors of an angle in which the force is averaged."""
+FEWEST_SECTOR_ROWS = 5
+"""Fewest rows of a sector."""
+
+# Predictions
+
+FASTEST = 20.0
+"""Speed at which a prediction that runs away is held. [m/s]"""
+FASTEST_TURN = 0.5
+"""Rate of turn at which it is held. [rad/s]"""
+REFERENCE_JOLTS = 3.0
+"""Times the jolts that the reference is smoothed with, and seconds in which its force may change: the model moves it by
+some 2 cm then."""
+
+# Co-simulations
+
+STEP = 0.1
+"""Step of the co-simulations. [s]"""
+MOST = 24
+"""Predictions that are co-simulated."""
+INPUT_DELAY = 1.5
+"""Steps from a row of the table until what it drives has moved the ship."""
+WEATHER_RATE = 1e3
+"""Rates of the weather, so that it follows a log at once. [m/s2, rad/s]"""
