@@ -9,19 +9,14 @@ import pytest
 MEDIAN_FUNCTION, LARGEST_FUNCTION, LARGEST_CLASS = (5, 14), 45, 250  # lines, docstring not counted
 LARGER_CLASSES = {"_Reader"}  # in the end none
 MOST_FILES = 20  # in a folder, of Python
-UNTYPED = {"cosim": 156, "diagnose": 517, "fmi": 70, "models": 426, "report": 202, "ssp": 386, "cli": 10, "errors": 2}
+UNTYPED = {"cosim": 156, "diagnose": 100, "fmi": 70, "models": 426, "report": 202, "ssp": 386, "cli": 10, "errors": 2}
 """Arguments of public functions that have no type yet, by room. Only to be lowered."""
 
 NAMES_A_SHIP = {
     "__init__.py",
     "cli/commands/diagnose.py",
     "cli/diagnosis.py",
-    "diagnose/extension/structure_edits.py",
-    "diagnose/inference/problem.py",
     "diagnose/inference/thresholds.py",
-    "diagnose/ship/environment.py",
-    "diagnose/ship/inputs.py",
-    "diagnose/ship/track_keeping.py",
     "models/control/observer.py",
     "models/environment/earth_fixed_loads.py",
     "models/propulsion/propeller.py",

@@ -5,7 +5,8 @@ import pytest
 from diagnose import twin
 from diagnose.twin import fits, problem
 
-from shipcosim.diagnose.inference.fitting import _one_way, fitted, probes, weighed
+from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.inference.screening import _one_way, screened, screening_regressors
 from shipcosim.diagnose.inference.search import _simplify, names
 
 NAMES = {
@@ -52,14 +53,14 @@ def test_a_cause_that_is_fitted_gives_the_ship_that_sailed():
 
 
 def test_weighing_ranks_the_planted_cause_first_and_starts_near_its_value():
-    gain, hypothesis, values = weighed(problem("mass"), fitted(problem("mass")))[0]
+    gain, hypothesis, values = screened(problem("mass"), fitted(problem("mass")))[0]
     assert hypothesis.cause == "mass" and gain > 50.0
     assert values["vessel.mass_scale"] == pytest.approx(1.25, abs=0.08)
 
 
 def test_beside_the_right_cause_no_other_gains():
     best = fits("azimuth_offset")[0]
-    assert weighed(problem("azimuth_offset"), best)[0][0] < 3.0
+    assert screened(problem("azimuth_offset"), best)[0][0] < 3.0
 
 
 def test_a_wrong_cause_explains_less():
@@ -80,7 +81,7 @@ def test_known_numbers_leave_out_what_a_cause_turns_or_speaks_for():
 
 
 def test_a_vector_is_sought_all_round_and_a_turning_current_by_its_trend():
-    groups = {s.cause: probes(s) for s in problem("healthy").hypotheses}
+    groups = {s.cause: screening_regressors(s) for s in problem("healthy").hypotheses}
     sizes = [np.hypot(*column.changes.values()) for (column,) in groups["wave_drift"]]
     np.testing.assert_allclose(sizes, 0.005 * 531e3)
     assert len(sizes) == 12

@@ -8,9 +8,10 @@ import pytest
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared, weighed
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
+from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
@@ -73,7 +74,7 @@ def diagnosed(model, tmp_path_factory):
         case = prepared(IdentificationProblem(record, ship, only, noise, first_motion(record, ship)))
         fit = fitted(case)
         if not healthy:
-            fit = fitted(case, only, weighed(case, fit)[0][2])
+            fit = fitted(case, only, screened(case, fit)[0][2])
         return case, fit, answer.parameters
 
     return of

@@ -21,9 +21,10 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     true_wind,
 )
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, probes
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import beside, linearise, rows_first
+from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.result import ExperimentDesign
 from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.instruments import readings
@@ -292,7 +293,7 @@ def testability(
     motion, units = kept_on_track(model, len(manoeuvres), track, record, dp, held=held)
     record = replace(record, units=units, measured=_readings(motion, model))
     known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).known(())
-    groups = [(hypothesis, group) for hypothesis in hypotheses for group in probes(hypothesis)]
+    groups = [(hypothesis, group) for hypothesis in hypotheses for group in screening_regressors(hypothesis)]
     columns = known + [column for _, group in groups for column in group]
     with threadpool_limits(1):
         white = innovations(linearise(motion, record, model, columns), noise, record).white

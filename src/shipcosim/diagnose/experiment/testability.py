@@ -8,8 +8,9 @@ import numpy as np
 
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
 from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, probes
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor
 from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.thresholds import TESTABLE
 from shipcosim.diagnose.log_faults.clock import is_testable
@@ -23,7 +24,7 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     problem, found = log.problem, log.explained.identification
     columns, groups = list(without_causes(log.fits).columns), []
     for hypothesis in problem.hypotheses:
-        for group in probes(hypothesis):
+        for group in screening_regressors(hypothesis):
             groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
             columns.extend(group)
     products = gram(innovations(problem.base_of(columns), problem.noise, problem.record)).products

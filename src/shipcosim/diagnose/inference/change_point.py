@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, probes
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import beside
 from shipcosim.diagnose.inference.problem import identification_problem
+from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.inference.search import at_first_sight, explain, without_causes
 from shipcosim.diagnose.inference.thresholds import (
     CHANGE_POINT_BLOCK,
@@ -65,7 +66,7 @@ def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> floa
     """
     nothing = without_causes(fits)
     hypotheses = [hypothesis for hypothesis in problem.hypotheses if hypothesis.definition.law != "turning"]
-    groups = [group for hypothesis in hypotheses for group in probes(hypothesis)]
+    groups = [group for hypothesis in hypotheses for group in screening_regressors(hypothesis)]
     linear = beside(nothing.linear, problem.base_of([column for group in groups for column in group]))
     parts = max(int(problem.record.time.size * problem.record.step / CHANGE_POINT_BLOCK), 8)
     blocks = gram(innovations(linear, problem.noise, problem.record), parts).blocks

@@ -1,4 +1,4 @@
-"""Which causes explain a log: how a set of them is fitted, and what each further one would gain beside it."""
+"""The identification problem of a log, and how the parameters of a set of causes are fitted to it."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence, gram
 from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import Regressor, beside, linearise
+from shipcosim.diagnose.inference.linearisation import Regressor, linearise
 from shipcosim.diagnose.inference.noise import explained
+from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.ship.instruments import NONLINEAR
 
 if TYPE_CHECKING:
@@ -23,13 +24,8 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
 
-Gain = tuple[float, "Hypothesis", dict[str, float]]
-"""Gain in log-evidence of a hypothesis, and first values of its parameters."""
-
-DIRECTIONS = 12
 ROUNDS = 5
 _FAR = 3.0  # tolerances, beyond which nothing is linearised about
-_SLOW, _STILL = 0.35, 0.05  # of the faster end: a current this slow at first sight has no direction; where it starts
 
 
 @dataclass(frozen=True)
@@ -61,7 +57,9 @@ class IdentificationProblem:
     @property
     def basis(self) -> list[Regressor]:
         """All known numbers, and what every hypothesis is first sought by."""
-        return self.known(()) + [column for s in self.hypotheses for group in probes(s) for column in group]
+        return self.known(()) + [
+            column for s in self.hypotheses for group in screening_regressors(s) for column in group
+        ]
 
     @property
     def linear(self) -> Linear:
@@ -269,108 +267,6 @@ def _about(fit: Fit) -> dict[str, float]:
         for path, size in column.changes.items() if wanted & set(column.changes) else ():
             found[path] = fit.model.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
     return found
-
-
-def weighed(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
-    """Gain in log-evidence of each hypothesis beside a fit, linearised once.
-
-    Parameters
-    ----------
-    problem : IdentificationProblem
-    fit : Fit
-
-    Returns
-    -------
-    list of (float, Hypothesis, dict of str to float)
-        Gain, hypothesis, first values of the numbers that it turns; best first.
-    """
-    wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
-    added = [column for hypothesis in wanted for group in probes(hypothesis) for column in group]
-    linear = beside(fit.linear, problem.base_of(added))
-    products = gram(innovations(linear, problem.noise, problem.record)).products
-    return gains(products, fit.columns, fit.centre, wanted, fit.model)
-
-
-def gains(
-    products: np.ndarray,
-    columns: Sequence[Regressor],
-    centre: np.ndarray,
-    wanted: Sequence[Hypothesis],
-    model: ShipModel,
-) -> list[Gain]:
-    """Gain in log-evidence of hypotheses, from the inner products of the log with some columns and with their probes.
-
-    Parameters
-    ----------
-    products : (1 + p, 1 + p) array
-        The log, then `columns`, then the probes of each wanted hypothesis in turn.
-    columns : list of Regressor
-    centre : array
-        θ of these columns that they were linearised about.
-    wanted : sequence of Hypothesis
-    model : ShipModel
-        That they were linearised about.
-
-    Returns
-    -------
-    list of (float, Hypothesis, dict of str to float)
-        As `weighed`.
-    """
-    base = len(columns)
-    prior = np.concatenate([[column.prior for column in columns], np.zeros(len(products) - 1 - base)])
-    centre = np.concatenate([centre, np.zeros(prior.size - base)])
-    nothing, place, found = evidence(products, prior, centre)[0], base, []
-    for hypothesis in wanted:
-        tries = []
-        for group in probes(hypothesis):
-            here = prior.copy()
-            here[place : place + len(group)] = 1.0
-            taken = {path for column in group for path in column.changes} | set(hypothesis.definition.replaces)
-            here[[i for i, column in enumerate(columns) if taken & set(column.changes)]] = 0.0
-            score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
-            values = {}
-            for column, share in zip(group, theta[place : place + len(group)], strict=True):
-                for path, size in column.changes.items():
-                    values[path] = values.get(path, model.get(path)) + share * size
-            tries.append((score - nothing, values))
-            place += len(group)
-        gain, values = _together(tries, hypothesis)
-        found.append((gain, hypothesis, values))
-    return sorted(found, key=lambda entry: -entry[0])
-
-
-def _together(tries: list[tuple[float, dict[str, float]]], hypothesis: Hypothesis) -> tuple[float, dict[str, float]]:
-    """Evidence of a hypothesis over all its directions, and the values of the best."""
-    scores = np.array([score for score, _ in tries])
-    best = int(scores.argmax())
-    values = tries[best][1]
-    if hypothesis.definition.law == "turning":
-        first, grown = np.array([values[path] for path in hypothesis.definition.sought_by]).reshape(2, 2)
-        names, ends = [parameter.paths[0] for parameter in hypothesis.parameters], _one_way(first, first + grown)
-        values = dict(zip(names, map(float, np.concatenate(ends)), strict=True))
-    return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
-
-
-def _one_way(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of a current; one of next to nothing lies along the other: its own direction is chance, and stays."""
-    sizes = np.linalg.norm(first), np.linalg.norm(last)
-    if sizes[0] < _SLOW * sizes[1]:
-        first = last * max(sizes[0] / sizes[1], _STILL)
-    elif sizes[1] < _SLOW * sizes[0]:
-        last = first * max(sizes[1] / sizes[0], _STILL)
-    return first, last
-
-
-def probes(hypothesis: Hypothesis) -> list[list[Regressor]]:
-    """Groups of columns by which a hypothesis is first sought."""
-    parameters = hypothesis.parameters
-    if hypothesis.definition.law == "linear":
-        return [[Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for parameter in parameters]]
-    if hypothesis.definition.law == "turning":
-        return [[Regressor({path: parameters[0].typical}) for path in hypothesis.definition.sought_by]]
-    pair, size = (parameters[0].paths[0], parameters[1].paths[0]), parameters[0].typical
-    angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    return [[Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]
 
 
 def _centre(columns: Sequence[Regressor], model: ShipModel, neutral: ShipModel) -> np.ndarray:

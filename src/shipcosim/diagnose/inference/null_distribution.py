@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.inference.evidence import gram
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, gains, prepared
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME
 from shipcosim.diagnose.inference.noise import waves_of
+from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import LOST_TRACK
 from shipcosim.diagnose.ship.inputs import Record, first_motion
 from shipcosim.diagnose.ship.instruments import readings

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared, weighed
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.noise import first_noise, tuned
+from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.inference.thresholds import GUST_FACTOR, LENGTHS_PER_GYRADIUS, MOST_WALK, TUNED_BESIDE
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.surrogate import with_surrogates
@@ -78,7 +79,7 @@ def _as_logged(ship, repaired):
 def _tuned_noise(problem):
     """Noise of maximum likelihood beside the cause that explains most at first sight."""
     fit = fitted(problem)
-    gain, hypothesis, values = weighed(problem, fit)[0]
+    gain, hypothesis, values = screened(problem, fit)[0]
     if gain > TUNED_BESIDE:
         fit = fitted(problem, (hypothesis,), values)
     most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])

@@ -1,4 +1,4 @@
-"""The sets of causes that explain a log best: each is weighed, the likely ones are fitted, others sought beside."""
+"""The sets of causes that explain a log best: hypotheses are screened, the likely ones fitted, others sought beside."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.fitting import fitted, weighed
+from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.inference.unmodelled import is_healthy
 from shipcosim.diagnose.stages import ExplainedLog, Identification
 
@@ -55,7 +56,7 @@ def explain(
         best = max(fit.score for fit in fits.values())
         tried = {}
         for fit in front:
-            gains = weighed(problem, fit)
+            gains = screened(problem, fit)
             most_gain = gains[0][0]
             least = max(most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0)
             first, strained = likely if stage == 0 else likely // 2, _strained(fit)
@@ -86,7 +87,7 @@ def _strained(fit: Fit) -> set[str]:
 def at_first_sight(problem: IdentificationProblem) -> float:
     """Evidence of a log with its likeliest cause, linearised once."""
     nothing = fitted(problem)
-    return nothing.score + max(weighed(problem, nothing)[0][0], 0.0)
+    return nothing.score + max(screened(problem, nothing)[0][0], 0.0)
 
 
 def without_causes(fits: Iterable[Fit]) -> Fit:

@@ -12,9 +12,10 @@ import numpy as np
 from scipy.stats import chi2
 
 from shipcosim.diagnose.inference.evidence import gram
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared, weighed
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import rows_first, with_columns
+from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults.thresholds import (
     ASPECT_APART,
@@ -77,7 +78,7 @@ def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     gain, finding = _most_likely(_blocks(problem, edges, known))
     if finding is None:
         return None
-    rival, hypothesis, values = weighed(problem, fitted(problem))[0]
+    rival, hypothesis, values = screened(problem, fitted(problem))[0]
     if gain < rival + OVER_CAUSE or not _all_aspects_agree(problem, finding, known):
         return None
     if rival > 0.0:
