@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -131,7 +131,7 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
     return {name: _plain(values, unit) for name, unit, values in zip(names, units, columns, strict=True)}
 
 
-def _suffix(path, known):
+def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
     path = Path(path)
     suffix = next((s for s in known if path.name.endswith(s)), None)
     if path.is_dir():
@@ -210,11 +210,11 @@ def conversion(unit_from: str | None, unit_to: str | None) -> tuple[float, float
         raise ShipcosimError(Problem("", error.found, error.remedy)) from error
 
 
-def _netcdf(table):
+def _netcdf(table: xarray.Dataset) -> bytes:
     return bytes(table.to_netcdf(engine="h5netcdf"))
 
 
-def _csv(table):
+def _csv(table: xarray.Dataset) -> bytes:
     import pyarrow
     from pyarrow.csv import WriteOptions, write_csv
 
@@ -233,7 +233,7 @@ def _csv(table):
     return rows.getvalue().to_pybytes()
 
 
-def _open_netcdf(path):
+def _open_netcdf(path: Path) -> xarray.Dataset:
     import xarray
 
     try:
@@ -243,14 +243,14 @@ def _open_netcdf(path):
         raise ShipcosimError(Problem(str(path), f"is no NetCDF 4 file: {error}.")) from error
 
 
-def _read_netcdf(path):
+def _read_netcdf(path: Path) -> xarray.Dataset:
     table = _open_netcdf(path)
     if "time" not in table.coords:
-        raise ShipcosimError(_no_time(path, list(table.variables)))
+        raise ShipcosimError(_no_time(path, list(map(str, table.variables))))
     return table
 
 
-def _netcdf_columns(table):
+def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
     """The variables with one dimension. Units like "seconds since 2022-10-27" count seconds."""
     single = {str(name): variable for name, variable in table.variables.items() if variable.ndim == 1}
     units = {name: str(variable.attrs.get("units", "")).partition(" since ")[0] for name, variable in single.items()}
@@ -261,7 +261,7 @@ def _netcdf_columns(table):
     }
 
 
-def _read_arrow(path):
+def _read_arrow(path: Path) -> tuple[list[str], list[str], list[Any]]:
     """Names, units and columns of a CSV or Parquet file."""
     import pyarrow
     from pyarrow.csv import read_csv
@@ -284,7 +284,7 @@ def _name_and_unit(header: str) -> tuple[str, str]:
     return (found["name"], found["unit"] or "") if found else (header, "")
 
 
-def _unreadable(path, is_parquet, error):
+def _unreadable(path: Path, is_parquet: bool, error: Exception) -> Problem:
     if isinstance(error, UnicodeDecodeError):
         found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} in its header is none of its characters."
         return Problem(str(path), found, "Save the file in UTF-8.")
@@ -293,7 +293,7 @@ def _unreadable(path, is_parquet, error):
     return Problem(str(path), f"cannot be read as {'Parquet' if is_parquet else 'CSV'}: {said.rstrip('.')}.", remedy)
 
 
-def _read_rows(path):
+def _read_rows(path: Path) -> xarray.Dataset:
     import pyarrow
 
     names, units, columns = _read_arrow(path)
@@ -312,7 +312,7 @@ def _read_rows(path):
     return make_table(time * _seconds_in(unit, path), signals.values())
 
 
-def _seconds_in(unit, path):
+def _seconds_in(unit: str, path: Path) -> float:
     try:
         return conversion(unit, "s")[0]
     except ShipcosimError as error:
@@ -321,7 +321,7 @@ def _seconds_in(unit, path):
         ) from error
 
 
-def _plain(column, unit):
+def _plain(column: Any, unit: str) -> tuple[np.ndarray, str]:
     """Values of an Arrow column and their unit."""
     import pyarrow
     from pyarrow import types
@@ -338,10 +338,10 @@ def _plain(column, unit):
     return np.array(column.to_pylist(), dtype=object), unit
 
 
-def _repeated(path, names):
+def _repeated(path: Path, names: list[str]) -> list[Problem]:
     counts = Counter(names)
     return [Problem(f"{path}, column '{name}'", "is there twice.") for name in sorted(counts) if counts[name] > 1]
 
 
-def _no_time(path, names):
+def _no_time(path: Path, names: list[str]) -> Problem:
     return Problem(str(path), f"has no column 'time', only {', '.join(names[:8])}.", "It should have 'time [s]'.")

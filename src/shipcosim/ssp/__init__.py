@@ -1,4 +1,4 @@
-"""System structures (SSP 1.0 and 2.0): read, check, change, write. The only door to lxml."""
+"""System structures (SSP 1.0 and 2.0): read, checked, edited, written; FMUs' descriptions, OSP's structures."""
 
 from shipcosim.ssp.check import check_file, check_system
 from shipcosim.ssp.edit.opening import new, read

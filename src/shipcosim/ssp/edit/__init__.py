@@ -1,1 +1,1 @@
-"""System structures changed and written."""
+"""System structures edited and written."""

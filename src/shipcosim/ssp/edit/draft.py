@@ -1,4 +1,4 @@
-"""A package whose SSD is held in memory: changed as a whole or not at all, checked, and its files brought together."""
+"""An SSP whose SSD is held in memory: several changes are made together or not at all, checked, and written."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -100,7 +100,7 @@ class Draft:
         return system, findings
 
     def assembled(self) -> tuple[System | None, Findings]:
-        """Like `assemble`, but the same as before where nothing was changed since through `changes`."""
+        """Like `assemble`, but read only once after each change."""
         if self._assembled is None or self._changing:
             self._assembled = self.assemble()
         return self._assembled
@@ -119,7 +119,10 @@ class Draft:
 
     @contextmanager
     def changes(self) -> Iterator[None]:
-        """Changes within are checked at the end, and all undone if they bring new errors; nested ones are part."""
+        """Check the changes of a ``with`` block at its end and undo all of them if they bring new errors.
+
+        A block within a block is part of the outer one.
+        """
         if self._changing:
             yield
             return

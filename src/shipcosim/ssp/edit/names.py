@@ -50,7 +50,7 @@ def parts(system: etree._Element) -> list[etree._Element]:
 
 
 def walk(system: etree._Element, name: str = "") -> Iterator[tuple[str, etree._Element]]:
-    """(full name, element) of a system, nameless where it is the outermost one, and of everything in it."""
+    """A system and everything in it, each element after its full name; the outermost system's is empty."""
     yield name, system
     for part in parts(system):
         inner = ".".join(filter(None, (name, part.get("name", ""))))
@@ -61,13 +61,13 @@ def walk(system: etree._Element, name: str = "") -> Iterator[tuple[str, etree._E
 
 
 def connector_of(element: etree._Element, name: str) -> etree._Element | None:
-    """Connector element of this name, or None."""
+    """Connector element of an element by its own name, or None."""
     listed = children(element, "ssd:Connectors", "ssd:Connector")
     return next((part for part in listed if part.get("name") == name), None)
 
 
 def find_element(system: etree._Element, name: str) -> etree._Element | None:
-    """Element of a full name (empty: the system itself), or None."""
+    """Element by its full name, or None; the empty name means the outermost system."""
     return next((element for known, element in walk(system) if known == name), None)
 
 
@@ -78,14 +78,14 @@ def find_connector(system: etree._Element, name: str) -> etree._Element | None:
 
 
 def split_owner(system: etree._Element, name: str) -> tuple[etree._Element | None, str]:
-    """The system that something of this full name belongs to (None: there is none), and its own name there."""
+    """System that something of a full name belongs to, or None, and its own name there."""
     outer, _, short = name.rpartition(".")
     owner = find_element(system, outer)
     return (owner if owner is not None and local(owner) == "System" else None), short
 
 
 def connections(system: etree._Element) -> Iterator[tuple[tuple[str, str], etree._Element]]:
-    """((source, target), element) of all connections, nested ones included, by the full names of what they join."""
+    """All connections, nested ones included: the full names of the two ends, and the element."""
     for name, element in walk(system):
         for connection in children(element, "ssd:Connections", "ssd:Connection"):
             ends = ((connection.get(f"{s}Element"), connection.get(f"{s}Connector")) for s in ("start", "end"))
@@ -120,7 +120,7 @@ def attached(system: etree._Element, name: str, is_element: bool) -> Iterator[tu
 
 
 def readings(signal: str, system: etree._Element) -> Iterator[Reading]:
-    """Every way to read the name of a signal; names of elements and of connectors can have dots themselves."""
+    """Every reading of a signal's name, which can be ambiguous: names of elements and connectors can contain dots."""
     yield Reading(system, None, signal)
     for part in parts(system):
         start = f"{part.get('name')}."

@@ -44,12 +44,12 @@ class Bound:
 
     @property
     def prefix(self) -> str:
-        """What its names start with, seen from the outermost system."""
+        """Start of the full names of its parameters."""
         return (f"{self.owner}." if self.owner else "") + self.binding.get("prefix", "")
 
     @property
     def mapped(self) -> bool:
-        """Whether its names are not those of the parameters."""
+        """Whether a parameter mapping renames its parameters."""
         return child(self.binding, "ssd:ParameterMapping") is not None
 
     def parameter(self, name: str) -> etree._Element | None:
@@ -108,7 +108,7 @@ class Sets:
         return None if held is None else held.root
 
     def keep(self, file: Path | None, root: etree._Element) -> None:
-        """Hold a changed file."""
+        """Keep a changed file for writing; nothing to do for an inline set."""
         if file is not None:
             self.package.held[file] = Document(self.package.show(file), root, file.parent)
 
@@ -137,7 +137,7 @@ class Sets:
             self.append(owner, name, value)
 
     def append(self, owner: str, name: str, value: ParameterValue) -> None:
-        """Give a parameter a value in a new set behind all others of an element."""
+        """Give a parameter a value in a new set, bound to an element after all others."""
         element = self.elements[owner]
         binding = add(ensure(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
         title = owner or self.document.root.get("name") or "values"
@@ -164,7 +164,7 @@ class Sets:
         return bool(places)
 
     def rename(self, old: str, new: str | None, *, exact: bool = False) -> None:
-        """Follow a new full name in the sets of the systems around; None: what had it goes, and its values.
+        """Follow a renamed or (new name None) removed element or connector in the parameter sets of the systems around.
 
         Parameters
         ----------
@@ -203,7 +203,7 @@ class _Names(NamedTuple):
     exact: bool
 
     def follow(self, element: etree._Element, attribute: str, remove: Callable[[etree._Element], None]) -> bool:
-        """Change an attribute that has the old name; whether it had."""
+        """Change an attribute if it has the old name, and return whether it had."""
         text = element.get(attribute, "")
         if text != self.old if self.exact else not text.startswith(f"{self.old}."):
             return False

@@ -1,4 +1,4 @@
-"""What happens to a value on its way from port to port: units, linear transformations, mapping tables, types."""
+"""Conversion of a value from port to port: units, linear transformations, mapping tables, types."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -55,7 +55,7 @@ class Flow:
         return value
 
     def scaled(self, factor: float, offset: float) -> "Flow":
-        """With one more linear step behind it."""
+        """The same flow with a linear step after it."""
         return replace(self, factor=factor * self.factor, offset=factor * self.offset + offset)
 
     def in_unit(self, unit: Unit | None) -> "Flow":

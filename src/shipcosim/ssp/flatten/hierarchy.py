@@ -1,4 +1,4 @@
-"""What the nested elements of an SSD come to: components with their FMUs, ports, wires between ports, and values set.
+"""Nested elements of an SSD collected: components with their FMUs, ports, wires between ports, and values set.
 
 A port is a connector at its place in the hierarchy. Nested systems, systems in other files and signal dictionaries all
 become ports with wires between them, so that what follows knows no hierarchy.

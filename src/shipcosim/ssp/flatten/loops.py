@@ -10,7 +10,7 @@ from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.feedthrough import feedthrough
 
 MOST_STARTS = 50
-"""Variables of a loop from which its shortest way round is sought."""
+"""Variables of a loop from which its shortest cycle is sought."""
 MOST_TRIED = 50
 """Components of which it is tried whether they break a loop."""
 
@@ -29,7 +29,7 @@ class Loop:
     Parameters
     ----------
     links : list of (source, target)
-        The shortest way round: names of the variables that connections join, in order.
+        The shortest cycle: names of the variables that connections join, in order.
     others : int
         Connections that belong to it beside these.
     components : list of str
@@ -70,7 +70,7 @@ def find_loops(system: System, at_start: bool = False) -> list[Loop]:
     read = {fmu.path: feedthrough(fmu, at_start) for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()}
     stated = {name: read[fmu.path] for name, fmu in fmus.items()}
     edges = links + [edge for name in circling for edge in _inside(name, links, stated[name])]
-    return [_loop(part, edges, links, stated, list(system.components)) for part in _strong(_graph(edges), edges)]
+    return [_loop(part, edges, links, list(system.components)) for part in _strong(_graph(edges), edges)]
 
 
 def loop_problems(system: System) -> Iterator[Problem]:
@@ -121,8 +121,8 @@ def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) 
             yield knot, output
 
 
-def _loop(part, edges, links, stated, names):
-    part = set(part)
+def _loop(nodes: list[Node], edges: list[Edge], links: list[Edge], names: list[str]) -> Loop:
+    part = set(nodes)
     inside, edges = ([edge for edge in several if part.issuperset(edge)] for several in (links, edges))
     way = _shortest(inside, edges)
     components = [name for name in names if any(end[0] == name for end in part)]
@@ -138,7 +138,7 @@ def _breaks(name: str, edges: list[Edge]) -> bool:
 
 
 def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
-    """Links of the shortest way round."""
+    """Connections of the shortest cycle."""
     graph, ways, known = _graph(edges), [], set(links)
     for source, target in links[:MOST_STARTS]:
         before: dict[Node, Node | None] = {target: None}

@@ -84,7 +84,7 @@ class Settings:
                 ahead += self._arrive(*arriving, key, place)
 
     def _arrive(self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str) -> Iterable[Arrival]:
-        """What goes on from a port that a value has come to: (value, flow, wire, next port) each."""
+        """Next steps of a value that has come to a port."""
         port = self._port(key)
         if flow.type == "Enumeration" and isinstance(value, str):
             value, flow, step = self._number(value, flow, step, port, place)

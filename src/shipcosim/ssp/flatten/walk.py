@@ -1,4 +1,4 @@
-"""The way through the nested elements of an SSD, which collects them in a Hierarchy."""
+"""Nested elements of an SSD visited one after the other and collected in a Hierarchy."""
 
 from dataclasses import replace
 

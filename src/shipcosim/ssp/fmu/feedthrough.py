@@ -1,4 +1,4 @@
-"""Which outputs of an FMU follow which inputs at once, as its ModelStructure says.
+"""Direct feedthrough of an FMU: which outputs depend on which inputs at the same time, as its ModelStructure says.
 
 Reference: FMI 1.0 co-simulation, section 3.3 (DirectDependency); FMI 2.0.4, section 2.2.8; FMI 3.0.1, section 2.4.8.
 """

@@ -1,4 +1,4 @@
-"""What model descriptions of FMI 1.0 say in another way, in the words of FMI 2.0.
+"""Model descriptions of FMI 1.0 in the terms of FMI 2.0, where the two differ.
 
 Reference: FMI 1.0.1 for co-simulation, section 3.3; FMI 1.0.1 for model exchange, section 3.
 """

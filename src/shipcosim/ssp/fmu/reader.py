@@ -1,4 +1,4 @@
-"""FMUs read: their modelDescription.xml becomes an FmuDescription. No binary is ever loaded here.
+"""Reader of FMUs: their modelDescription.xml becomes an FmuDescription. No binary is ever loaded here.
 
 Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """

@@ -1,4 +1,4 @@
-"""Variables of an FMU read, whichever version of FMI describes them."""
+"""Reader of an FMU's variables, whichever version of FMI describes them."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

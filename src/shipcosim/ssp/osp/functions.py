@@ -1,4 +1,4 @@
-"""Functions of an OspSystemStructure.xml: what they take and give, and which connections they amount to."""
+"""Functions of an OspSystemStructure.xml: their signals, and the connections between variables that they make."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
-"""OspSystemStructure.xml read: the configuration file of the Open Simulation Platform, as a system ready to run.
+"""Reader of OspSystemStructure.xml, the configuration file of the Open Simulation Platform.
 
-What its elements mean is what libcosim (tried: libcosimpy 0.0.6) makes of them, where that is known.
+The result is a system ready to run. Elements mean what libcosim (tried: libcosimpy 0.0.6) makes of them, if known.
 """
 
 from collections.abc import Iterable, Mapping

@@ -1,4 +1,4 @@
-"""What the elements of an OspSystemStructure.xml may be, as a schema.
+"""Schema of OspSystemStructure.xml.
 
 libcosim (tried: libcosimpy 0.0.6) checks a file against its own schema first and refuses what breaks it.
 """

@@ -1,4 +1,4 @@
-"""OspSystemStructure.xml written, so that libcosim reads back every digit."""
+"""Writer of OspSystemStructure.xml, such that libcosim reads back every digit."""
 
 from collections import defaultdict
 from collections.abc import Container, Iterable, Mapping, Sequence
@@ -89,7 +89,7 @@ def _lines(simulator: Simulator) -> list[str]:
 
 
 def _connections(connections: Iterable[Connection], taken: Container[str]) -> tuple[list[str], list[str]]:
-    """Elements of the functions, in the order that libcosim wants, and of the connections."""
+    """Elements of the functions, in the order that libcosim requires, and of the connections."""
     into, linear, sums, joined = defaultdict(list), [], [], []
     for connection in connections:
         into[connection.target].append(connection)

@@ -1,1 +1,1 @@
-"""What other tools make of a system: `check --for`."""
+"""Checks of a system for other tools that read its file themselves: `check --for`."""

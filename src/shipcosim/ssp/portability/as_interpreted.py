@@ -1,6 +1,6 @@
 """A system as a tool interprets its file: with the values and connections that the tool applies.
 
-What it refuses or dies of is not looked at; see `shipcosim.ssp.portability.support_table`.
+What it refuses or crashes on is not looked at; see `shipcosim.ssp.portability.support_table`.
 """
 
 from collections.abc import Container, Iterable, Mapping
@@ -118,7 +118,7 @@ def _instead(component: Component, variable: str, applied: Mapping[str, Value]) 
 
 
 def _connections(host: str, subject: Subject, system: System) -> tuple[str, System]:
-    """Connections: as they are written, no units and mappings; those that are written the other way round left out."""
+    """Connections as they are written, without units and mappings; those written from input to output left out."""
     links = {}
     for link, _, _ in subject.links:
         ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)

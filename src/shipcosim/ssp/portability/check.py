@@ -1,4 +1,4 @@
-"""What a tool that reads a system's file itself would ignore, misread or die of: `check --for`."""
+"""Checks of a system for a tool that reads its file itself: what it would ignore, misread, refuse or crash on."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -25,7 +25,7 @@ def check_host(host: str) -> None:
 
 
 def check_for(host: str, path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> list[Problem]:
-    """What a tool that reads the file itself would ignore, misread or die of.
+    """What a tool that reads the file itself would ignore, misread, refuse or crash on.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where an OspSystemStructure.xml has something that libcosim takes otherwise.
+"""Where an OspSystemStructure.xml has something that libcosim reads differently.
 
 Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
 """

@@ -1,4 +1,4 @@
-"""Where a system has files, nested systems, times and FMUs that other tools take otherwise.
+"""Where a system has files, nested systems, times and FMUs that other tools read differently.
 
 Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
 """

@@ -1,4 +1,4 @@
-"""What becomes of a system's features in tools that read its file themselves: the one table of it.
+"""The table of features of a system that tools which read its file themselves do not support as the standard means it.
 
 Every entry is what the tool did when it was tried (libcosimpy 0.0.6, ecospy 0.7.2); tests run them again and hold the
 table to it. `shipcosim simulate --engine` is another thing: it gives each engine the system as we read it.

@@ -1,4 +1,4 @@
-"""Where a system's files are: a .ssp (unpacked on the side), a folder, or a .ssd with its neighbours."""
+"""Files of a system: a .ssp (unpacked into a temporary folder), a folder, or a .ssd with the files beside it."""
 
 import tempfile
 from collections.abc import Iterable

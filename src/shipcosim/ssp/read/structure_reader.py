@@ -1,4 +1,4 @@
-"""The SSD read: each of its elements becomes a record of `shipcosim.ssp.read.structure`."""
+"""Reader of the SSD: each of its elements becomes a record of `shipcosim.ssp.read.structure`."""
 
 from collections.abc import Iterable, Mapping
 

@@ -1,6 +1,6 @@
-"""XML of system structures changed in place and written: what is not touched stays as it is.
+"""Editing of XML in place: elements are added where the schema requires them, and all else stays as it is.
 
-Elements are put where the schema wants them and indented like their neighbours.
+Added elements are indented like their neighbours.
 """
 
 from collections.abc import Container
@@ -36,7 +36,7 @@ OSP_MARK = "opensimulationplatform"
 
 
 def add(parent: etree._Element, tag: str, **attributes: str | None) -> etree._Element:
-    """Put a new element into a parent, where the schema wants it: behind its likes, before what comes later.
+    """Add a new element to a parent where the schema requires it: after others of its tag, before later ones.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def add(parent: etree._Element, tag: str, **attributes: str | None) -> etree._El
 
 
 def put(parent: etree._Element, element: etree._Element) -> None:
-    """Put an element into a parent, where the schema wants it."""
+    """Add an element to a parent where the schema requires it."""
     order = ORDER.get(local(parent), ())
     later = order[order.index(local(element)) + 1 :] if local(element) in order else ()
     index = next((parent.index(part) for part in parent if local(part) in later), len(parent))

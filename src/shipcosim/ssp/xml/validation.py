@@ -1,4 +1,4 @@
-"""Elements held against their schema, whatever version of SSP or FMI they are of."""
+"""Validation of elements against their schema, whatever version of SSP or FMI they are of."""
 
 import lxml.etree as etree
 

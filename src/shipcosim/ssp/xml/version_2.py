@@ -1,4 +1,4 @@
-"""SSP 2.0 held against the schema of 1.0: what 2.0 has added is taken out of a copy, and the rest must be as in 1.0.
+"""Validation of SSP 2.0 by the schema of 1.0: in a copy, what 2.0 has added is removed, and the rest must be as in 1.0.
 
 No package brings the schemas of 2.0. What is unknown here may be something of 2.0 that this module does not know, so it
 is a remark, that it is not used; what is missing or has a wrong value is an error.
