@@ -26,7 +26,6 @@ PAGES = {
 HEIGHTS = {"four_corner": 1140, "diagnosis": 1020}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
-MOST_COLOURS = 128
 SWITCHES = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars")
 
 
@@ -44,16 +43,15 @@ def browser(profile: Path) -> webdriver.Chrome:
 
 
 def picture(driver: webdriver.Chrome, page: Path, height: int) -> bytes:
-    """The top of a page as a PNG of few colours, when every figure is drawn."""
+    """The top of a page as a small PNG, when every figure is drawn."""
     size = {"width": WIDTH, "height": height, "deviceScaleFactor": 1, "mobile": False}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     driver.get(page.as_uri())
     while driver.execute_script("return document.body.dataset.drawn") != "all":
         time.sleep(0.1)
     shot = base64.b64decode(driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"])
-    few = Image.open(io.BytesIO(shot)).convert("RGB").quantize(MOST_COLOURS, dither=Image.Dither.NONE)
     written = io.BytesIO()
-    few.save(written, "PNG", optimize=True)
+    Image.open(io.BytesIO(shot)).convert("RGB").save(written, "PNG", optimize=True)
     return written.getvalue()
 
 
