@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+import shipcosim
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import write_table
@@ -101,3 +102,17 @@ def test_a_log_that_is_too_short_is_refused(tmp_path):
     write_table(twin.logs()["healthy"].isel(time=slice(60)), path)
     with pytest.raises(ShipcosimError, match="60 rows"):
         find_causes(path, twin.system())
+
+
+def test_from_python_one_value_has_findings_extended_system_and_all_that_the_page_shows():
+    """Of a table as of a file; the current is put into the system, whose files stay as long as the diagnosis."""
+    said = []
+    log, system = twin.logs()["current"], twin.system()
+    diagnosis = shipcosim.diagnose(log, system, progress=lambda *doing: said.append(doing[0]))
+    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == ("named", ["current"])
+    assert diagnosis.extension.ssp.is_file() and diagnosis.changes
+    speed = np.hypot(*(diagnosis.findings[0].parameters[name].estimate for name in ("north", "east")))
+    assert {change.name: change.after for change in diagnosis.changes}["current_speed"] == pytest.approx(speed)
+    assert diagnosis.evidence.sets[0].is_chosen and diagnosis.evidence.gains[0].gain > 100.0
+    assert "extending the system" in said and diagnosis.log.measured.sizes["time"] == 361
+    assert "diagnose" in dir(shipcosim) and diagnosis.as_json()["verdict"] == "named"
