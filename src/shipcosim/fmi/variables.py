@@ -2,7 +2,10 @@
 
 import dataclasses
 import math
+from typing import Any
 
+Value = float | int | bool | str
+"""Value of a variable of FMI."""
 TYPES = {bool: "Boolean", int: "Integer", float: "Real", str: "String"}
 
 
@@ -33,7 +36,16 @@ class Variable:
     causality = ""
 
     def __init__(
-        self, start, unit, description, *, minimum=None, maximum=None, tunable=False, origin="", tolerance=0.0
+        self,
+        start: Any,
+        unit: str,
+        description: str,
+        *,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        tunable: bool = False,
+        origin: str = "",
+        tolerance: float = 0.0,
     ):
         if type(start) not in TYPES:
             raise TypeError(f"start value {start!r} of '{description}': give a float, an int, a bool or a str")
@@ -47,13 +59,13 @@ class Variable:
         if outside := self.outside(start):
             raise ValueError(f"start value of '{description}' is {outside}")
 
-    def __set_name__(self, owner, name):
+    def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{self.causality} {self.name}: {self.type}, {self.start!r} {self.unit}>"
 
-    def outside(self, value):
+    def outside(self, value: Any) -> str:
         """Why a value cannot be one of this variable, as text; empty if it can."""
         if self.type not in ("Real", "Integer"):
             return ""
@@ -71,7 +83,15 @@ class Input(Variable):
 
     causality = "input"
 
-    def __init__(self, unit, description, *, start=0.0, minimum=None, maximum=None):
+    def __init__(
+        self,
+        unit: str,
+        description: str,
+        *,
+        start: Value = 0.0,
+        minimum: float | None = None,
+        maximum: float | None = None,
+    ):
         super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
 
 
@@ -80,7 +100,15 @@ class Output(Variable):
 
     causality = "output"
 
-    def __init__(self, unit, description, *, start=0.0, minimum=None, maximum=None):
+    def __init__(
+        self,
+        unit: str,
+        description: str,
+        *,
+        start: Value = 0.0,
+        minimum: float | None = None,
+        maximum: float | None = None,
+    ):
         super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
 
 
@@ -103,16 +131,16 @@ class Parameters:
         Put before the fields' names, where two groups would clash.
     """
 
-    def __init__(self, kind, *, prefix=""):
+    def __init__(self, kind: type, *, prefix: str = ""):
         if not (dataclasses.is_dataclass(kind) and kind.__dataclass_params__.frozen):
             raise TypeError(f"Parameters({kind.__name__}): give a frozen dataclass")
         self.kind, self.prefix, self.name = kind, prefix, ""
         self.variables = [self._variable(field) for field in dataclasses.fields(kind) if field.init]
 
-    def __set_name__(self, owner, name):
+    def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
 
-    def __get__(self, instance, owner=None):
+    def __get__(self, instance: Any, owner: type | None = None) -> Any:
         """The dataclass; the first access makes it and leaves it on the instance, where it is found faster."""
         if instance is None:
             return self
@@ -122,7 +150,7 @@ class Parameters:
         values[self.name] = group
         return group
 
-    def _variable(self, field):
+    def _variable(self, field: dataclasses.Field) -> "Parameter":
         about = field.metadata
         if "unit" not in about:
             raise TypeError(
@@ -138,7 +166,7 @@ class Parameters:
         return variable
 
 
-def variables_of(cls):
+def variables_of(cls: type) -> tuple[tuple[Variable, ...], tuple[Parameters, ...]]:
     """Variables and parameter groups of a class and its bases.
 
     Returns
@@ -168,7 +196,7 @@ def variables_of(cls):
     return tuple(sorted(found, key=lambda variable: order.index(variable.causality))), groups
 
 
-def leave_start_values(cls):
+def leave_start_values(cls: type) -> None:
     """Leave the start value of each variable that a class declares in its place on the class.
 
     Python reads an instance's attribute five times as fast where a number and not an object of our own is behind it.
@@ -179,7 +207,7 @@ def leave_start_values(cls):
             setattr(cls, name, item.start)
 
 
-def _declared_on(cls):
+def _declared_on(cls: type) -> dict[str, Variable | Parameters]:
     """Variables and parameter groups that a class itself declares, by name."""
     items = vars(cls).get("_declared", vars(cls)).items()
     return {name: item for name, item in items if isinstance(item, (Variable, Parameters))}

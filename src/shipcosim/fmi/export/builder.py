@@ -13,12 +13,15 @@ import sys
 import tempfile
 import traceback
 import zipfile
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from types import ModuleType
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.fmi.export.bundle import bundle, entry_module
+from shipcosim.fmi.export.bundle import Bundle, bundle, entry_module
 from shipcosim.fmi.export.description import model_description
 from shipcosim.fmi.export.loader import SUFFIXES, loader_for
+from shipcosim.fmi.fmu import Fmu
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 PAGE = """<!DOCTYPE html>
@@ -27,7 +30,7 @@ PAGE = """<!DOCTYPE html>
 """
 
 
-def build_fmu(source, out):
+def build_fmu(source: Path | str, out: Path | str) -> Path:
     """Build one FMU; the same source gives the same bytes.
 
     Parameters
@@ -59,7 +62,7 @@ def build_fmu(source, out):
     return _write(Path(out) / f"{script.stem}.fmu", files)
 
 
-def build_all(root, names=(), out="build/fmus"):
+def build_all(root: Path | str, names: Iterable[str] = (), out: Path | str = "build/fmus") -> list[Path]:
     """Build the FMUs of a folder that has one folder per FMU.
 
     Parameters
@@ -103,7 +106,7 @@ def build_all(root, names=(), out="build/fmus"):
     return built
 
 
-def _script(source):
+def _script(source: Path) -> Path:
     script = source / f"{source.resolve().name}.py" if source.is_dir() else source
     if not script.is_file():
         raise ShipcosimError(
@@ -117,7 +120,7 @@ def _script(source):
 
 
 @contextlib.contextmanager
-def _imported(bundled):
+def _imported(bundled: Bundle) -> Iterator[ModuleType]:
     """The script's module as the FMU will have it, forgotten afterwards."""
     before = set(sys.modules)
     with tempfile.TemporaryDirectory() as folder:
@@ -136,7 +139,7 @@ def _imported(bundled):
                     del sys.modules[name]
 
 
-def _import(bundled, folder):
+def _import(bundled: Bundle, folder: str) -> ModuleType:
     code = Path(folder, bundled.package)
     try:
         return importlib.import_module(f"{bundled.package}.{bundled.script}")
@@ -151,7 +154,7 @@ def _import(bundled, folder):
         ) from error
 
 
-def _fmu_class(module, script):
+def _fmu_class(module: ModuleType, script: Path) -> type[Fmu]:
     """The one class of the script that is an FMU and no base of another."""
     own = [item for item in vars(module).values() if isinstance(item, type) and item.__module__ == module.__name__]
     own = [cls for cls in own if any(base.__name__ == "Fmi2Slave" for base in cls.__mro__)]
@@ -167,7 +170,7 @@ def _fmu_class(module, script):
     return leaves[0]
 
 
-def _check_class(cls, script):
+def _check_class(cls: type[Fmu], script: Path) -> None:
     problems = []
     if not any(variable.causality == "output" for variable in cls.variables):
         problems.append("has no output: name = Output(unit, description).")
@@ -185,7 +188,7 @@ def _check_class(cls, script):
         raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", found)) from error
 
 
-def _never_read(cls, script):
+def _never_read(cls: type[Fmu], script: Path) -> list[str]:
     """Attributes that the script sets but neither declares nor reads: outputs that were forgotten or misspelt."""
     nodes = [node for node in ast.walk(ast.parse(script.read_bytes())) if isinstance(node, ast.Attribute)]
     nodes = [node for node in nodes if isinstance(node.value, ast.Name) and node.value.id == "self"]
@@ -200,7 +203,7 @@ def _never_read(cls, script):
     ]
 
 
-def _description(cls, script, files):
+def _description(cls: type[Fmu], script: Path, files: dict[str, bytes]) -> bytes:
     """The model description, with a GUID that follows from it and all other files."""
     try:
         blank = model_description(cls, script.stem, "")
@@ -212,7 +215,7 @@ def _description(cls, script, files):
         raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
 
 
-def _binaries(identifier):
+def _binaries(identifier: str) -> dict[str, bytes]:
     """Our loader under the name that FMI asks for, beside it pythonfmu's binary, which it loads, and its licence."""
     folder = Path(importlib.util.find_spec("pythonfmu").origin).parent / "resources" / "binaries"
     files = {}
@@ -224,7 +227,7 @@ def _binaries(identifier):
     return files | {"documentation/licenses/pythonfmu.txt": (licence or "MIT, NTNU-IHB/PythonFMU").encode()}
 
 
-def _documentation(script):
+def _documentation(script: Path) -> dict[str, bytes]:
     files = {}
     for name in ("README.md", "reference.csv"):
         path = script.parent / name
@@ -235,7 +238,7 @@ def _documentation(script):
     return files
 
 
-def _write(path, files):
+def _write(path: Path, files: dict[str, bytes]) -> Path:
     """Write an archive whose bytes depend on the files alone: sorted, not compressed, one date, one mode."""
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as archive:

@@ -4,6 +4,8 @@ import math
 from xml.etree import ElementTree as xml
 
 import shipcosim
+from shipcosim.fmi.fmu import Fmu
+from shipcosim.fmi.variables import Value, Variable
 from shipcosim.units import fmi_unit
 
 QUANTITIES = {
@@ -33,12 +35,12 @@ LOG_CATEGORIES = {
 LONGEST_SHOWN = 24  # characters of a start value in a table for readers
 
 
-def model_description(cls, identifier, guid):
+def model_description(cls: type[Fmu], identifier: str, guid: str) -> bytes:
     """The model description as bytes, the same for the same class.
 
     Parameters
     ----------
-    cls : type
+    cls : type of Fmu
         Subclass of `Fmu`, of this package or of the copy that an FMU carries.
     identifier : str
         Name of the FMU and of its binary.
@@ -84,12 +86,12 @@ def model_description(cls, identifier, guid):
     return xml.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
 
 
-def summary(cls):
+def summary(cls: type[Fmu]) -> str:
     """First paragraph of the class's docstring in one line."""
     return " ".join((cls.__doc__ or "").strip().split("\n\n")[0].split())
 
 
-def table_of_variables(cls):
+def table_of_variables(cls: type[Fmu]) -> str:
     """The variables of an FMU class as a Markdown table.
 
     Parameters
@@ -110,7 +112,7 @@ def table_of_variables(cls):
     return "\n".join(rows) + "\n"
 
 
-def _shown(start):
+def _shown(start: Value) -> str:
     text = _text(start)
     return f"`{text}`" if len(text) <= LONGEST_SHOWN else f"`{text[:LONGEST_SHOWN]}` ..."
 
@@ -152,11 +154,11 @@ def _type_definitions(root, units):
             xml.SubElement(simple, "Real", dict(quantity=QUANTITIES[unit], unit=unit) | _displayed(unit))
 
 
-def _displayed(unit):
+def _displayed(unit: str) -> str:
     return {"displayUnit": DISPLAYED[unit]} if unit in DISPLAYED else {}
 
 
-def _scalar_variable(reference, variable):
+def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
     element = xml.Element(
         "ScalarVariable",
         name=variable.name,
@@ -187,11 +189,11 @@ def _scalar_variable(reference, variable):
     return element
 
 
-def _full_text(variable):
+def _full_text(variable: Variable) -> str:
     return f"{variable.description} ({variable.origin})" if variable.origin else variable.description
 
 
-def _variability(variable):
+def _variability(variable: Variable) -> str:
     if variable.causality == "parameter":
         return "tunable" if variable.tunable else "fixed"
     return "continuous" if variable.type == "Real" else "discrete"
