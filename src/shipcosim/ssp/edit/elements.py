@@ -17,6 +17,17 @@ from shipcosim.ssp.xml.markup import add, add_osp, drop, ensure
 def element_named(draft: Draft, name: str) -> etree._Element:
     """Element of a full name; the outermost system for an empty one.
 
+    Parameters
+    ----------
+    draft : Draft
+        The system.
+    name : str
+        Full name.
+
+    Returns
+    -------
+    lxml element
+
     Raises
     ------
     ShipcosimError
@@ -30,6 +41,17 @@ def element_named(draft: Draft, name: str) -> etree._Element:
 
 def system_for(draft: Draft, name: str) -> tuple[etree._Element, str]:
     """System that something new belongs to by its full name, and its own name there.
+
+    Parameters
+    ----------
+    draft : Draft
+        The system.
+    name : str
+        Full name of what is new.
+
+    Returns
+    -------
+    tuple of lxml element and str
 
     Raises
     ------
@@ -45,7 +67,22 @@ def system_for(draft: Draft, name: str) -> tuple[etree._Element, str]:
 
 
 def add_element(draft: Draft, name: str, tag: str, **attributes: str | None) -> etree._Element:
-    """Add an element without content; `tag` is Component or System.
+    """Add an element without content.
+
+    Parameters
+    ----------
+    draft : Draft
+        The system.
+    name : str
+        Full name of the new element.
+    tag : str
+        Component or System.
+    **attributes : str or None
+        Of the element; None: left out.
+
+    Returns
+    -------
+    lxml element
 
     Raises
     ------

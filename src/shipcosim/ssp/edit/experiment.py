@@ -15,7 +15,17 @@ def experiment_time(root: etree._Element, name: str) -> float | None:
 
 
 def set_experiment_time(root: etree._Element, name: str, time: float) -> None:
-    """Set ``startTime`` or ``stopTime`` of an SSD's default experiment. [s]"""
+    """Set the start or stop time of an SSD's default experiment.
+
+    Parameters
+    ----------
+    root : lxml element
+        Of the SSD.
+    name : str
+        ``startTime`` or ``stopTime``.
+    time : float
+        The time. [s]
+    """
     ensure(root, "ssd:DefaultExperiment").set(name, repr(float(time)))
 
 

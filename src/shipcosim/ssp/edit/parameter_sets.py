@@ -137,7 +137,17 @@ class Sets:
             self.append(owner, name, value)
 
     def append(self, owner: str, name: str, value: ParameterValue) -> None:
-        """Give a parameter a value in a new set, bound to an element after all others."""
+        """Give a parameter a value in a new set, bound to an element after all others.
+
+        Parameters
+        ----------
+        owner : str
+            Full name of the element.
+        name : str
+            Full name of the parameter.
+        value : ParameterValue
+            Its own name is not looked at.
+        """
         element = self.elements[owner]
         binding = add(ensure(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
         title = owner or self.document.root.get("name") or "values"

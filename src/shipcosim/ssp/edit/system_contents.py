@@ -1,7 +1,9 @@
-"""What a system structure holds: elements and connections, its default experiment, and whether all of it is right."""
+"""What a system structure holds: elements, connections, default experiment; whether it is right; how it is written."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
 from typing import Self
 
 from shipcosim.errors import Problem, ShipcosimError
@@ -18,7 +20,7 @@ from shipcosim.ssp.xml.document import children
 
 
 class SystemContents:
-    """A system structure as one looks at it.
+    """A system structure as one looks at it, checks it and writes it.
 
     Parameters
     ----------
@@ -149,3 +151,25 @@ class SystemContents:
         """
         with self._draft.changes():
             yield self
+
+    def copy(self) -> Self:
+        """The same system once more, changed independently."""
+        return type(self)(self._draft.copy())
+
+    def write(self, path: str | PathLike[str], *, fmus: bool = True) -> None:
+        """Write the system with everything that belongs to it; what was not changed stays the same.
+
+        Parameters
+        ----------
+        path : path
+            Ends in .ssp: one packed file. In .ssd: an SSD, and beside it what it refers to. Else: a folder.
+        fmus : bool
+            Whether FMUs that were not in the package come along; a .ssp always has them.
+
+        Raises
+        ------
+        ShipcosimError
+            With everything that is wrong with the system, or if it cannot be written.
+        """
+        self.checked()
+        self._draft.write(Path(path), fmus)

@@ -138,6 +138,11 @@ class SystemStructure(SystemContents):
     def disconnect(self, source: str, target: str | None = None) -> None:
         """Remove the connection of two connectors, in either order; without `target` all connections of one.
 
+        Parameters
+        ----------
+        source, target : str
+            Full names of the connectors.
+
         Raises
         ------
         ShipcosimError
@@ -224,7 +229,14 @@ class SystemStructure(SystemContents):
             bindings.bind(self._draft, source, element, prefix)
 
     def unbind(self, source: str | PathLike[str], element: str = "") -> None:
-        """Remove the binding of a parameter set in a file from an element, the outermost system if none is named.
+        """Remove the binding of a parameter set in a file from an element.
+
+        Parameters
+        ----------
+        source : path
+            The .ssv, as `bind` was given it.
+        element : str
+            Full name; empty for the outermost system.
 
         Raises
         ------
@@ -248,25 +260,3 @@ class SystemStructure(SystemContents):
         self.checked()
         with self.changes():
             self.parameters.bind_to_components()
-
-    def copy(self) -> "SystemStructure":
-        """The same system once more, changed independently."""
-        return SystemStructure(self._draft.copy())
-
-    def write(self, path: str | PathLike[str], *, fmus: bool = True) -> None:
-        """Write the system with everything that belongs to it; what was not changed stays the same.
-
-        Parameters
-        ----------
-        path : path
-            Ends in .ssp: one packed file. In .ssd: an SSD, and beside it what it refers to. Else: a folder.
-        fmus : bool
-            Whether FMUs that were not in the package come along; a .ssp always has them.
-
-        Raises
-        ------
-        ShipcosimError
-            With everything that is wrong with the system, or if it cannot be written.
-        """
-        self.checked()
-        self._draft.write(Path(path), fmus)

@@ -7,7 +7,24 @@ from shipcosim.ssp.read.structure import DictionaryReference, SystemElement
 
 
 def dictionaries_of(tree: Hierarchy, element: SystemElement, path: ElementPath, place: Surroundings) -> Dictionaries:
-    """Dictionaries defined on a system: their place among the ports, and their entries, by name."""
+    """Signal dictionaries defined on a system.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        Takes what is wrong.
+    element : SystemElement
+        The system.
+    path : tuple of str
+        Its place.
+    place : Surroundings
+        What is around it.
+
+    Returns
+    -------
+    Dictionaries
+        By name: their place among the ports, and their entries.
+    """
     found = {}
     for name, source in element.dictionaries.items():
         document = tree.library.content(source, place)

@@ -25,7 +25,19 @@ def interfaces_of(root: etree._Element) -> dict[str, dict[str, str]]:
 
 
 def traits_of(element: etree._Element, typed: etree._Element, kind: str) -> dict[str, Any]:
-    """Causality, variability and initial of a variable."""
+    """Causality, variability and initial of a variable, as FMI 2.0 would state them.
+
+    Parameters
+    ----------
+    element, typed : lxml element
+        The ScalarVariable, and the element in it that has the type.
+    kind : str
+        Of the type.
+
+    Returns
+    -------
+    dict of str to (str or None)
+    """
     causality, variability = element.get("causality", "internal"), element.get("variability", "continuous")
     if variability == "parameter":
         return {"causality": "parameter", "variability": "fixed", "initial": "exact"}

@@ -38,7 +38,21 @@ def read_experiment(document: Document, findings: Findings) -> Experiment:
 
 
 def own_step(document: Document, element: etree._Element, findings: Findings) -> float | None:
-    """Step size of a simulator, or None where it is the base step. [s]"""
+    """Step size of a simulator, or None where it is the base step. [s]
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    element : lxml element
+        The Simulator.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    float or None
+    """
     if element.get("stepSize") is None:
         return None
     step = _seconds(document, element, element.get("stepSize"), findings)

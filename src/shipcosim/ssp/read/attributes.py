@@ -37,7 +37,24 @@ def attribute(
 
 
 def whole_numbers(document: Document, element: etree._Element, name: str, findings: Findings) -> tuple[int, ...]:
-    """Whole numbers listed in an attribute, 0 in the place of one that makes no sense; none where it is missing."""
+    """Whole numbers listed in an attribute.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    element : lxml element
+        In it.
+    name : str
+        Of the attribute.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    tuple of int
+        With 0 in the place of one that makes no sense; empty where the attribute is missing.
+    """
     numbers = []
     for text in (element.get(name) or "").split():
         number = 0

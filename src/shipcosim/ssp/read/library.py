@@ -64,7 +64,21 @@ class Library:
         return self._kept[key]
 
     def file(self, owner: Addressing, uri: str, place: InPackage) -> Path | None:
-        """File that an element's address means, or None; the element must live as long as the library."""
+        """File that an element's address means, or None with an error.
+
+        Parameters
+        ----------
+        owner : Addressing
+            The element; it must live as long as the library.
+        uri : str
+            Its address.
+        place : InPackage
+            What the address starts from.
+
+        Returns
+        -------
+        Path or None
+        """
         at = "at", place.package.folder, place.folder, uri
         if self._kept.get(at) is None:  # what is missing is said of each owner, once
             self._kept[at] = self._once((id(owner), uri), lambda: self._located(owner, uri, place))
@@ -91,7 +105,21 @@ class Library:
         return None if document is None else read_structure(document, self.findings)
 
     def content(self, source: Source, place: InPackage, fmu: FmuDescription | None = None) -> Document | None:
-        """Document that a source means, inline or in a file, or None."""
+        """Document of a parameter set, mapping or dictionary, inline or in a file, or None with an error.
+
+        Parameters
+        ----------
+        source : Source
+            As the SSD gives it.
+        place : InPackage
+            What its address starts from.
+        fmu : FmuDescription, optional
+            Of the component; the file can be inside it.
+
+        Returns
+        -------
+        Document or None
+        """
         if source.inline is not None or source.uri is None:
             return source.inline
         if source.in_component:

@@ -44,11 +44,23 @@ class Findings:
         self.refused_lines: set[str] = set()  # by a schema: what else is wrong with a value there has been said
 
     def error(self, where: str, found: str, remedy: str = "") -> None:
-        """Note what makes the input unusable."""
+        """Note what makes the input unusable.
+
+        Parameters
+        ----------
+        where, found, remedy : str
+            As in Problem.
+        """
         self.problems.append(Problem(where, found, remedy))
 
     def remark(self, where: str, found: str, remedy: str = "") -> None:
-        """Note what a user should know although it stops nothing."""
+        """Note what a user should know although it stops nothing.
+
+        Parameters
+        ----------
+        where, found, remedy : str
+            As in Problem.
+        """
         self.problems.append(Problem(where, found, remedy, severity="remark"))
 
     def back_to(self, count: int) -> None:
