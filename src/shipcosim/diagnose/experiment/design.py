@@ -91,12 +91,11 @@ def design_experiment(
     return ExperimentDesign(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
 
 
-def _differing(one: Fit, other: Fit) -> tuple[str, ...]:
+def _differing(one: Fit, other: Fit) -> tuple[str, str]:
     """What two sets of causes do not share."""
     a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
-    return tuple(
-        " + ".join(label for label in mine if label not in yours) or "nothing more" for mine, yours in ((a, b), (b, a))
-    )
+    only_a, only_b = (" + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a)))
+    return only_a or "nothing more", only_b or "nothing more"
 
 
 def manoeuvre_of(design: ExperimentDesign | None, problem: IdentificationProblem) -> Manoeuvre | None:
@@ -213,7 +212,8 @@ def _products(white):
 
 def _simulated(problem, models, manoeuvres):
     """Motions and records of every manoeuvre by every ship, and whether she gets through; lists by ship."""
-    start = float(problem.record.time[-1]), *(float(value[-1]) for value in problem.motion[:3])
+    x, y, psi = (float(value[-1]) for value in problem.motion[:3])
+    start = float(problem.record.time[-1]), x, y, psi
     wind = true_wind(problem.record, problem.motion, problem.model)
     dp = DpController(_in_true_wind(problem.model), step_for(problem.model), cannot_turn(problem.record, problem.model))
     track, record, held = planned(manoeuvres, dp, start, wind)

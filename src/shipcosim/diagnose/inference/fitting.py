@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.innovations import innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Regressor, linearise
 from shipcosim.diagnose.inference.noise import explained
 from shipcosim.diagnose.inference.screening import screening_regressors
@@ -155,8 +155,7 @@ def _smoothed(linear: Linear, white: np.ndarray, problem: IdentificationProblem,
     misfit = (white**2).sum((0, -1)) / linear.whole.sum((0, -1))
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
     noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
-    smooth = innovations(linear, noise, problem.record, motion).motion
-    return motion if smooth is None else smooth
+    return smoothed(linear, noise, problem.record, motion)[0]
 
 
 def _key(column: Regressor) -> tuple[tuple[str, float], ...]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.linearisation import Linear
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = ["WAVE_DAMPING", "Innovations", "Noise", "innovations", "log_likelihoods", "oscillation"]
+__all__ = ["WAVE_DAMPING", "Innovations", "Noise", "innovations", "log_likelihoods", "oscillation", "smoothed"]
 
 WAVE_DAMPING = 0.1
 """Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""
@@ -56,7 +56,7 @@ class Innovations(NamedTuple):
         Whitened innovations: of the log in the first column, of each θ in the others.
     log_determinant : (n, ...) array
         Of their covariance, per row.
-    filtered : (n, ..., 18) array or None
+    filtered : (n, ..., 18) array
         Deviations of the first column at each row by what was known until then.
     motion : Motion or None
         The smoothed motion, (..., n) arrays.
@@ -66,7 +66,7 @@ class Innovations(NamedTuple):
 
     white: np.ndarray
     log_determinant: np.ndarray
-    filtered: np.ndarray | None = None
+    filtered: np.ndarray = np.empty(0)
     motion: Motion | None = None
     slow: np.ndarray | None = None
 
@@ -105,6 +105,27 @@ def innovations(linear: Linear, noise: Noise, record: Record, motion: Motion | N
     found = np.moveaxis(found.reshape(-1, *lead, STATES), 0, -2)
     smooth = Motion(*(value + found[..., i] for i, value in enumerate(motion)))
     return Innovations(white_of_logs, log_determinant, filtered, smooth, found[..., 6:])
+
+
+def smoothed(linear: Linear, noise: Noise, record: Record, motion: Motion) -> tuple[Motion, np.ndarray]:
+    """Motion by all rows of a log, and the unexplained acceleration, slow errors and waves, as in `Innovations`.
+
+    Parameters
+    ----------
+    linear : Linear
+    noise : Noise
+    record : Record
+    motion : Motion
+        That the problem was linearised about.
+
+    Returns
+    -------
+    tuple of Motion, (..., n, 12) array
+    """
+    found = innovations(linear, noise, record, motion)
+    if found.motion is None or found.slow is None:
+        raise ValueError("the filter has smoothed no motion")
+    return found.motion, found.slow
 
 
 def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray:

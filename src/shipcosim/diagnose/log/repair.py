@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +26,7 @@ __all__ = ["repaired"]
 CUT_OUT = ("gap", "heading_wrap")
 
 
-def repaired(log: xarray.Dataset, findings: list[Finding] = ()) -> xarray.Dataset:
+def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Dataset:
     """The log on an even grid, with the faults that were found put right or cut out.
 
     Rows are sorted; of rows with the same time the first is kept; rows without a time are left out. Time runs as the

@@ -1,6 +1,14 @@
 """Rows of a log: which are usable, how far apart they are, which lie in some segments; its arrays."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["arrays_of", "inside", "usable_rows", "usual_step"]
 
@@ -17,13 +25,13 @@ def usual_step(time: np.ndarray) -> float:
     return float(f"{np.median(np.diff(time)):.9g}")
 
 
-def inside(time: np.ndarray, segments) -> np.ndarray:
+def inside(time: np.ndarray, segments: Sequence[tuple[float, float]]) -> np.ndarray:
     """Which times are in one of the segments; all where there is none, (n,) array of bool."""
     if not segments:
         return np.ones(len(time), bool)
     return np.any([(time >= first) & (time <= last) for first, last in segments], axis=0)
 
 
-def arrays_of(log):
+def arrays_of(log: xarray.Dataset) -> dict[str, np.ndarray]:
     """A log as a dict of arrays by role, with its `time`."""
     return {"time": log["time"].values} | {str(name): log[name].values for name in log.data_vars}

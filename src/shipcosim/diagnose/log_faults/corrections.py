@@ -119,6 +119,8 @@ def with_right_connections(found: Identification) -> Identification:
         return found
     score = at_first_sight(found.problem)
     for name, what in found.ship.wiring.odd.items():
+        if found.ship.wiring is None:
+            break
         ship = replace(found.ship, wiring=put_right(found.ship.wiring, name))
         problem = identification_problem(found.repaired, ship, found.causes)
         if (rewired := at_first_sight(problem)) > score + FAULT:

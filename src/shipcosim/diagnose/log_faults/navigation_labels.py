@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.innovations import innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.log.checks.kinematics import filter_for, is_clear, position_motion
@@ -139,7 +139,7 @@ def _by_row(problem, record):
     """Log-likelihood of each row, about the motion that the record itself describes."""
     motion = first_motion(record, problem.model)
     for _ in range(2):
-        motion = innovations(linearise(motion, record, problem.model, []), problem.noise, record, motion).motion
+        motion, _ = smoothed(linearise(motion, record, problem.model, []), problem.noise, record, motion)
     found = innovations(linearise(motion, record, problem.model, []), problem.noise, record)
     return -0.5 * ((found.white[..., 0] ** 2).sum(-1) + found.log_determinant)
 

@@ -115,7 +115,7 @@ def _third_party_loads(
     """Load of a third-party FMU by its surrogate, at a velocity through the water."""
     given = motion._asdict() | dict(zip(("u_r", "v_r"), through, strict=True))
     given |= drives_of(*inputs.units.get(name, (0.0, 0.0)))
-    return model.third_party[name].surrogate.loads(inputs.time, given, model.parts[name])
+    return model.third_party[name].built_surrogate.loads(inputs.time, given, model.parts[name])
 
 
 def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from shipcosim.cosim import RunOptions, simulate
-from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, BlackBox, ThirdPartyFmu, drives_of
+from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, BlackBox, ThirdPartyFmu, drives_of, number_of
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.scenario import Scenario
@@ -64,9 +64,12 @@ class QuadraticThrust(NamedTuple):
         share = np.where(rpm >= 0.0, self.ahead, self.astern)
         along, across = (c, s, self.x * s - self.y * c), (-s, c, self.x * c + self.y * s)
         thrust, slope = share * rpm * np.abs(rpm), 2.0 * share * np.abs(rpm)
-        return tuple(
-            tuple(size * arm for arm in arms) for size, arms in ((thrust, along), (slope, along), (thrust, across))
-        )
+        return _times(thrust, along), _times(slope, along), _times(thrust, across)
+
+
+def _times(size: Arithmetic, load: Load) -> Load:
+    surge, sway, yaw = load
+    return size * surge, size * sway, size * yaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +118,8 @@ class Surrogate:
         low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
         share = at - low
         rest = self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share
-        given = given | {name: given[name] + sign * getattr(part, off) for name, off, sign in _offsets(given, part)}
+        told = {name: given[name] + sign * getattr(part, off) for name, off, sign in _offsets(given, part)}
+        given = {**given, **told}
         found = list(rest[0])
         off = [given[name] - (v[low] * (1.0 - share) + v[low + 1] * share) for name, v in self.about.items()]
         off += [getattr(part, name) - value for name, value in self.nominal.items()]
@@ -125,7 +129,8 @@ class Surrogate:
             ideal = self.thrust.loads(given["rpm"], given["azimuth"])[0]
             found = [load + more for load, more in zip(found, ideal, strict=True)]
         kept = 1.0 - getattr(part, "thrust_loss", 0.0)
-        return tuple(kept * load for load in found)
+        surge, sway, yaw = found
+        return kept * surge, kept * sway, kept * yaw
 
     def fits(self, record: Record, units: Mapping[str, np.ndarray]) -> bool:
         """Whether the surrogate was built for these times and similar inputs."""
@@ -174,8 +179,8 @@ def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipMod
     parts, tolerances = dict(model.parts), dict(model.tolerances)
     for name, one in third_party.items():
         if "rpm" in one.drives:
-            parts[name] = replace(parts[name], rpm_max=one.surrogate.rpm_max)
-            tolerances[f"{name}.rpm_offset"] = 5e-4 * one.surrogate.rpm_max
+            parts[name] = replace(parts[name], rpm_max=one.built_surrogate.rpm_max)
+            tolerances[f"{name}.rpm_offset"] = 5e-4 * one.built_surrogate.rpm_max
     return replace(model, parts=parts, tolerances=tolerances, third_party=third_party)
 
 
@@ -202,7 +207,7 @@ def surrogates_of(
     dict of str to Surrogate
     """
     moved = dict(zip(MOTION, (*motion, motion.u, motion.v), strict=True))
-    given = {name: moved | units.get(name, {}) for name in third_party}
+    given = {name: {**moved, **units.get(name, {})} for name in third_party}
     runs = [run for name, one in third_party.items() for run in _runs(name, one, given[name])]
     fine = _fine(time, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0))
     fed = {name: {q: np.interp(fine, time, values) for q, values in each.items()} for name, each in given.items()}
@@ -256,7 +261,7 @@ def _simulated(
         start = dict(one.component.start)
         if run.number:
             variable = one.parameters[run.number]
-            start[variable] = one.component.start_value(variable) + run.by
+            start[variable] = number_of(one.component, variable) + run.by
         components[run.name] = replace(one.component, name=run.name, start=start, step_size=None)
         for link in one.links:
             place = f"{run.of} {link.quantity}"
@@ -281,7 +286,7 @@ def _surrogate(
     """The surrogate of a third-party FMU from the runs of its copies."""
     base, *others = (_on_ship(one, run.name, table) for run in runs)
     quantities = [run.quantity for run in runs if run.quantity]
-    nominal = {n: one.component.start_value(v) for n, v in one.parameters.items()}
+    nominal = {n: number_of(one.component, v) for n, v in one.parameters.items()}
     rest = np.stack([base, *((other - base) / run.by for other, run in zip(others, runs[1:], strict=True))])
     about, thrust, most = {q: fed[q] for q in quantities}, QuadraticThrust(), 1.0
     if "rpm" in about:

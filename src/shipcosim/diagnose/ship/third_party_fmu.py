@@ -17,7 +17,17 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.surrogate import Surrogate
     from shipcosim.ssp import Component, Connection, System
 
-__all__ = ["DRIVES", "BlackBox", "Link", "ThirdPartyFmu", "drives_of", "part_of", "problem_of", "third_party_fmu_of"]
+__all__ = [
+    "DRIVES",
+    "BlackBox",
+    "Link",
+    "ThirdPartyFmu",
+    "drives_of",
+    "number_of",
+    "part_of",
+    "problem_of",
+    "third_party_fmu_of",
+]
 
 DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
 """What a log says of a thruster, and in which unit it is handed on."""
@@ -74,9 +84,24 @@ class ThirdPartyFmu:
     surrogate: Surrogate | None = None
 
     @property
+    def built_surrogate(self) -> Surrogate:
+        """Its surrogate, once `with_surrogates` has built one."""
+        if self.surrogate is None:
+            raise ValueError(f"{self.component.name} has no surrogate yet")
+        return self.surrogate
+
+    @property
     def drives(self) -> tuple[str, ...]:
         """What a log has to say of it: ``"rpm"`` or ``"thrust"``, ``"azimuth"``."""
         return tuple(kind for kind in DRIVES if any(link.quantity == kind for link in self.links))
+
+
+def number_of(component: Component, name: str) -> float:
+    """Start value of a number of a component."""
+    value = component.start_value(name)
+    if not isinstance(value, (int, float)):
+        raise ValueError(f"{component.name}.{name} is {value!r}, no number")
+    return float(value)
 
 
 def drives_of(first: Arithmetic, azimuth: Arithmetic) -> dict[str, Arithmetic]:
@@ -142,7 +167,7 @@ def _kind(system: System, connection: Connection) -> str | None:
 def _unit(system: System, connection: Connection) -> str | None:
     """Unit in which a log would feed it: that of the system's input, else of the variable."""
     (source, given), (name, variable) = connection.source, connection.target
-    own = system.components[name].fmu.variables[variable].unit
+    own = None if name is None else system.components[name].fmu.variables[variable].unit
     return (system.inputs[given].unit or own) if source is None else own
 
 

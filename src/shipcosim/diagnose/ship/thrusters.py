@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
 from shipcosim.models.propulsion import thruster
@@ -62,13 +63,13 @@ def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
     """
     unit = model.parts[name]
     if name in model.third_party:
-        surrogate, pointed = model.third_party[name].surrogate, "azimuth" in model.drives(name)
+        surrogate, pointed = model.third_party[name].built_surrogate, "azimuth" in model.drives(name)
         b, most = surrogate.thrust, surrogate.rpm_max / 60.0
         return DpThruster(b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, most)
     if isinstance(unit, AzimuthParameters):
         turns = name not in model.fixed
-        axis, rates = model.fixed.get(name, 0.0), (*unit.bollard[:2], unit.rpm_max / 60.0)
-        return DpThruster(unit.x, unit.y, axis, turns, turns, *rates)
+        axis, (ahead, astern) = model.fixed.get(name, 0.0), unit.bollard[:2]
+        return DpThruster(unit.x, unit.y, axis, turns, turns, ahead, astern, unit.rpm_max / 60.0)
     thrust = 3600.0 * unit.thrust_coefficient
     return DpThruster(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
 
@@ -107,14 +108,16 @@ def _loads_of(
 ) -> Load:
     unit, (n, azimuth) = model.parts[name], units[name]
     if isinstance(unit, TunnelParameters):
-        return thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)[-3:]
+        *_, surge, sway, yaw = thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)
+        return surge, sway, yaw
     state = thruster.azimuth_given(n, azimuth, unit=unit)
     neighbour = model.neighbours.get(name)
     extra = {}
     if neighbour:
         n_other, azimuth_other = units[neighbour]
         extra = {"neighbour_azimuth": azimuth_other, "neighbour_rpm": 60.0 * n_other}
-    return thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)[-3:]
+    *_, surge, sway, yaw = thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)
+    return surge, sway, yaw
 
 
 def neighbours_of(system: System, parts: Mapping[str, Any]) -> dict[str, str]:
@@ -170,5 +173,5 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
         speed, direction, start = kinds
         turned = (name, direction) in fed or (name, speed) not in fed
         if not turned or parts[name].azimuth_rate == 0.0:
-            found[name] = float(system.components[name].start_value(start))
+            found[name] = number_of(system.components[name], start)
     return found

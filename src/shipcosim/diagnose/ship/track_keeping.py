@@ -88,7 +88,10 @@ def kept_on_track(
                 ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
             ship = dp.bounded(ship)
     motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
-    series = {name: tuple(np.stack(s, axis=-1) for s in zip(*pairs, strict=True)) for name, pairs in units.items()}
+    series = {}
+    for name, pairs in units.items():
+        speed, direction = (np.stack(part, axis=-1) for part in zip(*pairs, strict=True))
+        series[name] = speed, direction
     return motion, series
 
 

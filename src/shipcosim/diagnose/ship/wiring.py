@@ -43,14 +43,16 @@ class Wiring:
         """The load that the ship gets of a thruster's."""
         if name not in self.loads:
             return load
-        return tuple(sum(share * axis for share, axis in zip(row, load, strict=True)) for row in self.loads[name])
+        surge, sway, yaw = (
+            sum(share * axis for share, axis in zip(row, load, strict=True)) for row in self.loads[name]
+        )
+        return surge, sway, yaw
 
     def driven(self, name: str, units: Mapping[str, tuple[Arithmetic, Arithmetic]]) -> tuple[Arithmetic, Arithmetic]:
         """Speed and direction that a thruster gets, of those logged by thruster."""
-        found = list(units[name])
-        for i, (source, factor) in enumerate(self.drives.get(name, {}).get(kind, (name, 1.0)) for kind in _DRIVES):
-            found[i] = factor * units[source][i]
-        return tuple(found)
+        logged = [self.drives.get(name, {}).get(kind, (name, 1.0)) for kind in _DRIVES]
+        speed, direction = (factor * units[source][i] for i, (source, factor) in enumerate(logged))
+        return speed, direction
 
 
 def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring | None:

@@ -1,12 +1,21 @@
 """The known numbers of a ship where a log would have them, within their tolerances: a set apart from the causes."""
 
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.ssp import parameter, write_ssv
 
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import Fit
+    from shipcosim.ssp import System
 
-def calibrate(system, fit, path):
+
+def calibrate(system: System, fit: Fit, path: str | os.PathLike[str]) -> dict[str, float]:
     """Write a parameter set with every known number of a system moved within its tolerance as a log wants it.
 
     None of this is a cause, and not all of it is true: numbers that the log cannot tell apart share what they explain.

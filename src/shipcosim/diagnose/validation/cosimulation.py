@@ -1,7 +1,11 @@
 """The predictions of a gain as co-simulations: the system itself, from what was known at the start of each segment."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import ceil
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +18,12 @@ from shipcosim.diagnose.validation.thresholds import INPUT_DELAY, MOST, STEP, WE
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.motion import Motion
 from shipcosim.series import make_table
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.validation.gain import Comparison, Predictor
+    from shipcosim.ssp import System
 
 _CALM = {
     "gust_scale": 0.0,
@@ -36,11 +46,18 @@ class Replayed:
         instruments of the ship model.
     """
 
-    system: object
-    signals: object = None
+    system: System
+    signals: Mapping[str, str] | None = None
 
 
-def simulated(comparison, plain, extended, *, most=MOST, progress=None):
+def simulated(
+    comparison: Comparison,
+    plain: Replayed,
+    extended: Replayed | None,
+    *,
+    most: int = MOST,
+    progress: Callable[[int, int], None] | None = None,
+) -> xarray.Dataset:
     """Errors of a comparison, those of the plain and the extended model by co-simulation, on some of its segments.
 
     Parameters
@@ -64,7 +81,7 @@ def simulated(comparison, plain, extended, *, most=MOST, progress=None):
     some = np.linspace(0, comparison.rows.size - 1, count).round().astype(int)
     rows, errors = comparison.rows[some], comparison.errors.isel(segment=some).copy(deep=True)
     replays, done, apart = {"plain": plain}, 0, np.zeros((2, len(HORIZONS), count))
-    if comparison.fit.hypotheses:
+    if comparison.fit.hypotheses and extended is not None:
         replays["extended"] = extended
     for number, (model, one) in enumerate(replays.items()):
         predictor = comparison.predictors[model]
@@ -83,14 +100,21 @@ def simulated(comparison, plain, extended, *, most=MOST, progress=None):
     return errors.assign_coords(replayed=["plain", "extended"])
 
 
-def in_array_form(predictor, rows):
+def in_array_form(predictor: Predictor, rows: np.ndarray) -> Motion:
     """What a model predicts the log to show after the horizons, (horizons, s) arrays."""
     motion = Motion(*(value[rows] for value in predictor.motion))
     found = predicted(motion, rows, predictor.record, predictor.model, in_rows(predictor.record))
     return readings(found, predictor.model)
 
 
-def replayed(one, predictor, rows, *, step_size=STEP, progress=None):
+def replayed(
+    one: Replayed,
+    predictor: Predictor,
+    rows: np.ndarray,
+    *,
+    step_size: float = STEP,
+    progress: Callable[[int, int], None] | None = None,
+) -> Motion:
     """What a system, run from some rows of a log, says that the log will show after the horizons.
 
     Parameters
@@ -148,7 +172,9 @@ def _at(series, time, end):
     return (1.0 - share) * series[:, after - 1] + share * series[:, after]
 
 
-def driving_table(system, predictor, step_size, lag=0.0):
+def driving_table(
+    system: System, predictor: Predictor, step_size: float, lag: float = 0.0
+) -> tuple[xarray.Dataset, dict[str, Any]]:
     """What drives a ship in a log as a table for the inputs of a system, and what must hold besides for a replay.
 
     An input acts on the ship a step and a half after its row, so the table is that much early.

@@ -1,7 +1,9 @@
 """What naming the cause is worth: how far predictions with each model are off, on rows that nothing was fitted on."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
@@ -21,6 +23,11 @@ from shipcosim.diagnose.validation.predictions import (
 from shipcosim.diagnose.validation.split import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
 from shipcosim.diagnose.validation.thresholds import BLOCK, DRAWS, FADES
 from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
 
 MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
 _HELD = {"plain": "bias_observer", "extended": "extended_observer", "calibrated": None, "floor": None}
@@ -43,10 +50,10 @@ class Predictor:
         By the rows until each row, (n,) arrays.
     """
 
-    record: Any
-    model: Any
-    original: Any
-    motion: Any
+    record: Record
+    model: ShipModel
+    original: ShipModel
+    motion: Motion
 
 
 @dataclass(frozen=True)
@@ -73,16 +80,16 @@ class Comparison:
         Of the models ``plain`` and ``extended``.
     """
 
-    errors: Any
-    fit: Any
-    train: Any
-    rows: Any
-    seen: Any
-    observers: dict
-    predictors: dict
+    errors: xarray.Dataset
+    fit: Fit
+    train: np.ndarray
+    rows: np.ndarray
+    seen: Motion
+    observers: dict[str, tuple[str, float, float | None]]
+    predictors: dict[str, Predictor]
 
 
-def compare(problem, fit, *, train=None):
+def compare(problem: IdentificationProblem, fit: Fit, *, train: np.ndarray | None = None) -> Comparison | None:
     """Predict with the plain model, a bias observer, the causes of a fit, and see how far each is off.
 
     Parameters
@@ -149,7 +156,7 @@ def _judged(model, inside, rows, seen, holds):
     return found
 
 
-def calibrated(fit):
+def calibrated(fit: Fit) -> ShipModel:
     """The ship model of a fit with every known number where the log would have it, within its tolerance."""
     changes = zip(fit.columns, fit.left, strict=True)
     moved = [(path, size * share) for column, share in changes for path, size in column.changes.items()]
@@ -206,12 +213,12 @@ def _observed(problem, about_fit, motion, seen, ship_models):
     return found
 
 
-def rms(errors, channel, model, horizon=HORIZONS[-1]):
+def rms(errors: xarray.Dataset, channel: str, model: str, horizon: float = HORIZONS[-1]) -> float:
     """Root mean square over the segments of one error of one model."""
     return float(np.sqrt((errors[channel].sel(model=model, horizon=horizon) ** 2).mean()))
 
 
-def baseline(errors):
+def baseline(errors: xarray.Dataset) -> dict[str, list[float]]:
     """The entry ``baseline`` of diagnosis.json: root mean square over the segments, of the plain model.
 
     Parameters
@@ -230,7 +237,7 @@ def baseline(errors):
     }
 
 
-def gain(errors, seed=1, fewest=1):
+def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, Any]:
     """The entry ``gain`` of diagnosis.json: root mean square position errors after 60 s.
 
     Parameters
@@ -264,20 +271,22 @@ def gain(errors, seed=1, fewest=1):
     }
 
 
-def beyond_observer(errors):
+def beyond_observer(errors: xarray.Dataset) -> float:
     """Share of what the bias observer leaves of the explainable error that the cause takes away beside one; or NaN."""
     rival, after = (rms(errors, "position", model) for model in ("bias_observer", "extended_observer"))
     return float(_share(rival, after, min(rms(errors, "position", "floor"), after)))
 
 
-def chance_of_more(errors, model, rival, seed=1):
+def chance_of_more(errors: xarray.Dataset, model: str, rival: str, seed: int = 1) -> float:
     """How sure it is that one model misses more than another after the longest horizon: share of bootstrap draws."""
     squares = errors["position"].isel(horizon=-1).sel(model=[model, rival]).values ** 2
     one, other = _resampled(squares, errors["start_time"].values, seed)
     return float((one > other).mean())
 
 
-def by_condition(errors, names, channel="position", horizon=HORIZONS[-1]):
+def by_condition(
+    errors: xarray.Dataset, names: str, channel: str = "position", horizon: float = HORIZONS[-1]
+) -> dict[Any, dict[str, float]]:
     """Root mean square errors of all models by conditions of the segments.
 
     Parameters
@@ -301,7 +310,7 @@ def by_condition(errors, names, channel="position", horizon=HORIZONS[-1]):
     }
 
 
-def parts(errors, names="regime"):
+def parts(errors: xarray.Dataset, names: str = "regime") -> dict[Any, xarray.Dataset]:
     """The errors of a comparison by conditions of the segments.
 
     Parameters

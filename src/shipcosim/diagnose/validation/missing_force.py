@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.innovations import smoothed
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.validation.predictions import mass_matrix
@@ -17,6 +17,7 @@ from shipcosim.models.core.kinematics import to_body, to_ned
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
 
@@ -107,12 +108,14 @@ def missing_force(
     """
     record = problem.record
     noise = replace(problem.noise, walk=problem.noise.jolt / learning)
-    found = innovations(linearise(motion, record, model, []), noise, record, motion)
-    force = np.where(record.known[:, None], found.slow[:, :3] @ mass_matrix(model).T, np.nan)
-    return _in_frames(*force.T, found.motion, record, model)
+    motion, slow = smoothed(linearise(motion, record, model, []), noise, record, motion)
+    force = np.where(record.known[:, None], slow[:, :3] @ mass_matrix(model).T, np.nan)
+    return _in_frames(force.T, motion, record, model)
 
 
-def _in_frames(surge, sway, yaw, motion, record, model):
+def _in_frames(force: np.ndarray, motion: Motion, record: Record, model: ShipModel) -> xarray.Dataset:
+    """Table of a force, (3, n) array in body axes, and of what it may depend on."""
+    surge, sway, yaw = force
     north, east = to_ned(motion.psi, surge, sway)
     columns = {
         "surge": (surge, "N", "missing force forward"),

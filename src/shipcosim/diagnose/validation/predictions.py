@@ -1,16 +1,24 @@
 """Open-loop predictions of a ship from many rows of a log at once, and what an observer knew when they began."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.innovations import innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.ship.instruments import LAGS, readings, true_motion
 from shipcosim.diagnose.validation.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.innovations import Noise
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
 
 _FORCE = slice(6, 9)
 
@@ -30,18 +38,18 @@ class Known:
     motion: Any
     force: Any
 
-    def of(self, which):
+    def of(self, which: Any) -> Known:
         """What some of the observers knew, those on the first axis."""
         return Known(Motion(*(value[which] for value in self.motion)), self.force[which])
 
 
-def mass_matrix(model):
+def mass_matrix(model: ShipModel) -> np.ndarray:
     """Mass and added mass of the ship, (3, 3) array in surge, sway and yaw."""
     i11, i22, i26, i62, i66 = model.parts["hull"].inverse_mass
     return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
 
 
-def replayable(record, model, seen):
+def replayable(record: Record, model: ShipModel, seen: Motion) -> tuple[Record, ShipModel]:
     """A log as replays need it: no channel late, and the wind over ground, as one ship model understands the log.
 
     Parameters
@@ -77,7 +85,7 @@ def _true_wind(speed, direction, motion):
     return np.hypot(north, east), np.unwrap(np.arctan2(-east, -north))
 
 
-def earth_fixed(linear, motion, model):
+def earth_fixed(linear: Linear, motion: Motion, model: ShipModel) -> Linear:
     """The problem with an unexplained load that walks in the earth's frame, as the bias of a DP observer does.
 
     Parameters
@@ -102,7 +110,7 @@ def earth_fixed(linear, motion, model):
     return linear._replace(transition=transition)
 
 
-def restarted(linear, motion, record, model):
+def restarted(linear: Linear, motion: Motion, record: Record, model: ShipModel) -> Linear:
     """The problem of a ship model that differs little from the one that was linearised, about the same motion."""
     ahead = advanced(Motion(*(value[:-1] for value in motion)), record, model)
     driven = np.zeros((*linear.driven.shape[:-1], 1))
@@ -112,7 +120,7 @@ def restarted(linear, motion, record, model):
     return linear._replace(driven=driven, seen=seen[..., None])
 
 
-def reference(linear, motion, noise, record, model):
+def reference(linear: Linear, motion: Motion, noise: Noise, record: Record, model: ShipModel) -> Motion:
     """What the instruments show without their noise, whatever the model: smoothed with a force that is free to change.
 
     Parameters
@@ -131,12 +139,11 @@ def reference(linear, motion, noise, record, model):
         (n,) arrays.
     """
     jolt = REFERENCE_JOLTS * noise.jolt
-    return readings(
-        innovations(linear, replace(noise, jolt=jolt, walk=jolt / REFERENCE_JOLTS), record, motion).motion, model
-    )
+    weak = replace(noise, jolt=jolt, walk=jolt / REFERENCE_JOLTS)
+    return readings(smoothed(linear, weak, record, motion)[0], model)
 
 
-def stacked(problems):
+def stacked(problems: Sequence[Linear]) -> Linear:
     """Problems of one log, each with its first column alone, side by side on a new axis after the rows."""
     return Linear(
         np.stack([p.transition for p in problems], axis=1),
@@ -147,7 +154,9 @@ def stacked(problems):
     )
 
 
-def observed(problems, noise, record, motions, models):
+def observed(
+    problems: Sequence[Linear], noise: Noise, record: Record, motions: Sequence[Motion], models: Sequence[ShipModel]
+) -> Known:
     """What observers knew, one for each problem.
 
     Parameters
@@ -171,7 +180,17 @@ def observed(problems, noise, record, motions, models):
     return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
 
 
-def predicted(motion, rows, record, model, horizons, force=None, *, earth=True, fades=0.0):
+def predicted(
+    motion: Motion,
+    rows: np.ndarray,
+    record: Record,
+    model: ShipModel,
+    horizons: Sequence[int],
+    force: np.ndarray | None = None,
+    *,
+    earth: bool | np.ndarray = True,
+    fades: float | np.ndarray = 0.0,
+) -> Motion:
     """Where the ship is taken to be, from some rows on, by what drove her.
 
     Parameters
@@ -236,7 +255,7 @@ def _at(inputs, rows):
     return type(inputs)(inputs.time[rows], units, *wind)
 
 
-def missing(found, seen, rows):
+def missing(found: Motion, seen: Motion, rows: np.ndarray) -> dict[str, np.ndarray]:
     """By how much predictions are off.
 
     Parameters

@@ -1,6 +1,9 @@
 """Which rows of a log parameters are fitted on, and where on the others predictions can start and be checked."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,16 +19,21 @@ from shipcosim.diagnose.validation.thresholds import (
 )
 from shipcosim.models.core.motion import Motion
 
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import IdentificationProblem
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+
 HORIZONS = (10.0, 30.0, 60.0)
 """Of the predictions. [s]"""
 
 
-def first_rows(record, share=TRAINED):
+def first_rows(record: Record, share: float = TRAINED) -> np.ndarray:
     """The first rows of a log, (n,) bool array."""
     return np.arange(record.time.size) < share * record.time.size
 
 
-def without_headings(record, middle, width=np.pi / 2.0):
+def without_headings(record: Record, middle: float, width: float = np.pi / 2.0) -> np.ndarray:
     """Rows whose heading is measured and not in a sector: training rows for a gain on headings not fitted on.
 
     Parameters
@@ -41,18 +49,18 @@ def without_headings(record, middle, width=np.pi / 2.0):
     return np.abs(np.angle(np.exp(1j * (record.measured[:, 2] - middle)))) > 0.5 * width
 
 
-def is_idle(record):
+def is_idle(record: Record) -> np.ndarray:
     """Rows on which no thruster turns, (n,) bool array."""
     speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
     return np.all([n < IDLE * n.max() for n in speeds], axis=0) if speeds else np.ones(record.time.size, bool)
 
 
-def in_rows(record):
+def in_rows(record: Record) -> list[int]:
     """The horizons in rows."""
     return [max(1, round(time / record.step)) for time in HORIZONS]
 
 
-def starts(record):
+def starts(record: Record) -> np.ndarray:
     """Rows from which a prediction can be made and checked.
 
     Parameters
@@ -75,7 +83,7 @@ def starts(record):
     return rows[sound]
 
 
-def sorted_by(train, rows, record):
+def sorted_by(train: np.ndarray, rows: np.ndarray, record: Record) -> tuple[np.ndarray, np.ndarray]:
     """Starts of predictions that are wholly on training rows, and of those that touch none.
 
     Parameters
@@ -94,7 +102,7 @@ def sorted_by(train, rows, record):
     return rows[used == last + 1], rows[used == 0]
 
 
-def trained(problem, train):
+def trained(problem: IdentificationProblem, train: np.ndarray) -> IdentificationProblem:
     """The case without the rows that are not to be trained on, up to the last one that is.
 
     Parameters
@@ -108,7 +116,7 @@ def trained(problem, train):
     IdentificationProblem
     """
     n = np.flatnonzero(train)[-1] + 1
-    train, record, base = train[:n], problem.record, problem.base
+    train, record, base = train[:n], problem.record, problem.linear
     steps = train[:-1] & train[1:]
     cut = replace(
         record,
@@ -129,7 +137,9 @@ def trained(problem, train):
     return replace(problem, record=cut, motion=Motion(*(value[:n] for value in problem.motion)), base=linear)
 
 
-def conditions(record, seen, rows, train, model):
+def conditions(
+    record: Record, seen: Motion, rows: np.ndarray, train: np.ndarray, model: ShipModel
+) -> dict[str, np.ndarray]:
     """What the ship did in each prediction, as coordinates of its segment.
 
     Parameters

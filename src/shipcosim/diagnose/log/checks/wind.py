@@ -138,7 +138,7 @@ def _unit(time, y, x, smooth, wind, slow):
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 
 
-def leaps(time, speed, segment, factor):
+def leaps(time: np.ndarray, speed: np.ndarray, segment: tuple[float, float] | None, factor: float) -> bool:
     """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log.
 
     Parameters
