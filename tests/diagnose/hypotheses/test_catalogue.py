@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.diagnose.experiment.testability import log_facts
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
+from shipcosim.diagnose.hypotheses.cause import FACTS
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import new
@@ -134,6 +136,33 @@ def test_a_file_with_the_name_of_a_known_cause_replaces_it(tmp_path):
     (tmp_path / "mass.toml").write_text(mine, encoding="utf-8")
     catalogue = read_catalogue(tmp_path)
     assert set(catalogue) == set(CONTRACT) and list(catalogue["mass"].parameters) == ["coefficient"]
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('statement = "a side force of {size}"', "size"),
+        ('next_step = "Inspect {coefficient}."', "coefficient"),
+        ('why_not_testable = "the swell was {swell}"', "swell"),
+        ('law = "turning"', "sought_by"),
+        ('law = "vector"', "two parameters"),
+    ],
+)
+def test_text_or_law_that_lacks_something_is_refused_with_what_it_lacks(tmp_path, line, said):
+    (tmp_path / "one.toml").write_text(MINE.replace('reference = "-"', f'reference = "-"\n{line}'), encoding="utf-8")
+    with pytest.raises(ShipcosimError, match=said):
+        read_catalogue(tmp_path)
+
+
+def test_numbers_that_an_extension_or_a_search_names_are_numbers_of_the_ship():
+    ship = set(twin.model().numbers)
+    for cause in read_catalogue().values():
+        assert set(cause.sought_by) <= ship
+        assert cause.extension is None or set(cause.extension.parameters) <= ship
+
+
+def test_facts_of_a_log_are_those_that_texts_can_have():
+    assert set(log_facts(twin.problem("healthy"))) == set(FACTS)
 
 
 def test_everything_wrong_in_a_folder_is_said_with_file_and_field(tmp_path):
