@@ -1,7 +1,7 @@
-"""FMU of what stands between a ship and her log."""
+"""FMU of the instruments: measured motion with their errors and lag."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.ship.instruments import InstrumentParameters, recalled, remembered, shown
+from shipcosim.models.ship.instruments import InstrumentParameters, history_with, motion_at, readings
 
 
 class Instruments(Fmu):
@@ -24,17 +24,17 @@ class Instruments(Fmu):
     errors = Parameters(InstrumentParameters)
 
     def start(self):
-        self.history = ((self.start_time, self._shown()),)
+        self.history = ((self.start_time, self._readings()),)
         self._write(self.start_time)
 
     def step(self, t, h):
         then = t + h - self.errors.lag
-        self.history = remembered(self.history, t, self._shown(), then)
+        self.history = history_with(self.history, t, self._readings(), then)
         self._write(then)
 
-    def _shown(self):
+    def _readings(self):
         e = self.errors
-        return shown(
+        return readings(
             *(self.x, self.y, self.psi, self.u, self.v, self.r),
             heading_bias=e.heading_bias,
             lever_x=e.lever_x,
@@ -43,5 +43,5 @@ class Instruments(Fmu):
         )
 
     def _write(self, t):
-        measured = recalled(self.history, t)
+        measured = motion_at(self.history, t)
         self.x_meas, self.y_meas, self.psi_meas, self.u_meas, self.v_meas, self.r_meas = measured

@@ -57,7 +57,7 @@ def seen(run, ship, rows, errors=None):
     motion = [run[f"{ship}.{name}"].values[rows] for name in ("x", "y", "psi", "u", "v", "r")]
     motion[2] = np.unwrap(motion[2])
     given = {"heading_bias": 0.0, "lever_x": 0.0, "lever_y": 0.0, "velocity_scale": 1.0} | (errors or {})
-    found = np.stack(instruments.shown(*motion, **given))
+    found = np.stack(instruments.readings(*motion, **given))
     found[2] = motion[2] + given["heading_bias"]
     return found
 

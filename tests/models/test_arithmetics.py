@@ -207,7 +207,7 @@ CASES = [
         [(t, *ends) for t in (-5.0, 30.0, 99.0) for ends in ((0.3, 0.0, -0.3, 0.1), (0.0, 0.0, 0.2, -0.2))],
         constants=dict(time_start=0.0, time_end=60.0),
     ),
-    *(Case(function, SHIP, constants=ERRORS) for function in (instruments.shown, instruments.motion_of)),
+    *(Case(function, SHIP, constants=ERRORS) for function in (instruments.readings, instruments.true_motion)),
     Case(thruster.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
 ]
 

@@ -13,7 +13,7 @@ from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
-from shipcosim.models.ship.instruments import motion_of
+from shipcosim.models.ship.instruments import true_motion
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import check_file, new, read, read_system, with_values
@@ -187,7 +187,7 @@ def test_log_of_the_extended_system_is_that_of_wrong_instruments(extended, runs)
     np.testing.assert_allclose(log["sway"], c * (v + 5.0 * r) - s * (u + 2.0 * r), atol=1e-9)
     np.testing.assert_allclose(log["yaw_rate"], r, atol=1e-9)
     assert extension.lag == 1.5
-    again = motion_of(*(log[role] for role in extension.signals), **extension.errors)
+    again = true_motion(*(log[role] for role in extension.signals), **extension.errors)
     np.testing.assert_allclose(again, (x, y, psi, u, v, r), atol=1e-9)
 
 

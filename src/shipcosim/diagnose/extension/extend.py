@@ -34,8 +34,8 @@ class Extension:
     signals : dict of str to str
         By role (``"north"``, ``"heading"``): the signal of the extended system that shows what the log should.
     errors : dict of str to float
-        Errors of the instruments, as `shipcosim.models.ship.instruments.motion_of` takes them to find the state that a
-        run from a logged row starts from.
+        Errors of the instruments, as `shipcosim.models.ship.instruments.true_motion` takes them to find the state from
+        which a run from a logged row starts.
     lag : float
         By how much those signals are late. [s]
     remarks : tuple of str

@@ -23,7 +23,7 @@ DEGREE = math.pi / 180.0
 
 @dataclass(frozen=True)
 class DpShip:
-    """The ship as observer and control law know her."""
+    """Model of the ship in observer and control law."""
 
     mass_surge: float = quantity(557.55e3, "kg", "M11, mass with added mass", "m + A11, gunnerus-33m9", minimum=1.0)
     mass_sway: float = quantity(743.4e3, "kg", "M22, mass with added mass", "m + A22, gunnerus-33m9", minimum=1.0)

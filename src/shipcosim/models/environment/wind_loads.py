@@ -15,7 +15,7 @@ from shipcosim.models.ship.load_tables import WIND_33M9
 
 @dataclass(frozen=True)
 class WindParameters:
-    """What the wind finds to act on."""
+    """Wind load coefficients."""
 
     wind_table: str = quantity(
         WIND_33M9,

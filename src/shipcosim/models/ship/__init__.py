@@ -1,1 +1,1 @@
-"""The ship: hull, motion, sensors and what her instruments show."""
+"""The ship: hull, equations of motion, sensors, errors of instruments."""

@@ -28,7 +28,7 @@ class InstrumentParameters:
     lag: float = quantity(0.0, "s", "by how much all of it is late", "neutral", minimum=0.0)
 
 
-def shown(
+def readings(
     x: Arithmetic,
     y: Arithmetic,
     psi: Arithmetic,
@@ -62,7 +62,7 @@ def shown(
     Ahead at 5 m/s with a compass that shows 90 deg too much, the ship seems to slip to port:
 
     >>> from math import pi
-    >>> [round(value, 3) for value in shown(0.0, 0.0, 0.0, 5.0, 0.0, 0.0, heading_bias=pi / 2)]
+    >>> [round(value, 3) for value in readings(0.0, 0.0, 0.0, 5.0, 0.0, 0.0, heading_bias=pi / 2)]
     [0.0, 0.0, 1.571, 0.0, -5.0, 0.0]
     """
     north, east = to_ned(psi, lever_x, lever_y)
@@ -71,7 +71,7 @@ def shown(
     return Motion(x + north, y + east, wrap(psi + heading_bias), u, v, r)
 
 
-def motion_of(
+def true_motion(
     x: Arithmetic,
     y: Arithmetic,
     psi: Arithmetic,
@@ -84,7 +84,7 @@ def motion_of(
     lever_y: Arithmetic = 0.0,
     velocity_scale: Arithmetic = 1.0,
 ) -> Motion:
-    """True motion that belongs to a measured one, the inverse of `shown`: for runs that start from a logged state.
+    """True motion that belongs to a measured one, the inverse of `readings`: for runs that start from a logged state.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def motion_of(
     return Motion(x - north, y - east, psi, u, v, r)
 
 
-def remembered(
+def history_with(
     history: tuple[tuple[float, Motion], ...], t: float, values: Motion, since: float
 ) -> tuple[tuple[float, Motion], ...]:
     """History of a motion with one more entry, without entries that are older than needed.
@@ -132,7 +132,7 @@ def remembered(
     return (*history[max(first - 1, 0) :], (t, values))
 
 
-def recalled(history: tuple[tuple[float, Motion], ...], t: float) -> Motion:
+def motion_at(history: tuple[tuple[float, Motion], ...], t: float) -> Motion:
     """Motion at a time of its history: linear between entries, headings the shorter way.
 
     Before the first entry the motion is that of the first; after the last it is extrapolated from the last two, because
@@ -153,7 +153,7 @@ def recalled(history: tuple[tuple[float, Motion], ...], t: float) -> Motion:
     Examples
     --------
     >>> at_0, at_2 = Motion(0.0, 0.0, 3.1, 0.0, 0.0, 0.0), Motion(4.0, 0.0, -3.1, 0.0, 0.0, 0.0)
-    >>> half_way = recalled(((0.0, at_0), (2.0, at_2)), 1.0)
+    >>> half_way = motion_at(((0.0, at_0), (2.0, at_2)), 1.0)
     >>> half_way.x, round(half_way.psi, 3)
     (2.0, -3.142)
     """
