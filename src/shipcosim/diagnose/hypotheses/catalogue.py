@@ -1,4 +1,4 @@
-"""The catalogue of causes, read from one file each, and the hypotheses that they are on one ship."""
+"""The catalogue of causes, read from one file each, and their hypotheses: each cause at each place of one ship."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class HypothesisParameter:
     name, unit : str
         As reported.
     paths : tuple of str
-        Numbers that it turns.
+        Numbers of the ship that take its value.
     neutral, typical, tolerance : float
     bounds : tuple of two floats
     factor : float

@@ -1,4 +1,4 @@
-"""The Kalman filter and the smoother over the rows of a log, compiled: the only loops that no array form takes away.
+"""Kalman filter and smoother over the rows of a log. They are recursive, hence compiled with numba.
 
 What the filter weighs measurements by depends on the problem and its noise alone, not on the columns that are filtered:
 it is computed by itself, and serves any number of columns, now or later. Rows come first in all arrays, then logs; an

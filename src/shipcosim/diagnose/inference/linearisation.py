@@ -1,4 +1,4 @@
-"""A log as a linear problem: what each number, a little changed, would have done to the whitened innovations.
+"""Linearisation of a log: what a small change of each number of the ship does to her motion and her measurements.
 
 About a motion near the measured one the ship is a linear system that varies in time. Everything vectorises over the
 rows of a log and over several logs; only the filter goes from row to row.

@@ -1,4 +1,4 @@
-"""What surrounds the ship, and what is between her and her log: neutral unless a cause acts."""
+"""Current, wave drift and line that act on the ship: neutral unless a cause acts."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from shipcosim.cosim import RunOptions, simulate
-from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, BlackBox, ThirdPartyFmu, drives_of, number_of
+from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, ThirdPartyFmu, ThirdPartyPart, drives_of, number_of
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.scenario import Scenario
@@ -98,7 +98,7 @@ class Surrogate:
     thrust: QuadraticThrust
     rpm_max: float
 
-    def loads(self, time: np.ndarray, given: Mapping[str, Arithmetic], part: BlackBox) -> Load:
+    def loads(self, time: np.ndarray, given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> Load:
         """Loads on the ship.
 
         Parameters
@@ -107,7 +107,7 @@ class Surrogate:
             [s]
         given : dict of str to array
             By quantity, at these times.
-        part : BlackBox
+        part : ThirdPartyPart
 
         Returns
         -------
@@ -144,7 +144,7 @@ class Surrogate:
         )
 
 
-def _offsets(given: Mapping[str, Arithmetic], part: BlackBox) -> list[tuple[str, str, float]]:
+def _offsets(given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> list[tuple[str, str, float]]:
     """Offsets of the inputs: quantity, number of the part, sign."""
     wrong = (("rpm", "rpm_offset", -1.0), ("azimuth", "azimuth_offset", 1.0))
     return [one for one in wrong if one[0] in given and hasattr(part, one[1])]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DRIVES",
-    "BlackBox",
+    "ThirdPartyPart",
     "Link",
     "ThirdPartyFmu",
     "drives_of",
@@ -38,7 +38,7 @@ _KNOWN = 0.02  # of the thrust, where nobody says more (assumed)
 
 
 @dataclass(frozen=True)
-class BlackBox:
+class ThirdPartyPart:
     """Numbers of the part of a third-party FMU; `part_of` gives it its fields."""
 
 
@@ -203,7 +203,7 @@ def _numbers(drives: Collection[str]) -> dict[str, Any]:
     return found | ({"azimuth_offset": turned} if "azimuth" in drives else {})
 
 
-def part_of(third_party: ThirdPartyFmu) -> BlackBox:
+def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
     """Numbers of a third-party FMU: neutral ones, and its parameters that are known within a tolerance.
 
     Parameters
@@ -212,7 +212,7 @@ def part_of(third_party: ThirdPartyFmu) -> BlackBox:
 
     Returns
     -------
-    BlackBox
+    ThirdPartyPart
     """
     component, numbers = third_party.component, _numbers(third_party.drives)
     for name, variable in third_party.parameters.items():
@@ -221,7 +221,7 @@ def part_of(third_party: ThirdPartyFmu) -> BlackBox:
         value = component.start_value(variable)
         numbers[name] = quantity(value, about.unit or "1", text, "the system's", tolerance=tolerance)
     listed = [(name, float, one) for name, one in numbers.items()]
-    return make_dataclass("BlackBoxOf", listed, bases=(BlackBox,), frozen=True)()
+    return make_dataclass("BlackBoxOf", listed, bases=(ThirdPartyPart,), frozen=True)()
 
 
 def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Problem | None:

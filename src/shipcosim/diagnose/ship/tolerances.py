@@ -1,4 +1,4 @@
-"""How well each number of a ship is known: as her parameter sets say, else in proportion to what is known of ours."""
+"""Tolerances of a ship's numbers: as her parameter sets say, else in proportion to those of our ship."""
 
 from __future__ import annotations
 

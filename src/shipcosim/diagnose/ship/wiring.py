@@ -1,4 +1,4 @@
-"""How a system wires her thrusters, where that is not what their connectors' names say: a hypothesis like any other."""
+"""Connections of thrusters that are not as their connectors' names say; whether they are wrong, the log decides."""
 
 from __future__ import annotations
 
