@@ -221,7 +221,7 @@ def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
         value = component.start_value(variable)
         numbers[name] = quantity(value, about.unit or "1", text, "the system's", tolerance=tolerance)
     listed = [(name, float, one) for name, one in numbers.items()]
-    return make_dataclass("BlackBoxOf", listed, bases=(ThirdPartyPart,), frozen=True)()
+    return make_dataclass("ThirdPartyPartOf", listed, bases=(ThirdPartyPart,), frozen=True)()
 
 
 def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Problem | None:
