@@ -1,4 +1,4 @@
-"""A run again, from what its table says about it."""
+"""A run repeated, from what its table says about it."""
 
 from __future__ import annotations
 

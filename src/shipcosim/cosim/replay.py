@@ -1,4 +1,4 @@
-"""Many segments of one record, each run from the state that was recorded at its start: open-loop predictions."""
+"""Open-loop predictions: many segments of one record, each run from the state that was recorded at its start."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""A run on another engine: what that is told, and how what it gives back becomes our table.
+"""A run on another engine: the job that it is given, and the table made of the outputs that it returns.
 
 The engine gets the components, their start values and the connections between them. What no component feeds is known
-before the run: inputs of the system, and inputs that hang on nothing but change in events. It is set from here.
+before the run: inputs of the system, and inputs without connection that events change. These are set from here.
 """
 
 from __future__ import annotations

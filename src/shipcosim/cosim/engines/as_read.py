@@ -1,4 +1,4 @@
-"""Other tools as their users run them: libcosim and ecos read the file themselves, in a process that may die of it.
+"""libcosim and ecos as their users run them: they read the file themselves, in a process that may crash.
 
 As a script this is that process: it gets a job in JSON and leaves the values of all outputs.
 """

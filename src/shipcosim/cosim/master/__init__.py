@@ -1,1 +1,1 @@
-"""Our master: plan, signals, events, time grid, recorder, snapshots."""
+"""Our master: plan, instantiation, algorithm, signals, events, time grid, recorder, snapshots."""

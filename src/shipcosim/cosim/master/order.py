@@ -1,4 +1,4 @@
-"""In which order components step."""
+"""The order in which components step: Jacobi or Gauss-Seidel."""
 
 from shipcosim.cosim.master.plan import Plan
 from shipcosim.ssp import System

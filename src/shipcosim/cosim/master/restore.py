@@ -1,4 +1,4 @@
-"""Taking a snapshot of a running system, and putting one back."""
+"""Taking a snapshot of a running system, and continuing from one."""
 
 from collections.abc import Mapping, Sequence
 

@@ -35,7 +35,7 @@ class Snapshot:
     start_values : dict of str to value
         What the components were started with, by signal.
     outputs, inputs : dict of str to value
-        Last values of the components' outputs, and what the connections carried to their inputs, by signal.
+        Last values of the components' outputs, and what the connections brought to their inputs, by signal.
     changes : dict of str to (scale, shift)
         Overrides (0, value) and biases (1, value) in force, by signal.
     states : dict of str to bytes

@@ -1,1 +1,1 @@
-"""Running instances of FMUs, whatever version and form of FMI. The only door to FMPy."""
+"""Running instances of FMUs, whatever version and interface type of FMI. The only door to FMPy."""
