@@ -1,1 +1,1 @@
-"""What all models are written in: arithmetic for floats, arrays and tensors, frames, parameters, tables, sampling."""
+"""Basis of all models: arithmetic of floats, arrays and tensors, kinematics, integration, parameters, tables, sampling."""
