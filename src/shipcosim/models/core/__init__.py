@@ -1,1 +1,1 @@
-"""Basis of all models: arithmetic of floats, arrays and tensors, kinematics, integration, parameters, tables, sampling."""
+"""Basis of all models: arithmetic, interpolation, kinematics, integration, parameters, tables, sampling."""
