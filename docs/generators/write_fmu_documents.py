@@ -5,8 +5,9 @@ with this.
 
 A reference result is 60 s of one component of the four-corner run: at each row the inputs it had there, and the outputs
 that the FMU gives when it is started with the first row's inputs and stepped from row to row with the inputs held.
-Parameters have their default values; those FMUs that do nothing with these have others. An FMU that is no part of that
-run keeps times and inputs of its reference.csv.
+Parameters are those of the lengthened R/V Gunnerus (ssp/ships/gunnerus-33m9), her azimuth thruster on the centreline.
+FMUs that do nothing with their defaults have others. An FMU that is no part of that run keeps times and inputs of its
+reference.csv.
 """
 
 import importlib.util
@@ -20,7 +21,7 @@ from shipcosim.cosim import simulate
 from shipcosim.fmi.export.description import table_of_variables
 from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table, read_table, write_table
-from shipcosim.ssp import read_system
+from shipcosim.ssp import read_ship, read_system
 
 ROOT = Path(__file__).resolve().parents[2]
 MARK = "## Variables\n"
@@ -37,13 +38,15 @@ COMPONENTS = {
     "predictor": "predictor",
 }
 """FMU: the component of gunnerus_dp whose inputs it gets."""
+SHIP = "gunnerus-33m9"
 PARAMETERS = {
-    "earth_force": {"north": 1000.0, "east": 2000.0, "onset_time": 10.0, "ramp_time": 20.0},
-    "drift_force": {"north": 1500.0, "east": -1000.0, "onset_time": 5.0},
+    "azimuth_thruster": {"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0},
+    "earth_force": {"north": 1000.0, "east": 2000.0, "onset_time": 10.0, "ramp_time": 20.0, "x": -17.0},
+    "drift_force": {"north": 1500.0, "east": -1000.0, "onset_time": 5.0, "yaw_arm": -1.5},
     "varying_current": {"north_start": 0.3, "east_end": -0.2, "time_start": 10.0, "time_end": 50.0},
     "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
 }
-"""FMU: its parameters in its reference result that are not as by default."""
+"""FMU: its parameters in its reference result that are neither the ship's nor as by default."""
 
 
 def fmu_class(name):
@@ -56,6 +59,15 @@ def fmu_class(name):
     return next(
         c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name and hasattr(c, "step")
     )
+
+
+def parameters_of(name):
+    """Parameters of an FMU in its reference result, by name: the ship's where it is a component of hers."""
+    kinds, found = [group.kind for group in fmu_class(name).groups], {}
+    if name in COMPONENTS and name != "environment":
+        quantities = read_ship(ROOT / "ssp" / "ships" / SHIP).parameter_set({COMPONENTS[name]: kinds})
+        found = {key: quantity.value for key, quantity in quantities[COMPONENTS[name]].items()}
+    return found | PARAMETERS.get(name, {})
 
 
 def readme(name):
@@ -91,7 +103,7 @@ def inputs_of(component, table, system):
 def driven(name, times, inputs):
     """Outputs of an FMU's class under given inputs, by name: one row a time, the first after its start."""
     fmu = fmu_class(name)()
-    for key, value in PARAMETERS.get(name, {}).items():
+    for key, value in parameters_of(name).items():
         setattr(fmu, key, value)
     outputs = [variable for variable in fmu.variables if variable.causality == "output"]
     types = {variable.name: type(variable.start) for variable in fmu.variables}

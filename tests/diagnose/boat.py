@@ -5,11 +5,14 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 import numpy as np
+import ships
 from diagnose import twin
 from scipy.ndimage import gaussian_filter1d
 
 import shipcosim as sc
 from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import DriftParameters
 from shipcosim.series import make_table
 
 SIDES = {"left": -0.9, "right": 0.9}
@@ -47,9 +50,10 @@ def structure(name="boat", **factors):
     boat = sc.new(name)
     with boat.changes():
         boat.add_component("boat", twin.build_stale(twin.ROOT) / "vessel.fmu")
+        ships.lend(boat, "boat", HullParameters, DriftParameters)
         for parameter, (value, tolerance) in HULL.items():
             boat.set(f"boat.{parameter}", value, tolerance=tolerance or None)
-        boat.set("boat.wind_table", small(WindParameters().wind_table))
+        boat.set("boat.wind_table", small(ships.parameters(WindParameters).wind_table))
         for axis in ("north", "east"):
             boat.add_connector(f"wind_{axis}", "input", unit="m/s")
             boat.connect(f"wind_{axis}", f"boat.wind_{axis}")

@@ -5,11 +5,15 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 import numpy as np
+import ships
 from diagnose import twin
 from scipy.ndimage import gaussian_filter1d
 
 import shipcosim as sc
 from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.propulsion.thruster import AzimuthParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import DriftParameters
 from shipcosim.series import make_table
 
 UNITS = {
@@ -72,14 +76,16 @@ def structure(name="ferry", **parameters):
         ):
             ferry.add_connector(name, "input", unit=unit)
             ferry.connect(name, f"environment.{target}")
+        ships.lend(ferry, "ship", HullParameters, DriftParameters)
         for what in ("wind", "current"):
             for axis in ("north", "east"):
                 ferry.connect(f"environment.{what}_{axis}", f"ship.{what}_{axis}")
         for parameter, (value, tolerance) in HULL.items():
             ferry.set(f"ship.{parameter}", value, tolerance=tolerance or None)
-        ferry.set("ship.wind_table", large(WindParameters().wind_table))
+        ferry.set("ship.wind_table", large(ships.parameters(WindParameters).wind_table))
         for number, (unit, place) in enumerate(UNITS.items(), start=1):
             ferry.add_component(unit, fmus / "azimuth_thruster.fmu")
+            ships.lend(ferry, unit, AzimuthParameters)
             for kind, measure in (("rpm", "rpm"), ("azimuth", "deg")):
                 ferry.add_connector(f"{unit}_{kind}", "input", unit=measure)
                 ferry.connect(f"{unit}_{kind}", f"{unit}.{kind}_in")

@@ -22,7 +22,6 @@ from shipcosim.diagnose.ship.inputs import Inputs, first_motion, record_of
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.propulsion.thruster import AzimuthParameters
 from shipcosim.series import write_table
 
 LOSS = Estimate(0.3, 0.02, "1")
@@ -118,8 +117,8 @@ def test_what_no_set_says_is_known_in_proportion_to_the_ship():
     models = along(ferry.structure, short_ferry)[0], along(usv.structure, short_usv)[0], twin.model()
     at = {"hull": ("fore_port", "ship"), "usv": ("left", "hull"), "ours": ("port", "vessel")}
     for model, (unit, vessel) in zip(models, at.values(), strict=True):
-        most = model.get(f"{unit}.rpm_max") / AzimuthParameters.rpm_max
-        assert model.tolerances[f"{unit}.rpm_offset"] == pytest.approx(0.1 * most)
+        known = 0.1 if model.vessel == "vessel" else 5e-4 * model.get(f"{unit}.rpm_max")
+        assert model.tolerances[f"{unit}.rpm_offset"] == pytest.approx(known)
         length = model.get(f"{vessel}.length") / 33.9
         assert model.get("water.drift_yaw_arm") == pytest.approx(-1.5 * length)
         lever = next(s for s in hypotheses_of(read_catalogue(), model) if s.cause == "lever_arm").parameters[0]

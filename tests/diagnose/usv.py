@@ -1,12 +1,16 @@
 """A USV of 5 m with our hull and two of our thrusters that nothing turns; and logs of her, by co-simulation."""
 
 import numpy as np
+import ships
 from diagnose import boat, twin
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import lfilter
 
 import shipcosim as sc
 from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.propulsion.thruster import AzimuthParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import DriftParameters
 from shipcosim.series import make_table
 
 TOE = np.radians(4.0)
@@ -45,9 +49,10 @@ def structure(name="usv", **parameters):
     usv, fmus = sc.new(name), twin.build_stale(twin.ROOT)
     with usv.changes():
         usv.add_component("hull", fmus / "vessel.fmu")
+        ships.lend(usv, "hull", HullParameters, DriftParameters)
         for parameter, (value, tolerance) in HULL.items():
             usv.set(f"hull.{parameter}", value, tolerance=tolerance or None)
-        usv.set("hull.wind_table", boat.small(WindParameters().wind_table))
+        usv.set("hull.wind_table", boat.small(ships.parameters(WindParameters).wind_table))
         for axis in ("north", "east"):
             usv.add_connector(f"wind_{axis}", "input", unit="m/s")
             usv.connect(f"wind_{axis}", f"hull.wind_{axis}")
@@ -55,6 +60,7 @@ def structure(name="usv", **parameters):
             usv.connect(f"current_{axis}", f"hull.current_{axis}")
         for number, (side, (aside, toe)) in enumerate(SIDES.items(), start=1):
             usv.add_component(side, fmus / "azimuth_thruster.fmu")
+            ships.lend(usv, side, AzimuthParameters)
             usv.add_connector(f"{side}_rpm", "input", unit="rpm")
             usv.connect(f"{side}_rpm", f"{side}.rpm_in")
             for given in ("u_r", "v_r", "r"):

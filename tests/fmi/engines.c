@@ -1,7 +1,7 @@
 /* Engines of others in a program that is not Python. Prints a value after some steps:
 
    engines libcosim LIBRARY OspSystemStructure.xml COMPONENT REFERENCE STEPS
-   engines ecos LIBRARY FILE.ssp COMPONENT::NAME STEP_SIZE STEPS
+   engines ecos LIBRARY FILE.ssp COMPONENT::NAME STEP_SIZE STEPS PARAMETER_SET
 */
 
 #include <dlfcn.h>
@@ -70,7 +70,7 @@ static int with_ecos(char **words)
     void *simulation = checked(create(words[0], strtod(words[2], NULL)), "ecos_last_error_msg");
     double value = 0.0;
 
-    if (!initialise(simulation, 0.0, NULL))
+    if (!initialise(simulation, 0.0, words[4]))
         checked(NULL, "ecos_last_error_msg");
     step(simulation, (size_t)atoi(words[3]));
     get(simulation, words[1], &value);
@@ -82,8 +82,8 @@ static int with_ecos(char **words)
 
 int main(int n, char **words)
 {
-    if (n != 7 || !(library = dlopen(words[2], RTLD_NOW | RTLD_GLOBAL))) {
-        fprintf(stderr, "%s\n", n == 7 ? dlerror() : "wrong arguments");
+    if (n < 7 || !(library = dlopen(words[2], RTLD_NOW | RTLD_GLOBAL))) {
+        fprintf(stderr, "%s\n", n >= 7 ? dlerror() : "wrong arguments");
         return 2;
     }
     return strcmp(words[1], "ecos") ? with_libcosim(words + 3) : with_ecos(words + 3);

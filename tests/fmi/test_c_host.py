@@ -105,7 +105,7 @@ class Reference:
         spec = importlib.util.spec_from_file_location("documents", script)
         documents = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(documents)
-        self.parameters, self.fmu = documents.PARAMETERS.get(name, {}), fmu
+        self.parameters, self.fmu = documents.parameters_of(name), fmu
         self.table = read_table(root / "fmus" / name / "reference.csv")
         self.times = self.table["time"].values
         self.inputs, self.outputs = (

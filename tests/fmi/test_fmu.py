@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import pytest
 
 from shipcosim.fmi import Fmu, FmuError, Input, Output, Parameter, Parameters
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import quantity, required, required_table
 
 
 @dataclass(frozen=True)
@@ -152,3 +152,49 @@ def test_a_value_reference_of_another_type_is_refused():
         Ship().get_integer([0])
     with pytest.raises(FmuError, match="99"):
         Ship().set_real([99], [1.0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unit:
+    diameter: float = required("m", "diameter", minimum=0.1)
+    astern: float = required("N", "thrust astern", maximum=0.0)
+    loss: float = quantity(0.0, "1", "loss", "neutral")
+    curve: str = required_table(("J [1]", "KT [1]"), "rows 'J KT'")
+
+
+class Screw(Fmu):
+    """Propeller of some ship."""
+
+    thrust = Output("N", "thrust")
+    speed = Parameter(float, "rpm", "largest speed")
+    unit = Parameters(Unit)
+
+    def step(self, t, h):
+        self.thrust = self.unit.diameter
+
+
+LEFT_OUT = {"speed": 1e30, "diameter": 1e30, "astern": -1e30, "curve": ""}
+
+
+def test_what_describes_a_ship_starts_at_a_value_that_is_none_within_its_bounds():
+    starts = {variable.name: variable.start for variable in Screw.variables if variable.required}
+    assert starts == LEFT_OUT
+    assert not next(variable for variable in Screw.variables if variable.name == "loss").required
+
+
+def test_an_fmu_refuses_to_start_and_names_all_that_was_left_out():
+    screw = Screw("port")
+    with pytest.raises(
+        FmuError, match=r"port at t = 0 s: parameters left out.*: speed \[rpm\], diameter \[m\], astern \[N\], curve\."
+    ):
+        screw.enter_initialization_mode()
+        screw.exit_initialization_mode()
+    with pytest.raises(ValueError, match=r"left out.*diameter \[m\], astern \[N\], curve"):
+        _ = screw.unit
+    screw.diameter, screw.astern, screw.curve = 2.0, 0.0, "0 1"
+    with pytest.raises(FmuError, match=r"parameters left out.*: speed \[rpm\]\."):
+        screw.exit_initialization_mode()
+    screw.speed = 100.0
+    screw.exit_initialization_mode()
+    screw.step(0.0, 1.0)
+    assert screw.thrust == 2.0

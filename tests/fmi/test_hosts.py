@@ -1,6 +1,7 @@
 """Built FMUs in their hosts: FMPy, a process without this package, libcosim, ecos."""
 
 import importlib.util
+import json
 import math
 import subprocess
 import sys
@@ -325,17 +326,28 @@ def test_ecos_runs_it(lag):
             simulation.terminate()
 
 
+def given_to(names, root):
+    """Parameters of the FMUs of the project as in their reference results."""
+    script = root / "docs" / "generators" / "write_fmu_documents.py"
+    spec = importlib.util.spec_from_file_location("documents", script)
+    documents = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(documents)
+    return {name: documents.parameters_of(name) for name in names}
+
+
 def test_all_fmus_of_the_project_run_with_python_numpy_and_fmpy_alone(root, bare_packages):
     """For 10 s each, through FMPy's own master; nothing else of what is installed here can be found."""
     fmus = build_stale(root)
     names = sorted(path.parent.name for path in (root / "fmus").glob("*/*.py") if path.stem == path.parent.name)
     printed = run(
-        f"names, folder = {names!r}, {str(fmus)!r}",
+        f"names, folder, given = {names!r}, {str(fmus)!r}, {given_to(names, root)!r}",
         """
         import importlib.util
         from fmpy import simulate_fmu
         for name in names:
-            rows = simulate_fmu(f"{folder}/{name}.fmu", stop_time=10.0, step_size=0.05, output_interval=0.05)
+            rows = simulate_fmu(
+                f"{folder}/{name}.fmu", stop_time=10.0, step_size=0.05, output_interval=0.05, start_values=given[name]
+            )
             print(name, len(rows), all(abs(value) < 1e9 for row in rows.tolist() for value in row))
         absent = ("shipcosim", "pythonfmu", "scipy", "xarray", "pandas", "pydantic", "pint")
         assert not any(importlib.util.find_spec(module) for module in absent)
@@ -355,12 +367,14 @@ def test_all_fmus_of_the_project_run_in_an_environment_with_only_fmpy_installed(
     if installed.returncode:
         pytest.skip(f"needs a package index: {installed.stderr[-200:]}")
     code = """
-    import sys
+    import json, sys
     from fmpy import simulate_fmu
-    for fmu in sys.argv[1:]:
-        print(len(simulate_fmu(fmu, stop_time=5.0, step_size=0.05, output_interval=0.05)))
+    for fmu, given in json.loads(sys.argv[1]).items():
+        print(len(simulate_fmu(fmu, stop_time=5.0, step_size=0.05, output_interval=0.05, start_values=given)))
     """
-    command = [python, "-I", "-c", textwrap.dedent(code), *map(str, sorted(fmus.glob("*.fmu")))]
+    given = given_to([fmu.stem for fmu in sorted(fmus.glob("*.fmu"))], root)
+    given = {str(fmus / f"{name}.fmu"): values for name, values in given.items()}
+    command = [python, "-I", "-c", textwrap.dedent(code), json.dumps(given)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == ["101"] * 13

@@ -53,7 +53,7 @@ def test_readme_lists_the_variables_of_the_fmu(name, documents):
 def test_built_fmu_gives_its_reference_result(name, fmus, documents, tmp_path):
     """To 1e-9 of each signal's range: libraries of other platforms differ in their last digits."""
     reference = read_table(ROOT / "fmus" / name / "reference.csv")
-    parameters = documents.PARAMETERS.get(name, {})
+    parameters = documents.parameters_of(name)
     for signal, values in stepped(fmus / f"{name}.fmu", reference, parameters, tmp_path).items():
         expected = reference[signal].values.astype(float)
         tolerance = 1e-9 * max(np.ptp(expected), np.abs(expected).max(), 1e-6)
@@ -71,7 +71,9 @@ def stepped(path, reference, parameters, folder):
     )
     fmu.instantiate()
     known = {variable.name: variable.valueReference for variable in description.modelVariables}
-    fmu.setReal([known[name] for name in parameters], list(parameters.values()))
+    for setter, kinds in ((fmu.setReal, float), (fmu.setInteger, int), (fmu.setString, str)):
+        given = {name: value for name, value in parameters.items() if type(value) is kinds}
+        setter([known[name] for name in given], list(given.values()))
     try:
         return _stepped(fmu, description.modelVariables, reference)
     finally:

@@ -12,6 +12,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from ships import parameters
 
 import shipcosim.models
 from shipcosim import angles
@@ -26,17 +27,16 @@ from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning as prediction
 from shipcosim.models.propulsion import drive, propeller, slipstream, thruster
 from shipcosim.models.ship import hull, instruments, vessel
-from shipcosim.models.ships import parameters
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
 LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
 PORT = parameters(thruster.AzimuthParameters, "gunnerus-33m9", "port")
 LOSSES = dict(thrust_loss=0.1, reverse_loss=0.2, azimuth_offset=0.1, rpm_offset=5.0, interaction_loss=0.3)
 LOSSY = replace(PORT, **LOSSES)
-TUNNEL = thruster.TunnelParameters()
+TUNNEL = parameters(thruster.TunnelParameters)
 ERRORS = dict(heading_bias=0.05, lever_x=3.0, lever_y=-1.0, velocity_scale=1.1)
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
-DRIFT = wave_loads.drift_table(vessel.DriftParameters().drift_table)
+DRIFT = wave_loads.drift_table(parameters(vessel.DriftParameters).drift_table)
 BOX = dict(length=33.9, breadth=9.6, draught=2.7)
 XS, YS = (-1.0, 0.0, 0.5, 2.0), (3.0, -1.0, 4.0, 4.0)
 EVEN = interpolation.even_table(np.linspace(-1.0, 1.0, 4), np.array(YS), np.array(XS))
@@ -63,13 +63,17 @@ class Case:
         return f"{self.function.__module__.rpartition('.')[2]}.{self.function.__name__}"
 
 
-DP_SHIP, NOISE, UNITS = observer.DpShip(), observer.ObserverParameters(), allocation.AllocationParameters()
+DP_SHIP, NOISE, UNITS = (
+    parameters(observer.DpShip),
+    parameters(observer.ObserverParameters),
+    parameters(allocation.AllocationParameters),
+)
 LOOP = [
     (1.0, -2.0, 3.0, 0.1, -0.2, 0.02, 3.0, 2.0, 2.9, 0.2, -0.1, 0.01, 0.1, 0.0, -0.1),
     (9.0, 8.0, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.5),
 ]
 OBSERVER = dict(ship=DP_SHIP, parameters=NOISE, design=observer.design(DP_SHIP, NOISE))
-AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=wind.WindParameters())
+AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=parameters(wind.WindParameters))
 REQUESTS = [(5e3, -4e3, 2e4), (9e3, 7e4, 1e5), (-2e5, 0.0, 9e5)]
 
 
@@ -138,7 +142,10 @@ CASES = [
     Case(wind.apparent_wind, [(0.4, 1.0, -0.2, -8.0, 3.0), (-3.0, 0.0, 0.2, 5.0, 6.0)]),
     *(
         Case(wind.wind_loads, [(8.0, -2.0), (5.0, 0.0), (3.0, 3.14)], constants=dict(wind=vane))
-        for vane in (wind.WindParameters(), wind.WindParameters(apparent_wind_offset=0.2))
+        for vane in (
+            parameters(wind.WindParameters),
+            replace(parameters(wind.WindParameters), apparent_wind_offset=0.2),
+        )
     ),
     Case(propeller.propeller_loads, [(*p,) for p in PAIRS] + [(0.0, 0.0), (1.0, 0.0)], constants=dict(propeller=PORT)),
     Case(propeller.bollard_speed, [(5e3,), (-5e3,), (0.0,)], constants=dict(propeller=PORT)),
@@ -189,9 +196,14 @@ CASES = [
     Case(wave_motion.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
     Case(reference.critically_damped, [(2.0, -0.3, 0.01)], lambda *e: (13.0, *e), dict(frequency=0.05)),
     Case(reference.at_rest, [(1.0, -2.0, 0.4)]),
-    Case(reference.step, LOOP, of_reference, dict(h=0.05, parameters=reference.ReferenceParameters(speed_max=0.3))),
+    Case(
+        reference.step,
+        LOOP,
+        of_reference,
+        dict(h=0.05, parameters=replace(parameters(reference.ReferenceParameters), speed_max=0.3)),
+    ),
     Case(observer.step, LOOP, of_observer, OBSERVER),
-    Case(control.step, LOOP, of_control, dict(h=0.1, ship=DP_SHIP, parameters=control.ControlParameters())),
+    Case(control.step, LOOP, of_control, dict(h=0.1, ship=DP_SHIP, parameters=parameters(control.ControlParameters))),
     Case(
         allocation.step,
         [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
@@ -200,8 +212,8 @@ CASES = [
     ),
     Case(prediction.predict, SHIP, of_prediction, AHEAD),
     Case(earth.onset, [(3.0,), (8.0,), (20.0,)], constants=dict(onset_time=5.0, ramp_time=10.0)),
-    Case(earth.earth_force, [(0.4, 1e3, -2e3), (-2.0, 0.0, 0.0)]),
-    Case(earth.drift_force, [(0.4, 1e3, -2e3), (-2.0, 3e3, 2e3), (0.0, 0.0, 0.0)]),
+    Case(earth.earth_force, [(0.4, 1e3, -2e3), (-2.0, 0.0, 0.0)], constants=dict(x=-17.0)),
+    Case(earth.drift_force, [(0.4, 1e3, -2e3), (-2.0, 3e3, 2e3), (0.0, 0.0, 0.0)], constants=dict(yaw_arm=-1.5)),
     Case(
         current.varying_current,
         [(t, *ends) for t in (-5.0, 30.0, 99.0) for ends in ((0.3, 0.0, -0.3, 0.1), (0.0, 0.0, 0.2, -0.2))],

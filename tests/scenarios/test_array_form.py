@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
+import dp_loop
 import numpy as np
-
-from shipcosim.models import dp_loop
 
 WEATHER = ("wind_speed", "wind_from", "current_speed", "current_to")
 
@@ -17,7 +16,7 @@ def array_form(scenario, seeds):
         own[component][variable] = value
     start = {name: own["environment"].pop(name) for name in WEATHER}
     own["environment"]["seed"], own["sensors"]["seed"] = (np.array(column) for column in zip(*seeds, strict=True))
-    default = dp_loop.DpSystem()
+    default = dp_loop.dp_system()
     system = replace(
         default,
         environment=replace(default.environment, **own["environment"]),

@@ -10,9 +10,11 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import brentq, fsolve
+from ships import parameters
 
 from shipcosim.models.environment.waves import jonswap
-from shipcosim.models.ship.load_tables import DRIFT_33M9, WIND_33M9
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.ship.vessel import DriftParameters
 
 RHO, LENGTH, DRAUGHT = 1025.0, 33.9, 2.786
 WIND, WIND_FROM, CURRENT, HEIGHT, PERIOD, WAVES_FROM = 8.0, math.pi / 4, (-0.3, 0.0), 0.5, 6.0, math.pi / 4
@@ -28,7 +30,7 @@ def wind_load(psi, u, v):
     ahead = math.cos(psi) * north + math.sin(psi) * east - u
     aside = math.cos(psi) * east - math.sin(psi) * north - v
     source = math.degrees(math.atan2(-aside, -ahead))
-    table = rows(WIND_33M9)
+    table = rows(parameters(WindParameters).wind_table)
     X, Y, N = (np.interp(abs(source), table[:, 0], table[:, column]) for column in (1, 2, 3))
     side = math.copysign(1.0, source)
     return (ahead**2 + aside**2) * np.array([X, side * Y, side * N])
@@ -36,7 +38,7 @@ def wind_load(psi, u, v):
 
 def wave_load(psi):
     """Mean drift 2 ∫ S D over the frequencies of the table."""
-    table = rows(DRIFT_33M9)
+    table = rows(parameters(DriftParameters).drift_table)
     travel = math.degrees(math.remainder(WAVES_FROM + math.pi - psi, 2 * math.pi))
     omegas = np.unique(table[:, 0])
     headings = np.unique(table[:, 1])

@@ -12,8 +12,9 @@ import matplotlib.pyplot as plt
 from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters
-from shipcosim.models.ships import parameters
+from shipcosim.ssp import read_ship
 
+SHIPS = Path(__file__).resolve().parents[3] / "ssp" / "ships"
 PICTURES = Path(__file__).resolve().parents[2] / "generated" / "pictures"
 KNOT = 1852.0 / 3600.0
 MODEL, REFERENCE, THIRD = "#1f5fa8", "#c8501e", "#5a8f3c"
@@ -36,6 +37,11 @@ plt.rcParams.update(
         "path.simplify_threshold": 0.5,
     }
 )
+
+
+def parameters(kind, ship, component):
+    """Parameters of a ship's component, as the class of parameters `kind`."""
+    return read_ship(SHIPS / ship).parameters(kind, component)
 
 
 def units(ship):

@@ -4,14 +4,14 @@ import json
 
 import matplotlib.pyplot as plt
 import numpy as np
-from common import MODEL, REFERENCE, THIRD, hull_of, save, table
+from common import MODEL, REFERENCE, THIRD, hull_of, parameters, save, table
 
 from shipcosim.models.environment.wave_loads import OMEGA_DRIFT_MAX, drift, drift_table, mean_drift
 from shipcosim.models.environment.waves import components, jonswap
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
-from shipcosim.models.ship.load_tables import DRIFT_33M9
-from shipcosim.models.ships import parameters
+from shipcosim.models.ship.vessel import DriftParameters
 
+DRIFT_33M9 = parameters(DriftParameters, "gunnerus-33m9", "vessel").drift_table
 FRONTAL, LATERAL, LENGTH, DENSITY = 85.0, 210.0, 36.25, 1.224  # m2, m2, m, kg/m3: the lengthened ship
 SHORT_FRONTAL, SHORT_LATERAL, SHORT_LENGTH, SHORT_DENSITY = 81.0, 172.0, 31.25, 1.23
 ARM = 2.0  # m, centroid of the lateral area forward of midships
@@ -37,7 +37,7 @@ def blendermann(shared, angle):
 
 def _wind(shared):
     folder = shared / "reference/data"
-    long, short = WindParameters(), parameters(WindParameters, "gunnerus-28m9", "vessel")
+    long, short = (parameters(WindParameters, ship, "vessel") for ship in ("gunnerus-33m9", "gunnerus-28m9"))
     to, *source = np.genfromtxt(folder / "gunnerus_33p9_wind_load_coefficients.csv", delimiter=",", skip_header=2).T
     from_table = wind_loads(1.0, np.radians(to) - np.pi, wind=long)
     angle, *coefficients = np.genfromtxt(folder / "gunnerus_28p9_wind_coefficients.csv", delimiter=",", skip_header=2).T

@@ -1,11 +1,12 @@
 """Azimuth and tunnel units: forces against the unit's own FMU, the four quadrants, torque and the thesis' curves."""
 
 import json
+from dataclasses import replace
 from math import pi
 
 import matplotlib.pyplot as plt
 import numpy as np
-from common import MODEL, REFERENCE, THIRD, save, table
+from common import MODEL, REFERENCE, THIRD, parameters, save, table
 
 from shipcosim.models.propulsion.propeller import PropellerParameters, propeller_loads, series
 from shipcosim.models.propulsion.thruster import (
@@ -16,10 +17,10 @@ from shipcosim.models.propulsion.thruster import (
     tunnel_loads,
     tunnel_replay,
 )
-from shipcosim.models.ships import parameters
 
-UNIT = AzimuthParameters(x=0.0)
-PROPELLER = PropellerParameters()
+PORT = parameters(AzimuthParameters, "gunnerus-33m9", "port")
+UNIT = replace(PORT, **dict.fromkeys(("x", "y", "neighbour_x", "neighbour_y"), 0.0))
+PROPELLER = parameters(PropellerParameters, "gunnerus-33m9", "port")
 PITCH, WAKE = 1.32, 0.18  # fit of the parameter sheet to the thrust of the unit's FMU
 FINE = np.radians(np.linspace(-180.0, 180.0, 36001))
 DISC = 0.5 * 1025.0 * 0.25 * pi * 1.9**2  # N over a squared speed
@@ -141,7 +142,7 @@ def _curves(shared):
     n = rpm / 60.0
     found, torque = propeller_loads(0.0 * n, n, propeller=thesis)
     motor, nominal = np.genfromtxt(folder / "gunnerus_tunnel_nominal_curve.csv", delimiter=",", skip_header=2).T
-    tunnel = TunnelParameters()
+    tunnel = parameters(TunnelParameters, "gunnerus-33m9", "tunnel")
     pushed = tunnel_loads(tunnel_replay(motor / 60.0, tunnel=tunnel), 0.0 * motor, tunnel=tunnel).thrust
     return {
         "thesis_thrust": float(np.max(np.abs(found - thrust))) / 1e3,

@@ -22,7 +22,7 @@ from shipcosim.fmi.access import (
 )
 from shipcosim.fmi.failures import FmuError, Message, message_of, text_of
 from shipcosim.fmi.pythonfmu_memory import keep
-from shipcosim.fmi.variables import Parameters, Variable
+from shipcosim.fmi.variables import Parameters, Variable, text_of_left_out
 
 
 class State(NamedTuple):
@@ -264,9 +264,13 @@ class Fmi2Slave:
     def _start(self) -> None:
         values = self.__dict__
         parameters = [variable for variable in self.variables if variable.causality == "parameter"]
-        problems = [(variable.name, variable.outside(values[variable.name])) for variable in parameters]
-        if any(problem for _, problem in problems):
-            raise FmuError("; ".join(f"parameter '{name}' is {problem}" for name, problem in problems if problem))
+        missing = [variable for variable in parameters if variable.is_left_out(values[variable.name])]
+        problems = [text_of_left_out(missing)] if missing else []
+        for variable in parameters:
+            if variable not in missing and (problem := variable.outside(values[variable.name])):
+                problems.append(f"parameter '{variable.name}' is {problem}")
+        if problems:
+            raise FmuError("; ".join(problems))
         self.start()
         self._stale = False
         self._check_outputs()

@@ -2,7 +2,10 @@
 
 import dataclasses
 import math
+from collections.abc import Iterable
 from typing import Any
+
+from shipcosim.models.core.parameters import LEFT_OUT, left_out
 
 Value = float | int | bool | str
 """Value of a variable of FMI."""
@@ -21,7 +24,9 @@ class Variable:
     type : str
         "Real", "Integer", "Boolean" or "String", from the start value.
     start : float, int, bool or str
-        Value before anything is set.
+        Value before anything is set. Of a `required` parameter it stands for none: the FMU refuses to start with it.
+    required : bool
+        A parameter without a value of its own: declared with a type, ``float`` or ``str``, in place of a start value.
     unit, description : str
         Unit in FMI's spelling ("N.s2/m2", "rad", "1"), one line of text.
     minimum, maximum : float or int or None
@@ -47,6 +52,9 @@ class Variable:
         origin: str = "",
         tolerance: float = 0.0,
     ):
+        self.required = start in (float, str)
+        if self.required:
+            start = "" if start is str else LEFT_OUT if maximum is None else -LEFT_OUT
         if type(start) not in TYPES:
             raise TypeError(f"start value {start!r} of '{description}': give a float, an int, a bool or a str")
         if type(start) is int and unit != "1":
@@ -64,6 +72,10 @@ class Variable:
 
     def __repr__(self) -> str:
         return f"<{self.causality} {self.name}: {self.type}, {self.start!r} {self.unit}>"
+
+    def is_left_out(self, value: Any) -> bool:
+        """Whether a value is the start value of a parameter that has none of its own."""
+        return self.required and left_out(value)
 
     def outside(self, value: Any) -> str:
         """Why a value cannot be one of this variable, as text; empty if it can."""
@@ -113,7 +125,10 @@ class Output(Variable):
 
 
 class Parameter(Variable):
-    """What is set before the run: ``thrust_max = Parameter(40e3, "N", "largest thrust")``."""
+    """What is set before the run: ``thrust_max = Parameter(40e3, "N", "largest thrust")``.
+
+    One that describes a ship has no start value but a type: ``thrust_max = Parameter(float, "N", "largest thrust")``.
+    """
 
     causality = "parameter"
 
@@ -126,7 +141,7 @@ class Parameters:
     Parameters
     ----------
     kind : type
-        Frozen dataclass with fields made by `shipcosim.models.core.parameters.quantity`.
+        Frozen dataclass with fields made by `quantity` and `required` of `shipcosim.models.core.parameters`.
     prefix : str
         Put before the fields' names, where two groups would clash.
     """
@@ -145,6 +160,8 @@ class Parameters:
         if instance is None:
             return self
         values = instance.__dict__
+        if missing := [variable for variable in self.variables if variable.is_left_out(values[variable.name])]:
+            raise ValueError(text_of_left_out(missing))
         start = len(self.prefix)
         group = self.kind(**{variable.name[start:]: values[variable.name] for variable in self.variables})
         values[self.name] = group
@@ -154,9 +171,11 @@ class Parameters:
         about = field.metadata
         if "unit" not in about:
             raise TypeError(
-                f"{self.kind.__name__}.{field.name}: make it with quantity(default, unit, description, origin)"
+                f"{self.kind.__name__}.{field.name}: make it with quantity(default, unit, description, origin), or "
+                "required(unit, description)"
             )
-        default = float(field.default) if field.type in (float, "float") else field.default
+        default = about["kind"] if field.default is dataclasses.MISSING else field.default
+        default = float(default) if field.type in (float, "float") and default is not float else default
         bounds = {key: about[key] for key in ("minimum", "maximum", "origin", "tolerance") if key in about}
         try:
             variable = Parameter(default, about["unit"], about["description"], **bounds)
@@ -164,6 +183,12 @@ class Parameters:
             raise type(error)(f"{self.kind.__name__}.{field.name}: {error}") from None
         variable.name = self.prefix + field.name
         return variable
+
+
+def text_of_left_out(variables: Iterable[Variable]) -> str:
+    """What an FMU says of parameters that were left out, all of them."""
+    names = ", ".join(v.name if v.type == "String" else f"{v.name} [{v.unit}]" for v in variables)
+    return f"parameters left out, which have no value of their own: {names}. Give them, as a ship's parameter set does"
 
 
 def variables_of(cls: type) -> tuple[tuple[Variable, ...], tuple[Parameters, ...]]:

@@ -77,6 +77,17 @@ def check_times(scenario: Scenario) -> Iterator[Problem]:
             yield problem_at(scenario, ("expect", number, "during"), found, severity="remark")
 
 
+def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
+    """Parameters that describe a ship and that nothing gives: every component's, all of them."""
+    given = {*scenario.set, *(".".join(filter(None, connection.target)) for connection in system.connections)}
+    for component in system.components.values():
+        if missing := [name for name in component.left_out if f"{component.name}.{name}" not in given]:
+            units = {name: component.fmu.variables[name].unit for name in missing}
+            names = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
+            found = f"parameters left out, which have no value of their own: {names}."
+            yield Problem(f"{system.file}: {component.name}", found, "Give them, as a ship's parameter set does.")
+
+
 def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
     """Problems of the events and expectations of a scenario with a system.
 
@@ -87,7 +98,7 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
     system : System
         That it runs. Start values are checked by `shipcosim.ssp.with_values`.
     """
-    problems = list(check_times(scenario))
+    problems = [*check_times(scenario), *check_parameters(scenario, system)]
     for number, event in enumerate(scenario.events):
         for verb, signal, value in event.changes:
             if complaint := _event_complaint(system, verb, signal, value):

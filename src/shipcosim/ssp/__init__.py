@@ -11,6 +11,7 @@ from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
+from shipcosim.ssp.ships import Ship, read_ship
 from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
 
@@ -18,6 +19,7 @@ __all__ = [
     "Component",
     "Connection",
     "FmuDescription",
+    "Ship",
     "Signal",
     "Simulator",
     "System",
@@ -31,6 +33,7 @@ __all__ = [
     "parameter",
     "read",
     "read_fmu",
+    "read_ship",
     "read_system",
     "seconds_text",
     "structure_text",

@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
+import dp_loop
 import numpy as np
 import pytest
 
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
-from shipcosim.models import dp_loop
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
 from speed.measure import cpu_seconds, reported
@@ -41,7 +41,7 @@ def _per_second(run, duration):
 
 def _arrays(duration):
     weather = {"wind_speed": 8.0, "wind_from": 0.785, "current_speed": 0.3, "current_to": 3.14}
-    default = dp_loop.DpSystem()
+    default = dp_loop.dp_system()
     system = replace(
         default,
         environment=replace(

@@ -6,6 +6,7 @@ import zipfile
 
 import numpy as np
 import pytest
+from ships import given_to
 
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
@@ -20,8 +21,8 @@ FMUS = (
     "sensors tunnel_thruster varying_current vessel"
 ).split()
 NOT_NEUTRAL = {
-    "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
-    "earth_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
+    "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0, "yaw_arm": -1.5},
+    "earth_force": {"x": -17.0, "north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
     "instruments": {"lag": 1.33},
     "varying_current": {"north_end": 0.5},
 }
@@ -43,7 +44,7 @@ class Driven:
             for causality in ("input", "output")
         )
         self.slave = instances.instance_of(Component(name, fmu))
-        changed = NOT_NEUTRAL.get(fmu.path.stem, {})
+        changed = given_to(fmu.path.stem) | NOT_NEUTRAL.get(fmu.path.stem, {})
         set_start_values(self.slave, [(fmu.variables[key], value) for key, value in changed.items()])
         self.starts = np.array([variable.start for variable in self.inputs])
         self.given, self.seen = self.starts.copy(), np.zeros(len(self.outputs))

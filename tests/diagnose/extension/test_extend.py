@@ -4,6 +4,7 @@ from math import atan2, cos, degrees, hypot, pi, radians, sin
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.cli.project import build_stale
 from shipcosim.cosim import RunOptions, simulate
@@ -211,7 +212,7 @@ def test_named_azimuth_offset_turns_thrust_and_side_force(runs):
 def test_named_wind_and_hull_of_the_extended_system(healthy, runs):
     table = runs("aboard")
     speed, angle = (float(table[f"vessel.apparent_wind_{name}"][0]) for name in ("speed", "from"))
-    expected = np.array(wind_loads(speed, angle - radians(12.0), wind=WindParameters()))
+    expected = np.array(wind_loads(speed, angle - radians(12.0), wind=parameters(WindParameters)))
     loads = [float(table[f"vessel.tau_wind_{axis}"][0]) for axis in "XYN"]
     np.testing.assert_allclose(loads, 1.3 * expected)
     hull = {name: float(run[f"vessel.tau_hull_{axis}"][0]) for name, run, axis in _hull(healthy, table)}

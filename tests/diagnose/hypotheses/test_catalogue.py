@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 from diagnose import twin
+from ships import lend
 
 from shipcosim.diagnose.experiment.testability import log_facts
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.hypotheses.cause import FACTS
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.errors import ShipcosimError
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.ship.hull import HullParameters
 from shipcosim.ssp import new
 
 CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
@@ -114,6 +117,7 @@ def test_reverse_loss_turns_both_units_at_once(everyone):
 def test_a_ship_without_a_thruster_has_no_causes_of_one(root):
     hull = new("barge")
     hull.add_component("ship", twin.build_stale(root) / "vessel.fmu", kinds=())
+    lend(hull, "ship", HullParameters, WindParameters)
     found = {hypothesis.cause for hypothesis in hypotheses_of(read_catalogue(), ship_model_of(hull.checked()))}
     assert not found & {"thrust_loss", "azimuth_offset", "rpm_offset", "reverse_loss", "thruster_interaction"}
     assert {"current", "mass", "heading_bias"} <= found

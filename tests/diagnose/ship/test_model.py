@@ -6,6 +6,7 @@ from math import cos, degrees, hypot, pi, radians, sin
 import numpy as np
 import pytest
 from diagnose import twin
+from ships import lend, parameters, unit_on_centreline
 
 from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.ship.dynamics import current_at, loads, motion_rates
@@ -15,7 +16,8 @@ from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.propulsion.thruster import AzimuthParameters
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
@@ -234,10 +236,12 @@ def yard(root):
     def build(azimuths=(), tunnels=()):
         ship, fmus = new("other"), twin.build_stale(root)
         ship.add_component("hull", fmus / "vessel.fmu", kinds=())
+        lend(ship, "hull", HullParameters, WindParameters)
         units = [("azimuth_thruster", place) for place in azimuths] + [("tunnel_thruster", (x,)) for x in tunnels]
         for number, (fmu, place) in enumerate(units, start=1):
             name = f"{fmu[:3]}{number}"
             ship.add_component(name, fmus / f"{fmu}.fmu", kinds=())
+            lend(ship, name, AzimuthParameters if fmu == "azimuth_thruster" else TunnelParameters)
             for axis in "XYN":
                 ship.connect(f"{name}.tau_{axis}", f"hull.tau_{axis}_{number}")
             for coordinate, value in zip("xy", place, strict=False):
@@ -251,7 +255,7 @@ def test_a_ship_with_four_azimuths_is_read(yard):
     places = [(15.0, 3.0), (15.0, -3.0), (-14.0, 2.0), (-14.0, -2.0)]
     ship = ship_model_of(yard(places).checked())
     assert ship.vessel == "hull" and ship.azimuths == ship.thrusters == ["azi1", "azi2", "azi3", "azi4"]
-    assert ship.get("hull.length") == HullParameters().length
+    assert ship.get("hull.length") == parameters(HullParameters).length
     assert [(ship.get(f"{n}.x"), ship.get(f"{n}.y")) for n in ship.azimuths] == places
     neighbours = [(ship.get(f"{n}.neighbour_x"), ship.get(f"{n}.neighbour_y")) for n in ship.azimuths]
     assert neighbours == [places[1], places[0], places[3], places[2]]
@@ -299,9 +303,33 @@ def test_a_load_that_is_not_of_our_thrusters_is_refused_by_its_name():
 
 def test_defaults_of_a_unit_are_neutral():
     """A cause that is neither given nor found changes no force."""
-    ship, unit = Motion(0.0, 0.0, 0.3, 1.0, 0.2, 0.01), AzimuthParameters()
+    ship, unit = Motion(0.0, 0.0, 0.3, 1.0, 0.2, 0.01), unit_on_centreline()
     working = {"port": (1.5, 0.4), "starboard": (-1.0, 2.0), "tunnel": (8.0, 0.0)}
     plain = loads(ship, Inputs(0.0, working, 8.0, 1.0), twin.model())
     neutral = {f"port.{n}": getattr(unit, n) for n in ("thrust_loss", "reverse_loss", "azimuth_offset", "rpm_offset")}
     again = loads(ship, Inputs(0.0, working, 8.0, 1.0), twin.model().with_values(neutral))
     assert again == plain
+
+
+def test_what_a_ship_leaves_out_is_refused_all_of_it_and_is_no_other_ships(yard):
+    ship = yard([(-30.0, 0.0)])
+    for name in ("hull.mass", "hull.wind_table", "azi1.rpm_max"):
+        del ship.parameters[name]
+    with pytest.raises(ShipcosimError) as error:
+        ship_model_of(ship.checked())
+    text = str(error.value)
+    assert "hull: parameters left out" in text and "mass, wind_table." in text
+    assert "azi1: parameters left out" in text and "rpm_max." in text
+
+
+def test_a_thruster_of_an_earlier_version_is_learnt_and_a_neutral_number_that_it_lacks_changes_nothing():
+    """Its propeller's curve was in its code; ours would be a guess."""
+    whole = read(twin.ROOT / "ssp" / "gunnerus_open", fmus=[twin.build_stale(twin.ROOT)]).checked()
+    old = replace(whole, components=dict(whole.components))
+    for component, lacking in {"port": ["thrust_polynomial"], "tunnel": ["speed_loss"]}.items():
+        fmu = whole.components[component].fmu
+        known = {name: variable for name, variable in fmu.variables.items() if name not in lacking}
+        old.components[component] = replace(whole.components[component], fmu=replace(fmu, variables=known))
+    model = ship_model_of(old)
+    assert list(model.third_party) == ["port"]
+    assert model.get("tunnel.speed_loss") == 0.0 and model.get("tunnel.x") == 14.48

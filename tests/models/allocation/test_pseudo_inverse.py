@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters, at_rest, design, effect, load
 
-PARAMETERS = AllocationParameters()
+PARAMETERS = parameters(AllocationParameters)
 ALL = (True, True, True)
 LONG = 1e3  # s, a step in which the limit of the rate does not matter
 

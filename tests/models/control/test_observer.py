@@ -1,16 +1,18 @@
 """Observer against textbook solutions and a plant written apart."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.control import observer
 from shipcosim.models.control.observer import DpShip, ObserverParameters, at_rest, design
 from shipcosim.models.control.wave_filter import kalman_gain
 from shipcosim.models.core.motion import Motion
 
-SHIP, PARAMETERS = DpShip(), ObserverParameters()
+SHIP, PARAMETERS = parameters(DpShip), parameters(ObserverParameters)
 DESIGN = design(SHIP, PARAMETERS)
 MASS = np.array(
     [
@@ -36,8 +38,8 @@ def test_gain_solves_the_riccati_equation():
 
 
 def test_gains_of_many_observers_are_those_of_each():
-    many = design(SHIP, ObserverParameters(position_noise=np.array([0.2, 0.5])))
-    alone = design(SHIP, ObserverParameters(position_noise=0.5))
+    many = design(SHIP, replace(parameters(ObserverParameters), position_noise=np.array([0.2, 0.5])))
+    alone = design(SHIP, replace(parameters(ObserverParameters), position_noise=0.5))
     np.testing.assert_allclose([gain[1] for gain in many.horizontal], alone.horizontal, rtol=1e-9)
 
 

@@ -5,14 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.control import pid as control
 from shipcosim.models.control.observer import DpShip, Estimate
 from shipcosim.models.control.pid import ControlParameters, Desired, at_rest
 from shipcosim.models.core.kinematics import to_body
 
-FREE = DpShip(damping_surge=0.0, damping_sway=0.0, damping_yaw=0.0)
-PARAMETERS = ControlParameters()
+FREE = replace(parameters(DpShip), damping_surge=0.0, damping_sway=0.0, damping_yaw=0.0)
+PARAMETERS = parameters(ControlParameters)
 MASS = np.array(
     [[FREE.mass_surge, 0.0, 0.0], [0.0, FREE.mass_sway, FREE.mass_sway_yaw], [0.0, FREE.mass_sway_yaw, FREE.mass_yaw]]
 )

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.control.reference import ReferenceParameters, at_rest, critically_damped, step
 
-PARAMETERS = ReferenceParameters()
+PARAMETERS = parameters(ReferenceParameters)
 W = PARAMETERS.position_frequency
 
 

@@ -1,15 +1,19 @@
 """Loads fixed to the earth: closed forms, and the drift law against the ship's own table of drift coefficients."""
 
+from functools import partial
 from math import pi, radians
 
 import numpy as np
 import pytest
 from scipy.optimize import curve_fit
+from ships import parameters
 
-from shipcosim.models.environment import wave_loads, waves
-from shipcosim.models.environment.earth_fixed_loads import drift_force, earth_force, onset
-from shipcosim.models.ship.load_tables import DRIFT_33M9
+from shipcosim.models.environment import earth_fixed_loads, wave_loads, waves
+from shipcosim.models.environment.earth_fixed_loads import earth_force, onset
+from shipcosim.models.ship.vessel import DriftParameters
 
+DRIFT_33M9 = parameters(DriftParameters).drift_table
+drift_force = partial(earth_fixed_loads.drift_force, yaw_arm=-1.5)
 AROUND = np.radians(np.arange(0.0, 360.0, 10.0))
 
 
@@ -23,7 +27,7 @@ AROUND = np.radians(np.arange(0.0, 360.0, 10.0))
     ],
 )
 def test_a_line_at_the_stern_turns_the_ship_until_it_pulls_from_astern(psi, north, east, load):
-    assert earth_force(radians(psi), north, east) == pytest.approx(load, abs=1e-9)
+    assert earth_force(radians(psi), north, east, x=-17.0) == pytest.approx(load, abs=1e-9)
 
 
 def test_a_line_that_pulls_ahead_at_the_side_turns_away_from_it():

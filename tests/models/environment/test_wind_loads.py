@@ -5,11 +5,11 @@ from math import pi, radians
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.ships import parameters
 
-LONG = WindParameters()
+LONG = parameters(WindParameters)
 SHORT = parameters(WindParameters, "gunnerus-28m9", "vessel")
 SHIPS = pytest.mark.parametrize("wind", [LONG, SHORT], ids=["long", "short"])
 
@@ -83,7 +83,7 @@ def test_long_ship_is_blendermanns_research_vessel():
 
 def test_a_table_that_does_not_go_round_is_refused():
     with pytest.raises(ValueError, match="from 0 to 90"):
-        wind_loads(1.0, 0.5, wind=WindParameters(wind_table="0 -1 0 0; 90 0 -1 0"))
+        wind_loads(1.0, 0.5, wind=replace(parameters(WindParameters), wind_table="0 -1 0 0; 90 0 -1 0"))
 
 
 @SHIPS

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from ships import parameters
 
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
@@ -10,7 +11,7 @@ from shipcosim.models.prediction.dead_reckoning import predict
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters
 
-HULL, WIND = HullParameters(), WindParameters()
+HULL, WIND = parameters(HullParameters), parameters(WindParameters)
 HORIZONS = (10.0, 30.0, 60.0)
 
 

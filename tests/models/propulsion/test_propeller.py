@@ -1,9 +1,11 @@
 """The propeller against the unit's own points, the B-series polynomials, and continuity all round."""
 
+from dataclasses import replace
 from math import atan2, cos, pi, radians, tan
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.propulsion.propeller import (
     PropellerParameters,
@@ -13,7 +15,7 @@ from shipcosim.models.propulsion.propeller import (
     series,
 )
 
-P = PropellerParameters()
+P = parameters(PropellerParameters)
 RHO, D = 1025.0, 1.9
 
 
@@ -85,14 +87,14 @@ def test_a_stopped_propeller_is_a_brake_both_ways():
 
 
 def test_scale_outside_leaves_the_first_quadrant_alone_and_is_full_astern():
-    scaled = PropellerParameters(thrust_scale_outside=1.1)
+    scaled = replace(parameters(PropellerParameters), thrust_scale_outside=1.1)
     for u_a, n, factor in ((2.0, 3.0, 1.0), (0.0, 3.0, 1.0), (0.0, -3.0, 1.1), (-2.0, -3.0, 1.1)):
         plain = propeller_loads(u_a, n, propeller=P)[0]
         assert propeller_loads(u_a, n, propeller=scaled)[0] == pytest.approx(factor * plain)
 
 
 def test_without_inflow_the_ship_s_speed_does_not_matter():
-    deaf = PropellerParameters(inflow=0.0)
+    deaf = replace(parameters(PropellerParameters), inflow=0.0)
     assert propeller_loads(5.0, 2.0, propeller=deaf) == propeller_loads(0.0, 2.0, propeller=P)
 
 

@@ -5,6 +5,7 @@ from math import cos, degrees, pi, radians, sin
 
 import numpy as np
 import pytest
+from ships import parameters, unit_on_centreline
 
 from shipcosim.models.propulsion.drive import at_rest
 from shipcosim.models.propulsion.propeller import propeller_loads
@@ -19,11 +20,10 @@ from shipcosim.models.propulsion.thruster import (
     tunnel_step,
     turned,
 )
-from shipcosim.models.ships import parameters
 
-UNIT = AzimuthParameters(x=0.0)
+UNIT = unit_on_centreline(x=0.0)
 THESIS = parameters(AzimuthParameters, "thesis", "port")
-TUNNEL = TunnelParameters()
+TUNNEL = parameters(TunnelParameters)
 H = 0.05
 
 
@@ -81,7 +81,7 @@ def test_tunnel_has_the_nominal_curve(shared):
 
 
 def test_load_is_along_the_azimuth_and_turns_the_ship_about_the_origin():
-    unit = AzimuthParameters(x=-14.02, y=2.0)
+    unit = unit_on_centreline(x=-14.02, y=2.0)
     loads = azimuth_loads(azimuth_replay(2.0, 0.6, 0.0, 0.0, 0.0, unit=unit), 0.0, 0.0, 0.0, unit=unit)
     assert (loads.tau_X, loads.tau_Y) == pytest.approx((loads.thrust * cos(0.6), loads.thrust * sin(0.6)))
     assert loads.tau_N == pytest.approx(loads.thrust * (-14.02 * sin(0.6) - 2.0 * cos(0.6)))
@@ -89,7 +89,7 @@ def test_load_is_along_the_azimuth_and_turns_the_ship_about_the_origin():
 
 def test_a_stopped_unit_takes_energy_from_any_motion():
     """Side force and propeller oppose the flow, whatever its direction; the unit stands across."""
-    unit = AzimuthParameters(x=-14.02, y=2.0)
+    unit = unit_on_centreline(x=-14.02, y=2.0)
     u, v, r = np.random.default_rng(3).uniform(-1.0, 1.0, (3, 500)) * [[3.0], [2.0], [0.1]]
     loads = azimuth_loads(at_rest(np.full(500, 0.7)), u, v, r, unit=unit)
     assert np.all(loads.tau_X * u + loads.tau_Y * v + loads.tau_N * r <= 0.0)
@@ -316,7 +316,7 @@ def test_lost_thrust_of_a_tunnel_leaves_its_torque():
 )
 def test_the_unit_that_a_slipstream_hits_loses_thrust(azimuth, rpm, kept):
     """Port, with starboard 4 m beside it: starboard pushing to starboard throws its water at port."""
-    unit = AzimuthParameters(**PAIR, interaction_loss=0.4)
+    unit = unit_on_centreline(**PAIR, interaction_loss=0.4)
     hit = replayed(100.0, unit=unit, neighbour=(radians(azimuth), rpm))[1]
     assert hit.thrust == pytest.approx(kept * replayed(100.0, unit=replace(unit, interaction_loss=0.0))[1].thrust)
 
@@ -336,7 +336,7 @@ EFFECTS = dict(
 @pytest.mark.parametrize("name", EFFECTS)
 @pytest.mark.parametrize("rpm", [-80.0, 100.0])
 def test_effects_as_an_array_are_as_many_units(name, rpm):
-    unit = AzimuthParameters(**PAIR, **({"interaction_loss": 0.3} if name == "interaction_width" else {}))
+    unit = unit_on_centreline(**PAIR, **({"interaction_loss": 0.3} if name == "interaction_width" else {}))
     values = np.array([getattr(unit, name), EFFECTS[name]])
     neighbour = (radians(80.0), 60.0)
     each = [replayed(rpm, unit=replace(unit, **{name: float(value)}), neighbour=neighbour)[1] for value in values]

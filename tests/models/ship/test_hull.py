@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.ship import hull as models
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import accelerations
-from shipcosim.models.ships import parameters
 
-LONG = HullParameters()
+LONG = parameters(HullParameters)
 SHORT = parameters(HullParameters, "gunnerus-28m9", "vessel")
 RANDOM = np.random.default_rng(1)
 ANY_VELOCITY = RANDOM.uniform(-1.0, 1.0, (3, 5000)) * [[8.0], [3.0], [0.3]]

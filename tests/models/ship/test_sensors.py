@@ -7,13 +7,16 @@ from math import degrees, pi, radians
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from ships import equipped
+from ships import parameters as parameters_of
 
 from shipcosim.models.core.sampling import normals, samples_due
 from shipcosim.models.ship.sensors import SensorParameters, Truth, start, step
 
 REST = Truth(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 10.0, 0.0)
-PERFECT = SensorParameters(
-    **{field.name: 0.0 for field in fields(SensorParameters) if field.name.endswith(("_std", "_noise"))}
+ALL = parameters_of(SensorParameters)
+PERFECT = replace(
+    ALL, **{field.name: 0.0 for field in fields(SensorParameters) if field.name.endswith(("_std", "_noise"))}
 )
 
 
@@ -43,7 +46,7 @@ def test_wandering_error_has_its_stationary_size_from_the_first_sample_on():
 
 
 def test_white_errors_have_the_sizes_of_the_sheet_and_no_memory():
-    parameters = replace(SensorParameters(), position_drift_std=0.0, heading_drift_std=0.0)
+    parameters = replace(ALL, position_drift_std=0.0, heading_drift_std=0.0)
     error = record(lambda t: REST, parameters, 2000.0)[1:] - REST
     expected = [0.2, 0.2, radians(0.1), 0.02, 0.02, radians(0.05), 0.02 * 10.0, radians(1.0)]
     assert_allclose(np.std(error, axis=0), expected, rtol=0.02)  # 4 standard errors of 20 000 samples
@@ -61,15 +64,15 @@ def test_half_the_step_gives_the_same_measurements():
         angle = 2.0 * pi * t / 7.0
         return Truth(np.sin(angle), 5.0, 3.1 + 0.1 * np.sin(angle), 0.3, 0.1, 0.0, 9.0 + np.sin(angle), 1.0)
 
-    coarse, fine = (record(truth, SensorParameters(), 300.0, h) for h in (0.05, 0.025))
+    coarse, fine = (record(truth, ALL, 300.0, h) for h in (0.05, 0.025))
     assert_allclose(fine[::2], coarse, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("h", [0.01, 0.03, 0.05, 0.1, 0.25])
 def test_every_sample_is_taken_once_whatever_the_step(h):
-    state = start(0.0, REST, parameters=SensorParameters())
+    state = start(0.0, REST, parameters=ALL)
     for k in range(1, 3001):
-        state = step(k * h, state, REST, parameters=SensorParameters())
+        state = step(k * h, state, REST, parameters=ALL)
         assert state.taken == (1000 * k * round(1000 * h)) // 100_000 + 1
 
 
@@ -85,7 +88,7 @@ def test_measurement_is_the_truth_at_the_sample_time():
 
 
 def test_measured_heading_stays_within_half_a_turn():
-    psi = record(lambda t: REST._replace(psi=pi), SensorParameters(), 100.0)[:, 2]
+    psi = record(lambda t: REST._replace(psi=pi), ALL, 100.0)[:, 2]
     assert np.all((psi >= -pi) & (psi < pi)) and psi.min() < -3.0 and psi.max() > 3.0
 
 
@@ -114,7 +117,7 @@ def test_floats_arrays_and_tensors_agree():
     )
 
     def results(truth, seed):
-        parameters = replace(SensorParameters(), seed=seed)
+        parameters = replace(ALL, seed=seed)
         state = start(0.0, truth, parameters=parameters)
         return step(0.5, state, truth, parameters=parameters).measured
 
@@ -130,7 +133,7 @@ def sensors(root):
     spec = spec_from_file_location("sensors_under_test", root / "fmus/sensors/sensors.py")
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.Sensors()
+    return equipped(module.Sensors(), "sensors")
 
 
 def test_fmu_measures_the_sum_of_low_frequency_and_wave_motion(sensors):

@@ -5,16 +5,16 @@ from math import cos, degrees, hypot, pi, radians, sin
 
 import numpy as np
 import pytest
+from ships import parameters
 
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import nu_dot, step, through_water
-from shipcosim.models.ships import parameters
 
 from .test_hull import mass_matrix
 
-LONG = HullParameters()
+LONG = parameters(HullParameters)
 SHORT = parameters(HullParameters, "gunnerus-28m9", "vessel")
 UNITS = [parameters(AzimuthParameters, "gunnerus-33m9", side) for side in ("port", "starboard")]
 KNOT = 1852.0 / 3600.0

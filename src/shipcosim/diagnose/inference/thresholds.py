@@ -80,8 +80,8 @@ CHANGE_POINT_MARGIN = 3
 # Noise
 
 MOST_WALK = 3e-5
-"""Fastest random walk of the unexplained acceleration: some 400 N on Gunnerus in ten minutes. [m/s2.5] Left free, it
-swallowed every cause (prototypes)."""
+"""Fastest random walk of the unexplained acceleration: some 400 N on a ship of 750 t in ten minutes. [m/s2.5] Left
+free, it swallowed every cause (prototypes)."""
 GUST_FACTOR = 10.0
 """Times as fast may it walk where nobody knows the wind. Assumed."""
 TUNED_BESIDE = 3.0

@@ -6,15 +6,13 @@ from typing import Any
 import numpy as np
 
 from shipcosim.models.core.maths import Arithmetic
-from shipcosim.models.core.parameters import quantity
-from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.core.parameters import quantity, required
 
 __all__ = ["Water", "piecewise_linear_basis", "share_of", "swell_of", "water_of"]
 
 _NEUTRAL = "neutral"
 _SWELLS = 8
-_STERN = -17.0  # m, of a ship of 33.9 m
-_DRIFT_ARM = -1.5  # m, of the same
+_DRIFT_ARM, _OF_LENGTH = -1.5, 33.9  # m, of a research vessel by VERES
 
 
 def _swell(k: int) -> Any:
@@ -23,7 +21,7 @@ def _swell(k: int) -> Any:
     return quantity(0.0, "1", means, "groups of waves over minutes, assumed", tolerance=0.15)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Water:
     """What moves the water, and what else pulls at the ship from the earth."""
 
@@ -43,12 +41,8 @@ class Water:
     drift_sway_power: float = quantity(
         2.0, "1", "power of the sine in the sway of the drift", "short waves; VERES, 33.9 m hull: 1.7", tolerance=0.6
     )
-    drift_yaw_arm: float = quantity(
-        _DRIFT_ARM,
-        "m",
-        "yaw moment of the drift at quartering over the force on the beam",
-        "VERES, 33.9 m hull",
-        tolerance=0.5,
+    drift_yaw_arm: float = required(
+        "m", "yaw moment of the drift at quartering over the force on the beam", share=1.0 / 3.0
     )
     drift_swell_1: float = _swell(1)
     drift_swell_2: float = _swell(2)
@@ -60,14 +54,15 @@ class Water:
     drift_swell_8: float = _swell(8)
     tow_north: float = quantity(0.0, "N", "pull of a line towards north", _NEUTRAL)
     tow_east: float = quantity(0.0, "N", "pull of a line towards east", _NEUTRAL)
-    tow_x: float = quantity(_STERN, "m", "where the line is made fast", "the stern")
+    tow_x: float = required("m", "where the line is made fast")
 
 
 def water_of(length: float) -> Water:
-    """What surrounds a ship of some length [m] while nothing acts: a line would be made fast at her stern, assumed."""
-    ours = HullParameters().length
-    stern = _STERN if length == ours else -0.5 * length
-    return Water(tow_x=stern, drift_yaw_arm=_DRIFT_ARM * length / ours)
+    """What surrounds a ship of some length [m] while nothing acts.
+
+    A line would be made fast at her stern, assumed, to half a metre.
+    """
+    return Water(tow_x=-0.5 * (round(length) or length), drift_yaw_arm=_DRIFT_ARM * length / _OF_LENGTH)
 
 
 def share_of(time: Arithmetic, span: tuple[float, float]) -> Arithmetic:

@@ -7,8 +7,8 @@ All numbers that a cause can change are of one flat mapping, named ``place.name`
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.diagnose.ship.environment import water_of
@@ -155,10 +155,12 @@ def ship_model_of(system: System) -> ShipModel:
         No vessel, or loads on it of FMUs that no log feeds.
     """
     ship = _vessel(system)
+    if problems := list(_left_out(system, ship)):
+        raise ShipcosimError(problems)
     parts = {"hull": _values(ship, HullParameters), "wind": _values(ship, WindParameters)}
     third_party = {}
     for name in _loading(system, ship.name):
-        kind = next((kind for kind in _OURS if _holds(system.components[name], kind)), None)
+        kind = _thruster_kind(system.components[name])
         if kind is None:
             third_party[name] = third_party_fmu_of(system, name, ship.name)
         parts[name] = _values(system.components[name], kind) if kind else part_of(third_party[name])
@@ -199,6 +201,35 @@ def _holds(component: Component, kind: type) -> bool:
     return sum(there) >= 0.7 * len(there)
 
 
+def _thruster_kind(component: Component) -> type | None:
+    """Class of parameters of a thruster of ours; None of any other FMU, and of one that lacks what describes a unit.
+
+    An earlier version may have built that one, with numbers that only its code knows: it is learnt like anybody's.
+    """
+    kinds = [kind for kind in _OURS if _holds(component, kind)]
+    return next((kind for kind in kinds if not _missing(component, kind)), None)
+
+
+def _missing(component: Component, kind: type) -> list[str]:
+    """Names of what describes a ship and an FMU does not know."""
+    names = [item.name for item in fields(kind) if item.default is MISSING]
+    return [name for name in names if name not in component.fmu.variables]
+
+
+def _left_out(system: System, ship: Component) -> Iterator[Problem]:
+    """Problems of a ship and of thrusters of ours: parameters that nothing gives, or that the FMU does not know."""
+    for component in system.components.values():
+        kinds = (HullParameters, WindParameters) if component is ship else filter(None, [_thruster_kind(component)])
+        kinds, where = list(kinds), f"{system.file}: {component.name}"
+        if names := [item.name for kind in kinds for item in fields(kind) if item.name in component.left_out]:
+            found = f"parameters left out, which have no value of their own: {', '.join(names)}."
+            yield Problem(where, found, "Give them, as a ship's parameter set does.")
+        if names := [name for kind in kinds for name in _missing(component, kind)]:
+            found = f"its FMU has no {', '.join(names)}: an earlier version built it."
+            yield Problem(where, found, "Build it again: shipcosim build.")
+
+
 def _values(component: Component, kind: type) -> Any:
+    """Parameters of a component; those that its FMU does not know change nothing."""
     names = [item.name for item in fields(kind) if item.name in component.fmu.variables]
     return kind(**{name: component.start_value(name) for name in names})

@@ -1,9 +1,9 @@
-"""Tolerances of a ship's numbers: as her parameter sets say, else in proportion to those of our ship."""
+"""Tolerances of a ship's numbers: as her parameter sets say, else in proportion to their size."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import Field, fields
+from dataclasses import MISSING, Field, fields
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 
 __all__ = ["tolerances_of"]
 
-_COEFFICIENT = 0.05  # of a hull's coefficient that ours does not use, as of her damping in surge (assumed)
+_COEFFICIENT = 0.05  # of a hull's coefficient, as of the damping in surge (assumed)
 
 
 def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict[str, float]:
-    """Tolerances of the system's parameter sets, where they are silent those of our ship's relative to size.
+    """Tolerances of the system's parameter sets, where they are silent what such a number is known to.
 
     Parameters
     ----------
@@ -35,21 +35,19 @@ def tolerances_of(system: System, parts: Mapping[str, Any], vessel: str) -> dict
         place = vessel if part in ("hull", "wind") else part
         known = system.components[place].tolerances if place in system.components else {}
         for item in fields(values):
-            path, default = f"{place}.{item.name}", item.metadata["tolerance"]
+            path = f"{place}.{item.name}"
             if item.name in known:
                 found[path] = known[item.name]
             elif isinstance(value := getattr(values, item.name), float):
-                found[path] = default * _size(values, item, value) if default else _assumed(item, value)
+                found[path] = _assumed(values, item, value)
     return {path: tolerance for path, tolerance in found.items() if tolerance > 0.0}
 
 
-def _size(values: Any, item: Field, value: float) -> float:
-    """How large a number is against that of our ship; one that is neutral at nought as large as its scale."""
-    if item.name == "rpm_offset":
-        return values.rpm_max / type(values).rpm_max
-    return abs(value / item.default) if item.default else 1.0
-
-
-def _assumed(item: Field, value: float) -> float:
-    """Tolerance of a hull's coefficient that our ship does not use."""
+def _assumed(values: Any, item: Field, value: float) -> float:
+    """Tolerance of a number of which nobody says how well it is known: its own, or a share of its size."""
+    about = item.metadata
+    if about["tolerance"]:
+        return about["tolerance"] * (abs(value / item.default) if item.default not in (0.0, MISSING) else 1.0)
+    if about["share"]:
+        return about["share"] * (values.rpm_max if item.name == "rpm_offset" else abs(value))
     return _COEFFICIENT * abs(value) if item.name[:2] in ("X_", "Y_", "N_") else 0.0

@@ -32,6 +32,7 @@ LOG_CATEGORIES = {
 }
 
 
+REQUIRED = " (required: the start value stands for none)"
 LONGEST_SHOWN = 24  # characters of a start value in a table for readers
 
 
@@ -107,7 +108,7 @@ def table_of_variables(cls: type[Fmu]) -> str:
     rows = ["| variable | kind | type | unit | start | meaning |", "|---|---|---|---|---|---|"]
     for v in cls.variables:
         kind = f"tunable {v.causality}" if v.tunable else v.causality
-        start = "" if v.causality == "output" or v.start == "" else _shown(v.start)
+        start = "required" if v.required else "" if v.causality == "output" or v.start == "" else _shown(v.start)
         rows.append(f"| `{v.name}` | {kind} | {v.type} | {v.unit} | {start} | {_full_text(v).replace('|', '&#124;')} |")
     return "\n".join(rows) + "\n"
 
@@ -163,7 +164,7 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
         "ScalarVariable",
         name=variable.name,
         valueReference=str(reference),
-        description=_full_text(variable),
+        description=_full_text(variable) + (REQUIRED if variable.required else ""),
         causality=variable.causality,
         variability=_variability(variable),
     )
@@ -183,9 +184,11 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
     if variable.causality == "parameter":
         element.set("initial", "exact")
     xml.SubElement(element, variable.type, value)
-    if variable.tolerance:
+    about = {"tolerance": repr(float(variable.tolerance))} if variable.tolerance else {}
+    about |= {"required": "true"} if variable.required else {}
+    if about:
         tool = xml.SubElement(xml.SubElement(element, "Annotations"), "Tool", name="shipcosim")
-        xml.SubElement(tool, "Quantity", tolerance=repr(float(variable.tolerance)))
+        xml.SubElement(tool, "Quantity", about)
     return element
 
 

@@ -4,7 +4,6 @@ An allocator is two functions: `design` computes once what it needs of its param
 into commands.
 """
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,52 +11,28 @@ import numpy as np
 
 from shipcosim.models.core.maths import Arithmetic, clip, cos, sin, where
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import required
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class AllocationParameters:
     """Two azimuth thrusters at fixed angles and a tunnel thruster."""
 
-    port_x: float = quantity(
-        -14.02, "m", "port azimuth forward of the origin", "Skulstad 2021, ControlAllocatorDAE.fmu, A"
-    )
-    port_y: float = quantity(-2.0, "m", "port azimuth to starboard of the origin", "Skulstad 2021, A")
-    starboard_x: float = quantity(-14.02, "m", "starboard azimuth forward of the origin", "Skulstad 2021, A")
-    starboard_y: float = quantity(2.0, "m", "starboard azimuth to starboard of the origin", "Skulstad 2021, A")
-    tunnel_x: float = quantity(14.48, "m", "tunnel thruster forward of the origin", "Skulstad 2021, A")
-    port_azimuth: float = quantity(-math.pi / 4.0, "rad", "fixed angle of the port azimuth", "Skulstad 2021, paper V")
-    starboard_azimuth: float = quantity(
-        math.pi / 4.0, "rad", "fixed angle of the starboard azimuth", "Skulstad 2021, paper V"
-    )
-    azimuth_thrust_min: float = quantity(
-        -30e3, "N", "most thrust astern of an azimuth", "Skulstad 2021, paper V", maximum=0.0
-    )
-    azimuth_thrust_max: float = quantity(
-        60e3, "N", "most thrust ahead of an azimuth", "Skulstad 2021, paper V", minimum=0.0
-    )
-    tunnel_thrust_max: float = quantity(
-        21.6e3, "N", "most thrust of the tunnel thruster to either side", "1780 rpm of its motor", minimum=0.0
-    )
-    thrust_rate_max: float = quantity(
-        1000.0, "N/s", "quickest change of a command", "Skulstad 2021, paper V", minimum=0.0
-    )
-    azimuth_weight: float = quantity(1.0, "1", "price of an azimuth's thrust", "choice", minimum=1e-6)
-    tunnel_weight: float = quantity(1.0, "1", "price of the tunnel's thrust", "choice", minimum=1e-6)
-    yaw_lever: float = quantity(
-        14.0,
-        "m",
-        "a missed yaw moment weighs as a missed force at this distance",
-        "distance of the thrusters; tried: longer ones lose the heading in 12 m/s",
-        minimum=0.1,
-    )
-    yaw_lever_degraded: float = quantity(
-        300.0,
-        "m",
-        "the same where a unit is missing: position before heading",
-        "tried: two azimuths keep the ship in place, and she turns her stern to the weather",
-        minimum=0.1,
-    )
+    port_x: float = required("m", "port azimuth forward of the origin")
+    port_y: float = required("m", "port azimuth to starboard of the origin")
+    starboard_x: float = required("m", "starboard azimuth forward of the origin")
+    starboard_y: float = required("m", "starboard azimuth to starboard of the origin")
+    tunnel_x: float = required("m", "tunnel thruster forward of the origin")
+    port_azimuth: float = required("rad", "fixed angle of the port azimuth")
+    starboard_azimuth: float = required("rad", "fixed angle of the starboard azimuth")
+    azimuth_thrust_min: float = required("N", "most thrust astern of an azimuth", maximum=0.0)
+    azimuth_thrust_max: float = required("N", "most thrust ahead of an azimuth", minimum=0.0)
+    tunnel_thrust_max: float = required("N", "most thrust of the tunnel thruster to either side", minimum=0.0)
+    thrust_rate_max: float = required("N/s", "quickest change of a command", minimum=0.0)
+    azimuth_weight: float = required("1", "price of an azimuth's thrust", minimum=1e-6)
+    tunnel_weight: float = required("1", "price of the tunnel's thrust", minimum=1e-6)
+    yaw_lever: float = required("m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1)
+    yaw_lever_degraded: float = required("m", "the same where a unit is missing: position before heading", minimum=0.1)
 
 
 class AllocationState(NamedTuple):

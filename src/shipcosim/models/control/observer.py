@@ -16,86 +16,42 @@ from shipcosim.angles import wrap
 from shipcosim.models.control.wave_filter import AxisGains, axis_gains, wave_transition
 from shipcosim.models.core.maths import Arithmetic, cos, sin
 from shipcosim.models.core.motion import Load, Motion
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import required
 
 DEGREE = math.pi / 180.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DpShip:
     """Model of the ship in observer and control law."""
 
-    mass_surge: float = quantity(557.55e3, "kg", "M11, mass with added mass", "m + A11, gunnerus-33m9", minimum=1.0)
-    mass_sway: float = quantity(743.4e3, "kg", "M22, mass with added mass", "m + A22, gunnerus-33m9", minimum=1.0)
-    mass_sway_yaw: float = quantity(-637.2e3, "kg.m", "M26 = M62, coupling of sway and yaw", "A26, gunnerus-33m9")
-    mass_yaw: float = quantity(
-        62.12e6, "kg.m2", "M66, inertia with added inertia", "Iz + A66, gunnerus-33m9", minimum=1.0
-    )
-    damping_surge: float = quantity(
-        6e3, "N.s/m", "linear damping in surge", "side force of two azimuths at +-45 deg and 10 kN", minimum=0.0
-    )
-    damping_sway: float = quantity(6e3, "N.s/m", "linear damping in sway", "as damping_surge", minimum=0.0)
-    damping_yaw: float = quantity(
-        1.2e6, "N.m.s/rad", "linear damping in yaw", "as damping_surge, times 14 m squared", minimum=0.0
-    )
+    mass_surge: float = required("kg", "M11, mass with added mass", minimum=1.0)
+    mass_sway: float = required("kg", "M22, mass with added mass", minimum=1.0)
+    mass_sway_yaw: float = required("kg.m", "M26 = M62, coupling of sway and yaw")
+    mass_yaw: float = required("kg.m2", "M66, inertia with added inertia", minimum=1.0)
+    damping_surge: float = required("N.s/m", "linear damping in surge", minimum=0.0)
+    damping_sway: float = required("N.s/m", "linear damping in sway", minimum=0.0)
+    damping_yaw: float = required("N.m.s/rad", "linear damping in yaw", minimum=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ObserverParameters:
     """Noise, waves and disturbances as the observer assumes them."""
 
-    sample_period: float = quantity(0.1, "s", "period of observer and control law", "the sensors' 10 Hz", minimum=1e-3)
-    position_noise: float = quantity(
-        0.2, "m", "white noise of measured positions", "Skulstad 2021, paper II, Table I", minimum=1e-6
-    )
-    heading_noise: float = quantity(
-        0.1 * DEGREE, "rad", "white noise of measured heading", "Skulstad 2021, paper II, Table I", minimum=1e-9
-    )
-    velocity_noise: float = quantity(
-        0.02, "m/s", "white noise of measured velocity", "TMR4240, parameter sheet 7", minimum=1e-6
-    )
-    rate_noise: float = quantity(
-        0.05 * DEGREE, "rad/s", "white noise of measured yaw rate", "TMR4240, parameter sheet 7", minimum=1e-9
-    )
-    wave_frequency: float = quantity(
-        1.1, "rad/s", "middle frequency of the motion in waves", "peak periods of 5 to 6 s", minimum=0.1
-    )
-    wave_damping: float = quantity(
-        0.2, "1", "relative damping of the wave model: its bandwidth", "assumed", minimum=0.01
-    )
-    wave_motion: float = quantity(
-        0.05, "m", "standard deviation of surge and sway in waves", "the model's motion at Hs 0.5 m", minimum=0.0
-    )
-    wave_yaw: float = quantity(
-        0.3 * DEGREE, "rad", "standard deviation of yaw in waves", "the model's motion at Hs 0.5 m", minimum=0.0
-    )
-    velocity_disturbance: float = quantity(
-        1e-6,
-        "m2/s3",
-        "intensity of the white disturbance of velocity",
-        "thrust that is not delivered as allocated; tuned on 20 seeds of the four corners",
-        minimum=1e-18,
-    )
-    rate_disturbance: float = quantity(
-        1e-8,
-        "rad2/s3",
-        "intensity of the white disturbance of yaw rate",
-        "tuned on 20 seeds of the four corners",
-        minimum=1e-18,
-    )
-    bias_drift: float = quantity(
-        2e-7,
-        "m2/s5",
-        "intensity of the random walk of the bias force over mass",
-        "tuned on 20 seeds of the four corners",
-        minimum=1e-18,
-    )
-    bias_drift_yaw: float = quantity(
-        1e-8,
-        "rad2/s5",
-        "intensity of the random walk of the bias moment over inertia",
-        "tuned on 20 seeds of the four corners",
-        minimum=1e-18,
+    sample_period: float = required("s", "period of observer and control law", minimum=1e-3)
+    position_noise: float = required("m", "white noise of measured positions", minimum=1e-6)
+    heading_noise: float = required("rad", "white noise of measured heading", minimum=1e-9)
+    velocity_noise: float = required("m/s", "white noise of measured velocity", minimum=1e-6)
+    rate_noise: float = required("rad/s", "white noise of measured yaw rate", minimum=1e-9)
+    wave_frequency: float = required("rad/s", "middle frequency of the motion in waves", minimum=0.1)
+    wave_damping: float = required("1", "relative damping of the wave model: its bandwidth", minimum=0.01)
+    wave_motion: float = required("m", "standard deviation of surge and sway in waves", minimum=0.0)
+    wave_yaw: float = required("rad", "standard deviation of yaw in waves", minimum=0.0)
+    velocity_disturbance: float = required("m2/s3", "intensity of the white disturbance of velocity", minimum=1e-18)
+    rate_disturbance: float = required("rad2/s3", "intensity of the white disturbance of yaw rate", minimum=1e-18)
+    bias_drift: float = required("m2/s5", "intensity of the random walk of the bias force over mass", minimum=1e-18)
+    bias_drift_yaw: float = required(
+        "rad2/s5", "intensity of the random walk of the bias moment over inertia", minimum=1e-18
     )
 
 

@@ -1,6 +1,5 @@
 """Control law of dynamic positioning: nonlinear PID with feedforward of reference and wind, and anti-windup."""
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,64 +9,30 @@ from shipcosim.models.control.reference import ReferenceState
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum, where
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import required
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ControlParameters:
     """Poles and limits of the control law; its gains follow from the mass of the ship."""
 
-    surge_frequency: float = quantity(
-        0.10, "rad/s", "natural frequency of the loop in surge", "tuned on 20 seeds of the four corners", minimum=0.0
+    surge_frequency: float = required("rad/s", "natural frequency of the loop in surge", minimum=0.0)
+    sway_frequency: float = required("rad/s", "natural frequency of the loop in sway", minimum=0.0)
+    yaw_frequency: float = required("rad/s", "natural frequency of the loop in yaw", minimum=0.0)
+    damping_ratio: float = required("1", "relative damping of the loops", minimum=0.0)
+    integral_ratio: float = required("1", "rate of the integral action over the loop's natural frequency", minimum=0.0)
+    position_error_max: float = required(
+        "m", "position error beyond which the restoring force grows no more", minimum=1e-3
     )
-    sway_frequency: float = quantity(
-        0.10, "rad/s", "natural frequency of the loop in sway", "tuned on 20 seeds of the four corners", minimum=0.0
+    heading_error_max: float = required(
+        "rad", "heading error beyond which the restoring moment grows no more", minimum=1e-3
     )
-    yaw_frequency: float = quantity(
-        0.16, "rad/s", "natural frequency of the loop in yaw", "tuned on 20 seeds of the four corners", minimum=0.0
+    missed_force_max: float = required(
+        "N", "missing force beyond which the integral grows no further that way", minimum=0.0
     )
-    damping_ratio: float = quantity(
-        1.0, "1", "relative damping of the loops", "tuned on 20 seeds of the four corners", minimum=0.0
-    )
-    integral_ratio: float = quantity(
-        0.4,
-        "1",
-        "rate of the integral action over the loop's natural frequency",
-        "tuned on 20 seeds of the four corners",
-        minimum=0.0,
-    )
-    position_error_max: float = quantity(
-        2.5,
-        "m",
-        "position error beyond which the restoring force grows no more",
-        "tuned: the force stays within reach of two units, which else lose her after the third has failed",
-        minimum=1e-3,
-    )
-    heading_error_max: float = quantity(
-        20.0 * math.pi / 180.0,
-        "rad",
-        "heading error beyond which the restoring moment grows no more",
-        "assumed",
-        minimum=1e-3,
-    )
-    missed_force_max: float = quantity(
-        2e3,
-        "N",
-        "missing force beyond which the integral grows no further that way",
-        "assumed: more than the limit of the thrusters' rate makes them miss in normal work",
-        minimum=0.0,
-    )
-    missed_moment_max: float = quantity(
-        30e3, "N.m", "the same for the yaw moment", "assumed: missed_force_max at the thrusters", minimum=0.0
-    )
-    wind_time: float = quantity(
-        1.0,
-        "s",
-        "time constant of the filter of the wind's load",
-        "tuned on 20 seeds of the four corners",
-        minimum=1e-3,
-    )
-    wind_share: float = quantity(1.0, "1", "share of the wind's load that is fed forward", "choice", minimum=0.0)
+    missed_moment_max: float = required("N.m", "the same for the yaw moment", minimum=0.0)
+    wind_time: float = required("s", "time constant of the filter of the wind's load", minimum=1e-3)
+    wind_share: float = required("1", "share of the wind's load that is fed forward", minimum=0.0)
 
 
 class Desired(NamedTuple):

@@ -3,33 +3,20 @@
 Each axis is a critically damped filter of third order, integrated exactly, behind a limit of the setpoint's speed.
 """
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum, where
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import quantity, required
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ReferenceParameters:
     """How quickly the reference follows its setpoint."""
 
-    position_frequency: float = quantity(
-        2.0 * math.pi / 120.0,
-        "rad/s",
-        "natural frequency of the position reference",
-        "2 pi / 120 s; at the 2 pi / 200 s of Skulstad 2021 a leg of 200 s ends 1.0 m short of 20 m",
-        minimum=1e-4,
-    )
-    heading_frequency: float = quantity(
-        2.0 * math.pi / 120.0,
-        "rad/s",
-        "natural frequency of the heading reference",
-        "as position_frequency",
-        minimum=1e-4,
-    )
+    position_frequency: float = required("rad/s", "natural frequency of the position reference", minimum=1e-4)
+    heading_frequency: float = required("rad/s", "natural frequency of the heading reference", minimum=1e-4)
     speed_max: float = quantity(
         0.0, "m/s", "largest speed of the reference over ground; 0: not limited", "choice", minimum=0.0
     )

@@ -1,10 +1,25 @@
 """Numbers that know their unit and where they come from: the fields of every parameter set."""
 
 from dataclasses import field
+from typing import Any
+
+LEFT_OUT = 1e30
+"""Size of a number that nobody has given. FMI wants a start value of every parameter: this is the one of a parameter
+that describes a ship, positive or, where its maximum forbids that, negative; a table's is the empty text."""
 
 
-def quantity(default, unit, description, origin, *, tolerance=0.0, minimum=None, maximum=None):
-    """Field of a frozen dataclass of parameters.
+def quantity(
+    default: Any,
+    unit: str,
+    description: str,
+    origin: str,
+    *,
+    tolerance: float = 0.0,
+    share: float = 0.0,
+    minimum: float | None = None,
+    maximum: float | None = None,
+) -> Any:
+    """Field of a frozen dataclass of parameters with a default, which changes nothing or holds for any ship.
 
     Parameters
     ----------
@@ -18,16 +33,68 @@ def quantity(default, unit, description, origin, *, tolerance=0.0, minimum=None,
         Where the number comes from, with its grade; a guess says "assumed".
     tolerance : float
         Standard deviation within which the value counts as known, in its unit.
+    share : float
+        The same of a value that is not the default, over its size, where its parameter set does not say it. [1]
     minimum, maximum : float, optional
         Bounds of meaningful values.
     """
-    metadata = dict(
-        unit=unit, description=description, origin=origin, tolerance=tolerance, minimum=minimum, maximum=maximum
-    )
-    return field(default=default, metadata=metadata)
+    about = _about(unit, description, type(default), origin=origin, tolerance=tolerance, share=share)
+    return field(default=default, metadata=about | {"minimum": minimum, "maximum": maximum})
 
 
-def acts(value, neutral=0.0):
+def required(
+    unit: str,
+    description: str,
+    *,
+    tolerance: float = 0.0,
+    share: float = 0.0,
+    minimum: float | None = None,
+    maximum: float | None = None,
+) -> Any:
+    """Field of a frozen dataclass of parameters that describes a ship: a number without which there is none.
+
+    Parameters
+    ----------
+    unit, description, minimum, maximum
+        As of `quantity`.
+    tolerance, share : float
+        As of `quantity`, of a number whose parameter set does not say it: give one of them.
+    """
+    about = _about(unit, description, float, tolerance=tolerance, share=share)
+    return field(metadata=about | {"minimum": minimum, "maximum": maximum})
+
+
+def required_table(columns: tuple[str, ...], description: str) -> Any:
+    """Field of a frozen dataclass of parameters that holds a ship's table as text, see `tables`.
+
+    Parameters
+    ----------
+    columns : tuple of str
+        Name and unit of each, ``"angle [deg]"``.
+    description : str
+        What it is, one line.
+    """
+    return field(metadata=_about("1", description, str, columns=tuple(columns)))
+
+
+def _about(unit: str, description: str, kind: type, **more: Any) -> dict[str, Any]:
+    """What a field knows of its number beside the default."""
+    rest = {"origin": "", "tolerance": 0.0, "share": 0.0, "minimum": None, "maximum": None, "columns": ()}
+    return {"unit": unit, "description": description, "kind": kind} | rest | more
+
+
+def left_out(value: Any) -> bool:
+    """Whether a value is the one that stands for none: a parameter that its ship does not give.
+
+    Examples
+    --------
+    >>> left_out(1e30), left_out(""), left_out(0.0)
+    (True, True, False)
+    """
+    return value == "" if isinstance(value, str) else isinstance(value, float) and abs(value) >= LEFT_OUT
+
+
+def acts(value: Any, neutral: float = 0.0) -> bool:
     """Whether a parameter changes anything: it is not the neutral number, or it is more than one number.
 
     What does not act can be left out; arrays are not looked into.

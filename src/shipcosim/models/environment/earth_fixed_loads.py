@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 from shipcosim.models.core.kinematics import load_at, to_body
 from shipcosim.models.core.maths import Arithmetic, clip, hypot
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import quantity, required
 
-_SURGE_SHARE, _SWAY_POWER, _YAW_ARM = 1.0 / 3.0, 2.0, -1.5
+_SURGE_SHARE, _SWAY_POWER = 1.0 / 3.0, 2.0
 _TINY = 1e-30  # N
 _SOON = 1e-6  # s, so that the time of an onset belongs to it, however a master adds up its steps
-_VERES = "fitted to the drift table of gunnerus-33m9, Tp 4 to 7 s"
+_VERES = "fitted to the drift table of a research vessel of 34 m, Tp 4 to 7 s"
 
 
 @dataclass(frozen=True)
@@ -20,17 +20,17 @@ class OnsetParameters:
     ramp_time: float = quantity(0.0, "s", "time that it takes to grow after that", "0: at once", minimum=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class EarthForceParameters:
     """A force of constant direction over the earth, and where it pulls at the ship."""
 
     north: float = quantity(0.0, "N", "force towards north", "neutral")
     east: float = quantity(0.0, "N", "force towards east", "neutral")
-    x: float = quantity(-17.0, "m", "point of attack forward of the origin", "the stern of gunnerus-33m9")
+    x: float = required("m", "point of attack forward of the origin")
     y: float = quantity(0.0, "m", "point of attack to starboard of the origin", "on the centreline")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DriftForceParameters:
     """Mean drift of waves that travel in one direction."""
 
@@ -44,9 +44,7 @@ class DriftForceParameters:
         "waves much shorter than the ship (Faltinsen 1990, ch. 5)",
         minimum=1.0,
     )
-    yaw_arm: float = quantity(
-        _YAW_ARM, "m", "yaw moment in waves from 45 deg to port of the stern, over the force on the beam", _VERES
-    )
+    yaw_arm: float = required("m", "yaw moment in waves from 45 deg to port of the stern, over the force on the beam")
 
 
 def onset(t: Arithmetic, *, onset_time: Arithmetic, ramp_time: Arithmetic) -> Arithmetic:
@@ -78,7 +76,7 @@ def onset(t: Arithmetic, *, onset_time: Arithmetic, ramp_time: Arithmetic) -> Ar
     return clip((t - onset_time + _SOON) / (ramp_time + _SOON), 0.0, 1.0)
 
 
-def earth_force(psi, north, east, *, x=-17.0, y=0.0):
+def earth_force(psi, north, east, *, x, y=0.0):
     """Load of a force of constant direction over the earth that attacks at a point of the ship.
 
     Parameters
@@ -105,17 +103,17 @@ def earth_force(psi, north, east, *, x=-17.0, y=0.0):
     return load_at(x, y, *to_body(psi, north, east))
 
 
-def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, sway_power=_SWAY_POWER, yaw_arm=_YAW_ARM):
+def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, sway_power=_SWAY_POWER, yaw_arm):
     """Mean drift load of waves that travel in a fixed direction over the earth.
 
     With A the force on the beam and γ the direction the waves travel, seen from the bow,
 
         X = c A cos γ,  Y = A sin γ abs(sin γ)**(p - 1),  N = d A sin 2γ.
 
-    Fitted to the table of the lengthened Gunnerus over all γ, in JONSWAP seas with peak periods of 4 to 7 s, c is 0.19
-    to 0.33, d -1.60 to -1.38 m and the factor of Y 1.00 to 1.01. What the fits leave is 9 to 21 % of X, 11 % of Y and
-    10 to 27 % of N (rms over rms). c = 1/3 belongs to the longer waves, d = -1.5 m to the middle. That is with p = 2,
-    of waves much shorter than the ship; a power that is fitted too is 1.67 to 1.75.
+    Fitted to the drift table of a research vessel of 34 m over all γ, in JONSWAP seas with peak periods of 4 to 7 s,
+    c is 0.19 to 0.33, d -1.60 to -1.38 m and the factor of Y 1.00 to 1.01. What the fits leave is 9 to 21 % of X, 11 %
+    of Y and 10 to 27 % of N (rms over rms). c = 1/3 belongs to the longer waves, d = -1.5 m to the middle. That is with
+    p = 2, of waves much shorter than the ship; a power that is fitted too is 1.67 to 1.75.
 
     Parameters
     ----------
@@ -139,9 +137,9 @@ def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, sway_power=_SWAY_
     --------
     Waves from the west on the beam of a ship that heads north, then from right astern:
 
-    >>> [round(load) for load in drift_force(0.0, 0.0, 3000.0)]
+    >>> [round(load) for load in drift_force(0.0, 0.0, 3000.0, yaw_arm=-1.5)]
     [0, 3000, 0]
-    >>> [round(load) for load in drift_force(0.0, 3000.0, 0.0)]
+    >>> [round(load) for load in drift_force(0.0, 3000.0, 0.0, yaw_arm=-1.5)]
     [1000, 0, 0]
     """
     forward, starboard = to_body(psi, north, east)

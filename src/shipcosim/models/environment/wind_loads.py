@@ -8,21 +8,18 @@ from shipcosim.models.core.interpolation import interp_columns
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic, atan2, hypot, pi, where
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import acts, quantity
+from shipcosim.models.core.parameters import acts, quantity, required_table
 from shipcosim.models.core.tables import columns
-from shipcosim.models.ship.load_tables import WIND_33M9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WindParameters:
     """Wind load coefficients."""
 
-    wind_table: str = quantity(
-        WIND_33M9,
-        "1",
+    wind_table: str = required_table(
+        ("angle [deg]", "X [N.s2/m2]", "Y [N.s2/m2]", "N [N.s2/m]"),
         "rows 'angle X Y N': loads per squared apparent wind speed, N/(m/s)2, N.m/(m/s)2, by the angle it comes from "
         "relative to the bow, 0 to 180 deg, starboard",
-        "Blendermann research vessel, NTNU TMR4240 wind table of the lengthened ship, grade B",
     )
     wind_load_scale: float = quantity(
         1.0, "1", "factor on the wind loads; 1 as in the table", "neutral", tolerance=0.03, minimum=0.0

@@ -4,9 +4,9 @@ With the hydrodynamic pitch angle β = atan2(u_a, 0.7 π n D) and C = ρ/2 (u_a�
 
     T = CT(β) C,  Q = CQ(β) D C,
 
-which has no singular point: n = 0 is β = ±90 deg. Between the corners of the first quadrant, 0 <= β <= 31.9 deg
-(J = u_a/(n D) from 0 to 1.37), CT comes from the unit's own polynomial KT(J); elsewhere CT and CQ are those of the open
-propeller B4-70, P/D 1.4, scaled so that both bollard points are met (assumed; grade D outside the first quadrant).
+which has no singular point: n = 0 is β = ±90 deg. From β = 0 to an angle in the first quadrant CT comes from the
+propeller's own polynomial KT(J), J = u_a/(n D); elsewhere CT and CQ are those of the open propeller B4-70, P/D 1.4,
+times factors over β, by which a propeller meets both its bollard points (assumed; grade D outside the first quadrant).
 
 References
 ----------
@@ -17,12 +17,14 @@ model, azimuth thrusters.
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from shipcosim.models.core.interpolation import even_table, interp_even
 from shipcosim.models.core.maths import Arithmetic, atan2, pi, sqrt, where
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import quantity, required, required_table
+from shipcosim.models.core.tables import columns, parse
 
 # Fourier coefficients of CT and CQ of B4-70, P/D 1.4: Roddy, Hess and Faller, Neural network predictions of the
 # 4-quadrant Wageningen propeller series, NSWCCD-50-TR-2006/004, as tabulated in the Modelica library ShipSIM.
@@ -56,22 +58,45 @@ _CQ_SIN = (
 )
 
 # fmt: on
-_KT = (0.8208, -0.6993, 0.1895, -0.0743)  # powers of J; PMAzimuth FMU of Gunnerus, 1260 points, rms 0.0018, grade B
-_END = 31.9  # deg, where the polynomial ends
-_CT_SCALE = ((-180.0, -90.0, 0.0, _END, 90.0, 180.0), (0.875, 1.0, 1.383, 0.441, 1.0, 0.875))
-_CQ_SCALE = ((-180.0, -90.0, 0.0, 90.0, 180.0), (0.813, 1.0, 0.742, 1.0, 0.813))
-_OUTSIDE = ((-180.0, -30.0, 0.0, _END, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0))
+_FACTORS = ("angle [deg]", "factor [1]")
 _STEP = 0.1  # deg; linear interpolation then errs by at most 2e-5 in CT and 5e-6 in CQ, 1e-4 of their bollard values
 _AREA = pi / 4.0  # of the disc, in D^2
 _TIP = 0.7 * pi  # speed of the reference section in n D
 _ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
 
 
-@dataclass(frozen=True)
-class PropellerParameters:
-    """A propeller of this series."""
+class Curves(NamedTuple):
+    """A propeller over the whole circle.
 
-    diameter: float = quantity(1.9, "m", "propeller diameter", "all FMU configurations, grade A", minimum=0.01)
+    Parameters
+    ----------
+    table : tuple
+        CT, CQ and the weight of the scale outside the first quadrant over β, as `even_table` makes it. [1]
+    bollard : tuple of four floats
+        KT ahead and astern, KQ ahead and astern, over n abs(n). [1]
+    """
+
+    table: tuple
+    bollard: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PropellerParameters:
+    """A propeller: its polynomial in the first quadrant, and what it is elsewhere beside one of the series."""
+
+    diameter: float = required("m", "propeller diameter", minimum=0.01)
+    thrust_polynomial: str = required_table(
+        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"),
+        "row 'end k0 k1 k2 k3': KT over powers of the advance ratio, from no speed to a hydrodynamic pitch angle, deg",
+    )
+    thrust_factors: str = required_table(
+        _FACTORS,
+        "rows 'angle factor': factor on CT of B4-70, P/D 1.4, by the hydrodynamic pitch angle, deg",
+    )
+    torque_factors: str = required_table(
+        _FACTORS,
+        "rows 'angle factor': factor on CQ of B4-70, P/D 1.4, by the hydrodynamic pitch angle, deg",
+    )
     water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
     inflow: float = quantity(
         1.0,
@@ -93,10 +118,15 @@ class PropellerParameters:
         """C over the squared speed of the reference section, ρ/2 π D²/4. [kg/m]"""
         return 0.5 * _AREA * self.diameter**2 * self.water_density
 
+    @property
+    def curves(self):
+        """CT and CQ over the whole circle, and bollard coefficients; remembered by their tables, no state."""
+        return _curves(self.thrust_polynomial, self.thrust_factors, self.torque_factors)
+
     @cached_property
     def bollard(self):
         """Thrust, then torque, over squared shaft speed at no speed, each ahead and astern. [N.s2, N.m.s2]"""
-        D, (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.diameter, _bollard()
+        D, (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.diameter, self.curves.bollard
         K = self.water_density * D**4
         thrust, torque = K * self.thrust_scale, K * D * self.torque_scale
         astern = thrust * self.thrust_scale_outside * KT_astern
@@ -122,15 +152,17 @@ def propeller_loads(u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParam
 
     Examples
     --------
-    At 200 rpm and no speed, as in the FMU of the unit, 121.7 kN:
+    One whose KT is 0.82 at no speed, 1.9 m wide, at 200 rpm:
 
-    >>> thrust, torque = propeller_loads(0.0, 200.0 / 60.0, propeller=PropellerParameters())
-    >>> round(thrust)
-    121824
+    >>> tables = {"thrust_polynomial": "30 0.82 -0.7 0.2 -0.1", "torque_factors": "-180 1; 180 1"}
+    >>> tables |= {"thrust_factors": "-180 0.9; -90 1; 0 1.4; 30 0.4; 90 1; 180 0.9"}
+    >>> thrust, torque = propeller_loads(0.0, 200.0 / 60.0, propeller=PropellerParameters(diameter=1.9, **tables))
+    >>> round(thrust / (1025.0 * (200.0 / 60.0) ** 2 * 1.9**4), 9)
+    0.82
     """
     D = propeller.diameter
     tip, u_a = _TIP * D * n, propeller.inflow * u_a
-    ct, cq, outside = interp_even(atan2(u_a, tip), _table())
+    ct, cq, outside = interp_even(atan2(u_a, tip), propeller.curves.table)
     C = propeller.disc * (u_a * u_a + tip * tip)
     scale = propeller.thrust_scale * (1.0 + outside * (propeller.thrust_scale_outside - 1.0))
     return scale * ct * C, propeller.torque_scale * cq * D * C
@@ -193,28 +225,26 @@ def series(beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return c @ _CT_COS + s @ _CT_SIN, c @ _CQ_COS + s @ _CQ_SIN
 
 
-@lru_cache(maxsize=1)
-def _table():
-    """CT, CQ and the weight of the scale outside the first quadrant over β, all 1."""
-    return even_table(*_arrays())
-
-
-@lru_cache(maxsize=1)
-def _arrays():
-    """Columns β, CT, CQ, weight outside the first quadrant over the whole circle."""
-    degrees = np.arange(-1800, 1801) * _STEP
-    ct, cq = series(np.radians(degrees))
-    ct, cq = ct * np.interp(degrees, *_CT_SCALE), cq * np.interp(degrees, *_CQ_SCALE)
-    first = (degrees > -0.5 * _STEP) & (degrees < _END + 0.5 * _STEP)
-    J = _TIP * np.tan(np.radians(degrees[first]))
-    ct[first] = np.polyval(_KT[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
-    return np.radians(degrees), ct, cq, np.interp(degrees, *_OUTSIDE)
-
-
-@lru_cache(maxsize=1)
-def _bollard():
-    """KT ahead and astern, KQ ahead and astern, over n abs(n)."""
-    _, ct, cq, _ = _arrays()
+@lru_cache(maxsize=16)
+def _curves(thrust_polynomial, thrust_factors, torque_factors):
+    """Curves of a propeller from its tables."""
+    beta, ct, cq, outside = _arrays(thrust_polynomial, thrust_factors, torque_factors)
     factor = 0.5 * _AREA * _TIP**2
     middle = len(ct) // 2
-    return tuple((factor * np.array([ct[middle], -ct[0], cq[middle], -cq[0]])).tolist())
+    bollard = (factor * np.array([ct[middle], -ct[0], cq[middle], -cq[0]])).tolist()
+    return Curves(even_table(beta, ct, cq, outside), tuple(bollard))
+
+
+def _arrays(thrust_polynomial, thrust_factors, torque_factors):
+    """Columns β, CT, CQ, weight outside the first quadrant over the whole circle."""
+    ((end, *k),) = parse(thrust_polynomial)
+    degrees = np.arange(-1800, 1801) * _STEP
+    ct, cq = series(np.radians(degrees))
+    ct, cq = (
+        c * np.interp(degrees, *columns(factors, 2)) for c, factors in ((ct, thrust_factors), (cq, torque_factors))
+    )
+    first = (degrees > -0.5 * _STEP) & (degrees < end + 0.5 * _STEP)
+    J = _TIP * np.tan(np.radians(degrees[first]))
+    ct[first] = np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
+    outside = np.interp(degrees, (-180.0, -30.0, 0.0, end, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0))
+    return np.radians(degrees), ct, cq, outside

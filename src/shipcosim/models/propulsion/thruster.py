@@ -10,7 +10,7 @@ from typing import NamedTuple
 from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import load_at, velocity_at
 from shipcosim.models.core.maths import Arithmetic, clip, cos, exp, hypot, pi, sin, sqrt, where
-from shipcosim.models.core.parameters import acts, quantity
+from shipcosim.models.core.parameters import acts, quantity, required
 from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
 from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
 from shipcosim.models.propulsion.slipstream import slipstream_share
@@ -18,44 +18,28 @@ from shipcosim.models.propulsion.slipstream import slipstream_share
 _TURN = 2.0 * pi
 _ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
 _LOSS = "share of the thrust that is missing at the speed that the shaft has; torque and drive know nothing of it"
-_LIMITS = "Skulstad 2021, paper V, Table I, grade A"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class AzimuthParameters(PropellerParameters):
-    """An azimuth thruster with its drive; the defaults are one unit of gunnerus-33m9, on the centreline."""
+    """An azimuth thruster with its drive."""
 
-    x: float = quantity(-14.02, "m", "position forward", "allocator of the thesis, grade B", tolerance=0.02)
-    y: float = quantity(0.0, "m", "position to starboard", "one unit on the centreline", tolerance=0.02)
-    side_force_coefficient: float = quantity(
-        0.80,
-        "1",
-        "side force coefficient: momentum drag and strut",
-        "fitted to 1260 points of the unit's FMU (0.796, leaves 3.7 kN rms of 36 kN), grade B",
-        tolerance=0.08,
-        minimum=0.0,
+    x: float = required("m", "position forward", share=0.0014)
+    y: float = required("m", "position to starboard", tolerance=0.02)
+    side_force_coefficient: float = required(
+        "1", "side force coefficient: momentum drag and strut", share=0.1, minimum=0.0
     )
-    thrust_min: float = quantity(-30e3, "N", "largest thrust astern, negative", _LIMITS, maximum=0.0)
-    thrust_max: float = quantity(60e3, "N", "largest thrust ahead", _LIMITS, minimum=0.0)
-    thrust_rate: float = quantity(1e3, "N/s", "largest rate of the thrust command", _LIMITS, minimum=0.0)
-    azimuth_rate: float = quantity(10.0 * pi / 180.0, "rad/s", "largest rate of turning", _LIMITS, minimum=0.0)
-    rpm_max: float = quantity(203.0, "rpm", "largest shaft speed", "Vico, 100 %, grade A", minimum=1.0)
-    torque_max: float = quantity(23.5e3, "N.m", "largest motor torque", "500 kW at 203 rpm", minimum=0.0)
-    power_max: float = quantity(500e3, "W", "largest motor power", "thesis, grade A", minimum=0.0)
-    inertia: float = quantity(
-        600.0,
-        "kg.m2",
-        "motor, shaft, propeller and its water",
-        "Smogeli's 4 m unit scaled with D^5, grade D",
-        minimum=1e-6,
-    )
-    friction: float = quantity(
-        10.0, "N.m.s/rad", "friction torque over shaft speed", "1 % at 203 rpm, assumed", minimum=0.0
-    )
-    proportional_gain: float = quantity(
-        3e3, "N.m.s/rad", "k_p of the drive", "5 1/s times the inertia, tuned", minimum=0.0
-    )
-    integral_gain: float = quantity(6e3, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
+    thrust_min: float = required("N", "largest thrust astern, negative", maximum=0.0)
+    thrust_max: float = required("N", "largest thrust ahead", minimum=0.0)
+    thrust_rate: float = required("N/s", "largest rate of the thrust command", minimum=0.0)
+    azimuth_rate: float = required("rad/s", "largest rate of turning", minimum=0.0)
+    rpm_max: float = required("rpm", "largest shaft speed", minimum=1.0)
+    torque_max: float = required("N.m", "largest motor torque", minimum=0.0)
+    power_max: float = required("W", "largest motor power", minimum=0.0)
+    inertia: float = required("kg.m2", "motor, shaft, propeller and its water", minimum=1e-6)
+    friction: float = required("N.m.s/rad", "friction torque over shaft speed", minimum=0.0)
+    proportional_gain: float = required("N.m.s/rad", "k_p of the drive", minimum=0.0)
+    integral_gain: float = required("N.m/rad", "k_i of the drive", minimum=0.0)
 
     thrust_loss: float = quantity(0.0, "1", _LOSS, "neutral", tolerance=0.01, maximum=1.0)
     reverse_loss: float = quantity(
@@ -69,9 +53,7 @@ class AzimuthParameters(PropellerParameters):
     azimuth_offset: float = quantity(
         0.0, "rad", "real direction of the thrust minus the given one", "neutral", tolerance=0.2 * pi / 180.0
     )
-    rpm_offset: float = quantity(
-        0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", tolerance=0.1
-    )
+    rpm_offset: float = quantity(0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", share=5e-4)
     interaction_loss: float = quantity(
         0.0, "1", "share of the thrust that is lost on the axis of the neighbour's slipstream", "neutral", maximum=1.0
     )
@@ -91,41 +73,30 @@ class AzimuthParameters(PropellerParameters):
         return any(map(acts, (self.thrust_loss, self.reverse_loss, self.interaction_loss)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TunnelParameters:
-    """A tunnel thruster with its drive, speeds and torques on the motor's side; the defaults are gunnerus-33m9."""
+    """A tunnel thruster with its drive, speeds and torques on the motor's side."""
 
-    x: float = quantity(14.48, "m", "position forward", "allocator of the thesis, grade B", tolerance=0.02)
-    thrust_coefficient: float = quantity(
-        6.83e-3,
-        "N/rpm2",
-        "thrust over squared motor speed",
-        "nominal curve of the thesis, grade B",
-        tolerance=1.4e-4,
-        minimum=1e-9,
-    )
-    torque_coefficient: float = quantity(
-        1073.0 / 1780.0**2, "N.m/rpm2", "torque over squared motor speed", "200 kW at 1780 rpm, assumed", minimum=0.0
-    )
+    x: float = required("m", "position forward", share=0.0014)
+    thrust_coefficient: float = required("N/rpm2", "thrust over squared motor speed", share=0.02, minimum=1e-9)
+    torque_coefficient: float = required("N.m/rpm2", "torque over squared motor speed", minimum=0.0)
     speed_loss: float = quantity(
         0.0, "s2/m2", "thrust falls with exp(-speed_loss u_r^2) under way; (1/2.2)^2 is typical", "neutral", minimum=0.0
     )
-    thrust_min: float = quantity(-21.6e3, "N", "largest thrust to port, negative", "at 1780 rpm", maximum=0.0)
-    thrust_max: float = quantity(21.6e3, "N", "largest thrust to starboard", "at 1780 rpm", minimum=0.0)
-    thrust_rate: float = quantity(1e3, "N/s", "largest rate of the thrust command", _LIMITS, minimum=0.0)
-    rpm_max: float = quantity(1780.0, "rpm", "largest motor speed", "nominal curve of the thesis, grade B", minimum=1.0)
-    torque_max: float = quantity(1180.0, "N.m", "largest motor torque", "10 % above rated, assumed", minimum=0.0)
-    power_max: float = quantity(200e3, "W", "largest motor power", "thesis, grade A", minimum=0.0)
-    inertia: float = quantity(12.0, "kg.m2", "motor with what it drives", "assumed", minimum=1e-6)
-    friction: float = quantity(0.0, "N.m.s/rad", "friction torque over motor speed", "in the torque", minimum=0.0)
-    proportional_gain: float = quantity(
-        60.0, "N.m.s/rad", "k_p of the drive", "5 1/s times the inertia, tuned", minimum=0.0
-    )
-    integral_gain: float = quantity(120.0, "N.m/rad", "k_i of the drive", "k_p over 0.5 s, tuned", minimum=0.0)
+    thrust_min: float = required("N", "largest thrust to port, negative", maximum=0.0)
+    thrust_max: float = required("N", "largest thrust to starboard", minimum=0.0)
+    thrust_rate: float = required("N/s", "largest rate of the thrust command", minimum=0.0)
+    rpm_max: float = required("rpm", "largest motor speed", minimum=1.0)
+    torque_max: float = required("N.m", "largest motor torque", minimum=0.0)
+    power_max: float = required("W", "largest motor power", minimum=0.0)
+    inertia: float = required("kg.m2", "motor with what it drives", minimum=1e-6)
+    friction: float = required("N.m.s/rad", "friction torque over motor speed", minimum=0.0)
+    proportional_gain: float = required("N.m.s/rad", "k_p of the drive", minimum=0.0)
+    integral_gain: float = required("N.m/rad", "k_i of the drive", minimum=0.0)
 
     thrust_loss: float = quantity(0.0, "1", _LOSS, "neutral; thrust_coefficient has the tolerance", maximum=1.0)
     rpm_offset: float = quantity(
-        0.0, "rpm", "given motor speed of a replay minus the real one", "neutral", tolerance=1.0
+        0.0, "rpm", "given motor speed of a replay minus the real one", "neutral", share=5.6e-4
     )
 
 

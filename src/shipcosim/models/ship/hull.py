@@ -9,10 +9,8 @@ from functools import cached_property
 
 from shipcosim.models.core.maths import Arithmetic, maximum, minimum
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import acts, quantity
+from shipcosim.models.core.parameters import acts, quantity, required
 
-_MARLEY = "calibrated to the trials of 2022 by M. Marley, MCSim_python, grade B"
-_FITTED = "fitted to the steady turns of 2022, grade C"
 _UNUSED = "not used by this ship"
 _TINY = 1e-30
 
@@ -21,46 +19,35 @@ def _unused(unit, description):
     return quantity(0.0, unit, description, _UNUSED)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class HullParameters:
-    """Mass and hydrodynamics of a hull; the defaults are R/V Gunnerus after lengthening, gunnerus-33m9.
+    """Mass and hydrodynamics of a hull. A coefficient that is left out is zero: its contribution is left out too.
 
     Coefficients are named as in the source: ``X_rvu`` multiplies r v u in surge; ``mod`` stands for one absolute value,
     ``Y_modrv`` multiplies v abs(r).
     """
 
-    mass: float = quantity(531e3, "kg", "mass", "mean of the stability report, grade B", tolerance=5.31e3, minimum=1.0)
-    inertia_yaw: float = quantity(
-        43.0e6,
-        "kg.m2",
-        "moment of inertia in yaw",
-        "m (9 m)^2, " + _MARLEY,
-        tolerance=0.43e6,
-        minimum=1.0,
-    )
+    mass: float = required("kg", "mass", share=0.01, minimum=1.0)
+    inertia_yaw: float = required("kg.m2", "moment of inertia in yaw", share=0.01, minimum=1.0)
     centre_of_gravity_x: float = quantity(0.0, "m", "centre of gravity forward of the origin", "origin in it")
-    A11: float = quantity(26_550.0, "kg", "added mass in surge", "0.05 m, " + _MARLEY, tolerance=800.0)
-    A22: float = quantity(212_400.0, "kg", "added mass in sway", "0.40 m, " + _MARLEY, tolerance=6.4e3)
-    A26: float = quantity(-637_200.0, "kg.m", "added mass, sway by yaw", "-3 m A22, " + _MARLEY, tolerance=19e3)
-    A62: float = quantity(-637_200.0, "kg.m", "added mass, yaw by sway", "-3 m A22, " + _MARLEY, tolerance=19e3)
-    A66: float = quantity(
-        19.12e6, "kg.m2", "added moment of inertia", "A22 ((9 m)^2 + (3 m)^2), " + _MARLEY, tolerance=0.57e6
-    )
+    A11: float = required("kg", "added mass in surge", share=0.03)
+    A22: float = required("kg", "added mass in sway", share=0.03)
+    A26: float = required("kg.m", "added mass, sway by yaw", share=0.03)
+    A62: float = required("kg.m", "added mass, yaw by sway", share=0.03)
+    A66: float = required("kg.m2", "added moment of inertia", share=0.03)
     added_mass_coriolis: float = quantity(
         1.0, "1", "share of C_A(nu_r) nu_r; 0 for coefficients that contain it already", "Fossen 2021", minimum=0.0
     )
 
     water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
-    length: float = quantity(33.9, "m", "length between perpendiculars", "thesis Table 2.2, grade A", minimum=0.1)
-    breadth: float = quantity(9.6, "m", "breadth", "thesis Table 2.2, grade A", minimum=0.1)
-    draught: float = quantity(2.786, "m", "draught", "lines plan, " + _MARLEY, minimum=0.1)
+    length: float = required("m", "length between perpendiculars", minimum=0.1)
+    breadth: float = required("m", "breadth", minimum=0.1)
+    draught: float = required("m", "draught", minimum=0.1)
     cross_flow_drag: float = quantity(
-        1.5, "1", "cross-flow drag coefficient, uniform over the length", _MARLEY, tolerance=0.075, minimum=0.0
+        0.0, "1", "cross-flow drag coefficient, uniform over the length", _UNUSED, share=0.05, minimum=0.0
     )
-    lift: float = quantity(
-        -30_000.0, "N.s2/m2", "side force of lift over abs(u_r) v_r", _FITTED, tolerance=3e3, maximum=0.0
-    )
-    lift_x: float = quantity(-2.3, "m", "where the lift acts, forward of the origin", _FITTED, tolerance=0.23)
+    lift: float = quantity(0.0, "N.s2/m2", "side force of lift over abs(u_r) v_r", _UNUSED, share=0.1, maximum=0.0)
+    lift_x: float = quantity(0.0, "m", "where the lift acts, forward of the origin", _UNUSED, share=0.1)
 
     X_u: float = _unused("N.s/m", "linear damping in surge")
     Y_v: float = _unused("N.s/m", "linear damping in sway")
@@ -68,9 +55,7 @@ class HullParameters:
     N_v: float = _unused("N.s", "linear damping, yaw by sway")
     N_r: float = _unused("N.m.s/rad", "linear damping in yaw")
 
-    X_uu: float = quantity(
-        -1645.0, "N.s2/m2", "quadratic damping in surge, u abs(u)", "0.06 rho B T, " + _MARLEY, tolerance=82.0
-    )
+    X_uu: float = quantity(0.0, "N.s2/m2", "quadratic damping in surge, u abs(u)", _UNUSED, share=0.05)
     Y_modvv: float = _unused("N.s2/m2", "quadratic damping in sway, v abs(v)")
     N_modrr: float = _unused("N.m.s2/rad2", "quadratic damping in yaw, r abs(r)")
 

@@ -10,55 +10,40 @@ read as the nominal model says under sensors.
 """
 
 from dataclasses import dataclass
-from math import radians
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, atan2, cos, exp, hypot, sin, sqrt
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.core.sampling import normals, samples_due
 
 _PAPER = "thesis paper II, Table I"
 _COURSE = "parameter sheet 7 (TMR4240), grade B"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SensorParameters:
     """Errors of position and heading reference, velocity sensors and anemometer."""
 
-    period: float = quantity(0.1, "s", "sample period", _PAPER, minimum=1e-3)
-    position_drift_std: float = quantity(
-        0.1, "m", "stationary standard deviation of the Gauss-Markov error, north and east each", _PAPER, minimum=0.0
+    period: float = required("s", "sample period", minimum=1e-3)
+    position_drift_std: float = required(
+        "m", "stationary standard deviation of the Gauss-Markov error, north and east each", minimum=0.0
     )
-    position_drift_time: float = quantity(240.0, "s", "its correlation time", _PAPER, minimum=1e-3)
-    position_noise_std: float = quantity(0.2, "m", "white noise of north and east each", _PAPER, minimum=0.0)
-    heading_drift_std: float = quantity(
-        radians(0.1),
-        "rad",
-        "stationary standard deviation of the Gauss-Markov error of the heading",
-        "assumed, lost in the table: 0.1 deg",
-        minimum=0.0,
+    position_drift_time: float = required("s", "its correlation time", minimum=1e-3)
+    position_noise_std: float = required("m", "white noise of north and east each", minimum=0.0)
+    heading_drift_std: float = required(
+        "rad", "stationary standard deviation of the Gauss-Markov error of the heading", minimum=0.0
     )
-    heading_drift_time: float = quantity(60.0, "s", "its correlation time", _PAPER, minimum=1e-3)
-    heading_noise_std: float = quantity(
-        radians(0.1), "rad", "white noise of the heading", _PAPER + ": 0.1 deg", minimum=0.0
-    )
-    velocity_noise_std: float = quantity(0.02, "m/s", "white noise of surge and sway each", _COURSE, minimum=0.0)
-    yaw_rate_noise_std: float = quantity(
-        radians(0.05), "rad/s", "white noise of the yaw rate", _COURSE + ": 0.05 deg/s", minimum=0.0
-    )
+    heading_drift_time: float = required("s", "its correlation time", minimum=1e-3)
+    heading_noise_std: float = required("rad", "white noise of the heading", minimum=0.0)
+    velocity_noise_std: float = required("m/s", "white noise of surge and sway each", minimum=0.0)
+    yaw_rate_noise_std: float = required("rad/s", "white noise of the yaw rate", minimum=0.0)
     x_bias: float = quantity(0.0, "m", "bias of the north position", _PAPER + ": within 0.2 m; 0 in our scenarios")
     y_bias: float = quantity(0.0, "m", "bias of the east position", _PAPER + ": within 0.2 m; 0 in our scenarios")
     psi_bias: float = quantity(0.0, "rad", "bias of the heading", _PAPER + ": within 0.1 deg; 0 in our scenarios")
-    wind_average_time: float = quantity(
-        3.0, "s", "span of the mean that the anemometer gives", "nominal model, sensors", minimum=0.0
-    )
-    wind_speed_noise: float = quantity(
-        0.02, "1", "white noise of the wind speed, over the wind speed", "nominal model, sensors", minimum=0.0
-    )
-    wind_from_noise_std: float = quantity(
-        radians(1.0), "rad", "white noise of the wind direction", "nominal model, sensors: 1 deg", minimum=0.0
-    )
+    wind_average_time: float = required("s", "span of the mean that the anemometer gives", minimum=0.0)
+    wind_speed_noise: float = required("1", "white noise of the wind speed, over the wind speed", minimum=0.0)
+    wind_from_noise_std: float = required("rad", "white noise of the wind direction", minimum=0.0)
     seed: int = quantity(1, "1", "seed of all errors", "any", minimum=0)
 
 

@@ -13,23 +13,20 @@ from shipcosim.models.core.integrate import rk4_motion, substeps
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load, Motion
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import required_table
 from shipcosim.models.ship.hull import HullParameters, hull_loads
-from shipcosim.models.ship.load_tables import DRIFT_33M9
 
 _LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DriftParameters:
     """Wave drift coefficients."""
 
-    drift_table: str = quantity(
-        DRIFT_33M9,
-        "1",
+    drift_table: str = required_table(
+        ("omega [rad/s]", "heading [deg]", "X [N/m2]", "Y [N/m2]", "N [N/m]"),
         "rows 'omega heading X Y N': mean wave drift loads per squared amplitude, N/m2, N.m/m2, by frequency in rad/s "
         "and heading in deg, 0 following, 90 towards starboard, 180 head",
-        "VERES at zero speed, lengthened hull, grade B",
     )
 
 

@@ -42,6 +42,12 @@ class Component:
         """Start value of a variable: the system's, else the FMU's own, else None."""
         return self.start.get(variable, self.fmu.variables[variable].start)
 
+    @property
+    def left_out(self) -> list[str]:
+        """Parameters that the FMU must be given and the system does not set."""
+        known = self.fmu.variables.items()
+        return [name for name, v in known if v.required and self.start.get(name, v.start) == v.start]
+
 
 @dataclass(frozen=True)
 class Signal:

@@ -44,6 +44,8 @@ class Variable:
         The same as written: a number, or the name of the structural parameter.
     negated : bool
         FMI 1.0: it is the negative of the variable with the same value reference.
+    required : bool
+        A parameter whose start value stands for none, as an FMU of ours says it: the FMU refuses to start with it.
     whole, place : Variable or None, int
         Of an array's element: the array, and which of its values this one is.
     """
@@ -63,6 +65,7 @@ class Variable:
     dimensions: tuple[int, ...] = ()
     sizes: tuple[int | str, ...] = ()
     negated: bool = False
+    required: bool = False
     whole: "Variable | None" = None
     place: int = 0
 

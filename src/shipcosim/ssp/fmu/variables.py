@@ -84,6 +84,7 @@ def _variable(
         dimensions=dimensions,
         sizes=tuple(_size_as_written(part, sizes) for part in written),
         negated=is_first and is_negated(element),
+        required=any(part.get("required") == "true" for part in element.iter("Quantity")),
     )
 
 

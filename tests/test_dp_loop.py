@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from shipcosim.models.dp_loop import DpSystem, simulate
+from dp_loop import dp_system, simulate
+from ships import equipped
 
 NORTH_EAST = math.pi / 4.0
 MODERATE = dict(significant_wave_height=0.3, peak_period=5.0, waves_from=NORTH_EAST)
@@ -25,7 +25,7 @@ CORNERS = [(250, 20, 0, 0), (450, 20, -20, 0), (650, 20, -20, -NORTH_EAST), (850
 
 
 def with_seeds(seeds, **environment):
-    system, seeds = DpSystem(), np.asarray(seeds)
+    system, seeds = dp_system(), np.asarray(seeds)
     return replace(
         system,
         environment=replace(system.environment, seed=seeds, **environment),
@@ -112,8 +112,10 @@ def test_array_form_follows_the_fmus_stepped_one_by_one(fmus):
     components = {name: fmus(name)() for name in ("environment", "vessel", "sensors", "reference", "allocator")}
     components |= {name: fmus("azimuth_thruster")() for name in ("port", "starboard")}
     components |= {"tunnel": fmus("tunnel_thruster")(), "controller": fmus("dp_controller")()}
+    for name in set(components) - {"environment"}:
+        equipped(components[name], name)
     parameters = [("environment", name, value) for name, value in MODERATE.items()]
-    parameters += [("environment", "seed", 3), ("sensors", "seed", 103), ("port", "y", -2.0), ("starboard", "y", 2.0)]
+    parameters += [("environment", "seed", 3), ("sensors", "seed", 103)]
     inputs = [("environment", name, value) for name, value in WIND_8.items()] + [("reference", "x_set", 20.0)]
     run = simulate(with_seeds([3, 8], **MODERATE), [(0.0, dict(x_set=20.0, **WIND_8))], variations=2, stop_time=60.0)
     signals = [name for name in run if name != "time"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from ships import parameters
 
 from shipcosim.angles import wrap
 from shipcosim.models.allocation import pseudo_inverse as allocation
@@ -35,22 +36,41 @@ from shipcosim.models.ship.sensors import SensorParameters
 class DpSystem:
     """Parameter sets of the components. Any number in them may be an (m,) array, one value per variation."""
 
-    hull: HullParameters = HullParameters()
-    wind: WindParameters = WindParameters()
-    drift: vessel.DriftParameters = vessel.DriftParameters()
-    port: AzimuthParameters = AzimuthParameters(y=-2.0, neighbour_x=-14.02, neighbour_y=2.0)
-    starboard: AzimuthParameters = AzimuthParameters(y=2.0, neighbour_x=-14.02, neighbour_y=-2.0)
-    tunnel: TunnelParameters = TunnelParameters()
+    hull: HullParameters
+    wind: WindParameters
+    drift: vessel.DriftParameters
+    port: AzimuthParameters
+    starboard: AzimuthParameters
+    tunnel: TunnelParameters
+    sensors: SensorParameters
+    reference: ReferenceParameters
+    ship: DpShip
+    observer: ObserverParameters
+    control: ControlParameters
+    known_wind: WindParameters
+    allocation: AllocationParameters
+    environment: EnvironmentParameters = EnvironmentParameters()
     port_azimuth_start: float = 0.0
     starboard_azimuth_start: float = 0.0
-    environment: EnvironmentParameters = EnvironmentParameters()
-    sensors: SensorParameters = SensorParameters()
-    reference: ReferenceParameters = ReferenceParameters()
-    ship: DpShip = DpShip()
-    observer: ObserverParameters = ObserverParameters()
-    control: ControlParameters = ControlParameters()
-    known_wind: WindParameters = WindParameters()
-    allocation: AllocationParameters = AllocationParameters()
+
+
+def dp_system(ship: str = "gunnerus-33m9") -> DpSystem:
+    """The DP loop of a ship of ssp/ships, in fair weather."""
+    return DpSystem(
+        parameters(HullParameters, ship),
+        parameters(WindParameters, ship),
+        parameters(vessel.DriftParameters, ship),
+        parameters(AzimuthParameters, ship, "port"),
+        parameters(AzimuthParameters, ship, "starboard"),
+        parameters(TunnelParameters, ship),
+        parameters(SensorParameters, ship),
+        parameters(ReferenceParameters, ship),
+        parameters(DpShip, ship),
+        parameters(ObserverParameters, ship),
+        parameters(ControlParameters, ship),
+        parameters(WindParameters, ship, "controller"),
+        parameters(AllocationParameters, ship),
+    )
 
 
 class Inputs(NamedTuple):

@@ -1,0 +1,333 @@
+"""Ships as folders of files: what each component needs of a ship, with unit, origin and tolerance.
+
+A folder holds a ``ship.toml``, one parameter file a component (``vessel.toml``) and tables as CSV. A ship may be based
+on others, a component like another one of the same ship: no number stands twice. See docs/your-own-ship.md.
+"""
+
+import csv
+import math
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, Field, dataclass, fields
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+
+__all__ = ["Quantity", "Ship", "read_ship"]
+
+Kind = TypeVar("Kind")
+_SHIP_KEYS = {"description": str, "based_on": list, "systems": list}
+
+
+class Quantity(NamedTuple):
+    """A parameter of a ship.
+
+    Attributes
+    ----------
+    value : float, int, bool or str
+        Value; a table is a str, rows by ";", columns by blanks.
+    unit, description, origin : str
+        FMI's spelling of the unit, one line of text, where the number comes from.
+    tolerance : float
+        Standard deviation within which it counts as known, in its unit; 0 where nobody says.
+    """
+
+    value: Any
+    unit: str
+    description: str
+    origin: str
+    tolerance: float
+
+
+class _Entry(NamedTuple):
+    """A parameter as a file says it: value, unit, tolerance, origin, columns of a table, and file and name."""
+
+    value: Any
+    unit: str
+    tolerance: float
+    origin: str
+    columns: tuple[str, ...]
+    where: str
+
+
+@dataclass(frozen=True)
+class Ship:
+    """A ship's files, with those of the ships that she is based on.
+
+    Attributes
+    ----------
+    name, description : str
+        Name of the folder, one line of text.
+    folder : Path
+    systems : tuple of str
+        Systems in ``ssp/`` that have a parameter set of her.
+    entries : mapping of str to mapping of str to _Entry
+        What the files say, by component and parameter.
+    """
+
+    name: str
+    description: str
+    folder: Path
+    systems: tuple[str, ...]
+    entries: Mapping[str, Mapping[str, _Entry]]
+
+    def parameter_set(self, components: Mapping[str, Iterable[type]]) -> dict[str, dict[str, Quantity]]:
+        """All parameters of components, checked: nothing missing, nothing unknown, units and bounds as declared.
+
+        Parameters
+        ----------
+        components : mapping of str to iterable of type
+            By component its classes of parameters, dataclasses with fields made by `shipcosim.models.core.parameters`.
+
+        Returns
+        -------
+        dict of dict of Quantity
+            By component and parameter, in the order of the classes.
+
+        Raises
+        ------
+        ShipcosimError
+            With everything that is wrong.
+        """
+        problems: list[Problem] = []
+        found = {name: self._values(name, tuple(kinds), problems) for name, kinds in components.items()}
+        for name, kinds in components.items():
+            self._find_unknown(name, kinds, problems)
+        if problems:
+            raise ShipcosimError(problems)
+        return found
+
+    def parameters(self, kind: type[Kind], component: str) -> Kind:
+        """The parameters of a component as the dataclass that the models take.
+
+        Parameters
+        ----------
+        kind : type
+            Class of parameters.
+        component : str
+            Component that has them.
+
+        Returns
+        -------
+        instance of kind
+
+        Raises
+        ------
+        ShipcosimError
+            With everything that is wrong.
+        """
+        problems: list[Problem] = []
+        values = self._values(component, (kind,), problems)
+        if problems:
+            raise ShipcosimError(problems)
+        return kind(**{name: quantity.value for name, quantity in values.items()})
+
+    def _values(self, component: str, kinds: tuple[type, ...], problems: list[Problem]) -> dict[str, Quantity]:
+        said = self.entries.get(component, {})
+        declared = [field for kind in kinds for field in fields(kind) if field.init]
+        missing = [f for f in declared if f.name not in said and f.default is MISSING]
+        if missing:
+            names = ", ".join(f"{f.name} [{f.metadata['unit']}]" for f in missing)
+            where = str(self.folder / f"{component}.toml")
+            problems.append(
+                Problem(where, f"nothing says {names}.", "They describe the ship, so they have no default.")
+            )
+        present = [field for field in declared if field.name in said or field.default is not MISSING]
+        return {field.name: _quantity(field, said.get(field.name), problems) for field in present}
+
+    def _find_unknown(self, component: str, kinds: Iterable[type], problems: list[Problem]) -> None:
+        known = {field.name for kind in kinds for field in fields(kind)}
+        for name, entry in self.entries.get(component, {}).items():
+            if name not in known:
+                problems.append(Problem(entry.where, f"{component} has no such parameter.", suggestion(name, known)))
+
+
+def read_ship(folder: str | Path) -> Ship:
+    """Read a ship's folder, and those of the ships that she is based on beside it.
+
+    Parameters
+    ----------
+    folder : path
+        Folder with a ``ship.toml``.
+
+    Returns
+    -------
+    Ship
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that cannot be read.
+    """
+    problems: list[Problem] = []
+    folder = Path(folder)
+    layers = _layers(folder, (), problems)
+    names = dict.fromkeys(file.stem for layer in layers for file in sorted(layer.glob("*.toml")) if file.stem != "ship")
+    files = {name: [_read(layer / f"{name}.toml", problems) for layer in layers] for name in names}
+    entries = {name: _entries(name, files, (), problems) for name in names}
+    about = [_about(layer, []) for layer in layers]
+    if problems:
+        raise ShipcosimError(list(dict.fromkeys(problems)))
+    systems = next((one["systems"] for one in reversed(about) if "systems" in one), [])
+    return Ship(folder.name, about[-1].get("description", ""), folder, tuple(systems), entries)
+
+
+def _layers(folder: Path, above: tuple[Path, ...], problems: list[Problem]) -> list[Path]:
+    """Folders that say something of a ship, the later over the earlier.
+
+    Of a first base everything counts; of a further one what its own files say otherwise.
+    """
+    if folder in above:
+        circle = " -> ".join(one.name for one in (*above, folder))
+        problems.append(Problem(str(folder / "ship.toml"), f"based on itself: {circle}.", ""))
+        return []
+    bases = [folder.parent / name for name in _about(folder, problems).get("based_on", [])]
+    if not bases:
+        return [folder]
+    further = [base for base in bases[1:] if _about(base, problems) is not None]
+    return [*_layers(bases[0], (*above, folder), problems), *further, folder]
+
+
+def _about(folder: Path, problems: list[Problem]) -> dict[str, Any]:
+    """What a ``ship.toml`` says, lists in place of single names."""
+    file = folder / "ship.toml"
+    if not file.is_file():
+        near = [path.parent.name for path in folder.parent.glob("*/ship.toml")]
+        problems.append(Problem(str(file), "there is no such file.", f"Ships: {suggestion(folder.name, near)}"))
+        return {}
+    said = _toml(file, problems)
+    known = {key: [value] if key == "based_on" and isinstance(value, str) else value for key, value in said.items()}
+    for key, value in known.items():
+        if not isinstance(value, _SHIP_KEYS.get(key, ())):
+            problems.append(Problem(f"{file}: {key}", f"found {value!r}.", suggestion(key, _SHIP_KEYS)))
+    return {key: value for key, value in known.items() if isinstance(value, _SHIP_KEYS.get(key, ()))}
+
+
+def _toml(file: Path, problems: list[Problem]) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        problems.append(Problem(str(file), f"no TOML: {error}."))
+        return {}
+
+
+def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
+    """Entries of a parameter file by name, and ``like`` as it is; nothing where there is no file."""
+    if not file.is_file():
+        return {}
+    found = {name: _entry(file, name, said, problems) for name, said in _toml(file, problems).items() if name != "like"}
+    like = _toml(file, []).get("like")
+    if like is not None and not isinstance(like, str):
+        problems.append(Problem(f"{file}: like", f"found {like!r}.", "Name the component that this one is like."))
+        like = None
+    return {"like": like} | {name: entry for name, entry in found.items() if entry is not None}
+
+
+def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> _Entry | None:
+    """What a file says of a parameter: a value, or where its table is."""
+    where = f"{file}: {name}"
+    is_table = isinstance(said, dict) and "table" in said
+    if wrong := _wrong_keys(said, _TABLE_KEYS if is_table else _VALUE_KEYS):
+        remedy = 'Write { value = 1.0, unit = "m", tolerance = 0.1, origin = "drawing" }, or { table = "file.csv" }.'
+        problems.append(Problem(where, f"{'; '.join(wrong)}.", remedy))
+        return None
+    if is_table:
+        return _table(file.parent / said["table"], where, problems)
+    return _Entry(said["value"], said["unit"], float(said.get("tolerance", 0.0)), said["origin"], (), where)
+
+
+def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
+    """What is wrong with the keys of an entry, and with what stands under them."""
+    if not isinstance(said, dict):
+        return [f"found {said!r}"]
+    wrong = [f"'{key}' is no key" for key in said if key not in keys]
+    wrong += [f"'{key}' is missing" for key in keys if key not in said and key != "tolerance"]
+    wrong += [f"'{key}' is {said[key]!r}" for key, is_right in keys.items() if key in said and not is_right(said[key])]
+    return wrong
+
+
+def _table(file: Path, where: str, problems: list[Problem]) -> _Entry | None:
+    """A table as text: comments, of which one says the source, a header with units, rows of numbers."""
+    if not file.is_file():
+        problems.append(Problem(where, f"there is no file {file}."))
+        return None
+    lines = file.read_text(encoding="utf-8").splitlines()
+    source = next((line[1:].partition("source:")[2].strip() for line in lines if line.startswith("# source:")), "")
+    header, *rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#"))) or [[]]
+    if not source:
+        problems.append(Problem(str(file), "no line says where the table is from.", "Write '# source: ...' above it."))
+    for number, row in enumerate(rows, 1):
+        if len(row) != len(header) or not all(_is_number_text(cell) for cell in row):
+            problems.append(Problem(f"{file}, row {number}", f"{row}.", f"A row has {len(header)} numbers."))
+    text = "; ".join(" ".join(cell.strip() for cell in row) for row in rows)
+    return _Entry(text, "1", 0.0, source, tuple(cell.strip() for cell in header), str(file))
+
+
+def _entries(
+    name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]
+) -> dict[str, _Entry]:
+    """What a ship's files say of a component: of the one that it is like, then of itself."""
+    layers = files.get(name, [])
+    like = next((layer["like"] for layer in reversed(layers) if layer.get("like")), None)
+    if like in above or (like is not None and like not in files):
+        found = "like itself" if like in above else f"like '{like}', which this ship does not have"
+        problems.append(Problem(f"{name}.toml", f"{found}.", suggestion(str(like), set(files) - {name, *above})))
+        like = None
+    found = _entries(like, files, (*above, name), problems) if like else {}
+    for layer in layers:
+        found |= {key: entry for key, entry in layer.items() if key != "like"}
+    return found
+
+
+def _quantity(field: Field, entry: _Entry | None, problems: list[Problem]) -> Quantity:
+    about = field.metadata
+    if entry is None:
+        return Quantity(field.default, about["unit"], about["description"], about["origin"], about["tolerance"])
+    value = float(entry.value) if about["kind"] is float and _is_number(entry.value) else entry.value
+    found, remedy = _wrong(value, entry, about)
+    if found:
+        problems.append(Problem(entry.where, found, remedy))
+    return Quantity(value, about["unit"], about["description"], entry.origin, entry.tolerance)
+
+
+def _wrong(value: Any, entry: _Entry, about: Mapping[str, Any]) -> tuple[str, str]:
+    """What is wrong with a value, and what would be right; both empty where it is right."""
+    kind, low, high = about["kind"], about["minimum"], about["maximum"]
+    if type(value) is not kind or (entry.columns and not about["columns"]):
+        wanted = f"a table with the columns {', '.join(about['columns'])}" if about["columns"] else kind.__name__
+        return f"found {str(value)[:60]!r}.", f"Give {wanted}."
+    if entry.columns != about["columns"]:
+        return f"the columns are {', '.join(entry.columns)}.", f"They must be {', '.join(about['columns'])}."
+    if entry.unit != about["unit"]:
+        return f"the unit is '{entry.unit}'.", f"It must be '{about['unit']}'."
+    if kind is float and not math.isfinite(value):
+        return f"found {value}.", "Give a finite number."
+    if kind is not str and (low is not None and value < low or high is not None and value > high):
+        bounds = [f"at least {low:g}" if low is not None else "", f"at most {high:g}" if high is not None else ""]
+        return f"found {value!r}.", f"It must be {' and '.join(filter(None, bounds))} {about['unit']}."
+    return "", ""
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _is_number_text(cell: str) -> bool:
+    try:
+        return math.isfinite(float(cell))
+    except ValueError:
+        return False
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+_VALUE_KEYS: Mapping[str, Any] = {
+    "value": lambda value: isinstance(value, (bool, int, float)),
+    "unit": _is_text,
+    "tolerance": lambda value: _is_number(value) and value >= 0.0,
+    "origin": _is_text,
+}
+_TABLE_KEYS: Mapping[str, Any] = {"table": _is_text}

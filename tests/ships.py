@@ -1,0 +1,84 @@
+"""Parameters of the ships in ssp/ships, for tests of the models."""
+
+from dataclasses import MISSING, fields, replace
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from shipcosim.models.propulsion.thruster import AzimuthParameters
+from shipcosim.ssp import Ship, read_ship
+
+Kind = TypeVar("Kind")
+FOLDER = Path(__file__).resolve().parents[1] / "ssp" / "ships"
+SHIPS = sorted(file.parent.name for file in FOLDER.glob("*/ship.toml"))
+COMPONENTS = {
+    "HullParameters": "vessel",
+    "WindParameters": "vessel",
+    "DriftParameters": "vessel",
+    "AzimuthParameters": "port",
+    "PropellerParameters": "port",
+    "TunnelParameters": "tunnel",
+    "SensorParameters": "sensors",
+    "ReferenceParameters": "reference",
+    "DpShip": "controller",
+    "ObserverParameters": "controller",
+    "ControlParameters": "controller",
+    "AllocationParameters": "allocator",
+}
+"""Class of parameters: a component that has them."""
+
+
+@cache
+def ship(name: str = "gunnerus-33m9") -> Ship:
+    """A ship of ssp/ships."""
+    return read_ship(FOLDER / name)
+
+
+def parameters(kind: type[Kind], name: str = "gunnerus-33m9", component: str = "") -> Kind:
+    """Parameters of a ship's component, of the one that has them by default."""
+    return ship(name).parameters(kind, component or COMPONENTS[kind.__name__])
+
+
+def unit_on_centreline(**changes: float) -> AzimuthParameters:
+    """An azimuth thruster of the lengthened ship on her centreline, without a neighbour."""
+    return replace(parameters(AzimuthParameters), **{"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0} | changes)
+
+
+def equipped(fmu: Any, component: str, name: str = "gunnerus-33m9") -> Any:
+    """An FMU's object with the parameters of a ship's component."""
+    for group in fmu.groups:
+        made = ship(name).parameters(group.kind, component)
+        for field in fields(group.kind):
+            setattr(fmu, group.prefix + field.name, getattr(made, field.name))
+    return fmu
+
+
+def lend(structure: Any, component: str, *kinds: type) -> None:
+    """Give a component of a system what the lengthened ship has: what has no default, and her hull's damping.
+
+    Without tolerances, as of a ship of which nobody says how well she is known.
+    """
+    for kind in kinds:
+        made = parameters(kind)
+        for field in fields(kind):
+            if field.default is MISSING or field.name in ("cross_flow_drag", "lift", "lift_x", "X_uu"):
+                structure.set(f"{component}.{field.name}", getattr(made, field.name))
+
+
+COMPONENT_OF = {
+    "vessel": "vessel",
+    "azimuth_thruster": "port",
+    "tunnel_thruster": "tunnel",
+    "sensors": "sensors",
+    "reference": "reference",
+    "dp_controller": "controller",
+    "allocator": "allocator",
+    "predictor": "predictor",
+}
+"""FMU: the component of the DP ship that it is."""
+
+
+def given_to(fmu: str) -> dict[str, Any]:
+    """What the lengthened ship says of an FMU's parameters, by name; nothing of an FMU that is no part of her."""
+    entries = ship().entries.get(COMPONENT_OF.get(fmu, ""), {})
+    return {name: entry.value for name, entry in entries.items()}
