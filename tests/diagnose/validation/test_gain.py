@@ -16,7 +16,7 @@ from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.validation.conditions import compare_unseen, unseen
+from shipcosim.diagnose.validation.conditions import compare_held_out, rows_without_condition
 from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
 from shipcosim.diagnose.validation.gain import (
     MODELS,
@@ -242,13 +242,13 @@ def test_a_condition_is_held_out_wherever_it_is_in_the_log(diagnosed):
         name: (np.where((time > 300) & (time <= 600), 0.0, np.maximum(np.abs(n), 1.0)), a)
         for name, (n, a) in record.units.items()
     }
-    train = unseen(replace(record, units=dead))["free drift"]
+    train = rows_without_condition(replace(record, units=dead))["free drift"]
     assert np.array_equal(np.flatnonzero(~train), np.arange(301, 601))
 
 
 def test_headings_that_nothing_was_fitted_on_are_15_deg_away_from_those(diagnosed):
     case, fit, _ = diagnosed("thrust_loss", seed=2008)
-    found = compare_unseen(case, fit)
+    found = compare_held_out(case, fit)
     assert set(found) == {"other headings"}
     comparison = found["other headings"]
     heading = np.degrees(case.motion.psi)

@@ -31,11 +31,11 @@ def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
     problem, fit = log.problem, log.fit if is_named else without_causes(log.fits)
     comparison = compare(problem, fit)
     force = missing_forces(problem, fit if is_named else None)
-    held_out = compare_unseen(problem, fit) if is_named and comparison is not None else {}
+    held_out = compare_held_out(problem, fit) if is_named and comparison is not None else {}
     return PredictedLog(log, is_named, comparison, held_out, force)
 
 
-def unseen(record: Record) -> dict[str, np.ndarray]:
+def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
     """Training rows for gains on conditions that are kept from the fit, wherever in the log they are.
 
     Parameters
@@ -60,7 +60,7 @@ def unseen(record: Record) -> dict[str, np.ndarray]:
     return found
 
 
-def compare_unseen(problem: IdentificationProblem, fit: Fit) -> dict[str, Comparison]:
+def compare_held_out(problem: IdentificationProblem, fit: Fit) -> dict[str, Comparison]:
     """Comparisons on conditions that nothing was fitted on, wherever in the log they are.
 
     Parameters
@@ -75,7 +75,7 @@ def compare_unseen(problem: IdentificationProblem, fit: Fit) -> dict[str, Compar
         that the log has enough of.
     """
     found = {}
-    for name, train in unseen(problem.record).items():
+    for name, train in rows_without_condition(problem.record).items():
         comparison = compare(problem, fit, train=train)
         if comparison is not None and name == "other headings":
             comparison = _only(comparison, ~comparison.errors["heading_known"].values)

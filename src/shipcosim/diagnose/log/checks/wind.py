@@ -76,7 +76,7 @@ def _still(time, velocity):
 
 
 class _Wind(Motion):
-    def slow(self, velocity):
+    def slow(self, velocity: np.ndarray) -> np.ndarray:
         from scipy.ndimage import gaussian_filter1d
 
         return gaussian_filter1d(velocity, WIND_AVERAGING / np.median(np.diff(self.time)), axis=0)
