@@ -9,7 +9,7 @@ import pytest
 MEDIAN_FUNCTION, LARGEST_FUNCTION, LARGEST_CLASS = (5, 14), 45, 250  # lines, docstring not counted
 LARGER_CLASSES = {"_Reader"}  # in the end none
 MOST_FILES = 20  # in a folder, of Python
-UNTYPED = {"cosim": 156, "models": 44, "ssp": 386, "cli": 10, "errors": 2}
+UNTYPED = {"cosim": 156, "ssp": 386, "cli": 10, "errors": 2}
 """Arguments of public functions that have no type yet, by room. Only to be lowered."""
 
 NAMES_A_SHIP = {"__init__.py", "cli/commands/diagnose.py", "cli/diagnosis.py"}

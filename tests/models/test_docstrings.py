@@ -27,13 +27,8 @@ SAME = re.compile(r"Parameters and returns as `(\w+)`")
 WITHOUT_UNIT = (str, bool, type(None), Callable, ModuleType, np.random.Generator)
 
 
-UNFINISHED = {"dp_loop", "ships", "core.parameters", "environment.earth_fixed_loads"}
-"""Modules that are still to follow; in the end none."""
-
-
 def modules():
     found = pkgutil.walk_packages(shipcosim.models.__path__, "shipcosim.models.")
-    found = [module for module in found if module.name.removeprefix("shipcosim.models.") not in UNFINISHED]
     return [shipcosim.angles, *(importlib.import_module(module.name) for module in found)]
 
 

@@ -1,4 +1,9 @@
-"""Numbers that know their unit and where they come from: the fields of every parameter set."""
+"""Fields of parameter sets: numbers with unit, description, origin and tolerance.
+
+References
+----------
+Definition.
+"""
 
 from dataclasses import field
 from typing import Any
@@ -24,7 +29,7 @@ def quantity(
     Parameters
     ----------
     default : float, int, bool or str
-        Value unless a parameter set says otherwise. A table is a str, see `tables`.
+        Value unless a parameter set says otherwise. A table is a str, see `tables`. [as unit says]
     unit : str
         FMI style: ``"kg.m2"``, ``"N.s2/m2"``, ``"rad/s"``, ``"1"``.
     description : str
@@ -32,11 +37,16 @@ def quantity(
     origin : str
         Where the number comes from, with its grade; a guess says "assumed".
     tolerance : float
-        Standard deviation within which the value counts as known, in its unit.
+        Standard deviation within which the value counts as known. [as unit says]
     share : float
         The same of a value that is not the default, over its size, where its parameter set does not say it. [1]
     minimum, maximum : float, optional
-        Bounds of meaningful values.
+        Bounds of meaningful values. [as unit says]
+
+    Returns
+    -------
+    dataclasses.Field
+        The field, whose metadata are what is given here. [as unit says]
     """
     about = _about(unit, description, type(default), origin=origin, tolerance=tolerance, share=share)
     return field(default=default, metadata=about | {"minimum": minimum, "maximum": maximum})
@@ -55,10 +65,17 @@ def required(
 
     Parameters
     ----------
-    unit, description, minimum, maximum
+    unit, description : str
         As of `quantity`.
     tolerance, share : float
-        As of `quantity`, of a number whose parameter set does not say it: give one of them.
+        As of `quantity`, of a number whose parameter set does not say it: give one of them. [as unit says, 1]
+    minimum, maximum : float, optional
+        As of `quantity`. [as unit says]
+
+    Returns
+    -------
+    dataclasses.Field
+        The field, whose metadata are what is given here. [as unit says]
     """
     about = _about(unit, description, float, tolerance=tolerance, share=share)
     return field(metadata=about | {"minimum": minimum, "maximum": maximum})
@@ -73,6 +90,11 @@ def required_table(columns: tuple[str, ...], description: str) -> Any:
         Name and unit of each, ``"angle [deg]"``.
     description : str
         What it is, one line.
+
+    Returns
+    -------
+    dataclasses.Field
+        The field, whose metadata are what is given here. [as columns say]
     """
     return field(metadata=_about("1", description, str, columns=tuple(columns)))
 
@@ -86,6 +108,16 @@ def _about(unit: str, description: str, kind: type, **more: Any) -> dict[str, An
 def left_out(value: Any) -> bool:
     """Whether a value is the one that stands for none: a parameter that its ship does not give.
 
+    Parameters
+    ----------
+    value : float, int, bool, str or array
+        Value of a parameter. [any unit]
+
+    Returns
+    -------
+    bool
+        Whether it stands for none.
+
     Examples
     --------
     >>> left_out(1e30), left_out(""), left_out(0.0)
@@ -98,6 +130,18 @@ def acts(value: Any, neutral: float = 0.0) -> bool:
     """Whether a parameter changes anything: it is not the neutral number, or it is more than one number.
 
     What does not act can be left out; arrays are not looked into.
+
+    Parameters
+    ----------
+    value : float, int or array
+        Value of a parameter. [any unit]
+    neutral : float
+        Value that changes nothing. [the unit of value]
+
+    Returns
+    -------
+    bool
+        Whether the value can change anything.
 
     Examples
     --------

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from shipcosim.models.core.kinematics import load_at, to_body
 from shipcosim.models.core.maths import Arithmetic, clip, hypot
+from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity, required
 
 _SURGE_SHARE, _SWAY_POWER = 1.0 / 3.0, 2.0
@@ -76,7 +77,7 @@ def onset(t: Arithmetic, *, onset_time: Arithmetic, ramp_time: Arithmetic) -> Ar
     return clip((t - onset_time + _SOON) / (ramp_time + _SOON), 0.0, 1.0)
 
 
-def earth_force(psi, north, east, *, x, y=0.0):
+def earth_force(psi: Arithmetic, north: Arithmetic, east: Arithmetic, *, x: Arithmetic, y: Arithmetic = 0.0) -> Load:
     """Load of a force of constant direction over the earth that attacks at a point of the ship.
 
     Parameters
@@ -86,12 +87,16 @@ def earth_force(psi, north, east, *, x, y=0.0):
     north, east : like psi
         The force. [N]
     x, y : float
-        Where it attacks, forward and to starboard of the origin. [m]
+        Point of attack, forward and to starboard of the origin. [m]
 
     Returns
     -------
     tuple of three, like psi
         X, Y, N about the origin. [N, N, N.m]
+
+    References
+    ----------
+    Definition.
 
     Examples
     --------
@@ -103,7 +108,15 @@ def earth_force(psi, north, east, *, x, y=0.0):
     return load_at(x, y, *to_body(psi, north, east))
 
 
-def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, sway_power=_SWAY_POWER, yaw_arm):
+def drift_force(
+    psi: Arithmetic,
+    north: Arithmetic,
+    east: Arithmetic,
+    *,
+    surge_share: Arithmetic = _SURGE_SHARE,
+    sway_power: Arithmetic = _SWAY_POWER,
+    yaw_arm: Arithmetic,
+) -> Load:
     """Mean drift load of waves that travel in a fixed direction over the earth.
 
     With A the force on the beam and γ the direction the waves travel, seen from the bow,
@@ -132,6 +145,10 @@ def drift_force(psi, north, east, *, surge_share=_SURGE_SHARE, sway_power=_SWAY_
     -------
     tuple of three, like psi
         X, Y, N. [N, N, N.m]
+
+    References
+    ----------
+    Faltinsen, Sea Loads on Ships and Offshore Structures, Cambridge, 1990, ch. 5, for p = 2; the rest is fitted.
 
     Examples
     --------
