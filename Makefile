@@ -16,6 +16,7 @@ test: .venv/installed-test
 	$(BIN)/shipcosim build
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/pyright
 	$(BIN)/pytest -m "not slow"
 
 test-all: .venv/installed-test

@@ -96,14 +96,19 @@ def diagnose(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    folder = tempfile.TemporaryDirectory(prefix="shipcosim-") if out is None else None
+    folder = None
+    if out is None:
+        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+        out = folder.name
     given = _given(system)
     found = find_causes(log, given.given, channels, causes, say)
     say("what does the simulation get wrong")
-    predicted = with_predictions(found.basis, found.is_named)
+    basis = found.basis
+    if basis is None:
+        raise ValueError("a diagnosis that does not know its log")
+    predicted = with_predictions(basis, found.is_named)
     say("extending the system")
-    identification = found.basis.explained.identification
-    extended = with_findings(given, found.findings, identification, folder.name if folder else out)
+    extended = with_findings(given, found.findings, basis.explained.identification, out)
     say("the gain, by co-simulation")
     simulated = with_cosimulation(predicted, extended, lambda *done: say("the gain, by co-simulation", *done))
     return replace(completed(found, predicted, extended, simulated), folder=folder)
@@ -221,7 +226,7 @@ def completed(
         system=extended.given,
         remarks=(*extended.remarks, *simulated.remarks),
     )
-    if errors is None:
+    if errors is None or predicted.comparison is None:
         return complete
     return replace(
         complete,

@@ -71,6 +71,13 @@ class Fmi2Slave:
         None  # refers to the instance that the binary made last: a master in this process can call it directly
     )
 
+    def start(self) -> None:
+        """Set state and outputs for the start; see `Fmu`."""
+
+    def step(self, t: float, h: float) -> None:
+        """Advance from t to t + h; see `Fmu`."""
+        raise NotImplementedError
+
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         cls._real, cls._integer, cls._boolean, cls._string = (

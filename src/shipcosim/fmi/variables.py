@@ -147,7 +147,7 @@ class Parameters:
     """
 
     def __init__(self, kind: type, *, prefix: str = ""):
-        if not (dataclasses.is_dataclass(kind) and kind.__dataclass_params__.frozen):
+        if not (dataclasses.is_dataclass(kind) and vars(kind)["__dataclass_params__"].frozen):
             raise TypeError(f"Parameters({kind.__name__}): give a frozen dataclass")
         self.kind, self.prefix, self.name = kind, prefix, ""
         self.variables = [self._variable(field) for field in dataclasses.fields(kind) if field.init]
@@ -174,7 +174,7 @@ class Parameters:
                 f"{self.kind.__name__}.{field.name}: make it with quantity(default, unit, description, origin), or "
                 "required(unit, description)"
             )
-        default = about["kind"] if field.default is dataclasses.MISSING else field.default
+        default: Any = about["kind"] if field.default is dataclasses.MISSING else field.default
         default = float(default) if field.type in (float, "float") and default is not float else default
         bounds = {key: about[key] for key in ("minimum", "maximum", "origin", "tolerance") if key in about}
         try:

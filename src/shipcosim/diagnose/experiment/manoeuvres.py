@@ -117,8 +117,8 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
     return [one for one in (*found, *sweeps) if one.minutes <= LONGEST]
 
 
-def _legs(T, *legs):
-    return tuple((T * duration, *(float(value) for value in where)) for duration, *where in legs)
+def _legs(T: float, *legs: tuple[float, float, float, float]) -> tuple[tuple[float, float, float, float], ...]:
+    return tuple((T * duration, float(x), float(y), float(psi)) for duration, x, y, psi in legs)
 
 
 def _steps(axis, T, lengths, along):
@@ -194,12 +194,13 @@ def planned(
     rows = max(rows_of(one, dp.h) for one in manoeuvres)
     time = dp.h * np.arange(rows)
     track = Motion(*(np.stack(s) for s in zip(*(_track(one, time, start) for one in manoeuvres), strict=True)))
-    series = None if wind is None else tuple(np.full((len(manoeuvres), rows), value) for value in wind)
+    shape = len(manoeuvres), rows
+    series = None if wind is None else (np.full(shape, wind[0]), np.full(shape, wind[1]))
     plans = [
         _thrusters(one, time, Motion(*(value[i] for value in track)), start, wind, dp)
         for i, one in enumerate(manoeuvres)
     ]
-    units = {name: tuple(np.stack(s) for s in zip(*(plan[name] for plan in plans), strict=True)) for name in plans[0]}
+    units = {name: (np.stack([p[name][0] for p in plans]), np.stack([p[name][1] for p in plans])) for name in plans[0]}
     blank = np.full((len(manoeuvres), rows, 6), np.nan)
     record = Record(start[0] + time, blank, units, series, np.ones(rows, bool))
     held = {name: np.stack([_held(one, name, time) for one in manoeuvres]) for name in units}

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from math import hypot
+from typing import Any
 
 from shipcosim.diagnose.extension.draft import AXES, Estimated, ExtensionDraft, converted
 from shipcosim.diagnose.hypotheses.cause import ExtensionRule, OnConnections
@@ -72,6 +73,13 @@ def _unit(system: System, end: tuple[str | None, str]) -> str | None:
     return system.inputs[name].unit if owner is None else system.components[owner].fmu.variables[name].unit
 
 
+def _number(value: Any) -> float:
+    """A value of a parameter that has to be a number."""
+    if not isinstance(value, (int, float)):
+        raise ValueError(f"{value!r} is no number")
+    return value
+
+
 def connect_neighbours(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, units: Iterable[str]) -> None:
     """Tell each thruster where its neighbour is, and how that runs: the one that is wired to it, else the nearest.
 
@@ -88,7 +96,7 @@ def connect_neighbours(draft: ExtensionDraft, finding: Finding, rule: ExtensionR
     values, wired = draft.structure.parameters, set(draft.structure.connections)
     feeds = {target for _, target in wired}
     units = list(units)
-    place = {unit: (values[f"{unit}.x"], values[f"{unit}.y"]) for unit in units}
+    place = {unit: (_number(values[f"{unit}.x"]), _number(values[f"{unit}.y"])) for unit in units}
     for unit in units:
         here = place[unit]
         inputs = {f"{unit}.{name}" for name in rule.neighbour_inputs}

@@ -1,5 +1,6 @@
 """The named causes as part of the system: values in extended.ssv, and in extended.ssp what the system did not have."""
 
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -55,7 +56,7 @@ class Extension:
 def extend(
     system: str | Path | SystemStructure,
     findings: Iterable[Finding],
-    folder: str | Path,
+    folder: str | os.PathLike[str],
     *,
     log_attributes: Mapping[str, Any] | None = None,
     catalogue: Mapping[str, Cause] | None = None,

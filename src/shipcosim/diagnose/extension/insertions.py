@@ -41,7 +41,7 @@ def add_force(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, esti
     zeros = {parameter: Estimate(0.0, 0.0, _unit(draft, name, rule.zero[0])) for parameter in rule.zero}
     for parameter, estimate in (zeros | dict(estimates)).items():
         draft.put_parameter(finding, name, parameter, estimate)
-    water = water_of(draft.structure.parameters[f"{draft.ship}.length"])
+    water = water_of(float(draft.structure.parameters[f"{draft.ship}.length"] or 0.0))
     numbers = {parameter: number.rpartition(".")[2] for number, parameter in rule.parameters.items()}
     for parameter, why in rule.assumed.items():
         if parameter not in estimates:

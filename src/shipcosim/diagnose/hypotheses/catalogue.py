@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -84,7 +85,7 @@ class Hypothesis:
         return tuple(other.paths[0] for other in self.parameters[first : first + 2])
 
 
-def read_catalogue(folder: str | Path | None = None) -> dict[str, Cause]:
+def read_catalogue(folder: str | os.PathLike[str] | None = None) -> dict[str, Cause]:
     """All causes by name: our own, and those of a folder.
 
     Parameters
@@ -190,6 +191,6 @@ def _parameter(
         model.get(paths[0]),
         parameter.typical * size,
         tolerance,
-        tuple(bound * size for bound in parameter.bounds),
+        (parameter.bounds[0] * size, parameter.bounds[1] * size),
         1.0 / per_model,
     )

@@ -22,9 +22,9 @@ class Channel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     column: str = Field(min_length=1, description="name of the column, without its [unit]")
-    unit: str | None = Field(None, description="unit of the column; default: the header's, else the role's")
+    unit: str | None = Field(default=None, description="unit of the column; default: the header's, else the role's")
     sign: Literal[1, -1] = 1
-    offset: float = Field(0.0, description="added after the sign, in the unit of the column")
+    offset: float = Field(default=0.0, description="added after the sign, in the unit of the column")
 
 
 def read_channels(path: str | os.PathLike) -> dict[str, Channel]:

@@ -121,6 +121,8 @@ def _third_party_loads(
 def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:
     parameters = model.parts["wind"]
     speed, direction = inputs.wind_speed, inputs.wind_from
+    if speed is None or direction is None:
+        raise ValueError("the log has no wind")
     if model.wind_is_true:
         north, east = -speed * cos(direction), -speed * sin(direction)
         speed, direction = wind.apparent_wind(motion.psi, motion.u, motion.v, north, east)

@@ -88,7 +88,7 @@ class Record:
         lags = model.parts["instruments"]
         late = share * self.step - lags.navigation_lag
         units = {
-            name: tuple(self._shifted(series, late + lags.thruster_lag) for series in pair)
+            name: (self._shifted(pair[0], late + lags.thruster_lag), self._shifted(pair[1], late + lags.thruster_lag))
             for name, pair in self.units.items()
         }
         wind = (None, None) if self.wind is None else (self._shifted(s, late + lags.wind_lag) for s in self.wind)
@@ -154,8 +154,8 @@ def _thinned(record: Record, rows: int) -> Record:
         count = np.isfinite(whole).sum(1)
         return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
 
-    units = {name: tuple(mean(series) for series in pair) for name, pair in record.units.items()}
-    wind = record.wind and tuple(mean(series) for series in record.wind)
+    units = {name: (mean(speed), mean(direction)) for name, (speed, direction) in record.units.items()}
+    wind = None if record.wind is None else (mean(record.wind[0]), mean(record.wind[1]))
     known = mean(record.known.astype(float)) == 1.0
     return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
 
@@ -207,7 +207,7 @@ def _wind(log, rows, remarks):
             pair = _column(log, speed, rows), unwrap_series(_column(log, direction, rows) * np.pi / 180.0)
             whole = np.isfinite(pair[0]) & np.isfinite(pair[1])
             if whole.any():
-                return tuple(_averaged(series) for series in pair), whole
+                return (_averaged(pair[0]), _averaged(pair[1])), whole
     remarks.append("No wind in the log: forces of the wind, of waves, of a current and of a line cannot be told apart.")
     return None, np.ones(rows, bool)
 

@@ -218,7 +218,7 @@ def _description(cls: type[Fmu], script: Path, files: dict[str, bytes]) -> bytes
 
 def _binaries(identifier: str) -> dict[str, bytes]:
     """Our loader under the name that FMI asks for, beside it pythonfmu's binary, which it loads, and its licence."""
-    folder = Path(importlib.util.find_spec("pythonfmu").origin).parent / "resources" / "binaries"
+    folder = Path(str(importlib.metadata.distribution("pythonfmu").locate_file("pythonfmu"))) / "resources" / "binaries"
     files = {}
     for platform, suffix in SUFFIXES.items():
         files[f"binaries/{platform}/{identifier}{suffix}"] = loader_for(platform).read_bytes()

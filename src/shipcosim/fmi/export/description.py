@@ -155,7 +155,7 @@ def _type_definitions(root, units):
             xml.SubElement(simple, "Real", dict(quantity=QUANTITIES[unit], unit=unit) | _displayed(unit))
 
 
-def _displayed(unit: str) -> str:
+def _displayed(unit: str) -> dict[str, str]:
     return {"displayUnit": DISPLAYED[unit]} if unit in DISPLAYED else {}
 
 
@@ -214,4 +214,4 @@ def _structure(root, variables):
         for index in indices:
             # a step computes the outputs: an input that is set shows after it, so no algebraic loop goes through an FMU
             known = {"dependencies": ""} if kind == "Outputs" else {}
-            xml.SubElement(unknowns, "Unknown", index=index, **known)
+            xml.SubElement(unknowns, "Unknown", {"index": index, **known})

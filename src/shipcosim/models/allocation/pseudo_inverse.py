@@ -198,11 +198,12 @@ def step(
     X, Y, N = _missing(tau, wanted, design.effect)
     missed = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
     reach = parameters.thrust_rate_max * h
-    thrusts = tuple(
+    port, starboard, tunnel = (
         where(usable, old + clip(new - old, -reach, reach), 0.0)
         for usable, old, new in zip(available, state[:3], wanted, strict=True)
     )
-    return AllocationState(*thrusts, *load(thrusts, design.effect), missed > 1.0)
+    X, Y, N = load((port, starboard, tunnel), design.effect)
+    return AllocationState(port, starboard, tunnel, X, Y, N, missed > 1.0)
 
 
 def load(thrusts: tuple[Arithmetic, Arithmetic, Arithmetic], effect: tuple[tuple, tuple, tuple]) -> Load:

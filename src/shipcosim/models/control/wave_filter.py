@@ -67,7 +67,8 @@ def wave_transition(
     free = frequency * np.sqrt(1.0 - damping * damping)
     c, s = decay * np.cos(free * dt), decay * np.sin(free * dt) / free
     shift = damping * frequency * s
-    return _floats(c + shift, s, -frequency * frequency * s, c - shift)
+    first, second, third, fourth = _floats(c + shift, s, -frequency * frequency * s, c - shift)
+    return first, second, third, fourth
 
 
 def kalman_gain(transition: np.ndarray, noise: np.ndarray, output: np.ndarray, output_noise: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ Definition of this text form.
 
 from collections.abc import Iterable
 from functools import lru_cache
+from typing import Any
 
 
 @lru_cache(maxsize=64)
@@ -67,7 +68,7 @@ def columns(text: str, width: int) -> tuple[tuple[float, ...], ...]:
     >>> columns("0 -0.53; 10 -0.59", 2)
     ((0.0, 10.0), (-0.53, -0.59))
     """
-    rows = parse(text)
+    rows: Any = parse(text)
     if len(rows[0]) != width or len(rows) < 2:
         raise ValueError(f"table of {len(rows)} rows and {len(rows[0])} columns. It needs rows of {width} numbers.")
     for number, (before, row) in enumerate(zip(rows, rows[1:], strict=False), 2):

@@ -15,6 +15,7 @@ Components have the last axis. States of m variations at once have shape (m,); t
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -132,7 +133,7 @@ def components(
     >>> round(float(4.0 * np.sqrt(np.sum(sea.amplitude**2 / 2.0))), 12)
     0.5
     """
-    arguments = height, period, wave_from, peak_enhancement, seed
+    arguments: Any = (height, period, wave_from, peak_enhancement, seed)
     if all(isinstance(argument, (float, int)) for argument in arguments):
         return _scalar_components(*arguments)
     return _components(*arguments)
