@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.core.interpolation import even_table, interp_even
+from shipcosim.models.core.interpolation import EvenTable, even_table, interp_even
 from shipcosim.models.core.maths import Arithmetic, atan2, pi, sqrt, where
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.core.tables import columns, parse
@@ -76,7 +76,7 @@ class Curves(NamedTuple):
         KT ahead and astern, KQ ahead and astern, over n abs(n). [1]
     """
 
-    table: tuple
+    table: EvenTable
     bollard: tuple[float, float, float, float]
 
 
@@ -240,9 +240,8 @@ def _arrays(thrust_polynomial, thrust_factors, torque_factors):
     ((end, *k),) = parse(thrust_polynomial)
     degrees = np.arange(-1800, 1801) * _STEP
     ct, cq = series(np.radians(degrees))
-    ct, cq = (
-        c * np.interp(degrees, *columns(factors, 2)) for c, factors in ((ct, thrust_factors), (cq, torque_factors))
-    )
+    (at_ct, factor_ct), (at_cq, factor_cq) = columns(thrust_factors, 2), columns(torque_factors, 2)
+    ct, cq = ct * np.interp(degrees, at_ct, factor_ct), cq * np.interp(degrees, at_cq, factor_cq)
     first = (degrees > -0.5 * _STEP) & (degrees < end + 0.5 * _STEP)
     J = _TIP * np.tan(np.radians(degrees[first]))
     ct[first] = np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
