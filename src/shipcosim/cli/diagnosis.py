@@ -25,7 +25,7 @@ STEPS = {
 LAST_STEP = "5 of 5: writing the page"
 
 
-def find_system(given=None):
+def find_system(given: str | None = None) -> str:
     """Path of the system that a log is held against.
 
     Parameters
@@ -51,7 +51,7 @@ def find_system(given=None):
     raise ShipcosimError(Problem(name, "There is no such system.", remedy))
 
 
-def default_folder(data):
+def default_folder(data: str | Path) -> Path:
     """Where results go without --out.
 
     Examples

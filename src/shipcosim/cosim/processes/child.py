@@ -91,7 +91,7 @@ class RequestHandler:
         """Instantiate the FMU."""
         self._slave = self._instances.instance_of(component)
 
-    def call(self, method: str, *arguments) -> Any:
+    def call(self, method: str, *arguments: Any) -> Any:
         """Call a method of the slave."""
         return getattr(self._slave, method)(*arguments)
 

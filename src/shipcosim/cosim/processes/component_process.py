@@ -60,7 +60,7 @@ class ComponentProcess:
         """Wait until the process is there. Raises SlaveError if it does not come."""
         self._within("its start", START_TIMEOUT, receive, self._answers)
 
-    def request(self, what: str, function: str, *arguments) -> Any:
+    def request(self, what: str, function: str, *arguments: Any) -> Any:
         """What the process answers to a request.
 
         Parameters
@@ -80,7 +80,7 @@ class ComponentProcess:
         self.send_request(what, function, *arguments)
         return self.receive_answer()
 
-    def send_request(self, what: str, function: str, *arguments) -> None:
+    def send_request(self, what: str, function: str, *arguments: Any) -> None:
         """Send a request; `receive_answer` has to be called next, and until then other processes can be asked too."""
         self._requested = what
         self._within(what, self._timeout, send, self._requests, (True, function, *arguments))
@@ -93,11 +93,11 @@ class ComponentProcess:
             raise SlaveError(result)
         return result
 
-    def notify(self, what: str, function: str, *arguments) -> None:
+    def notify(self, what: str, function: str, *arguments: Any) -> None:
         """Have the process do something; whether it went well comes with the next answer."""
         self._within(what, self._timeout, send, self._requests, (False, function, *arguments))
 
-    def _within(self, what, limit, action, *arguments):
+    def _within(self, what, limit, action, *arguments: Any):
         self._deadline = monotonic() + limit
         try:
             return action(*arguments)

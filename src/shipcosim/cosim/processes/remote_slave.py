@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from threading import Event, Thread
 from time import monotonic
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -88,7 +88,7 @@ class RemoteSlave(Slave):
 
         return step
 
-    def call(self, function: str, *arguments) -> None:
+    def call(self, function: str, *arguments: Any) -> None:
         """Call a function of the FMU by its name without prefix."""
         self._call("call", function, *arguments)
 
@@ -125,7 +125,7 @@ class RemoteSlave(Slave):
         with suppress(SlaveError):
             self._call("terminate")
 
-    def _call(self, method, *arguments):
+    def _call(self, method, *arguments: Any):
         return self._request(method, "call", method, *arguments)
 
     def _prepared(self, method, kind=None, variables=(), buffer=None):

@@ -228,7 +228,7 @@ class TypeGroup:
 
     narrows = False
 
-    def __init__(self, component, function, variables: Sequence[Variable], rows: np.ndarray, dtype):
+    def __init__(self, component: Any, function: Any, variables: Sequence[Variable], rows: np.ndarray, dtype: Any):
         layout = ArrayLayout(variables)
         self.variables, self.rows, self.positions = variables, rows, np.array(layout.positions)
         self.values = np.zeros(layout.n, dtype=dtype)

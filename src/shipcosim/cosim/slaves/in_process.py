@@ -43,7 +43,7 @@ class DirectCalls:
         Takes (status, text) of what it logs.
     """
 
-    def __init__(self, target, log: Callable[[int, str], None]):
+    def __init__(self, target: Any, log: Callable[[int, str], None]):
         self._target, self._log = target, log
 
     def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:

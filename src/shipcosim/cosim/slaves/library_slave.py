@@ -68,7 +68,7 @@ class LibrarySlave(Slave):
         """What the FMU logged beyond status "ok": (status, text)."""
         return self._messages
 
-    def call(self, function: str, *arguments) -> None:
+    def call(self, function: str, *arguments: Any) -> None:
         """Call a function of the FMU by its name without prefix, e.g. ``"Terminate"``."""
         self.check(function, self._function(function)(self.component, *arguments))
 
@@ -197,7 +197,7 @@ class LibrarySlave(Slave):
             self._messages.append((status, text))
 
     @staticmethod
-    def _load(**arguments) -> Any:
+    def _load(**arguments: Any) -> Any:
         """FMPy's object for an FMU of this version."""
         raise NotImplementedError
 

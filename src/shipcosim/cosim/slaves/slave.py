@@ -7,6 +7,7 @@ of FMI 3.0 that needs them.
 """
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ class Slave:
         """Prepared call that advances from a time by a step size, both in s, and returns the status."""
         raise NotImplementedError
 
-    def call(self, function: str, *arguments) -> None:
+    def call(self, function: str, *arguments: Any) -> None:
         """Call a function of the FMU by its name without prefix, e.g. ``"Terminate"``."""
         raise NotImplementedError
 
