@@ -125,13 +125,13 @@ def read_faults() -> dict[str, Fault]:
 @cache
 def _shipped() -> dict[str, Cause]:
     """Our own causes by name."""
-    found = (Cause.model_validate(content) for content in _contents())
+    found = (Cause.model_validate(content) for content in _contents("causes"))
     return {cause.cause: cause for cause in found}
 
 
-def _contents(*folder: str) -> Iterator[dict]:
+def _contents(folder: str) -> Iterator[dict]:
     """Contents of our own .toml files in a folder, by name of the file."""
-    place = files("shipcosim.diagnose.hypotheses").joinpath(*folder)
+    place = files("shipcosim.diagnose.hypotheses").joinpath(folder)
     for path in sorted(place.iterdir(), key=lambda path: path.name):
         if path.name.endswith(".toml"):
             yield tomllib.loads(path.read_text(encoding="utf-8"))
