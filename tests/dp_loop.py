@@ -25,8 +25,9 @@ from shipcosim.models.environment import weather as environment
 from shipcosim.models.environment.wave_motion import wave_response
 from shipcosim.models.environment.weather import EnvironmentParameters
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.propulsion import drive, thruster
-from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.propulsion import drive
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_step
+from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_step
 from shipcosim.models.ship import sensors, vessel
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.sensors import SensorParameters
@@ -328,11 +329,11 @@ def _driven(state, inputs, h, system):
     a, angles = state.allocation, system.allocation
     flow = (u_r, v_r, state.vessel.r)
     return (
-        thruster.azimuth_step(port, a.port, angles.port_azimuth, *flow, inputs.port_failed, h, unit=system.port),
-        thruster.azimuth_step(
+        azimuth_step(port, a.port, angles.port_azimuth, *flow, inputs.port_failed, h, unit=system.port),
+        azimuth_step(
             starboard, a.starboard, angles.starboard_azimuth, *flow, inputs.starboard_failed, h, unit=system.starboard
         ),
-        thruster.tunnel_step(tunnel, a.tunnel, u_r, inputs.tunnel_failed, h, tunnel=system.tunnel),
+        tunnel_step(tunnel, a.tunnel, u_r, inputs.tunnel_failed, h, tunnel=system.tunnel),
     )
 
 
@@ -341,9 +342,9 @@ def _loads(units, shown, show, ship, system):
     flow = (*show.through_water, ship.r)
     u_r, port, starboard = flow[0], *((unit.azimuth, 60.0 * unit.n) for unit in shown[:2])
     return (
-        thruster.azimuth_loads(units[0], *flow, *starboard, unit=system.port),
-        thruster.azimuth_loads(units[1], *flow, *port, unit=system.starboard),
-        thruster.tunnel_loads(units[2], u_r, tunnel=system.tunnel),
+        azimuth_loads(units[0], *flow, *starboard, unit=system.port),
+        azimuth_loads(units[1], *flow, *port, unit=system.starboard),
+        tunnel_loads(units[2], u_r, tunnel=system.tunnel),
     )
 
 

@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from shipcosim.models.propulsion.thruster import AzimuthParameters
+from shipcosim.models.propulsion.azimuth import AzimuthParameters
 from shipcosim.ssp import Ship, read_ship
 
 Kind = TypeVar("Kind")

@@ -3,8 +3,8 @@
 from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import pi
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
 from shipcosim.models.propulsion.drive import at_rest
-from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
 
 
 class AzimuthThruster(Fmu):

@@ -3,7 +3,7 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import pi
 from shipcosim.models.propulsion.drive import at_rest
-from shipcosim.models.propulsion.thruster import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
+from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
 
 
 class TunnelThruster(Fmu):

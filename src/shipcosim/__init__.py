@@ -1,7 +1,7 @@
 """shipcosim: FMI co-simulation of ships, after the Open Simulation Platform's setup.
 
     import shipcosim as sc
-    system = sc.read("ssp/gunnerus_dp")
+    system = sc.read("my_ship.ssp")
     table = sc.simulate(system, stop_time=60.0)
 
 Names are imported when they are first asked for, so that the command line starts quickly.

@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 
 import shipcosim as sc
 from shipcosim.models.environment.wind_loads import WindParameters
-from shipcosim.models.propulsion.thruster import AzimuthParameters
+from shipcosim.models.propulsion.azimuth import AzimuthParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters
 from shipcosim.series import make_table

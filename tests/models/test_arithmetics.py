@@ -25,15 +25,15 @@ from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, 
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning as prediction
-from shipcosim.models.propulsion import drive, propeller, slipstream, thruster
+from shipcosim.models.propulsion import azimuth, drive, propeller, slipstream, tunnel
 from shipcosim.models.ship import hull, instruments, vessel
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
 LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
-PORT = parameters(thruster.AzimuthParameters, "gunnerus-33m9", "port")
+PORT = parameters(azimuth.AzimuthParameters, "gunnerus-33m9", "port")
 LOSSES = dict(thrust_loss=0.1, reverse_loss=0.2, azimuth_offset=0.1, rpm_offset=5.0, interaction_loss=0.3)
 LOSSY = replace(PORT, **LOSSES)
-TUNNEL = parameters(thruster.TunnelParameters)
+TUNNEL = parameters(tunnel.TunnelParameters)
 ERRORS = dict(heading_bias=0.05, lever_x=3.0, lever_y=-1.0, velocity_scale=1.1)
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
 DRIFT = wave_loads.drift_table(parameters(vessel.DriftParameters).drift_table)
@@ -152,7 +152,7 @@ CASES = [
     Case(propeller.bollard_torque, [(2.0,), (-2.0,), (0.0,)], constants=dict(propeller=PORT)),
     Case(drive.at_rest, ANGLES),
     Case(
-        thruster.azimuth_step,
+        azimuth.azimuth_step,
         [(0.5, 100.0, 900.0, 3.0, 500.0, 2e4, -3.0, *w, failed) for w in WATER for failed in (False, True)],
         of_thruster,
         dict(h=0.05, unit=PORT),
@@ -163,16 +163,16 @@ CASES = [
         constants=dict(width=0.4),
     ),
     *(
-        Case(thruster.azimuth_given, [(n, 0.4) for n in (2.0, -1.0)], constants=dict(unit=unit))
+        Case(azimuth.azimuth_given, [(n, 0.4) for n in (2.0, -1.0)], constants=dict(unit=unit))
         for unit in (PORT, LOSSY)
     ),
     *(
-        Case(thruster.azimuth_replay, [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER], constants=dict(unit=unit))
+        Case(azimuth.azimuth_replay, [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER], constants=dict(unit=unit))
         for unit in (PORT, LOSSY)
     ),
     *(
         Case(
-            thruster.azimuth_loads,
+            azimuth.azimuth_loads,
             [(n, 0.0, 0.0, 0.4, 0.0, *w, 1.6, 70.0) for n in (2.0, -1.0) for w in WATER],
             of_thruster,
             dict(unit=unit),
@@ -180,13 +180,13 @@ CASES = [
         for unit in (PORT, LOSSY)
     ),
     Case(
-        thruster.tunnel_step,
+        tunnel.tunnel_step,
         [(9.0, 10.0, 900.0, 1.6, 50.0, 2e4, 1.0, failed) for failed in (False, True)],
         of_thruster,
         dict(h=0.05, tunnel=TUNNEL),
     ),
-    Case(thruster.tunnel_replay, [(9.0,), (-20.0,)], constants=dict(tunnel=TUNNEL)),
-    Case(thruster.tunnel_loads, [(9.0, 0.0, 0.0, 1.6, 0.0, 0.5)], of_thruster, dict(tunnel=TUNNEL)),
+    Case(tunnel.tunnel_replay, [(9.0,), (-20.0,)], constants=dict(tunnel=TUNNEL)),
+    Case(tunnel.tunnel_loads, [(9.0, 0.0, 0.0, 1.6, 0.0, 0.5)], of_thruster, dict(tunnel=TUNNEL)),
     Case(gusts.gust, [(8.0,), (12.0,)], lambda mean: (7.0, mean, 3)),
     Case(gusts.gust_std, [(8.0,), (12.0,)]),
     Case(waves.elevation, PAIRS, lambda x, y: (7.0, x, y, SEA)),
@@ -220,7 +220,7 @@ CASES = [
         constants=dict(time_start=0.0, time_end=60.0),
     ),
     *(Case(function, SHIP, constants=ERRORS) for function in (instruments.readings, instruments.true_motion)),
-    Case(thruster.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
+    Case(azimuth.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
 ]
 
 

@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 
-from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.ssp import read_ship

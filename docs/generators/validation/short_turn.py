@@ -8,7 +8,7 @@ import numpy as np
 from common import MODEL, REFERENCE, THIRD, hull_of, save, thrust_loads, units
 
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.propulsion.thruster import azimuth_loads, azimuth_replay
+from shipcosim.models.propulsion.azimuth import azimuth_loads, azimuth_replay
 from shipcosim.models.ship.hull import hull_loads
 from shipcosim.models.ship.vessel import step
 

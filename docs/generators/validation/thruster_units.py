@@ -8,15 +8,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from common import MODEL, REFERENCE, THIRD, parameters, save, table
 
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.propulsion.propeller import PropellerParameters, propeller_loads, series
-from shipcosim.models.propulsion.thruster import (
-    AzimuthParameters,
-    TunnelParameters,
-    azimuth_loads,
-    azimuth_replay,
-    tunnel_loads,
-    tunnel_replay,
-)
+from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay
 
 PORT = parameters(AzimuthParameters, "gunnerus-33m9", "port")
 UNIT = replace(PORT, **dict.fromkeys(("x", "y", "neighbour_x", "neighbour_y"), 0.0))

@@ -11,7 +11,7 @@ from trial_log import STEP
 from turning import swings, turn_numbers
 
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.propulsion.thruster import turned
+from shipcosim.models.propulsion.azimuth import turned
 from shipcosim.models.ship.vessel import step
 
 SHIP = "gunnerus-33m9"

@@ -17,7 +17,8 @@ from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
-from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.propulsion.azimuth import AzimuthParameters
+from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table

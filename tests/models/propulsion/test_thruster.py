@@ -7,19 +7,10 @@ import numpy as np
 import pytest
 from ships import parameters, unit_on_centreline
 
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step, turned
 from shipcosim.models.propulsion.drive import at_rest
 from shipcosim.models.propulsion.propeller import propeller_loads
-from shipcosim.models.propulsion.thruster import (
-    AzimuthParameters,
-    TunnelParameters,
-    azimuth_loads,
-    azimuth_replay,
-    azimuth_step,
-    tunnel_loads,
-    tunnel_replay,
-    tunnel_step,
-    turned,
-)
+from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
 
 UNIT = unit_on_centreline(x=0.0)
 THESIS = parameters(AzimuthParameters, "thesis", "port")

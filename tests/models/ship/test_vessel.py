@@ -8,7 +8,7 @@ import pytest
 from ships import parameters
 
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.propulsion.thruster import AzimuthParameters, azimuth_loads, azimuth_replay
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import nu_dot, step, through_water
 

@@ -18,7 +18,8 @@ from shipcosim.models.core.parameters import acts
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.environment.current import varying_current
 from shipcosim.models.environment.earth_fixed_loads import drift_force, earth_force
-from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.propulsion.azimuth import AzimuthParameters
+from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.vessel import accelerations
 
 if TYPE_CHECKING:

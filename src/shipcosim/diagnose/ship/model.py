@@ -19,7 +19,8 @@ from shipcosim.diagnose.ship.tolerances import tolerances_of
 from shipcosim.diagnose.ship.wiring import wiring_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.environment.wind_loads import WindParameters
-from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.propulsion.azimuth import AzimuthParameters
+from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.hull import HullParameters
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ import numpy as np
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
-from shipcosim.models.propulsion import thruster
-from shipcosim.models.propulsion.thruster import AzimuthParameters, TunnelParameters
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_given, azimuth_loads
+from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Inputs
@@ -108,15 +108,15 @@ def _loads_of(
 ) -> Load:
     unit, (n, azimuth) = model.parts[name], units[name]
     if isinstance(unit, TunnelParameters):
-        *_, surge, sway, yaw = thruster.tunnel_loads(thruster.tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)
+        *_, surge, sway, yaw = tunnel_loads(tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)
         return surge, sway, yaw
-    state = thruster.azimuth_given(n, azimuth, unit=unit)
+    state = azimuth_given(n, azimuth, unit=unit)
     neighbour = model.neighbours.get(name)
     extra = {}
     if neighbour:
         n_other, azimuth_other = units[neighbour]
         extra = {"neighbour_azimuth": azimuth_other, "neighbour_rpm": 60.0 * n_other}
-    *_, surge, sway, yaw = thruster.azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)
+    *_, surge, sway, yaw = azimuth_loads(state, u_r, v_r, r, unit=unit, **extra)
     return surge, sway, yaw
 
 

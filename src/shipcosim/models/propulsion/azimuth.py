@@ -1,0 +1,270 @@
+"""Azimuth thrusters: from commands of thrust and direction over drive, motor and shaft to the loads on the ship.
+
+Limits, drive and motor are in `drive`, the propeller in `propeller`; here is what turning adds to them.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from shipcosim.angles import wrap
+from shipcosim.models.core.kinematics import load_at, velocity_at
+from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, pi, sin, where
+from shipcosim.models.core.parameters import acts, quantity, required
+from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
+from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
+from shipcosim.models.propulsion.slipstream import slipstream_share
+from shipcosim.models.propulsion.thruster import LOSS, Loads
+
+_TURN = 2.0 * pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class AzimuthParameters(PropellerParameters):
+    """An azimuth thruster with its drive."""
+
+    x: float = required("m", "position forward", share=0.0014)
+    y: float = required("m", "position to starboard", tolerance=0.02)
+    side_force_coefficient: float = required(
+        "1", "side force coefficient: momentum drag and strut", share=0.1, minimum=0.0
+    )
+    thrust_min: float = required("N", "largest thrust astern, negative", maximum=0.0)
+    thrust_max: float = required("N", "largest thrust ahead", minimum=0.0)
+    thrust_rate: float = required("N/s", "largest rate of the thrust command", minimum=0.0)
+    azimuth_rate: float = required("rad/s", "largest rate of turning", minimum=0.0)
+    rpm_max: float = required("rpm", "largest shaft speed", minimum=1.0)
+    torque_max: float = required("N.m", "largest motor torque", minimum=0.0)
+    power_max: float = required("W", "largest motor power", minimum=0.0)
+    inertia: float = required("kg.m2", "motor, shaft, propeller and its water", minimum=1e-6)
+    friction: float = required("N.m.s/rad", "friction torque over shaft speed", minimum=0.0)
+    proportional_gain: float = required("N.m.s/rad", "k_p of the drive", minimum=0.0)
+    integral_gain: float = required("N.m/rad", "k_i of the drive", minimum=0.0)
+
+    thrust_loss: float = quantity(0.0, "1", LOSS, "neutral", tolerance=0.01, maximum=1.0)
+    reverse_loss: float = quantity(
+        0.0,
+        "1",
+        "further loss of what is left at negative shaft speed",
+        "neutral; with thrust_loss 5 % outside the first quadrant",
+        tolerance=0.04,
+        maximum=1.0,
+    )
+    azimuth_offset: float = quantity(
+        0.0, "rad", "real direction of the thrust minus the given one", "neutral", tolerance=0.2 * pi / 180.0
+    )
+    rpm_offset: float = quantity(0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", share=5e-4)
+    interaction_loss: float = quantity(
+        0.0, "1", "share of the thrust that is lost on the axis of the neighbour's slipstream", "neutral", maximum=1.0
+    )
+    interaction_width: float = quantity(
+        20.0 * pi / 180.0,
+        "rad",
+        "angle off that axis at which 1/e of the loss is left",
+        "some 20 deg, assumed",
+        minimum=1e-3,
+    )
+    neighbour_x: float = quantity(0.0, "m", "position of the neighbour forward", "set by the system")
+    neighbour_y: float = quantity(0.0, "m", "position of the neighbour to starboard", "set by the system")
+
+    @cached_property
+    def loses(self):
+        """Whether some of the thrust of the propeller is lost."""
+        return any(map(acts, (self.thrust_loss, self.reverse_loss, self.interaction_loss)))
+
+
+def azimuth_step(
+    thruster: Thruster,
+    thrust_cmd: Arithmetic,
+    azimuth_cmd: Arithmetic,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    failed: Arithmetic,
+    h: float,
+    *,
+    unit: AzimuthParameters,
+) -> Thruster:
+    """State of an azimuth thruster one step later.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State at the start.
+    thrust_cmd, azimuth_cmd : like the state
+        Commanded thrust and direction, which is reached the shorter way. [N, rad]
+    u_r, v_r, r : like the state
+        Velocity of the ship relative to the water and yaw rate. [m/s, m/s, rad/s]
+    failed : bool or (...) array or tensor of bool
+        Without power: no motor torque, the shaft runs free, the unit keeps its direction. [1]
+    h : float
+        Step. [s]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        State at the end.
+
+    References
+    ----------
+    As `drive.drive_step` and `propeller.propeller_loads`.
+    """
+    azimuth = turned(thruster.azimuth, azimuth_cmd, where(failed, 0.0, unit.azimuth_rate * h))
+    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
+    return drive_step(
+        thruster._replace(azimuth=azimuth),
+        thrust_cmd,
+        failed,
+        h,
+        unit,
+        lambda n: propeller_loads(u_a, n, propeller=unit),
+        lambda thrust: bollard_speed(thrust, propeller=unit),
+        lambda n: bollard_torque(n, propeller=unit),
+    )
+
+
+def azimuth_replay(
+    n: Arithmetic, azimuth: Arithmetic, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, unit: AzimuthParameters
+) -> Thruster:
+    """State of an azimuth thruster at a given shaft speed and direction, for replays.
+
+    The motor torque is that of propeller and friction at constant shaft speed.
+
+    Parameters
+    ----------
+    n, azimuth : float or (...) array or tensor
+        Given shaft speed and direction of positive thrust; the real ones differ by the unit's offsets. [rev/s, rad]
+    u_r, v_r, r : like n
+        Velocity of the ship relative to the water and yaw rate. [m/s, m/s, rad/s]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        With the real shaft speed and the given direction.
+
+    References
+    ----------
+    As `propeller.propeller_loads`; a constant shaft speed within the step is assumed.
+    """
+    thruster = azimuth_given(n, azimuth, unit=unit)
+    n = thruster.n
+    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
+    thrust, torque = propeller_loads(u_a, n, propeller=unit)
+    return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n)
+
+
+def azimuth_given(n: Arithmetic, azimuth: Arithmetic, *, unit: AzimuthParameters) -> Thruster:
+    """As `azimuth_replay`, without command and torque, which are 0.
+
+    Parameters
+    ----------
+    n, azimuth : float or (...) array or tensor
+        Given shaft speed and direction of positive thrust. [rev/s, rad]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Thruster
+        With the real shaft speed and the given direction.
+
+    References
+    ----------
+    As `azimuth_replay`.
+    """
+    return at_rest(azimuth)._replace(n=n - unit.rpm_offset / 60.0)
+
+
+def azimuth_loads(
+    thruster: Thruster,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    neighbour_azimuth: Arithmetic = 0.0,
+    neighbour_rpm: Arithmetic = 0.0,
+    *,
+    unit: AzimuthParameters,
+) -> Loads:
+    """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, with their load on the ship.
+
+    The thrust is that of the propeller less its losses:
+    (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - interaction_loss · `slipstream_share`).
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State.
+    u_r, v_r, r : like the state
+        Velocity of the ship relative to the water and yaw rate. [m/s, m/s, rad/s]
+    neighbour_azimuth, neighbour_rpm : like the state
+        Direction of positive thrust and shaft speed of the unit whose slipstream can meet this one. [rad, rpm]
+    unit : AzimuthParameters
+        The thruster.
+
+    Returns
+    -------
+    Loads
+        Forces and load.
+
+    References
+    ----------
+    Side force: nominal model, azimuth thrusters, fitted to the FMU of the unit; losses: definition.
+    """
+    n, azimuth = thruster.n, thruster.azimuth + unit.azimuth_offset
+    u_a, u_s = _inflow(azimuth, u_r, v_r, r, unit)
+    thrust, _ = propeller_loads(u_a, n, propeller=unit)
+    if unit.loses:
+        thrust = thrust * _kept(n, neighbour_azimuth, neighbour_rpm, unit)
+    D = unit.diameter
+    side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + abs(n) * D) * u_s
+    c, s = cos(azimuth), sin(azimuth)
+    return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
+
+
+def turned(azimuth: Arithmetic, azimuth_cmd: Arithmetic, most: Arithmetic) -> Arithmetic:
+    """Direction after turning towards the commanded one the shorter way.
+
+    Parameters
+    ----------
+    azimuth, azimuth_cmd : float or (...) array or tensor
+        Present and commanded direction. [rad]
+    most : like azimuth
+        Largest turn. [rad]
+
+    Returns
+    -------
+    like azimuth
+        In [-π, π). [rad]
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    From 170 deg to -170 deg the way is 20 deg, not 340:
+
+    >>> import math
+    >>> round(math.degrees(turned(math.radians(170.0), math.radians(-170.0), math.radians(5.0))), 6)
+    175.0
+    """
+    return wrap(azimuth + clip(wrap(azimuth_cmd - azimuth), -most, most))
+
+
+def _inflow(azimuth, u_r, v_r, r, unit):
+    """Velocity of the unit through the water, along and across its axis. [m/s]"""
+    u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
+    c, s = cos(azimuth), sin(azimuth)
+    return c * u + s * v, c * v - s * u
+
+
+def _kept(n, neighbour_azimuth, neighbour_rpm, unit):
+    """Share of the propeller's thrust that the losses leave. [1]"""
+    kept = (1.0 - unit.thrust_loss) * where(n < 0.0, 1.0 - unit.reverse_loss, 1.0)
+    if not acts(unit.interaction_loss):
+        return kept
+    x, y = unit.x - unit.neighbour_x, unit.y - unit.neighbour_y
+    share = slipstream_share(x, y, neighbour_azimuth, neighbour_rpm, width=unit.interaction_width)
+    return kept * (1.0 - unit.interaction_loss * share)
