@@ -293,12 +293,20 @@ def test_missing_fmu_is_named_with_the_place_that_asks_for_it_and_where_it_was_s
 
 
 def test_values_that_are_not_used_and_events_that_never_act_are_remarked(call, gunnerus):
-    change(SSV, "vessel.mass", "towed_body.mass")
+    change(SSV, "vessel.centre_of_gravity_x", "towed_body.mass")
     change(SHORT, "time     = 0.5", "time = 5.0")
     done = call("run", "short")
     assert done.code == 0
-    assert f"remark: {SSV}, line 4: towed_body.mass:\nThere is no element 'towed_body' in this system" in done.err
+    assert f"remark: {SSV}, line 20: towed_body.mass:\nThere is no element 'towed_body' in this system" in done.err
     assert f"remark: {SHORT}, line 11:\nthe event at 5 s never acts: the run ends at 1 s." in done.err
+
+
+def test_a_parameter_under_another_name_is_remarked_and_missed(call, gunnerus):
+    change(SSV, "vessel.mass", "towed_body.mass")
+    done = call("run", "short")
+    assert done.code == 2
+    assert f"remark: {SSV}, line 4: towed_body.mass:\nThere is no element 'towed_body' in this system" in done.err
+    assert "parameters left out, which have no value of their own: mass [kg]" in done.err
 
 
 def test_files_of_windows_editors_are_read(call, gunnerus):
