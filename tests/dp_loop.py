@@ -180,7 +180,7 @@ def start(system, design, inputs, variations):
         (True, True, True),
         measured,
         reference.at_rest(zero, zero, zero),
-        observer.at_rest(_measurement(measured)),
+        observer.at_rest(_measured(measured)),
         control.at_rest(wind_loads(*measured.measured[6:], wind=system.known_wind)),
         0,
         allocation.at_rest((zero, zero, zero)),
@@ -355,7 +355,7 @@ def _controlled(t, state, system, design):
     while samples < samples_due(t, system.observer.sample_period):
         estimate = observer.step(
             estimate,
-            _measurement(state.sensors),
+            observer.Measurement(_measured(state.sensors)),
             control.known_load(law, allocated),
             ship=system.ship,
             parameters=system.observer,
@@ -382,5 +382,5 @@ def _truth(ship, show):
     return sensors.Truth(*(a + b for a, b in zip(ship, show.motion, strict=True)), *show.apparent_wind)
 
 
-def _measurement(state):
+def _measured(state):
     return Motion(*state.measured[:6])

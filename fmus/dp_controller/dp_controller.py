@@ -57,7 +57,7 @@ class DpController(Fmu):
     def start(self):
         self.design = observer.design(self.ship, self.noise)
         self.taken = samples_due(self.start_time, self.noise.sample_period) - 1
-        self._show(observer.at_rest(self._measurement()), control.at_rest(self._wind_load()))
+        self._show(observer.at_rest(self._measured()), control.at_rest(self._wind_load()))
 
     def step(self, t, h):
         due = samples_due(t, self.noise.sample_period)
@@ -69,7 +69,7 @@ class DpController(Fmu):
         allocated = (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated)
         estimate = observer.step(
             self.estimate,
-            self._measurement(),
+            observer.Measurement(self._measured()),
             control.known_load(self.state, allocated),
             ship=self.ship,
             parameters=self.noise,
@@ -87,7 +87,7 @@ class DpController(Fmu):
         )
         self._show(estimate, state)
 
-    def _measurement(self):
+    def _measured(self):
         return Motion(self.x_meas, self.y_meas, self.psi_meas, self.u_meas, self.v_meas, self.r_meas)
 
     def _desired(self):

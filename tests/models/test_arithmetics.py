@@ -90,7 +90,7 @@ def of_reference(*row):
 
 
 def of_observer(*row):
-    return observer.Estimate(*row), Motion(*row[3:9]), row[9:12]
+    return observer.Estimate(*row), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
 
 
 def of_control(*row):

@@ -24,8 +24,9 @@ MASS = np.array(
 DAMPING = np.diag([SHIP.damping_surge, SHIP.damping_sway, SHIP.damping_yaw])
 
 
-def step(estimate, measured, load=(0.0, 0.0, 0.0)):
-    return observer.step(estimate, measured, load, ship=SHIP, parameters=PARAMETERS, design=DESIGN)
+def step(estimate, measured, load=(0.0, 0.0, 0.0), **new):
+    measurement = observer.Measurement(measured, **new)
+    return observer.step(estimate, measurement, load, ship=SHIP, parameters=PARAMETERS, design=DESIGN)
 
 
 def test_gain_solves_the_riccati_equation():
@@ -116,3 +117,15 @@ def test_heading_through_south_does_not_jump():
         estimate = step(estimate, Motion(0.0, 0.0, heading, 0.0, 0.0, 0.002))
     assert math.remainder(estimate.psi - heading, 2.0 * math.pi) == pytest.approx(0.0, abs=2e-3)
     assert estimate.r == pytest.approx(0.002, abs=2e-4)
+
+
+def test_what_is_not_new_corrects_nothing():
+    start = at_rest(Motion(1.0, 2.0, 0.5, 0.0, 0.0, 0.0))._replace(u=0.3, v=-0.1, r=0.01, bias_north=2e3)
+    away = Motion(50.0, -80.0, 2.0, 3.0, -2.0, 0.3)
+    alone = step(start, away, position_new=0.0, heading_new=0.0)
+    assert alone == step(start, Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), position_new=0.0, heading_new=0.0)
+    assert (alone.x, alone.y) == pytest.approx((1.03, 2.0), abs=0.02)
+    turned = step(start, away, position_new=0.0)
+    assert turned[:2] == alone[:2] and turned.psi != alone.psi
+    moved = step(start, away, heading_new=0.0)
+    assert moved.psi == alone.psi and moved.x != alone.x

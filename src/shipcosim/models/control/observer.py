@@ -55,6 +55,23 @@ class ObserverParameters:
     )
 
 
+class Measurement(NamedTuple):
+    """What the observer is given at a sample: the measured motion, and which parts of it are new and trusted.
+
+    Parameters
+    ----------
+    motion : Motion
+        Measured position, heading and velocity over ground; a part that is not new may hold any finite value.
+    position_new, heading_new : float or (...) array or tensor
+        1 where position and velocity, or heading and yaw rate, are a new sample that is trusted, 0 elsewhere: there the
+        observer runs on its model. [1]
+    """
+
+    motion: Motion
+    position_new: Arithmetic = 1.0
+    heading_new: Arithmetic = 1.0
+
+
 class Estimate(NamedTuple):
     """Estimated state: low-frequency ship, bias load, wave motion in body axes with its rate.
 
@@ -168,7 +185,7 @@ def at_rest(measured: Motion) -> Estimate:
 
 def step(
     estimate: Estimate,
-    measured: Motion,
+    measurement: Measurement,
     load: Load,
     *,
     ship: DpShip,
@@ -181,7 +198,7 @@ def step(
     ----------
     estimate : Estimate
         Estimate at the start.
-    measured : Motion
+    measurement : Measurement
         Measurement at the end.
     load : tuple of three
         Known load over the sample, thrusters and wind, body frame. [N, N, N.m]
@@ -198,7 +215,7 @@ def step(
         Estimate at the end.
     """
     predicted = _predict(estimate, load, dt=parameters.sample_period, ship=ship, design=design)
-    return _correct(predicted, measured, ship=ship, design=design)
+    return _correct(predicted, measurement, ship=ship, design=design)
 
 
 def _predict(e, load, *, dt, ship, design):
@@ -232,13 +249,15 @@ def _predict(e, load, *, dt, ship, design):
     )
 
 
-def _correct(e, measured, *, ship, design):
+def _correct(e, measurement, *, ship, design):
     """Estimate corrected by the innovations, each in body axes; biases are accelerations times mass."""
+    measured, position, heading = measurement
     c, s = cos(e.psi), sin(e.psi)
     dx, dy = measured.x - e.x, measured.y - e.y
     surge, du = c * dx + s * dy - e.surge_wave, measured.u - e.u - e.u_wave
     sway, dv = c * dy - s * dx - e.sway_wave, measured.v - e.v - e.v_wave
-    yaw, dr = wrap(measured.psi - e.psi - e.yaw_wave), measured.r - e.r - e.r_wave
+    surge, sway, du, dv = position * surge, position * sway, position * du, position * dv
+    yaw, dr = heading * wrap(measured.psi - e.psi - e.yaw_wave), heading * (measured.r - e.r - e.r_wave)
     g, k = design.horizontal, design.yaw
     move_surge = g.position_position * surge + g.position_velocity * du
     move_sway = g.position_position * sway + g.position_velocity * dv
