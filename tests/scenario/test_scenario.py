@@ -114,13 +114,22 @@ def test_what_lies_after_the_end_is_remarked(tmp_path):
     assert "line 23: during = [5.0, 10.0] reaches beyond the end of the run at 3 s." in said[1]
 
 
+def test_a_scenario_in_a_folder_of_scenarios_finds_the_project(tmp_path):
+    (tmp_path / "ssp" / "small").mkdir(parents=True)
+    path = tmp_path / "scenarios" / "failures" / "calm.toml"
+    path.parent.mkdir(parents=True)
+    path.write_text(GOOD)
+    scenario = read_scenario(path)
+    assert scenario.project == tmp_path and scenario.system_path == tmp_path / "ssp" / "small"
+
+
 def test_missing_file_is_an_error(tmp_path):
     with pytest.raises(ShipcosimError, match="cannot be read"):
         read_scenario(tmp_path / "none.toml")
 
 
 def test_scenarios_of_the_project_are_sound(root):
-    for path in sorted((root / "scenarios").glob("*.toml")):
+    for path in sorted((root / "scenarios").rglob("*.toml")):
         assert read_scenario(path).expect, path
 
 

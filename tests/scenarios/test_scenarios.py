@@ -1,4 +1,7 @@
-"""Every scenario in scenarios/ holds, because it is there."""
+"""Every scenario in scenarios/ and its folders holds, because it is there.
+
+Those of a folder of their own are slow, but for a representative share of each folder.
+"""
 
 from pathlib import Path
 
@@ -7,7 +10,13 @@ import pytest
 
 from shipcosim.scenario import judge
 
-SCENARIOS = sorted(path.stem for path in (Path(__file__).parents[2] / "scenarios").glob("*.toml"))
+FOLDER = Path(__file__).parents[2] / "scenarios"
+NAMES = sorted(path.relative_to(FOLDER).with_suffix("").as_posix() for path in FOLDER.rglob("*.toml"))
+REPRESENTATIVE: set[str] = set()
+"""Scenarios in folders that run with the fast tests."""
+SCENARIOS = [
+    pytest.param(name, marks=[pytest.mark.slow] if "/" in name and name not in REPRESENTATIVE else []) for name in NAMES
+]
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

@@ -39,8 +39,9 @@ def find_scenario(given: str) -> Path:
     for path in (Path(given), named):
         if path.is_file():
             return path
-    known = [path.stem for path in named.parent.glob("*.toml")]
-    remedy = f"In {named.parent} there{suggestion(Path(given).stem, known).removeprefix('There')}"
+    folder = project / "scenarios"
+    known = [path.relative_to(folder).with_suffix("").as_posix() for path in sorted(folder.rglob("*.toml"))]
+    remedy = f"In {folder} there{suggestion(given.removesuffix('.toml'), known).removeprefix('There')}"
     raise ShipcosimError(Problem(given, "There is no such scenario file.", remedy))
 
 

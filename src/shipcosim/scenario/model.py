@@ -128,8 +128,11 @@ class Scenario(_Part):
 
     @property
     def project(self) -> Path:
-        """Folder of the project: the parent of the folder that holds the scenario."""
-        return self._path.resolve().parents[1] if self._path else Path.cwd()
+        """Folder of the project: the nearest above the scenario's own with fmus/ or ssp/, else the one above it."""
+        if self._path is None:
+            return Path.cwd()
+        above = self._path.resolve().parents[1:] or self._path.resolve().parents
+        return next((f for f in above if (f / "fmus").is_dir() or (f / "ssp").is_dir()), above[0])
 
     @property
     def system_path(self) -> Path:
