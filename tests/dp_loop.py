@@ -27,6 +27,7 @@ from shipcosim.models.environment.weather import EnvironmentParameters
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.propulsion import drive
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_step
+from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_step
 from shipcosim.models.ship import sensors, vessel
 from shipcosim.models.ship.hull import HullParameters
@@ -328,12 +329,11 @@ def _driven(state, inputs, h, system):
     port, starboard, tunnel = state.units
     a, angles = state.allocation, system.allocation
     flow = (u_r, v_r, state.vessel.r)
+    failures = [Failures(failed) for failed in (inputs.port_failed, inputs.starboard_failed, inputs.tunnel_failed)]
     return (
-        azimuth_step(port, a.port, angles.port_azimuth, *flow, inputs.port_failed, h, unit=system.port),
-        azimuth_step(
-            starboard, a.starboard, angles.starboard_azimuth, *flow, inputs.starboard_failed, h, unit=system.starboard
-        ),
-        tunnel_step(tunnel, a.tunnel, u_r, inputs.tunnel_failed, h, tunnel=system.tunnel),
+        azimuth_step(port, a.port, angles.port_azimuth, *flow, failures[0], h, unit=system.port),
+        azimuth_step(starboard, a.starboard, angles.starboard_azimuth, *flow, failures[1], h, unit=system.starboard),
+        tunnel_step(tunnel, a.tunnel, u_r, failures[2], h, tunnel=system.tunnel),
     )
 
 

@@ -5,6 +5,7 @@ from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import pi
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
 from shipcosim.models.propulsion.drive import at_rest
+from shipcosim.models.propulsion.failures import Failures
 
 
 class AzimuthThruster(Fmu):
@@ -16,6 +17,14 @@ class AzimuthThruster(Fmu):
     v_r = Input("m/s", "ship's velocity to starboard through the water")
     r = Input("rad/s", "ship's yaw rate")
     failed = Input("1", "without power: no motor torque, direction kept", start=False)
+    stop = Input("1", "emergency stop: as failed, by command", start=False)
+    full_thrust = Input("1", "failure: the drive gives its largest thrust ahead, whatever is commanded", start=False)
+    rpm_frozen = Input("1", "failure: the drive keeps its last set point of thrust", start=False)
+    azimuth_frozen = Input("1", "failure: the unit keeps its direction", start=False)
+    rpm_reversed = Input("1", "failure: the measured shaft speed has the wrong sign", start=False)
+    azimuth_reversed = Input("1", "failure: the measured direction has the wrong sign", start=False)
+    rate_share = Input("1", "share that is left of the largest rates of thrust and turning", start=1.0)
+    power_limit = Input("W", "power that the switchboard grants the motor", start=1e12)
     rpm_in = Input("rpm", "shaft speed of a replay")
     azimuth_in = Input("rad", "direction of positive thrust of a replay, clockwise from the bow")
     neighbour_azimuth = Input("rad", "direction of positive thrust of the unit whose slipstream can meet this one")
@@ -30,8 +39,10 @@ class AzimuthThruster(Fmu):
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
     tau_N = Output("N.m", "yaw moment on the ship")
+    thrust_feedback = Output("N", "thrust that the drive reports, from the measured shaft speed")
+    azimuth_feedback = Output("rad", "direction that the steering reports")
     saturated = Output("1", "at a limit of thrust, its rate, or the motor", start=False)
-    available = Output("1", "has not failed", start=True)
+    available = Output("1", "has neither failed nor been stopped", start=True)
 
     replay = Parameter(False, "1", "shaft speed and direction follow rpm_in and azimuth_in; nothing else acts on them")
     azimuth_start = Parameter(0.0, "rad", "direction of positive thrust at the start, clockwise from the bow")
@@ -45,13 +56,25 @@ class AzimuthThruster(Fmu):
         if self.replay:
             self.state = self._replayed()
         else:
-            command = self.thrust_cmd, self.azimuth_cmd, self.u_r, self.v_r, self.r, self.failed
-            self.state = azimuth_step(self.state, *command, h, unit=self.unit)
+            command, water = (self.thrust_cmd, self.azimuth_cmd), (self.u_r, self.v_r, self.r)
+            self.state = azimuth_step(self.state, *command, *water, self._failures(), h, unit=self.unit)
         self._write()
 
     def _replayed(self):
         water = self.u_r, self.v_r, self.r
         return azimuth_replay(self.rpm_in / 60.0, wrap(self.azimuth_in), *water, unit=self.unit)
+
+    def _failures(self):
+        return Failures(
+            self.failed or self.stop,
+            self.full_thrust,
+            self.rpm_frozen,
+            self.azimuth_frozen,
+            self.rpm_reversed,
+            self.azimuth_reversed,
+            self.rate_share,
+            self.power_limit,
+        )
 
     def _write(self):
         state = self.state
@@ -60,4 +83,6 @@ class AzimuthThruster(Fmu):
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
         self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
         self.power = 2.0 * pi * state.n * state.torque
-        self.saturated, self.available = state.saturated, not self.failed
+        self.thrust_feedback = state.reported
+        self.azimuth_feedback = -state.azimuth if self.azimuth_reversed else state.azimuth
+        self.saturated, self.available = state.saturated, not (self.failed or self.stop)

@@ -3,6 +3,7 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import pi
 from shipcosim.models.propulsion.drive import at_rest
+from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
 
 
@@ -12,6 +13,14 @@ class TunnelThruster(Fmu):
     thrust_cmd = Input("N", "commanded thrust, positive to starboard")
     u_r = Input("m/s", "ship's velocity forward through the water")
     failed = Input("1", "without power: no motor torque", start=False)
+    stop = Input("1", "emergency stop: as failed, by command", start=False)
+    full_thrust = Input(
+        "1", "failure: the drive gives its largest thrust to starboard, whatever is commanded", start=False
+    )
+    rpm_frozen = Input("1", "failure: the drive keeps its last set point of thrust", start=False)
+    rpm_reversed = Input("1", "failure: the measured motor speed has the wrong sign", start=False)
+    rate_share = Input("1", "share that is left of the largest rate of thrust", start=1.0)
+    power_limit = Input("W", "power that the switchboard grants the motor", start=1e12)
     rpm_in = Input("rpm", "motor speed of a replay")
 
     thrust = Output("N", "delivered thrust, positive to starboard")
@@ -21,8 +30,9 @@ class TunnelThruster(Fmu):
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
     tau_N = Output("N.m", "yaw moment on the ship")
+    thrust_feedback = Output("N", "thrust that the drive reports, from the measured motor speed")
     saturated = Output("1", "at a limit of thrust, its rate, or the motor", start=False)
-    available = Output("1", "has not failed", start=True)
+    available = Output("1", "has neither failed nor been stopped", start=True)
 
     replay = Parameter(False, "1", "motor speed follows rpm_in; nothing else acts on it")
     tunnel = Parameters(TunnelParameters)
@@ -35,15 +45,27 @@ class TunnelThruster(Fmu):
         if self.replay:
             self.state = self._replayed()
         else:
-            self.state = tunnel_step(self.state, self.thrust_cmd, self.u_r, self.failed, h, tunnel=self.tunnel)
+            command = self.thrust_cmd, self.u_r, self._failures()
+            self.state = tunnel_step(self.state, *command, h, tunnel=self.tunnel)
         self._write()
 
     def _replayed(self):
         return tunnel_replay(self.rpm_in / 60.0, tunnel=self.tunnel)
+
+    def _failures(self):
+        return Failures(
+            self.failed or self.stop,
+            self.full_thrust,
+            self.rpm_frozen,
+            rpm_reversed=self.rpm_reversed,
+            rate_share=self.rate_share,
+            power_limit=self.power_limit,
+        )
 
     def _write(self):
         state = self.state
         loads = tunnel_loads(state, self.u_r, tunnel=self.tunnel)
         self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads
         self.rpm, self.torque, self.power = 60.0 * state.n, state.torque, 2.0 * pi * state.n * state.torque
-        self.saturated, self.available = state.saturated, not self.failed
+        self.thrust_feedback = state.reported
+        self.saturated, self.available = state.saturated, not (self.failed or self.stop)

@@ -26,6 +26,7 @@ from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning as prediction
 from shipcosim.models.propulsion import azimuth, drive, propeller, slipstream, tunnel
+from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.ship import hull, instruments, vessel
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
@@ -82,7 +83,15 @@ def of_vessel(*row):
 
 
 def of_thruster(*row):
-    return drive.Thruster(*row[:5], False), *row[5:]
+    return drive.Thruster(*row[:5], False, 0.0), *row[5:]
+
+
+def of_failing_thruster(*row):
+    """The last number says which failures there are, bit by bit; a quarter of rates and power is left with some."""
+    bits = [row[-1] // 2**i % 2 > 0.5 for i in range(6)]
+    share = maths.where(row[-1] > 0.5, 0.25, 1.0)
+    thruster, *inputs = of_thruster(*row[:-1])
+    return thruster, *inputs, Failures(*bits, share, 1e5 * share)
 
 
 def of_reference(*row):
@@ -153,8 +162,8 @@ CASES = [
     Case(drive.at_rest, ANGLES),
     Case(
         azimuth.azimuth_step,
-        [(0.5, 100.0, 900.0, 3.0, 500.0, 2e4, -3.0, *w, failed) for w in WATER for failed in (False, True)],
-        of_thruster,
+        [(0.5, 100.0, 900.0, 3.0, 500.0, 2e4, -3.0, *w, bits) for w in WATER for bits in (0.0, 1.0, 2.0, 12.0, 48.0)],
+        of_failing_thruster,
         dict(h=0.05, unit=PORT),
     ),
     Case(
@@ -181,8 +190,8 @@ CASES = [
     ),
     Case(
         tunnel.tunnel_step,
-        [(9.0, 10.0, 900.0, 1.6, 50.0, 2e4, 1.0, failed) for failed in (False, True)],
-        of_thruster,
+        [(9.0, 10.0, 900.0, 1.6, 50.0, 2e4, 1.0, bits) for bits in (0.0, 1.0, 2.0, 4.0, 16.0)],
+        of_failing_thruster,
         dict(h=0.05, tunnel=TUNNEL),
     ),
     Case(tunnel.tunnel_replay, [(9.0,), (-20.0,)], constants=dict(tunnel=TUNNEL)),

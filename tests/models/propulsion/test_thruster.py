@@ -9,6 +9,7 @@ from ships import parameters, unit_on_centreline
 
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step, turned
 from shipcosim.models.propulsion.drive import at_rest
+from shipcosim.models.propulsion.failures import SOUND, Failures
 from shipcosim.models.propulsion.propeller import propeller_loads
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
 
@@ -22,7 +23,7 @@ def run(commands, *, unit=UNIT, u=0.0, h=H, failed=None, state=None):
     """States of an azimuth at angle 0 in a straight inflow, one per command."""
     state, states = state or at_rest(0.0), []
     for k, command in enumerate(commands):
-        lost = bool(failed and failed(k * h))
+        lost = Failures(bool(failed and failed(k * h)))
         state = azimuth_step(state, command, 0.0, u, 0.0, 0.0, lost, h, unit=unit)
         states.append(state)
     return states
@@ -168,10 +169,10 @@ def test_a_failed_unit_runs_down_keeps_its_direction_and_comes_back_from_nothing
     start = run([20e3] * 800)[-1]
     state = start
     for _ in range(600):
-        state = azimuth_step(state, 20e3, 1.0, 0.0, 0.0, 0.0, True, H, unit=UNIT)
+        state = azimuth_step(state, 20e3, 1.0, 0.0, 0.0, 0.0, Failures(True), H, unit=UNIT)
         assert state.torque == 0.0 and state.azimuth == 0.0 and not state.saturated
     assert 0.0 < thrust_of(state) < 0.01 * 20e3
-    back = azimuth_step(state, 20e3, 0.0, 0.0, 0.0, 0.0, False, H, unit=UNIT)
+    back = azimuth_step(state, 20e3, 0.0, 0.0, 0.0, 0.0, SOUND, H, unit=UNIT)
     assert back.thrust_cmd == pytest.approx(UNIT.thrust_rate * H)
 
 
@@ -195,14 +196,14 @@ def test_azimuth_turns_the_shortest_way_at_its_rate():
         before, angle = angle, turned(angle, radians(-170.0), UNIT.azimuth_rate * H)
         way += abs(np.angle(np.exp(1j * (angle - before))))
     assert degrees(angle) == pytest.approx(-170.0) and degrees(way) == pytest.approx(20.0)
-    state = azimuth_step(at_rest(0.0), 0.0, 3.0, 0.0, 0.0, 0.0, False, H, unit=UNIT)
+    state = azimuth_step(at_rest(0.0), 0.0, 3.0, 0.0, 0.0, 0.0, SOUND, H, unit=UNIT)
     assert degrees(state.azimuth) == pytest.approx(0.5)
 
 
-def tunnel_run(commands, failed=False, state=None):
+def tunnel_run(commands, failures=SOUND, state=None):
     state = state or at_rest(0.5 * pi)
     for command in commands:
-        state = tunnel_step(state, command, 0.0, failed, H, tunnel=TUNNEL)
+        state = tunnel_step(state, command, 0.0, failures, H, tunnel=TUNNEL)
     return state
 
 
@@ -224,12 +225,12 @@ def test_tunnel_at_its_limit_takes_its_rated_power():
 def test_tunnel_of_the_thesis_reaches_its_thirty_kilonewton():
     tunnel, state = parameters(TunnelParameters, "thesis", "tunnel"), at_rest(0.5 * pi)
     for _ in range(800):
-        state = tunnel_step(state, 30e3, 0.0, False, H, tunnel=tunnel)
+        state = tunnel_step(state, 30e3, 0.0, SOUND, H, tunnel=tunnel)
     assert tunnel_loads(state, 0.0, tunnel=tunnel).thrust == pytest.approx(30e3, rel=1e-3)
 
 
 def test_failed_tunnel_runs_down():
-    state = tunnel_run([0.0] * 600, failed=True, state=tunnel_run([10e3] * 400))
+    state = tunnel_run([0.0] * 600, failures=Failures(True), state=tunnel_run([10e3] * 400))
     assert state.torque == 0.0 and 0.0 < tunnel_loads(state, 0.0, tunnel=TUNNEL).thrust < 100.0
 
 
@@ -279,7 +280,7 @@ def test_azimuth_offset_turns_the_loads_and_not_what_is_reported():
     (state, found), (real, expected) = replayed(100.0, 0.3, unit=offset), replayed(100.0, 0.3 + radians(7.0), unit=UNIT)
     assert found == pytest.approx(expected) and state.torque == pytest.approx(real.torque)
     assert state.azimuth == 0.3
-    driven = azimuth_step(at_rest(0.3), 5e3, 0.3, *FLOW, False, H, unit=offset)
+    driven = azimuth_step(at_rest(0.3), 5e3, 0.3, *FLOW, SOUND, H, unit=offset)
     assert driven.azimuth == pytest.approx(0.3)
 
 

@@ -11,6 +11,7 @@ from shipcosim.models.core.kinematics import load_at, velocity_at
 from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, pi, sin, where
 from shipcosim.models.core.parameters import acts, quantity, required
 from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
+from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
 from shipcosim.models.propulsion.slipstream import slipstream_share
 from shipcosim.models.propulsion.thruster import LOSS, Loads
@@ -78,7 +79,7 @@ def azimuth_step(
     u_r: Arithmetic,
     v_r: Arithmetic,
     r: Arithmetic,
-    failed: Arithmetic,
+    failures: Failures,
     h: float,
     *,
     unit: AzimuthParameters,
@@ -93,8 +94,8 @@ def azimuth_step(
         Commanded thrust and direction, which is reached the shorter way. [N, rad]
     u_r, v_r, r : like the state
         Velocity of the ship relative to the water and yaw rate. [m/s, m/s, rad/s]
-    failed : bool or (...) array or tensor of bool
-        Without power: no motor torque, the shaft runs free, the unit keeps its direction. [1]
+    failures : Failures
+        What has failed; `SOUND` if nothing has.
     h : float
         Step. [s]
     unit : AzimuthParameters
@@ -109,12 +110,15 @@ def azimuth_step(
     ----------
     As `drive.drive_step` and `propeller.propeller_loads`.
     """
-    azimuth = turned(thruster.azimuth, azimuth_cmd, where(failed, 0.0, unit.azimuth_rate * h))
+    azimuth = thruster.azimuth
+    still = failures.stopped | failures.azimuth_frozen
+    towards = where(failures.azimuth_reversed, azimuth_cmd + 2.0 * azimuth, azimuth_cmd)  # it measures -azimuth
+    azimuth = turned(azimuth, towards, where(still, 0.0, failures.rate_share * unit.azimuth_rate * h))
     u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
     return drive_step(
         thruster._replace(azimuth=azimuth),
         thrust_cmd,
-        failed,
+        failures,
         h,
         unit,
         lambda n: propeller_loads(u_a, n, propeller=unit),
@@ -152,7 +156,7 @@ def azimuth_replay(
     n = thruster.n
     u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
     thrust, torque = propeller_loads(u_a, n, propeller=unit)
-    return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n)
+    return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n, reported=thrust)
 
 
 def azimuth_given(n: Arithmetic, azimuth: Arithmetic, *, unit: AzimuthParameters) -> Thruster:

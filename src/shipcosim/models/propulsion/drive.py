@@ -20,11 +20,13 @@ from typing import Any, NamedTuple
 
 from shipcosim.models.core.integrate import rk4_pair, substeps
 from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, pi, where
+from shipcosim.models.propulsion.failures import Failures
 
 _LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
 _TURN = 2.0 * pi
 _SLOW = 0.1 / _TURN  # rev/s, slower the motor's power does not limit it
 _THRUST_TOLERANCE = 1.0  # N, nearer than this the command counts as reached
+_AT_ONCE = 1e9  # N/s, more than any rate
 
 
 class Thruster(NamedTuple):
@@ -44,6 +46,8 @@ class Thruster(NamedTuple):
         Torque of the motor. [N.m]
     saturated : bool or (...) array or tensor of bool
         True at a limit of force, of its rate, or of the motor. [1]
+    reported : like n
+        Thrust that the drive reports: its estimate from the measured shaft speed. [N]
     """
 
     n: Arithmetic
@@ -52,6 +56,7 @@ class Thruster(NamedTuple):
     azimuth: Arithmetic
     torque: Arithmetic
     saturated: Arithmetic
+    reported: Arithmetic
 
 
 def at_rest(azimuth: Arithmetic) -> Thruster:
@@ -68,13 +73,13 @@ def at_rest(azimuth: Arithmetic) -> Thruster:
         The state.
     """
     zero = 0.0 * azimuth
-    return Thruster(zero, zero, zero, azimuth, zero, False)
+    return Thruster(zero, zero, zero, azimuth, zero, False, zero)
 
 
 def drive_step(
     thruster: Thruster,
     thrust_cmd: Arithmetic,
-    failed: Arithmetic,
+    failures: Failures,
     h: float,
     drive: Any,
     loads: Callable,
@@ -89,8 +94,8 @@ def drive_step(
         State at the start, its direction already that of the end.
     thrust_cmd : like the state
         Commanded thrust. [N]
-    failed : bool or (...) array or tensor of bool
-        Without power: no motor torque, the shaft runs free, command and integral are reset. [1]
+    failures : Failures
+        What has failed. Without power command and integral are reset.
     h : float
         Step, divided into equal parts of at most 0.05 s. [s]
     drive : AzimuthParameters or TunnelParameters
@@ -105,27 +110,27 @@ def drive_step(
     Thruster
         State at the end.
     """
-    running = where(failed, 0.0, 1.0)
+    running, sign = where(failures.stopped, 0.0, 1.0), where(failures.rpm_reversed, -1.0, 1.0)
     start = running * thruster.thrust_cmd
-    wanted = running * clip(thrust_cmd, drive.thrust_min, drive.thrust_max)
-    change = clip(wanted - start, -drive.thrust_rate * h, drive.thrust_rate * h)
+    wanted, rate = _set_point(thruster, thrust_cmd, failures, drive)
+    change = clip(running * wanted - start, -rate * h, rate * h)
     gain, ratio = drive.proportional_gain * _TURN, drive.integral_gain / drive.proportional_gain
     integral_gain, friction, inertia = drive.integral_gain * _TURN, drive.friction * _TURN, drive.inertia * _TURN
-    limited = _limits(drive, gain)
+    limited = _limits(drive, gain, failures.power_limit)
 
     def demand(share):
         n_d = speed(start + share * change)
         return n_d, torque(n_d) + gain * n_d
 
     def motor(n, integral, forward, load):
-        asked = forward - gain * n + integral
+        asked = forward - gain * (sign * n) + integral
         return asked, running * limited(asked, n, load)
 
     def rates(n, integral, n_d, forward):
         thrust, load = loads(n)
         asked, given = motor(n, integral, forward, load)
         n_dot = (given - load - friction * n) / inertia
-        return n_dot, integral_gain * (n_d - speed(thrust)) + ratio * (given - asked)
+        return n_dot, integral_gain * (n_d - speed(sign * thrust)) + ratio * (given - asked)
 
     n, integral, now = thruster.n, running * thruster.integral, demand(0.0)
     parts = substeps(h, _LONGEST_SUBSTEP)
@@ -133,14 +138,23 @@ def drive_step(
         before, middle, now = now, demand((part + 0.5) / parts), demand((part + 1.0) / parts)
         n, integral = rk4_pair(rates, n, integral, h / parts, before, middle, now)
     reached = start + change
-    asked, given = motor(n, integral, now[1], loads(n)[1])
+    thrust, load = loads(n)
+    asked, given = motor(n, integral, now[1], load)
     at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (running > 0.0)
-    return Thruster(n, running * integral, reached, thruster.azimuth, given, at_limit)
+    return Thruster(n, running * integral, reached, thruster.azimuth, given, at_limit, sign * thrust)
 
 
-def _limits(drive, gain):
+def _set_point(thruster, thrust_cmd, failures, drive):
+    """Thrust that the drive heads for, and the rate at which it does. [N, N/s]"""
+    wanted = where(failures.rpm_frozen, thruster.thrust_cmd, clip(thrust_cmd, drive.thrust_min, drive.thrust_max))
+    wanted = where(failures.full_thrust, drive.thrust_max, wanted)
+    return wanted, where(failures.full_thrust, _AT_ONCE, failures.rate_share * drive.thrust_rate)
+
+
+def _limits(drive, gain, power_limit):
     """Function that keeps a torque within the motor's limits of torque, power and speed."""
-    n_max, torque_max, power = drive.rpm_max / 60.0, drive.torque_max, drive.power_max / _TURN
+    n_max, torque_max = drive.rpm_max / 60.0, drive.torque_max
+    power = minimum(drive.power_max, power_limit) / _TURN
 
     def limited(torque, n, load):
         most = minimum(torque_max, power / maximum(abs(n), _SLOW))

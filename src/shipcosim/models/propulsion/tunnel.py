@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from shipcosim.models.core.maths import Arithmetic, exp, pi, sqrt, where
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
+from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.propulsion.thruster import LOSS, Loads
 
 _TURN = 2.0 * pi
@@ -45,7 +46,7 @@ def tunnel_step(
     thruster: Thruster,
     thrust_cmd: Arithmetic,
     u_r: Arithmetic,
-    failed: Arithmetic,
+    failures: Failures,
     h: float,
     *,
     tunnel: TunnelParameters,
@@ -60,8 +61,8 @@ def tunnel_step(
         Commanded thrust, positive to starboard. [N]
     u_r : like the state
         Forward speed of the ship through the water. [m/s]
-    failed : bool or (...) array or tensor of bool
-        Without power: no motor torque, the shaft runs free. [1]
+    failures : Failures
+        What has failed; `SOUND` if nothing has.
     h : float
         Step. [s]
     tunnel : TunnelParameters
@@ -87,7 +88,7 @@ def tunnel_step(
         square = n * abs(n)
         return loss * k_T * square, k_Q * square
 
-    return drive_step(thruster, thrust_cmd, failed, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
+    return drive_step(thruster, thrust_cmd, failures, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
 
 
 def tunnel_replay(n: Arithmetic, *, tunnel: TunnelParameters) -> Thruster:
@@ -112,7 +113,8 @@ def tunnel_replay(n: Arithmetic, *, tunnel: TunnelParameters) -> Thruster:
     n = n - tunnel.rpm_offset / 60.0
     square = 3600.0 * n * abs(n)
     torque = tunnel.torque_coefficient * square + tunnel.friction * _TURN * n
-    return at_rest(0.5 * pi + 0.0 * n)._replace(n=n, thrust_cmd=tunnel.thrust_coefficient * square, torque=torque)
+    thrust = tunnel.thrust_coefficient * square
+    return at_rest(0.5 * pi + 0.0 * n)._replace(n=n, thrust_cmd=thrust, torque=torque, reported=thrust)
 
 
 def tunnel_loads(thruster: Thruster, u_r: Arithmetic, *, tunnel: TunnelParameters) -> Loads:
