@@ -22,7 +22,8 @@ static const struct {
 static const char *const texts[][2] = {
     {"thrust_polynomial", "31.9 0.8208 -0.6993 0.1895 -0.0743"},
     {"thrust_factors", "-180 0.875; -90 1; 0 1.383; 31.9 0.441; 90 1; 180 0.875"},
-    {"torque_factors", "-180 0.813; -90 1; 0 0.742; 90 1; 180 0.813"},
+    {"torque_polynomial", "31.9 0.0945 -0.039 0.0006 -0.0042"},
+    {"torque_factors", "-180 0.813; -90 1; 0 0.742; 31.9 1.74; 45 0.871; 90 1; 180 0.813"},
 };
 
 typedef struct {

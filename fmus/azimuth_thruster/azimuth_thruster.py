@@ -2,9 +2,8 @@
 
 from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models.core.maths import pi
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
-from shipcosim.models.propulsion.drive import at_rest
+from shipcosim.models.propulsion.drive import at_rest, powers
 from shipcosim.models.propulsion.failures import Failures
 
 
@@ -35,7 +34,8 @@ class AzimuthThruster(Fmu):
     azimuth = Output("rad", "direction of positive thrust as given, clockwise from the bow")
     rpm = Output("rpm", "shaft speed, negative astern")
     torque = Output("N.m", "torque of the motor")
-    power = Output("W", "power of the motor")
+    power = Output("W", "power drawn from the grid, negative where it flows back")
+    brake_power = Output("W", "braking power of the motor that the brake resistor turns into heat")
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
     tau_N = Output("N.m", "yaw moment on the ship")
@@ -82,7 +82,7 @@ class AzimuthThruster(Fmu):
         loads = azimuth_loads(state, *flow, *neighbour, unit=self.unit)
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
         self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
-        self.power = 2.0 * pi * state.n * state.torque
+        self.power, self.brake_power = powers(state, self.unit)
         self.thrust_feedback = state.reported
         self.azimuth_feedback = -state.azimuth if self.azimuth_reversed else state.azimuth
         self.saturated, self.available = state.saturated, not (self.failed or self.stop)

@@ -2,7 +2,7 @@
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import pi
-from shipcosim.models.propulsion.drive import at_rest
+from shipcosim.models.propulsion.drive import at_rest, powers
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
 
@@ -26,7 +26,8 @@ class TunnelThruster(Fmu):
     thrust = Output("N", "delivered thrust, positive to starboard")
     rpm = Output("rpm", "motor speed, positive pushes to starboard")
     torque = Output("N.m", "torque of the motor")
-    power = Output("W", "power of the motor")
+    power = Output("W", "power drawn from the grid, negative where it flows back")
+    brake_power = Output("W", "braking power of the motor that the brake resistor turns into heat")
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
     tau_N = Output("N.m", "yaw moment on the ship")
@@ -66,6 +67,7 @@ class TunnelThruster(Fmu):
         state = self.state
         loads = tunnel_loads(state, self.u_r, tunnel=self.tunnel)
         self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads
-        self.rpm, self.torque, self.power = 60.0 * state.n, state.torque, 2.0 * pi * state.n * state.torque
+        self.rpm, self.torque = 60.0 * state.n, state.torque
+        self.power, self.brake_power = powers(state, self.tunnel)
         self.thrust_feedback = state.reported
         self.saturated, self.available = state.saturated, not (self.failed or self.stop)

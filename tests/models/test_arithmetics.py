@@ -161,6 +161,12 @@ CASES = [
     Case(propeller.bollard_torque, [(2.0,), (-2.0,), (0.0,)], constants=dict(propeller=PORT)),
     Case(drive.at_rest, ANGLES),
     Case(
+        drive.powers,
+        [(2.0, 0.0, 0.0, 0.0, 5e3), (-2.0, 0.0, 0.0, 0.0, 5e3), (0.0, 0.0, 0.0, 0.0, 1e3)],
+        of_thruster,
+        dict(drive=PORT),
+    ),
+    Case(
         azimuth.azimuth_step,
         [(0.5, 100.0, 900.0, 3.0, 500.0, 2e4, -3.0, *w, bits) for w in WATER for bits in (0.0, 1.0, 2.0, 12.0, 48.0)],
         of_failing_thruster,

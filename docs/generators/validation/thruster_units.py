@@ -11,6 +11,7 @@ from common import MODEL, REFERENCE, THIRD, parameters, save, table
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.propulsion.propeller import PropellerParameters, propeller_loads, series
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay
+from shipcosim.models.ship.hull import HullParameters
 
 PORT = parameters(AzimuthParameters, "gunnerus-33m9", "port")
 UNIT = replace(PORT, **dict.fromkeys(("x", "y", "neighbour_x", "neighbour_y"), 0.0))
@@ -111,9 +112,9 @@ def _quadrants():
 
 
 def _torque(shared):
-    """Power at speed, ours against Ka4-70 in nozzle 19A, which is no source of ours."""
+    """Power at speed, ours against Ka4-70 in nozzle 19A as the parameter sheet reads it, and T V / P of both."""
     polynomials = json.loads((shared / "reference/data/propeller_ka_19a_polynomials.json").read_text())["Ka4-70_19A"]
-    rows, offs = [], []
+    rows, offs, shares = [], [], []
     for rpm, knots in ((110.0, 7.25), (170.0, 10.57), (195.0, 11.87)):
         n, speed = rpm / 60.0, knots * 1852.0 / 3600.0
         thrust, torque = propeller_loads(speed, n, propeller=PROPELLER)
@@ -122,10 +123,27 @@ def _torque(shared):
         square = PROPELLER.water_density * n**2 * PROPELLER.diameter**4
         power, other = 2.0 * pi * n * torque, 2.0 * pi * n * KQ * square * PROPELLER.diameter
         offs.append(100.0 * (power / other - 1.0))
+        shares.append(thrust * speed / power)
         values = (thrust / 1e3, KT * square / 1e3, power / 1e3, other / 1e3)
-        rows.append([f"{rpm:.0f} rpm, {knots:.2f} kn", *(f"{value:.1f}" for value in values), f"{offs[-1]:+.0f} %"])
+        last = [f"{offs[-1]:+.0f} %", f"{shares[-1]:.2f}", f"{KT * square * speed / other:.2f}"]
+        rows.append([f"{rpm:.0f} rpm, {knots:.2f} kn", *(f"{value:.1f}" for value in values), *last])
     header = ["", "thrust [kN]", "Ka series [kN]", "power [kW]", "Ka series [kW]", "difference in power"]
-    return {"torque": table(header, rows), "power_low": min(offs), "power_high": max(offs)}
+    table_of_power = table([*header, "T V / P", "Ka series"], rows)
+    return {"torque": table_of_power, "power_low": min(offs), "power_high": max(offs)} | {
+        "share_low": min(shares),
+        "share_high": max(shares),
+        "share_free": _running_free(),
+    }
+
+
+def _running_free():
+    """T V / P of the long ship on a straight course in calm water; J, and so this, is the same at all speeds."""
+    resistance = -parameters(HullParameters, "gunnerus-33m9", "vessel").X_uu
+    n = 170.0 / 60.0
+    speeds = np.linspace(1.0, 9.0, 8001)
+    thrust, torque = propeller_loads(speeds, n + 0.0 * speeds, propeller=PROPELLER)
+    k = int(np.argmin(np.abs(2.0 * thrust - resistance * speeds**2)))
+    return float(thrust[k] * speeds[k] / (2.0 * pi * n * torque[k]))
 
 
 def _curves(shared):
@@ -172,6 +190,6 @@ def _draw_quadrants():
     axis.plot(degrees, 10.0 * cq, color=THIRD, label="10 CQ, model")
     axis.plot(degrees, 10.0 * open_cq, color=THIRD, ls=":", label="10 CQ, open B4-70")
     axis.axvspan(0.0, 31.9, color="#eeeeee", zorder=0)
-    axis.set(xlabel="hydrodynamic pitch angle [deg]; grey: the unit's own polynomial", xticks=range(-180, 181, 45))
+    axis.set(xlabel="hydrodynamic pitch angle [deg]; grey: polynomials", xticks=range(-180, 181, 45))
     axis.legend(ncols=2)
     save(figure, "four_quadrants")

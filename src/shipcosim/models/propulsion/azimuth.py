@@ -14,7 +14,7 @@ from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
 from shipcosim.models.propulsion.slipstream import slipstream_share
-from shipcosim.models.propulsion.thruster import LOSS, Loads
+from shipcosim.models.propulsion.thruster import LOSS, REGENERATION, Loads
 
 _TURN = 2.0 * pi
 
@@ -39,6 +39,7 @@ class AzimuthParameters(PropellerParameters):
     friction: float = required("N.m.s/rad", "friction torque over shaft speed", minimum=0.0)
     proportional_gain: float = required("N.m.s/rad", "k_p of the drive", minimum=0.0)
     integral_gain: float = required("N.m/rad", "k_i of the drive", minimum=0.0)
+    regeneration: float = quantity(0.0, "1", REGENERATION, "neutral: diode rectifier", minimum=0.0, maximum=1.0)
 
     thrust_loss: float = quantity(0.0, "1", LOSS, "neutral", tolerance=0.01, maximum=1.0)
     reverse_loss: float = quantity(

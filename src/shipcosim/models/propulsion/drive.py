@@ -10,9 +10,14 @@ through zero thrust as elsewhere; with inflow the integral brings the thrust, no
 limits of the motor cut the torque, z follows back at k_i/k_p (anti-windup). The speed limit lets the shaft approach
 n_max at rate k_p/I.
 
+The motor also brakes, within the same limits: when the shaft is to reverse, and when the inflow turns the propeller.
+What it takes from the shaft then does not flow back into the grid, which a rectifier of diodes does not let through: a
+brake resistor turns it into heat. The parameter `regeneration` is the share that does flow back.
+
 References
 ----------
-Smogeli, Control of Marine Propellers, NTNU, 2006; that the estimate of the thrust is exact is assumed.
+Smogeli, Control of Marine Propellers, NTNU, 2006; that the estimate of the thrust is exact is assumed, and so are a
+brake resistor as strong as the motor, and a drive without losses.
 """
 
 from collections.abc import Callable
@@ -149,6 +154,32 @@ def _set_point(thruster, thrust_cmd, failures, drive):
     wanted = where(failures.rpm_frozen, thruster.thrust_cmd, clip(thrust_cmd, drive.thrust_min, drive.thrust_max))
     wanted = where(failures.full_thrust, drive.thrust_max, wanted)
     return wanted, where(failures.full_thrust, _AT_ONCE, failures.rate_share * drive.thrust_rate)
+
+
+def powers(thruster: Thruster, drive: Any) -> tuple[Arithmetic, Arithmetic]:
+    """Power that a thruster draws from the grid, and what its brake resistor turns into heat.
+
+    Their difference is the power of the motor on the shaft, 2π n Q.
+
+    Parameters
+    ----------
+    thruster : Thruster
+        State.
+    drive : AzimuthParameters or TunnelParameters
+        Whose `regeneration` counts. [as the fields say]
+
+    Returns
+    -------
+    tuple of two, like the state
+        From the grid, negative only where some flows back; in the resistor, never negative. [W, W]
+
+    References
+    ----------
+    Balance of energy; that drive and motor have no losses is assumed.
+    """
+    shaft = _TURN * thruster.n * thruster.torque
+    driving, braking = maximum(shaft, 0.0), maximum(-shaft, 0.0)
+    return driving - drive.regeneration * braking, (1.0 - drive.regeneration) * braking
 
 
 def _limits(drive, gain, power_limit):

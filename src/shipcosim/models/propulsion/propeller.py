@@ -4,9 +4,10 @@ With the hydrodynamic pitch angle β = atan2(u_a, 0.7 π n D) and C = ρ/2 (u_a�
 
     T = CT(β) C,  Q = CQ(β) D C,
 
-which has no singular point: n = 0 is β = ±90 deg. From β = 0 to an angle in the first quadrant CT comes from the
-propeller's own polynomial KT(J), J = u_a/(n D); elsewhere CT and CQ are those of the open propeller B4-70, P/D 1.4,
-times factors over β, by which a propeller meets both its bollard points (assumed; grade D outside the first quadrant).
+which has no singular point: n = 0 is β = ±90 deg. From β = 0 to an angle in the first quadrant CT and CQ come from the
+propeller's own polynomials KT(J) and KQ(J), J = u_a/(n D); elsewhere they are those of the open propeller B4-70, P/D
+1.4, times factors over β, by which a propeller meets both its bollard points and the ends of its polynomials (assumed;
+grade D outside the first quadrant).
 
 References
 ----------
@@ -82,12 +83,16 @@ class Curves(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class PropellerParameters:
-    """A propeller: its polynomial in the first quadrant, and what it is elsewhere beside one of the series."""
+    """A propeller: its polynomials in the first quadrant, and what it is elsewhere beside one of the series."""
 
     diameter: float = required("m", "propeller diameter", minimum=0.01)
     thrust_polynomial: str = required_table(
         ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"),
         "row 'end k0 k1 k2 k3': KT over powers of the advance ratio, from no speed to a hydrodynamic pitch angle, deg",
+    )
+    torque_polynomial: str = required_table(
+        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"),
+        "row 'end k0 k1 k2 k3': KQ over powers of the advance ratio, from no speed to a hydrodynamic pitch angle, deg",
     )
     thrust_factors: str = required_table(
         _FACTORS,
@@ -121,7 +126,7 @@ class PropellerParameters:
     @property
     def curves(self):
         """CT and CQ over the whole circle, and bollard coefficients; remembered by their tables, no state."""
-        return _curves(self.thrust_polynomial, self.thrust_factors, self.torque_factors)
+        return _curves(self.thrust_polynomial, self.thrust_factors, self.torque_polynomial, self.torque_factors)
 
     @cached_property
     def bollard(self):
@@ -154,8 +159,8 @@ def propeller_loads(u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParam
     --------
     One whose KT is 0.82 at no speed, 1.9 m wide, at 200 rpm:
 
-    >>> tables = {"thrust_polynomial": "30 0.82 -0.7 0.2 -0.1", "torque_factors": "-180 1; 180 1"}
-    >>> tables |= {"thrust_factors": "-180 0.9; -90 1; 0 1.4; 30 0.4; 90 1; 180 0.9"}
+    >>> tables = {"thrust_polynomial": "30 0.82 -0.7 0.2 -0.1", "torque_polynomial": "30 0.09 -0.04 0 0"}
+    >>> tables |= {"thrust_factors": "-180 0.9; -90 1; 0 1.4; 30 0.4; 90 1; 180 0.9", "torque_factors": "0 1"}
     >>> thrust, torque = propeller_loads(0.0, 200.0 / 60.0, propeller=PropellerParameters(diameter=1.9, **tables))
     >>> round(thrust / (1025.0 * (200.0 / 60.0) ** 2 * 1.9**4), 9)
     0.82
@@ -226,24 +231,25 @@ def series(beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=16)
-def _curves(thrust_polynomial, thrust_factors, torque_factors):
+def _curves(thrust_polynomial, thrust_factors, torque_polynomial, torque_factors):
     """Curves of a propeller from its tables."""
-    beta, ct, cq, outside = _arrays(thrust_polynomial, thrust_factors, torque_factors)
+    degrees = np.arange(-1800, 1801) * _STEP
+    ct, cq = series(np.radians(degrees))
+    ct, end = _coefficient(ct, degrees, thrust_factors, thrust_polynomial)
+    cq, _ = _coefficient(cq, degrees, torque_factors, torque_polynomial)
+    outside = np.interp(degrees, (-180.0, -30.0, 0.0, end, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0))
     factor = 0.5 * _AREA * _TIP**2
     middle = len(ct) // 2
     bollard = (factor * np.array([ct[middle], -ct[0], cq[middle], -cq[0]])).tolist()
-    return Curves(even_table(beta, ct, cq, outside), tuple(bollard))
+    return Curves(even_table(np.radians(degrees), ct, cq, outside), tuple(bollard))
 
 
-def _arrays(thrust_polynomial, thrust_factors, torque_factors):
-    """Columns β, CT, CQ, weight outside the first quadrant over the whole circle."""
-    ((end, *k),) = parse(thrust_polynomial)
-    degrees = np.arange(-1800, 1801) * _STEP
-    ct, cq = series(np.radians(degrees))
-    (at_ct, factor_ct), (at_cq, factor_cq) = columns(thrust_factors, 2), columns(torque_factors, 2)
-    ct, cq = ct * np.interp(degrees, at_ct, factor_ct), cq * np.interp(degrees, at_cq, factor_cq)
+def _coefficient(of_series, degrees, factors, polynomial):
+    """CT or CQ over the whole circle: factors on the series, and the polynomial up to its end; and that end."""
+    at, factor = columns(factors, 2)
+    found = of_series * np.interp(degrees, at, factor)
+    ((end, *k),) = parse(polynomial)
     first = (degrees > -0.5 * _STEP) & (degrees < end + 0.5 * _STEP)
     J = _TIP * np.tan(np.radians(degrees[first]))
-    ct[first] = np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
-    outside = np.interp(degrees, (-180.0, -30.0, 0.0, end, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0))
-    return np.radians(degrees), ct, cq, outside
+    found[first] = np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
+    return found, end

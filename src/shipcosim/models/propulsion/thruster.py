@@ -6,6 +6,8 @@ from shipcosim.models.core.maths import Arithmetic
 
 LOSS = "share of the thrust that is missing at the speed that the shaft has; torque and drive know nothing of it"
 """Description of the parameter `thrust_loss`."""
+REGENERATION = "share of the motor's braking power that flows back into the grid; a brake resistor takes the rest"
+"""Description of the parameter `regeneration`."""
 
 
 class Loads(NamedTuple):

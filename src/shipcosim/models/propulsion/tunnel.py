@@ -9,7 +9,7 @@ from shipcosim.models.core.maths import Arithmetic, exp, pi, sqrt, where
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
 from shipcosim.models.propulsion.failures import Failures
-from shipcosim.models.propulsion.thruster import LOSS, Loads
+from shipcosim.models.propulsion.thruster import LOSS, REGENERATION, Loads
 
 _TURN = 2.0 * pi
 _ALMOST_NONE = 1e-12  # N, keeps the derivative of the square root finite
@@ -35,6 +35,7 @@ class TunnelParameters:
     friction: float = required("N.m.s/rad", "friction torque over motor speed", minimum=0.0)
     proportional_gain: float = required("N.m.s/rad", "k_p of the drive", minimum=0.0)
     integral_gain: float = required("N.m/rad", "k_i of the drive", minimum=0.0)
+    regeneration: float = quantity(0.0, "1", REGENERATION, "neutral: diode rectifier", minimum=0.0, maximum=1.0)
 
     thrust_loss: float = quantity(0.0, "1", LOSS, "neutral; thrust_coefficient has the tolerance", maximum=1.0)
     rpm_offset: float = quantity(
