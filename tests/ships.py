@@ -24,6 +24,7 @@ COMPONENTS = {
     "ObserverParameters": "controller",
     "ControlParameters": "controller",
     "AllocationParameters": "allocator",
+    "PowerParameters": "allocator",
 }
 """Class of parameters: a component that has them."""
 
@@ -73,6 +74,7 @@ COMPONENT_OF = {
     "reference": "reference",
     "dp_controller": "controller",
     "allocator": "allocator",
+    "thruster_monitor": "monitor",
     "predictor": "predictor",
 }
 """FMU: the component of the DP ship that it is."""

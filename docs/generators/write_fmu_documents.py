@@ -35,6 +35,7 @@ COMPONENTS = {
     "reference": "reference",
     "dp_controller": "controller",
     "allocator": "allocator",
+    "thruster_monitor": "monitor",
     "predictor": "predictor",
 }
 """FMU: the component of gunnerus_dp whose inputs it gets."""

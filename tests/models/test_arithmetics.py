@@ -16,7 +16,9 @@ from ships import parameters
 
 import shipcosim.models
 from shipcosim import angles
+from shipcosim.models.allocation import monitor, power
 from shipcosim.models.allocation import pseudo_inverse as allocation
+from shipcosim.models.allocation.power import PowerParameters
 from shipcosim.models.control import observer, reference
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths
@@ -73,6 +75,7 @@ LOOP = [
     (1.0, -2.0, 3.0, 0.1, -0.2, 0.02, 3.0, 2.0, 2.9, 0.2, -0.1, 0.01, 0.1, 0.0, -0.1),
     (9.0, 8.0, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.5),
 ]
+POWER, WATCH = parameters(PowerParameters), monitor.MonitorParameters()
 OBSERVER = dict(ship=DP_SHIP, parameters=NOISE, design=observer.design(DP_SHIP, NOISE))
 AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=parameters(wind.WindParameters))
 REQUESTS = [(5e3, -4e3, 2e4), (9e3, 7e4, 1e5), (-2e5, 0.0, 9e5)]
@@ -109,6 +112,13 @@ def of_control(*row):
 def of_allocation(*row):
     state = allocation.AllocationState(*row[:3], *row[:3], False)
     return state, row[3:6], (True, row[6], True)
+
+
+def of_monitor(*row):
+    """Port's feedback is wrong by the first number, its direction by the second; the rest is of the ship."""
+    state = monitor.MonitorState(5.9, *(row[2] for _ in range(5)))
+    unit = monitor.Unit(5e3, 5e3 + row[0], 0.3, 0.3 + row[1], True)
+    return state, (unit, unit, unit._replace(available=False)), (row[3], -row[3]), (1e4 * row[3], 0.0)
 
 
 def of_prediction(*row):
@@ -224,6 +234,32 @@ CASES = [
         [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
         of_allocation,
         dict(h=0.5, parameters=UNITS, design=allocation.design(UNITS)),
+    ),
+    Case(
+        allocation.used_shares,
+        [(1e4, -1e4, 0.0), (-3e4, 6e4, -2e4)],
+        lambda *row: (allocation.AllocationState(*row, *row, False),),
+        dict(parameters=UNITS),
+    ),
+    Case(
+        power.granted_power,
+        [(0.1, 0.9, 0.0, 1e5, 2e5), (0.0, 0.0, 0.0, 0.0, 1e9)],
+        lambda *row: (row[:3], row[3:]),
+        dict(parameters=POWER),
+    ),
+    Case(power.thrust_shares, [(1e5, 2e4, 0.0), (1e9, 3e5, 1.0)], lambda *row: (row,), dict(parameters=POWER)),
+    Case(monitor.at_rest, [(1.0,)]),
+    Case(
+        monitor.step,
+        [(0.0, 0.0, 1.0, 0.5), (4e3, 0.0, 7.0, 5.0), (0.0, 0.4, 0.0, 0.0), (0.0, 6.28, 3.0, 3.0)],
+        of_monitor,
+        dict(h=0.5, parameters=WATCH),
+    ),
+    Case(
+        monitor.alarms,
+        [(0.0, 5.0, 6.0, 1.0, 2.0, 3.0)],
+        lambda *row: (monitor.MonitorState(*row),),
+        dict(parameters=WATCH),
     ),
     Case(prediction.predict, SHIP, of_prediction, AHEAD),
     Case(earth.onset, [(3.0,), (8.0,), (20.0,)], constants=dict(onset_time=5.0, ramp_time=10.0)),

@@ -166,6 +166,7 @@ def step(
     *,
     parameters: AllocationParameters,
     design: Design,
+    shares: tuple = (1.0, 1.0, 1.0),
 ) -> AllocationState:
     """Commands for a requested load, `h` after the last ones.
 
@@ -183,6 +184,9 @@ def step(
         Units, limits and weights.
     design : Design
         Made of the same parameters by `design`.
+    shares : tuple of three floats or (...) arrays or tensors
+        Shares of their limits of thrust that power leaves to port, starboard and tunnel. What exceeds them is taken
+        back at once, without limit of the rate. [1]
 
     Returns
     -------
@@ -194,13 +198,14 @@ def step(
     ----------
     Weighted generalised inverse as `design`; that thrust beyond a limit is allocated to the free units is assumed.
     """
-    wanted = _within_limits(tau, available, parameters=parameters, design=design)
+    limits = _limits(shares, parameters)
+    wanted = _within_limits(tau, available, limits, design=design)
     X, Y, N = _missing(tau, wanted, design.effect)
     missed = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
     reach = parameters.thrust_rate_max * h
     port, starboard, tunnel = (
-        where(usable, old + clip(new - old, -reach, reach), 0.0)
-        for usable, old, new in zip(available, state[:3], wanted, strict=True)
+        where(usable, clip(old + clip(new - old, -reach, reach), *limit), 0.0)
+        for usable, old, new, limit in zip(available, state[:3], wanted, limits, strict=True)
     )
     X, Y, N = load((port, starboard, tunnel), design.effect)
     return AllocationState(port, starboard, tunnel, X, Y, N, missed > 1.0)
@@ -236,10 +241,39 @@ def _missing(tau, thrusts, effect):
     return tau[0] - X, tau[1] - Y, tau[2] - N
 
 
-def _within_limits(tau, available, *, parameters, design):
+def used_shares(state: AllocationState, *, parameters: AllocationParameters) -> tuple:
+    """Shares of their limits of thrust that the units are commanded.
+
+    Parameters
+    ----------
+    state : AllocationState
+        The commands.
+    parameters : AllocationParameters
+        Limits.
+
+    Returns
+    -------
+    tuple of three, like the commands
+        Of port, starboard and tunnel, 0 to 1. [1]
+
+    References
+    ----------
+    Definition.
+    """
+    p = parameters
+    most = [where(f < 0.0, -p.azimuth_thrust_min, p.azimuth_thrust_max) for f in state[:2]]
+    return abs(state.port) / most[0], abs(state.starboard) / most[1], abs(state.tunnel) / p.tunnel_thrust_max
+
+
+def _limits(shares, parameters):
+    """Least and largest thrust of port, starboard and tunnel. [N]"""
+    p = parameters
+    azimuth, tunnel = (p.azimuth_thrust_min, p.azimuth_thrust_max), (-p.tunnel_thrust_max, p.tunnel_thrust_max)
+    return [(s * low, s * high) for s, (low, high) in zip(shares, (azimuth, azimuth, tunnel), strict=True)]
+
+
+def _within_limits(tau, available, limits, *, design):
     """Thrusts for a load, without rate limit. What one unit cannot give is allocated to those not yet at a limit."""
-    azimuth = (parameters.azimuth_thrust_min, parameters.azimuth_thrust_max)
-    limits = (azimuth, azimuth, (-parameters.tunnel_thrust_max, parameters.tunnel_thrust_max))
     free = [where(usable, 1.0, 0.0) for usable in available]
     missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
     held = [0.0, 0.0, 0.0]

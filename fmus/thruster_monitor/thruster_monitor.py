@@ -1,0 +1,65 @@
+"""FMU of the monitor of thrusters and of the ship's place."""
+
+from shipcosim.fmi import Fmu, Input, Output, Parameters
+from shipcosim.models.allocation.monitor import MonitorParameters, Unit, alarms, at_rest, step
+
+
+class ThrusterMonitor(Fmu):
+    """Compares command and feedback of the thrusters, stops those that are faulty, and watches the ship's place."""
+
+    port_thrust_cmd = Input("N", "commanded thrust of the port azimuth")
+    port_thrust_feedback = Input("N", "reported thrust of the port azimuth")
+    port_azimuth_cmd = Input("rad", "commanded angle of the port azimuth, clockwise from the bow")
+    port_azimuth_feedback = Input("rad", "reported angle of the port azimuth, clockwise from the bow")
+    port_available = Input("1", "port azimuth runs", start=True)
+    starboard_thrust_cmd = Input("N", "commanded thrust of the starboard azimuth")
+    starboard_thrust_feedback = Input("N", "reported thrust of the starboard azimuth")
+    starboard_azimuth_cmd = Input("rad", "commanded angle of the starboard azimuth, clockwise from the bow")
+    starboard_azimuth_feedback = Input("rad", "reported angle of the starboard azimuth, clockwise from the bow")
+    starboard_available = Input("1", "starboard azimuth runs", start=True)
+    tunnel_thrust_cmd = Input("N", "commanded thrust of the tunnel thruster")
+    tunnel_thrust_feedback = Input("N", "reported thrust of the tunnel thruster")
+    tunnel_available = Input("1", "tunnel thruster runs", start=True)
+    position_error = Input("m", "distance of the estimated ship from the reference")
+    heading_error = Input("rad", "estimated heading less the reference")
+    tau_X_bias = Input("N", "estimated force forward that neither thrust nor measured wind explains")
+    tau_Y_bias = Input("N", "estimated force to starboard that neither thrust nor measured wind explains")
+
+    port_faulty = Output("1", "port azimuth does not do what is commanded; stays so", start=False)
+    starboard_faulty = Output("1", "starboard azimuth does not do what is commanded; stays so", start=False)
+    tunnel_faulty = Output("1", "tunnel thruster does not do what is commanded; stays so", start=False)
+    position_alarm = Output("1", "the ship has left her place", start=False)
+    heading_alarm = Output("1", "the ship has left her heading", start=False)
+    force_alarm = Output("1", "the unexplained force is larger than weather gives", start=False)
+
+    monitor = Parameters(MonitorParameters)
+
+    def start(self):
+        self._show(at_rest())
+
+    def step(self, t, h):
+        units = (
+            Unit(
+                self.port_thrust_cmd,
+                self.port_thrust_feedback,
+                self.port_azimuth_cmd,
+                self.port_azimuth_feedback,
+                self.port_available,
+            ),
+            Unit(
+                self.starboard_thrust_cmd,
+                self.starboard_thrust_feedback,
+                self.starboard_azimuth_cmd,
+                self.starboard_azimuth_feedback,
+                self.starboard_available,
+            ),
+            Unit(self.tunnel_thrust_cmd, self.tunnel_thrust_feedback, 0.0, 0.0, self.tunnel_available),
+        )
+        errors, bias = (self.position_error, self.heading_error), (self.tau_X_bias, self.tau_Y_bias)
+        self._show(step(self.state, units, errors, bias, h, parameters=self.monitor))
+
+    def _show(self, state):
+        self.state = state
+        found = alarms(state, parameters=self.monitor)
+        self.port_faulty, self.starboard_faulty, self.tunnel_faulty = found[:3]
+        self.position_alarm, self.heading_alarm, self.force_alarm = found[3:]

@@ -1,0 +1,196 @@
+"""Monitoring of thrusters and of the ship's place: command against feedback, estimate against reference.
+
+A unit whose feedback stays beyond a tolerance of its command is faulty, and is stopped: the fault is latched. What
+feedback cannot show, a unit that lies or a thrust that is lost behind the shaft, is seen by the ship: she leaves her
+place, or the observer explains her motion by an unknown force that grows beyond what weather gives.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import Arithmetic, hypot, pi, where
+from shipcosim.models.core.parameters import quantity
+
+_DEG = pi / 180.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class MonitorParameters:
+    """Tolerances and times of the alarms, for a ship with two azimuth thrusters and a tunnel thruster."""
+
+    azimuth_thrust_tolerance: float = quantity(
+        3e3, "N", "difference of commanded and reported thrust of an azimuth that is no fault", "assumed: 5 % of 60 kN"
+    )
+    tunnel_thrust_tolerance: float = quantity(
+        1.5e3,
+        "N",
+        "difference of commanded and reported thrust of the tunnel that is no fault",
+        "assumed: 7 % of 21.6 kN",
+    )
+    azimuth_tolerance: float = quantity(
+        10.0 * _DEG, "rad", "difference of commanded and reported direction that is no fault", "assumed"
+    )
+    fault_delay: float = quantity(
+        6.0, "s", "time beyond a tolerance after which the unit is faulty", "assumed; turning by 45 deg takes 4.5 s"
+    )
+    position_limit: float = quantity(3.0, "m", "distance from the reference that is no alarm", "assumed, usual")
+    heading_limit: float = quantity(5.0 * _DEG, "rad", "heading off the reference that is no alarm", "assumed, usual")
+    force_limit: float = quantity(
+        40e3, "N", "unexplained force that is no alarm", "assumed: above 25 kN, the most in the scenarios' weather"
+    )
+    alarm_delay: float = quantity(2.0, "s", "time beyond a limit after which there is an alarm", "assumed")
+
+
+class MonitorState(NamedTuple):
+    """Times for which tolerances and limits have been exceeded; those of units stay once they reach the delay.
+
+    Parameters
+    ----------
+    port, starboard, tunnel : float or (...) array or tensor
+        For how long the unit's feedback has been beyond tolerance. [s]
+    position, heading, force : like port
+        For how long the ship has been beyond her limits. [s]
+    """
+
+    port: Arithmetic
+    starboard: Arithmetic
+    tunnel: Arithmetic
+    position: Arithmetic
+    heading: Arithmetic
+    force: Arithmetic
+
+
+class Unit(NamedTuple):
+    """Command and feedback of a unit.
+
+    Parameters
+    ----------
+    thrust_cmd, thrust_feedback : float or (...) array or tensor
+        Commanded and reported thrust. [N]
+    azimuth_cmd, azimuth_feedback : like thrust_cmd
+        Commanded and reported direction, 0 of a unit that does not turn. [rad]
+    available : bool or (...) array or tensor of bool
+        Whether the unit runs; one that does not is no fault. [1]
+    """
+
+    thrust_cmd: Arithmetic
+    thrust_feedback: Arithmetic
+    azimuth_cmd: Arithmetic
+    azimuth_feedback: Arithmetic
+    available: Arithmetic
+
+
+class Alarms(NamedTuple):
+    """What the monitor says.
+
+    Parameters
+    ----------
+    port, starboard, tunnel : bool or (...) array or tensor of bool
+        Whether the unit is faulty; latched. [1]
+    position, heading, force : like port
+        Whether the ship is beyond her limits. [1]
+    """
+
+    port: Arithmetic
+    starboard: Arithmetic
+    tunnel: Arithmetic
+    position: Arithmetic
+    heading: Arithmetic
+    force: Arithmetic
+
+
+def at_rest(like: Arithmetic = 0.0) -> MonitorState:
+    """State at the start: nothing is beyond a limit.
+
+    Parameters
+    ----------
+    like : float or (...) array or tensor
+        Gives shape and type only. [any unit]
+
+    Returns
+    -------
+    MonitorState
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
+    return MonitorState(*(0.0 * like,) * 6)
+
+
+def step(
+    state: MonitorState,
+    units: tuple[Unit, Unit, Unit],
+    errors: tuple[Arithmetic, Arithmetic],
+    bias: tuple[Arithmetic, Arithmetic],
+    h: float,
+    *,
+    parameters: MonitorParameters,
+) -> MonitorState:
+    """State of the monitor `h` later.
+
+    Parameters
+    ----------
+    state : MonitorState
+        State at the start.
+    units : tuple of three Unit
+        Port, starboard and tunnel.
+    errors : tuple of two floats or (...) arrays or tensors
+        Distance from the reference, and heading off it. [m, rad]
+    bias : tuple of two floats or (...) arrays or tensors
+        Estimated force forward and to starboard that neither thrust nor measured wind explains. [N, N]
+    h : float
+        Time since the last step. [s]
+    parameters : MonitorParameters
+        Tolerances and times.
+
+    Returns
+    -------
+    MonitorState
+        State at the end.
+
+    References
+    ----------
+    Alarms on the difference of command and feedback, on position, heading and the force of the observer: common
+    practice of DP systems; tolerances and times are assumed.
+    """
+    p = parameters
+    tolerances = (p.azimuth_thrust_tolerance, p.azimuth_thrust_tolerance, p.tunnel_thrust_tolerance)
+    times = []
+    for time, unit, tolerance in zip(state[:3], units, tolerances, strict=True):
+        off = abs(unit.thrust_cmd - unit.thrust_feedback) > tolerance
+        off = off | (abs(wrap(unit.azimuth_cmd - unit.azimuth_feedback)) > p.azimuth_tolerance)
+        kept = where(time >= p.fault_delay, time, 0.0)
+        times.append(where(off & unit.available, time + h, kept))
+    beyond = (
+        errors[0] > p.position_limit,
+        abs(errors[1]) > p.heading_limit,
+        hypot(*bias) > p.force_limit,
+    )
+    times += [where(over, time + h, 0.0) for over, time in zip(beyond, state[3:], strict=True)]
+    return MonitorState(*times)
+
+
+def alarms(state: MonitorState, *, parameters: MonitorParameters) -> Alarms:
+    """What the monitor says in a state.
+
+    Parameters
+    ----------
+    state : MonitorState
+        The state.
+    parameters : MonitorParameters
+        Tolerances and times.
+
+    Returns
+    -------
+    Alarms
+        Faulty units, and the alarms.
+
+    References
+    ----------
+    As `step`.
+    """
+    faulty = (time >= parameters.fault_delay for time in state[:3])
+    return Alarms(*faulty, *(time >= parameters.alarm_delay for time in state[3:]))
