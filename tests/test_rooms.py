@@ -17,6 +17,7 @@ MAY_IMPORT = {
     "scenario": {"series", "errors", "units", "angles"},
     "cosim": {"series", "ssp", "scenario", "fmi", "errors", "options", "units"},
     "diagnose": {"errors", "angles", "options", "units", "models", "series", "ssp", "scenario", "cosim"},
+    "capability": {"errors", "angles", "models", "ssp"},
     "report": {
         "errors",
         "angles",
@@ -29,8 +30,22 @@ MAY_IMPORT = {
         "scenario",
         "cosim",
         "diagnose",
+        "capability",
     },
-    "cli": {"errors", "options", "units", "models", "series", "fmi", "ssp", "scenario", "cosim", "report", "diagnose"},
+    "cli": {
+        "errors",
+        "options",
+        "units",
+        "models",
+        "series",
+        "fmi",
+        "ssp",
+        "scenario",
+        "cosim",
+        "report",
+        "diagnose",
+        "capability",
+    },
     "api": {"errors", "options", "series", "fmi", "ssp", "scenario", "cosim", "report", "diagnose"},
 }
 ONLY_DOOR = {

@@ -1,4 +1,4 @@
-"""Writes docs/images/four_corner.png and diagnosis.png: what the pages look like in a browser.
+"""Writes docs/images/four_corner.png, diagnosis.png and capability.png: what the pages look like in a browser.
 
 Run `python docs/generators/write_images.py` after a page looks different; it takes a minute. Needs Chromium, its
 driver, and the packages selenium and Pillow.
@@ -22,8 +22,9 @@ IMAGES = ROOT / "docs" / "images"
 PAGES = {
     "four_corner": ["run", "scenarios/four_corner.toml"],
     "diagnosis": ["diagnose", "docs/examples/gunnerus_log.csv.gz"],
+    "capability": ["capability"],
 }
-HEIGHTS = {"four_corner": 1140, "diagnosis": 1020}
+HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 990}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
 SWITCHES = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars")
@@ -56,7 +57,7 @@ def picture(driver: webdriver.Chrome, page: Path, height: int) -> bytes:
 
 
 def write_images() -> None:
-    """Makes both pages in a folder that is deleted again, and writes their pictures."""
+    """Makes all pages in a folder that is deleted again, and writes their pictures."""
     with tempfile.TemporaryDirectory() as folder:
         driver = browser(Path(folder) / "profile")
         try:

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.commands import build, check, compare, diagnose, export, run, simulate
+from shipcosim.cli.commands import build, capability, check, compare, diagnose, export, run, simulate
 from shipcosim.cli.exits import EXIT_CODES, guarded
 
 app = typer.Typer(
@@ -18,7 +18,15 @@ app = typer.Typer(
 exporting = typer.Typer(
     help="Write a system in a form that other tools run.", rich_markup_mode=None, no_args_is_help=True
 )
-for _function in (build.build, run.run, simulate.simulate, compare.compare, check.check, diagnose.diagnose):
+for _function in (
+    build.build,
+    run.run,
+    simulate.simulate,
+    compare.compare,
+    check.check,
+    diagnose.diagnose,
+    capability.capability,
+):
     app.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (export.fmu, export.osp):
     exporting.command(epilog=EXIT_CODES)(guarded(_function))

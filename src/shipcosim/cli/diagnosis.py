@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.project import build_stale, check_is_system, find_project
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.cli.project import build_stale, find_project, find_system
+from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.result import Diagnosis
@@ -23,32 +23,6 @@ STEPS = {
     "the gain, by co-simulation": "4 of 5: the gain, by co-simulation",
 }
 LAST_STEP = "5 of 5: writing the page"
-
-
-def find_system(given: str | None = None) -> str:
-    """Path of the system that a log is held against.
-
-    Parameters
-    ----------
-    given : str, optional
-        A path, or the name of a system in the project's ssp/; the open Gunnerus without.
-
-    Raises
-    ------
-    ShipcosimError
-        If there is none.
-    """
-    if given is not None and Path(given.partition("#")[0]).exists():
-        check_is_system(given)
-        return given
-    project = find_project(Path.cwd())
-    folder = (project or Path.cwd()) / "ssp"
-    name = given or DEFAULT_SYSTEM
-    if (folder / name / "SystemStructure.ssd").is_file():
-        return str(folder / name)
-    known = [path.parent.name for path in sorted(folder.glob("*/SystemStructure.ssd"))]
-    remedy = f"In {folder} there{suggestion(name, known).removeprefix('There')}" if known else "Give one with --system."
-    raise ShipcosimError(Problem(name, "There is no such system.", remedy))
 
 
 def default_folder(data: str | Path) -> Path:
@@ -78,7 +52,7 @@ def diagnose_log(
     folder : Path
         Gets diagnosis.json and report.html, and where a cause in the model was named extended.ssp and extended.ssv.
     system : str, optional
-        As for `find_system`.
+        As for `find_system`; the open Gunnerus without.
     channels, effects : path, optional
         Channel file, and folder with further causes.
 
@@ -97,7 +71,7 @@ def diagnose_log(
     from shipcosim.ssp import read_system
 
     _check_inputs(data, channels, effects)
-    given = find_system(system)
+    given = find_system(system or DEFAULT_SYSTEM, "--system")
     project = find_project(Path(given.partition("#")[0]))
     ship = read_system(given, fmus=[build_stale(project)] if project else [])
     with _progress() as show, staged(folder) as stage:

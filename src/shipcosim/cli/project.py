@@ -56,6 +56,31 @@ def check_is_system(given: str) -> None:
         raise ShipcosimError(Problem(given, "This is one FMU, not a system.", remedy))
 
 
+def find_system(given: str, option: str = "the argument SYSTEM") -> str:
+    """Path of a system: a path, or a name in the project's ssp/; `option` says it, for messages.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is none.
+    """
+    if Path(given.partition("#")[0]).exists():
+        check_is_system(given)
+        return given
+    folder = (find_project(Path.cwd()) or Path.cwd()) / "ssp"
+    if (folder / given / "SystemStructure.ssd").is_file():
+        return str(folder / given)
+    known = [path.parent.name for path in sorted(folder.glob("*/SystemStructure.ssd"))]
+    remedy = f"In {folder} there{suggestion(given, known).removeprefix('There')}" if known else f"Give one with {option}."
+    raise ShipcosimError(Problem(given, "There is no such system.", remedy))
+
+
+def find_parameters(given: Path, system: str) -> Path:
+    """Parameter set: a path, or the name of one in the system's resources."""
+    named = Path(system) / "resources" / f"{given.name}.ssv"
+    return named if not given.exists() and named.is_file() else given
+
+
 def build_named(
     project: Path, names: Collection[str], out: Path, progress: Callable[[int, int], None] | None = None
 ) -> list[Path]:

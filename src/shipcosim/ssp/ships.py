@@ -325,7 +325,7 @@ def _is_text(value: Any) -> bool:
 
 
 _VALUE_KEYS: Mapping[str, Any] = {
-    "value": lambda value: isinstance(value, (bool, int, float)),
+    "value": lambda value: isinstance(value, (bool, int, float, str)),
     "unit": _is_text,
     "tolerance": lambda value: _is_number(value) and value >= 0.0,
     "origin": _is_text,

@@ -48,6 +48,12 @@ class SystemContents:
         return [name for name, _ in walk(self._draft.system) if name]
 
     @property
+    def parameter_sets(self) -> list[str]:
+        """Sources of the parameter sets that the outermost system binds, in the order of the file."""
+        bound = children(self._draft.system, "ssd:ParameterBindings", "ssd:ParameterBinding")
+        return [part.get("source", "") for part in bound if part.get("source")]
+
+    @property
     def components(self) -> dict[str, Component]:
         """Components with their FMUs' descriptions by full name, those in systems of other files included."""
         system = self._draft.assembled()[0]

@@ -1,0 +1,18 @@
+"""The static DP capability of a ship: the weather of DNV-ST-0111 against her thrusters."""
+
+from shipcosim.capability.compute import capability_of, cases_of
+from shipcosim.capability.result import Capability, Case, as_json, dataset, notation, numbers_table
+from shipcosim.capability.vessel import Vessel, read_vessel
+
+__all__ = [
+    "Capability",
+    "Case",
+    "Vessel",
+    "as_json",
+    "capability_of",
+    "cases_of",
+    "dataset",
+    "notation",
+    "numbers_table",
+    "read_vessel",
+]

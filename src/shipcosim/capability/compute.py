@@ -1,0 +1,103 @@
+"""From a ship to her capability: every condition from every direction, with all thrusters and after each failure."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.capability.balance import Actuator, largest_share
+from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACTOR, Condition
+from shipcosim.capability.loads import level_1_parts
+from shipcosim.capability.particulars import Hull
+from shipcosim.capability.result import LEVEL_1, SIMULATOR, Capability, Case
+from shipcosim.capability.sectors import pieces, sectors
+from shipcosim.capability.simulator import simulated_parts
+from shipcosim.capability.thrust import BETA_MISC, Thruster, ventilation
+from shipcosim.capability.vessel import Simulated, Vessel
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+
+
+def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case, ...]:
+    """The ship with all thrusters, without each of them, and without each group.
+
+    Parameters
+    ----------
+    vessel : Vessel
+    groups : iterable of sequence of str
+        Names of thrusters that one failure takes out together, as of one switchboard.
+
+    Returns
+    -------
+    tuple of Case
+
+    Raises
+    ------
+    ShipcosimError
+        There is no thruster of some name.
+    """
+    known = [thruster.name for thruster in vessel.thrusters]
+    lost = [(name,) for name in known] + [tuple(dict.fromkeys(group)) for group in groups]
+    unknown = dict.fromkeys(name for group in lost for name in group if name not in known)
+    if unknown:
+        raise ShipcosimError([Problem("--failure", f"'{n}' is no thruster.", suggestion(n, known)) for n in unknown])
+    return (Case("intact", ()), *(Case(f"without {' and '.join(group)}", group) for group in dict.fromkeys(lost)))
+
+
+def capability_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> Capability:
+    """Static capability of a ship by the formulae of Level 1, and by the simulator's own models.
+
+    Parameters
+    ----------
+    vessel : Vessel
+    groups : iterable of sequence of str
+        As for `cases_of`.
+
+    Returns
+    -------
+    Capability
+    """
+    cases = cases_of(vessel, groups)
+    shares: dict[str, list[list[NDArray]]] = {LEVEL_1: [], SIMULATOR: []}
+    for case in cases:
+        working, failed = case.split(vessel.thrusters)
+        shares[LEVEL_1].append([level_1_share(vessel.hull, working, failed, c) for c in CONDITIONS])
+        shares[SIMULATOR].append([simulated_share(vessel.simulated, working, c) for c in CONDITIONS])
+    with np.errstate(divide="ignore"):
+        return Capability(vessel, cases, {method: 1.0 / np.array(found) for method, found in shares.items()})
+
+
+def level_1_share(hull: Hull, working: Sequence[Thruster], failed: Sequence[Thruster], condition: Condition) -> NDArray:
+    """Share of the load of a condition that is balanced at most, by the formulae of Level 1.
+
+    Parameters
+    ----------
+    hull : Hull
+    working, failed : sequence of Thruster
+    condition : Condition
+
+    Returns
+    -------
+    (directions,) array
+        Weather from each of `DIRECTIONS`. [1]
+    """
+    actuators = [
+        _actuator(t, BETA_MISC * ventilation(t, hull, condition, DIRECTIONS), sectors(t, working, failed))
+        for t in working
+    ]
+    return largest_share(actuators, _load(level_1_parts(hull, condition, DIRECTIONS)))
+
+
+def simulated_share(ship: Simulated, working: Sequence[Thruster], condition: Condition) -> NDArray:
+    """The same by the simulator's models, whose thrusters give what they may be asked for."""
+    asked = [replace(t, **vars(ship.limits[t.name])) for t in working]
+    actuators = [_actuator(t, np.ones(len(DIRECTIONS)), ()) for t in asked]
+    return largest_share(actuators, _load(simulated_parts(ship, condition, DIRECTIONS)))
+
+
+def _actuator(thruster: Thruster, left: NDArray, narrowed: Sequence) -> Actuator:
+    return Actuator(thruster.x, thruster.y, pieces(thruster, narrowed), left)
+
+
+def _load(parts: dict[str, NDArray]) -> NDArray:
+    return DYNAMIC_FACTOR * sum(parts.values(), np.zeros((len(DIRECTIONS), 3)))

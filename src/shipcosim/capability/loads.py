@@ -1,0 +1,119 @@
+"""Loads of DNV-ST-0111 Level 1 on a ship at rest: wind, current, wave drift. Body axes of the project, y to starboard.
+
+The standard's axes have y to port and z up; weather from starboard (90 deg) pushes to port, so Y is negative here.
+Moments are about the ship's origin. No dynamic factor is in them.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.capability.conditions import Condition
+from shipcosim.capability.particulars import Hull
+
+AIR_DENSITY, WATER_DENSITY, GRAVITY = 1.226, 1026.0, 9.81  # kg/m3, kg/m3, m/s2; the standard does not say its g
+
+
+def level_1_loads(hull: Hull, condition: Condition, weather_from: NDArray) -> NDArray:
+    """Sum of the mean loads of wind, current and waves.
+
+    Parameters
+    ----------
+    hull : Hull
+    condition : Condition
+    weather_from : (n,) array
+        Clockwise from the bow. [rad]
+
+    Returns
+    -------
+    (n, 3) array
+        X, Y, N. [N, N, N.m]
+    """
+    parts = level_1_parts(hull, condition, weather_from)
+    return sum(parts.values(), np.zeros((len(weather_from), 3)))
+
+
+def level_1_parts(hull: Hull, condition: Condition, weather_from: NDArray) -> dict[str, NDArray]:
+    """The same by their sources, ``"wind"``, ``"current"``, ``"waves"``."""
+    return {
+        "wind": wind(hull, condition.wind_speed, weather_from),
+        "current": current(hull, condition.current_speed, weather_from),
+        "waves": wave_drift(hull, condition, weather_from),
+    }
+
+
+def wind(hull: Hull, speed: float, wind_from: NDArray) -> NDArray:
+    """Load of the wind, 10 m above the sea.
+
+    Parameters
+    ----------
+    hull : Hull
+    speed : float
+        [m/s]
+    wind_from : (n,) array
+        Clockwise from the bow. [rad]
+
+    Returns
+    -------
+    (n, 3) array
+        X, Y, N. [N, N, N.m]
+    """
+    q = 0.5 * AIR_DENSITY * speed**2
+    lever = hull.wind_centre_x + 0.3 * _ahead(wind_from) * hull.length
+    across = q * hull.wind_area_side * 0.9 * np.sin(wind_from)
+    return _load(hull, -0.7 * q * hull.wind_area_front * np.cos(wind_from), across, lever)
+
+
+def current(hull: Hull, speed: float, current_from: NDArray) -> NDArray:
+    """Load of the current. Parameters and returns as `wind`."""
+    q = 0.5 * WATER_DENSITY * speed**2
+    lever = hull.current_centre_x + np.clip(0.4 * _ahead(current_from), -0.2, 0.25) * hull.length
+    across = q * hull.current_area_side * 0.6 * np.sin(current_from)
+    return _load(hull, -0.07 * q * hull.breadth * hull.draught * np.cos(current_from), across, lever)
+
+
+def wave_drift(hull: Hull, condition: Condition, waves_from: NDArray) -> NDArray:
+    """Mean wave drift load.
+
+    Parameters
+    ----------
+    hull : Hull
+    condition : Condition
+        With Hs and Tp.
+    waves_from : (n,) array
+        Clockwise from the bow. [rad]
+
+    Returns
+    -------
+    (n, 3) array
+        X, Y, N. [N, N, N.m]
+    """
+    q = 0.5 * WATER_DENSITY * GRAVITY * condition.wave_height**2 * 0.09
+    turned, period = _turned(waves_from), condition.zero_crossing_period
+    bow, stern = 0.8 * hull.bow_angle**0.45, 0.7 * np.clip(hull.waterplane_aft, 0.85, 1.15) ** 2
+    shape = bow + turned / np.pi * (stern - bow)
+    course = 0.05 + 0.95 * np.arctan(1.45 * (turned - 1.75))
+    along = q * hull.breadth * shape * course * _short(period / (0.9 * hull.length**0.33))
+    across = q * hull.submerged_length * np.sin(waves_from) * _short(period / (0.75 * np.sqrt(hull.breadth)))
+    lever = hull.submerged_centre_x + (0.05 - 0.14 * turned / np.pi) * hull.submerged_length
+    return _load(hull, along, across, lever)
+
+
+def _turned(angle: NDArray) -> NDArray:
+    """The standard's `dir`: from the bow, 0 to π on both sides."""
+    angle = angle % (2.0 * np.pi)
+    return np.minimum(angle, 2.0 * np.pi - angle)
+
+
+def _ahead(angle: NDArray) -> NDArray:
+    """From 1 from ahead to -1 from astern."""
+    return 1.0 - 2.0 * _turned(angle) / np.pi
+
+
+def _short(period: float) -> float:
+    """Share of the drift force in waves of a period over that of the ship: long waves carry her."""
+    return 1.0 if period < 1.0 else period**-3.0 * np.exp(1.0 - period**-3.0)
+
+
+def _load(hull: Hull, along: NDArray, to_port: NDArray, lever: NDArray) -> NDArray:
+    """Load of a force ahead and one to port that acts `lever` ahead of midship."""
+    return np.stack([along, -to_port, -(hull.midship_x + lever) * to_port], axis=-1)

@@ -1,0 +1,199 @@
+"""The ship of a system as the capability sees her: hull, thrusters, and the models that the simulator has of her.
+
+Thrusters are the components of a system whose forces go into the vessel. Positions and power come from the system's
+parameter set, the rest from the ship's files `capability*.toml`.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
+
+from shipcosim.capability.particulars import CHOICES, Hull, HullParticulars, ThrusterParticulars
+from shipcosim.capability.thrust import ETA_1, ETA_2_ASTERN, ETA_2_INLET, ETA_M, Thruster, nominal_thrust
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import DriftParameters
+from shipcosim.ssp import Component, Ship, System
+
+Kind = TypeVar("Kind")
+HULL_FILE = "capability"
+_VESSEL = {"wind_table", "drift_table", "length", "breadth", "draught"}
+_THRUSTER = {"x", "power_max", "thrust_min", "thrust_max"}
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a thruster of the simulator may be asked for. [N]"""
+
+    ahead: float
+    astern: float
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """The ship as the simulator has her: hull, wind, wave drift, and what her thrusters may be asked for by name."""
+
+    hull: HullParameters
+    wind: WindParameters
+    drift: DriftParameters
+    limits: Mapping[str, Limits]
+
+
+@dataclass(frozen=True)
+class Particular:
+    """A number that stands in a file of the ship, for the reader: its file, meaning, value, unit and origin."""
+
+    file: str
+    description: str
+    value: Any
+    unit: str
+    origin: str
+
+
+@dataclass(frozen=True)
+class Vessel:
+    """A ship, as Level 1 and as the simulator have her.
+
+    Attributes
+    ----------
+    name, description, system : str
+        Of the ship, and the system's name.
+    hull : Hull
+    thrusters : tuple of Thruster
+        With their nominal thrust.
+    simulated : Simulated
+    particulars : tuple of Particular
+        All that was read from the files of the ship.
+    """
+
+    name: str
+    description: str
+    system: str
+    hull: Hull
+    thrusters: tuple[Thruster, ...]
+    simulated: Simulated
+    particulars: tuple[Particular, ...]
+
+
+def read_vessel(system: System, ship: Ship) -> Vessel:
+    """The ship of a system.
+
+    Parameters
+    ----------
+    system : System
+        With a vessel of ours, and thrusters whose forces go into it.
+    ship : Ship
+        With `capability.toml`, and `capability-NAME.toml` of each thruster.
+
+    Returns
+    -------
+    Vessel
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is missing or cannot be.
+    """
+    body = _vessel_of(system)
+    units = _thrusters_of(system, body.name)
+    asked = {HULL_FILE: (HullParticulars,)} | {_file(name): (ThrusterParticulars,) for name in units}
+    if left_out := [f"{part.name}.{name}" for part in (body, *units.values()) for name in part.left_out]:
+        raise ShipcosimError(
+            Problem(system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters.")
+        )
+    said = ship.parameter_set(asked)
+    values = {file: {name: q.value for name, q in entries.items()} for file, entries in said.items()}
+    problems = [p for name in units for p in _problems(ship, name, units[name], values[_file(name)])]
+    if problems:
+        raise ShipcosimError(problems)
+    known = {name: _real(body, name) for name in ("length", "breadth", "draught")}
+    hull = Hull(**values[HULL_FILE], **known)
+    made = [_thruster(unit, ThrusterParticulars(**values[_file(name)]), hull) for name, unit in units.items()]
+    listed = [Particular(f, q.description, q.value, q.unit, q.origin) for f, e in said.items() for q in e.values()]
+    return Vessel(ship.name, ship.description, system.name, hull, tuple(made), _simulated(body, units), tuple(listed))
+
+
+def _file(thruster: str) -> str:
+    """Name of a thruster's file; one of a nested system has its own name only."""
+    return f"{HULL_FILE}-{thruster.rpartition('.')[2]}"
+
+
+def _vessel_of(system: System) -> Component:
+    driven = {target for _, target in _forces(system)}
+    found = [c for n, c in system.components.items() if n in driven and c.fmu.variables.keys() >= _VESSEL]
+    if len(found) != 1:
+        what = "no vessel" if not found else f"{len(found)} vessels, {', '.join(c.name for c in found)},"
+        remedy = (
+            "It needs one whose FMU has the parameters of fmus/vessel, with the forces of thrusters connected to it."
+        )
+        raise ShipcosimError(Problem(system.file, f"{what} found.", remedy))
+    return found[0]
+
+
+def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
+    parts = {source: system.components[source] for source, target in _forces(system) if target == vessel}
+    found = {name: part for name, part in parts.items() if part.fmu.variables.keys() >= _THRUSTER}
+    if not found:
+        remedy = "It needs components with the parameters of fmus/azimuth_thruster or fmus/tunnel_thruster."
+        raise ShipcosimError(Problem(system.file, f"no thruster is connected to {vessel}.", remedy))
+    return found
+
+
+def _forces(system: System) -> list[tuple[str, str]]:
+    """Names of the components (from, to) that a force `tau_Y` goes between."""
+    ends = [(c.source, c.target[0]) for c in system.connections]
+    return [(source[0], target) for source, target in ends if source[0] and target and source[1] == "tau_Y"]
+
+
+def _real(part: Component, name: str) -> float:
+    """A start value as a number; 0 where there is none."""
+    return float(part.start_value(name) or 0.0)
+
+
+def _problems(ship: Ship, name: str, unit: Component, values: Mapping[str, Any]) -> Iterable[Problem]:
+    where = str(ship.folder / f"{_file(name)}.toml")
+    for key, allowed in CHOICES.items():
+        if values[key] not in allowed:
+            yield Problem(f"{where}: {key}", f"found {values[key]!r}.", suggestion(str(values[key]), allowed))
+    if not values["diameter"] and "diameter" not in unit.fmu.variables:
+        yield Problem(where, "nothing says diameter [m].", f"The parameter set has none of {name}.")
+
+
+def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster:
+    """A thruster with its nominal thrust."""
+    has = unit.fmu.variables
+    kind = "tunnel" if "azimuth" not in has else "azimuth" if unit.start_value("azimuth_rate") else "fixed"
+    diameter = own.diameter or _real(unit, "diameter")
+    power, ducted = _real(unit, "power_max"), own.propeller == "ducted" and kind != "tunnel"
+    eta_1 = ETA_1["tunnel" if kind == "tunnel" else own.propeller]
+    eta_2 = (ETA_2_INLET[own.inlet],) * 2 if kind == "tunnel" else (1.0, ETA_2_ASTERN[own.pitch, ducted])
+    ahead, astern = (nominal_thrust(diameter, power, eta_1, eta, ETA_M[own.transmission]) for eta in eta_2)
+    angles = {"tunnel": 0.5 * math.pi, "azimuth": 0.0}
+    return Thruster(
+        name=unit.name,
+        kind=kind,
+        x=_real(unit, "x"),
+        y=_real(unit, "y") if "y" in has else 0.0,
+        diameter=diameter,
+        submergence=hull.draught - own.shaft_height,
+        power=power,
+        ducted=ducted,
+        ahead=ahead,
+        astern=astern,
+        angle=angles[kind] if kind in angles else _real(unit, "azimuth_in"),
+    )
+
+
+def _simulated(body: Component, units: Mapping[str, Component]) -> Simulated:
+    limits = {n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min")) for n, u in units.items()}
+    return Simulated(
+        _filled(HullParameters, body), _filled(WindParameters, body), _filled(DriftParameters, body), limits
+    )
+
+
+def _filled(kind: type[Kind], part: Component) -> Kind:
+    """Parameters of a component as the record that the models take."""
+    names = [f.name for f in fields(kind) if f.init and f.name in part.fmu.variables]  # type: ignore[arg-type]
+    return kind(**{name: part.start_value(name) for name in names})

@@ -1,0 +1,44 @@
+"""The command `shipcosim capability`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.options import Debug, Out
+
+DEFAULT_SYSTEM = "gunnerus_dp"
+
+
+def capability(
+    system: Annotated[
+        str, typer.Argument(metavar="SYSTEM", help="A system with thrusters: a path, or its name in ssp/.")
+    ] = DEFAULT_SYSTEM,
+    parameters: Annotated[
+        list[Path] | None,
+        typer.Option("--parameters", metavar="X.SSV", help="Parameter set, or its name; repeatable, last wins."),
+    ] = None,
+    ship: Annotated[
+        str | None,
+        typer.Option(
+            "--ship", metavar="FOLDER", help="Ship with capability.toml. [default: in ssp/ships, named as the last set]"
+        ),
+    ] = None,
+    failure: Annotated[
+        list[str] | None,
+        typer.Option("--failure", metavar="A,B", help="Thrusters that one failure takes out together; repeatable."),
+    ] = None,
+    out: Out = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON instead of a summary.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Static DP capability of a ship: the weather that her thrusters balance, intact and after each single failure.
+
+    By the formulae of DNV-ST-0111 Level 1, and by the simulator's own models. Leaves report.html, capability.csv and
+    capability.nc in results/capability-SHIP.
+    """
+    from shipcosim.cli.capability import assess, print_capability
+
+    groups = [tuple(name.strip() for name in one.split(",") if name.strip()) for one in failure or ()]
+    found, folder = assess(system, parameters or (), ship, groups, out)
+    print_capability(found, folder, as_json)

@@ -1,0 +1,109 @@
+"""Figures of the capability: polar plots, bow up, and the loads by direction."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.capability import Capability
+from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACTOR
+from shipcosim.capability.loads import level_1_parts
+from shipcosim.capability.result import LEVEL_1, SIMULATOR
+from shipcosim.capability.simulator import simulated_parts
+from shipcosim.report.theme import palette
+from shipcosim.report.theme.figures import line, rounded
+from shipcosim.report.theme.views import Figure
+
+TALL = 400
+"""Height of a polar plot. [px]"""
+
+SOURCES = {"wind": palette.SKY, "current": palette.ORANGE, "waves": palette.GREEN}
+
+
+def capability_figures(capability: Capability) -> tuple[Figure, ...]:
+    """Level 1; Level 1 beside the simulator; every failure."""
+    numbers = {method: capability.numbers(method) for method in (LEVEL_1, SIMULATOR)}
+    worst = {method: capability.worst(method) for method in (LEVEL_1, SIMULATOR)}
+    level_1 = (
+        _curve("intact", numbers[LEVEL_1][0], palette.BLUE, fill=0.18),
+        _curve("worst single failure", worst[LEVEL_1], palette.VERMILLION, fill=0.3),
+    )
+    beside = (
+        _curve("Level 1, intact", numbers[LEVEL_1][0], palette.BLUE),
+        _curve("Level 1, worst failure", worst[LEVEL_1], palette.BLUE, dash="dot"),
+        _curve("simulator, intact", numbers[SIMULATOR][0], palette.PURPLE),
+        _curve("simulator, worst failure", worst[SIMULATOR], palette.PURPLE, dash="dot"),
+    )
+    each = tuple(
+        _curve(case.name, row, palette.CYCLE[k % len(palette.CYCLE)], dash="solid" if k == 0 else "dot")
+        for k, (case, row) in enumerate(zip(capability.cases, numbers[LEVEL_1], strict=True))
+    )
+    note = "DP capability number over the direction that the weather comes from; bow up, 90° from starboard."
+    other = "The same conditions and dynamic factor; loads and thrust as the simulator has them."
+    return (
+        _polar("Level 1: intact, and after the worst single failure", level_1, note),
+        _polar("Level 1 beside the simulator's own models", beside, other),
+        _polar(
+            "Level 1 after each failure", each, "The worst failure above is the lowest of these, from each direction."
+        ),
+    )
+
+
+def load_figures(capability: Capability) -> tuple[Figure, ...]:
+    """Sway force and yaw moment by source, by Level 1 and by the simulator, where the intact ship's limit is."""
+    condition = CONDITIONS[min(max(capability.elements()[1], 1), len(CONDITIONS)) - 1]
+    vessel = capability.vessel
+    parts = {
+        LEVEL_1: level_1_parts(vessel.hull, condition, DIRECTIONS),
+        SIMULATOR: simulated_parts(vessel.simulated, condition, DIRECTIONS),
+    }
+    note = (
+        f"Condition {condition.number}, dynamic factor {DYNAMIC_FACTOR:g} included. Solid: Level 1, dotted: simulator."
+    )
+    axes = {"Force to starboard": ("kN", 1, 1e3), "Yaw moment, bow to starboard": ("kN m", 2, 1e3)}
+    return tuple(
+        Figure(
+            title,
+            unit,
+            tuple(trace for method, loads in parts.items() for trace in _lines(loads, axis, size, method == LEVEL_1)),
+            {"xaxis": {"dtick": 45, "ticksuffix": "°", "range": [0, 350]}},
+            note,
+        )
+        for title, (unit, axis, size) in axes.items()
+    )
+
+
+def _lines(loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool) -> list[dict[str, Any]]:
+    angles, factor, dash = np.degrees(DIRECTIONS), DYNAMIC_FACTOR / size, "solid" if is_level_1 else "dot"
+    more = {"showlegend": is_level_1, "hovertemplate": "%{y:.3~g}"}
+    word = "" if is_level_1 else ", simulator"
+    curves = [(name, part, SOURCES[name], 1.5) for name, part in loads.items()]
+    curves.append(("sum", sum(loads.values(), np.zeros((len(angles), 3))), palette.INK, 2.5))
+    return [
+        line(f"{name}{word}", angles, factor * part[:, axis], colour, width=width, dash=dash, **more)
+        for name, part, colour, width in curves
+    ]
+
+
+def _curve(
+    name: str, numbers: NDArray, colour: str, *, dash: str = "solid", fill: float | None = None
+) -> dict[str, Any]:
+    """A closed curve of numbers around the ship."""
+    angles, values = np.degrees(DIRECTIONS), np.asarray(numbers, float)
+    filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
+    return {
+        **{"type": "scatterpolar", "mode": "lines", "name": name, "hovertemplate": "%{r} from %{theta}"},
+        **{"theta": rounded([*angles, 360.0]), "r": rounded([*values, values[0]])},
+        "line": {"color": colour, "width": 2, "dash": dash},
+        **filled,
+    }
+
+
+def _polar(title: str, traces: tuple[dict[str, Any], ...], note: str) -> Figure:
+    look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
+    polar = {
+        "bgcolor": "@card",
+        "angularaxis": {"rotation": 90, "direction": "clockwise", "dtick": 30, "ticksuffix": "°", **look},
+        "radialaxis": {"range": [0, 11], "tickvals": [2, 4, 6, 8, 10], "angle": 45, "tickangle": 45, **look},
+    }
+    return Figure(title, "", traces, {"polar": polar}, note, TALL)

@@ -1,0 +1,188 @@
+"""The page of a static DP capability: what it shows, and the function that writes it."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.capability import Capability, notation
+from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACTOR
+from shipcosim.capability.result import LEVEL_1, SIMULATOR
+from shipcosim.capability.sectors import sectors
+from shipcosim.capability.thrust import BETA_MISC, Thruster
+from shipcosim.capability.vessel import Particular
+from shipcosim.report.capability.figures import capability_figures, load_figures
+from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.pages import render
+from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
+from shipcosim.series import write_file
+
+SECTIONS = {"plot": "Plot", "numbers": "Numbers", "loads": "Loads", "thrusters": "Thrusters", "basis": "Basis"}
+
+
+@dataclass(frozen=True)
+class CapabilityPage(Page):
+    """What the page of a capability shows.
+
+    Attributes
+    ----------
+    key_figures : tuple of KeyFigure
+        A, B, C, D.
+    plots, loads, figures : tuple of Figure
+        Polar plots, loads by direction, and all of them in the order of `data`.
+    numbers, thrusters, conditions, particulars : Table
+        Of each direction; of each thruster; the weather; what was read from the ship's files.
+    simulated : str
+        A, B, C, D by the simulator's models.
+    assumed, total : int
+        How many particulars are assumed, of how many.
+    """
+
+    key_figures: tuple[KeyFigure, ...]
+    plots: tuple[Figure, ...]
+    loads: tuple[Figure, ...]
+    figures: tuple[Figure, ...]
+    numbers: Table
+    thrusters: Table
+    conditions: Table
+    particulars: Table
+    simulated: str
+    assumed: int
+    total: int
+
+
+def write_capability(capability: Capability, path: str | os.PathLike[str]) -> None:
+    """Write the page of a capability.
+
+    Parameters
+    ----------
+    capability : Capability
+    path : path
+        HTML file; it is there completely or not at all.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be written.
+    """
+    write_file(path, render("capability/templates/capability.html.jinja", _page(capability)).encode())
+
+
+def _page(capability: Capability) -> CapabilityPage:
+    plots, loads = capability_figures(capability), load_figures(capability)
+    vessel, figures = capability.vessel, (*plots, *loads)
+    said = [one for one in vessel.particulars if one.origin != "neutral"]
+    facts = {
+        "Ship": vessel.description or vessel.name,
+        "System": vessel.system,
+        "Dynamic factor": f"{DYNAMIC_FACTOR:g}",
+    }
+    return CapabilityPage(
+        title=f"Static DP capability of {vessel.name}",
+        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        outcome=_outcome(capability),
+        links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
+        data=tuple(figure.drawn for figure in figures),
+        key_figures=_key_figures(capability),
+        plots=plots,
+        loads=loads,
+        figures=figures,
+        numbers=_numbers(capability),
+        thrusters=_thrusters(capability),
+        conditions=_conditions(),
+        particulars=_particulars(said),
+        simulated=", ".join(map(str, capability.elements(SIMULATOR))),
+        assumed=sum("assumed" in one.origin for one in said),
+        total=len(said),
+    )
+
+
+def _outcome(capability: Capability) -> Outcome:
+    a, b, c, d = capability.elements()
+    intact = f"With all thrusters she keeps position and heading {_weather(a)} from within 30° of the bow"
+    failed = f"After the worst single failure it is number {c} from ahead and {d} from anywhere."
+    return Outcome("named", notation(capability), f"{intact}, and {_weather(b)} from anywhere. {failed}")
+
+
+def _weather(number: int) -> str:
+    """What a DP capability number means."""
+    if number == 0:
+        return "in less than condition 1"
+    condition = CONDITIONS[number - 1]
+    return f"up to condition {number} ({condition.wind_speed:g} m/s of wind, Hs {condition.wave_height:g} m)"
+
+
+def _key_figures(capability: Capability) -> tuple[KeyFigure, ...]:
+    meanings = (
+        "A: intact, weather within 30° of the bow",
+        "B: intact, weather from anywhere",
+        "C: worst single failure, within 30° of the bow",
+        "D: worst single failure, from anywhere",
+    )
+    return tuple(KeyFigure(str(n), text) for n, text in zip(capability.elements(), meanings, strict=True))
+
+
+def _numbers(capability: Capability) -> Table:
+    """A row a direction: wind that the intact ship holds, numbers of each case, of the simulator."""
+    level_1, simulator = capability.numbers(LEVEL_1), capability.numbers(SIMULATOR)
+    columns = [*level_1, capability.worst(LEVEL_1), simulator[0], capability.worst(SIMULATOR)]
+    names = [
+        *(case.name for case in capability.cases),
+        "worst failure",
+        "simulator, intact",
+        "simulator, worst failure",
+    ]
+    speeds = (0.0, *(condition.wind_speed for condition in CONDITIONS))
+    rows = tuple(
+        (f"{np.degrees(angle):.0f}°", f"{speeds[level_1[0][k]]:g} m/s", *(str(int(column[k])) for column in columns))
+        for k, angle in enumerate(DIRECTIONS)
+    )
+    return Table(rows, ("weather from", "wind, intact", *names), tight=(0, 1))
+
+
+def _thrusters(capability: Capability) -> Table:
+    """Thrust as Level 1 grants it beside what the simulator's may be asked for."""
+    limits = capability.vessel.simulated.limits
+    rows = []
+    for thruster in capability.vessel.thrusters:
+        asked = limits[thruster.name]
+        rows.append(
+            (
+                thruster.name,
+                f"{thruster.kind}{', ducted' if thruster.ducted else ''}",
+                f"{thruster.diameter:g} m, {thruster.power / 1000:g} kW",
+                f"{thruster.x:g}, {thruster.y:g} m",
+                f"{plain(thruster.ahead / 1e3)} kN",
+                f"{plain(BETA_MISC * thruster.ahead / 1e3)} kN",
+                f"{plain(asked.ahead / 1e3)} kN",
+                _forbidden(thruster, capability.vessel.thrusters),
+            )
+        )
+    head = ("thruster", "kind", "propeller", "forward, to starboard", "nominal", "less 10 %", "simulator", "forbidden")
+    return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6, 7))
+
+
+def _forbidden(thruster: Thruster, all_of_them: tuple[Thruster, ...]) -> str:
+    """Directions in which a thruster must not push, since its race would hit another that works."""
+    found = sectors(thruster, all_of_them, ())
+    return ", ".join(f"{np.degrees(s.middle) % 360:.0f}° ± {np.degrees(s.half):.0f}°" for s in found) or "–"
+
+
+def _conditions() -> Table:
+    rows = tuple(
+        (
+            str(c.number),
+            f"{c.wind_speed:g} m/s",
+            f"{c.wave_height:g} m",
+            f"{c.wave_period:g} s",
+            f"{c.current_speed:g} m/s",
+        )
+        for c in CONDITIONS
+    )
+    return Table(rows, ("number", "wind", "Hs", "Tp", "current"), tight=(0, 1, 2, 3, 4))
+
+
+def _particulars(said: Sequence[Particular]) -> Table:
+    rows = ((p.file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin) for p in said)
+    return Table(tuple(rows), ("file", "what", "value", "from"), tight=(2,))

@@ -1,0 +1,54 @@
+"""The page of a capability says what was computed, how it is to be read, and what it rests on."""
+
+import json
+import re
+
+import pytest
+
+from shipcosim.capability import capability_of, notation, read_vessel
+from shipcosim.capability.conditions import CONDITIONS
+from shipcosim.cli.project import build_stale
+from shipcosim.report.capability.page import write_capability
+from shipcosim.ssp import read_ship, read_system
+
+
+@pytest.fixture(scope="module")
+def capability(root):
+    system = read_system(root / "ssp" / "gunnerus_dp", fmus=[build_stale(root)])
+    return capability_of(read_vessel(system, read_ship(root / "ssp" / "ships" / "gunnerus-33m9")))
+
+
+@pytest.fixture(scope="module")
+def page(capability, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "report.html"
+    write_capability(capability, path)
+    return path.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def figures(page):
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
+
+
+def test_notation_conditions_and_origin_are_on_the_page(page, capability):
+    assert notation(capability) in page
+    for condition in CONDITIONS:
+        assert f">{condition.wind_speed:g} m/s<" in page
+    assert "from memory" in page and "student implementation" in page and "no class document" in page
+
+
+def test_bow_is_up_and_directions_go_clockwise(figures):
+    polar = figures[0]["layout"]["polar"]["angularaxis"]
+    assert (polar["rotation"], polar["direction"]) == (90, "clockwise")
+
+
+def test_curves_are_the_numbers_and_closed(figures, capability):
+    intact, worst = figures[0]["data"]
+    assert intact["theta"][0] == 0.0 and intact["theta"][-1] == 360.0
+    assert intact["r"][:-1] == capability.numbers()[0].tolist() and intact["r"][-1] == intact["r"][0]
+    assert worst["r"][:-1] == capability.worst().tolist()
+
+
+def test_every_direction_and_assumed_particular_is_in_a_table(page):
+    assert len(re.findall(r"<tr><td class=\"tight\">\d+°</td>", page)) == 36
+    assert "assumed: length times draught" in page
