@@ -389,7 +389,7 @@ def test_exception_in_an_fmu_shows_its_traceback_component_and_time(call, gunner
 
 def test_nan_in_an_fmu_is_named_with_variable_component_and_time(call, gunnerus):
     spoil("    def _write(self):\n", "    def _write(self):\n        self.power = 0.0\n")
-    spoil("2.0 * pi * state.n * state.torque", "float('nan') if state.torque else 0.0")
+    spoil("= powers(state, self.tunnel)", "= (float('nan') if state.torque else 0.0), 0.0")
     failed = call("run", "short")
     assert refused(failed, "error: tunnel:\n", "tunnel at t = ", "output 'power' is nan, not a finite number")
     assert "result.nc" not in results()
