@@ -71,8 +71,8 @@ def find_system(given: str, option: str = "the argument SYSTEM") -> str:
     if (folder / given / "SystemStructure.ssd").is_file():
         return str(folder / given)
     known = [path.parent.name for path in sorted(folder.glob("*/SystemStructure.ssd"))]
-    remedy = f"In {folder} there{suggestion(given, known).removeprefix('There')}" if known else f"Give one with {option}."
-    raise ShipcosimError(Problem(given, "There is no such system.", remedy))
+    there = f"In {folder} there{suggestion(given, known).removeprefix('There')}"
+    raise ShipcosimError(Problem(given, "There is no such system.", there if known else f"Give one with {option}."))
 
 
 def find_parameters(given: Path, system: str) -> Path:
