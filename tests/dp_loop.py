@@ -13,11 +13,12 @@ from ships import parameters
 from shipcosim.angles import wrap
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
-from shipcosim.models.control import observer, reference
+from shipcosim.models.control import observer, reference, voting
 from shipcosim.models.control import pid as control
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.control.reference import ReferenceParameters
+from shipcosim.models.control.voting import VotingParameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment import wave_loads, waves
@@ -31,7 +32,8 @@ from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_step
 from shipcosim.models.ship import sensors, vessel
 from shipcosim.models.ship.hull import HullParameters
-from shipcosim.models.ship.sensors import SensorParameters
+from shipcosim.models.ship.mast import MastParameters
+from shipcosim.models.ship.sensors import SensorFailures, SensorParameters
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,9 @@ class DpSystem:
     control: ControlParameters
     known_wind: WindParameters
     allocation: AllocationParameters
+    mast: MastParameters
+    known_mast: MastParameters
+    voting: VotingParameters = VotingParameters()
     environment: EnvironmentParameters = EnvironmentParameters()
     port_azimuth_start: float = 0.0
     starboard_azimuth_start: float = 0.0
@@ -72,6 +77,8 @@ def dp_system(ship: str = "gunnerus-33m9") -> DpSystem:
         parameters(ControlParameters, ship),
         parameters(WindParameters, ship, "controller"),
         parameters(AllocationParameters, ship),
+        parameters(MastParameters, ship),
+        parameters(MastParameters, ship, "controller"),
     )
 
 
@@ -88,6 +95,7 @@ class Inputs(NamedTuple):
     port_failed: Any = False
     starboard_failed: Any = False
     tunnel_failed: Any = False
+    sensor_failures: SensorFailures = SensorFailures()
 
 
 class Show(NamedTuple):
@@ -111,6 +119,7 @@ class LoopState(NamedTuple):
     loads: tuple
     available: tuple
     sensors: sensors.SensorState
+    voting: voting.VotingState
     reference: reference.ReferenceState
     estimate: observer.Estimate
     control: control.ControlState
@@ -164,7 +173,10 @@ def start(system, design, inputs, variations):
     current = environment.water_velocity(means)
     ship = Motion(zero, zero, zero, zero, zero, zero)
     show = _show(0.0, ship, air, current, system, design)
-    measured = sensors.start(0.0, _truth(ship, show), parameters=system.sensors)
+    truth = _truth(ship, show)
+    measured = sensors.start(0.0, truth, inputs.sensor_failures, parameters=system.sensors, mast=system.mast)
+    votes = voting.start(measured.telegrams)
+    estimate = observer.at_rest(voting.measurement(votes).motion)
     units = (
         drive.at_rest(system.port_azimuth_start + zero),
         drive.at_rest(system.starboard_azimuth_start + zero),
@@ -180,9 +192,10 @@ def start(system, design, inputs, variations):
         _loads(units, units, show, ship, system),
         (True, True, True),
         measured,
+        votes,
         reference.at_rest(zero, zero, zero),
-        observer.at_rest(_measured(measured)),
-        control.at_rest(wind_loads(*measured.measured[6:], wind=system.known_wind)),
+        estimate,
+        control.at_rest(voting.wind_load(votes, estimate, mast=system.known_mast, wind=system.known_wind)),
         0,
         allocation.at_rest((zero, zero, zero)),
     )
@@ -210,7 +223,7 @@ def step(t, h, state, inputs, *, system, design):
     air, current = _air(t + h, means, system), environment.water_velocity(means)
     ship = _moved(state, h, system)
     units = _driven(state, inputs, h, system)
-    estimate, law, samples = _controlled(t, state, system, design)
+    votes, estimate, law, samples = _controlled(t, state, system, design)
     sampled = samples_due(t + h, system.sensors.period) > samples_due(t, system.sensors.period)
     return LoopState(
         ship,
@@ -220,8 +233,16 @@ def step(t, h, state, inputs, *, system, design):
         current,
         units,
         _loads(units, state.units, state.show, state.vessel, system),
-        tuple(failed is False or ~np.asarray(failed) for failed in inputs[7:]),
-        sensors.step(t, state.sensors, _truth(state.vessel, state.show), parameters=system.sensors),
+        tuple(failed is False or ~np.asarray(failed) for failed in inputs[7:10]),
+        sensors.step(
+            t,
+            state.sensors,
+            _truth(state.vessel, state.show),
+            inputs.sensor_failures,
+            parameters=system.sensors,
+            mast=system.mast,
+        ),
+        votes,
         reference.step(state.reference, inputs[:3], h, parameters=system.reference),
         estimate,
         law,
@@ -268,12 +289,12 @@ def simulate(system, events, *, variations, stop_time, h=0.05, every=1):
             inputs = inputs._replace(**events.pop(0)[1])
         state = state or start(system, made, inputs, variations)
         if k % every == 0:
-            rows.append(signals(t, state))
+            rows.append(signals(t, state, system))
         state = step(t, h, state, inputs, system=system, design=made)
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
-def signals(t, state):
+def signals(t, state, system):
     """What is recorded of a state, named ``component.variable`` as in the co-simulation."""
     zero = 0.0 * state.vessel.x
     rows = {"time": t}
@@ -281,16 +302,37 @@ def signals(t, state):
     rows |= _named("environment", "wind_north wind_east current_north current_east", (*state.air, *state.current))
     for name, unit, loads in zip(("port", "starboard", "tunnel"), state.units, state.loads, strict=True):
         rows |= _named(name, "thrust rpm saturated", (loads.thrust, 60.0 * unit.n, zero + unit.saturated))
-    measured = state.sensors.measured
-    rows |= _named("sensors", "x_meas y_meas psi_meas u_meas v_meas r_meas", measured)
+    given = state.sensors.telegrams
+    for i, fix in enumerate(given.positions, 1):
+        rows |= _named(
+            "sensors",
+            f"x_{i}_meas y_{i}_meas u_{i}_meas v_{i}_meas position_{i}_valid",
+            [zero + value for value in fix],
+        )
+    rows |= _named("sensors", "psi_1_meas psi_2_meas", [heading.psi for heading in given.compasses])
+    rows |= _named("sensors", "r_meas wind_speed_meas wind_from_meas", (given.r, *given.wind[:2]))
     desired = state.reference
     rows |= _named("reference", "x_d y_d psi_d", (desired.x, desired.y, wrap(desired.psi)))
     e, law = state.estimate, state.control
     rows |= _named("controller", "x_hat y_hat psi_hat u_hat v_hat r_hat", (e.x, e.y, wrap(e.psi), e.u, e.v, e.r))
+    rows |= _said(state.voting, zero, system)
     rows |= _named("controller", "tau_X_cmd tau_Y_cmd tau_N_cmd", law[-3:])
     a = state.allocation
     rows |= _named("allocator", "port_thrust_cmd starboard_thrust_cmd tunnel_thrust_cmd tau_X tau_Y tau_N", a)
     return rows | {"allocator.saturated": zero + a.saturated}
+
+
+def _said(votes, zero, system):
+    """What the controller says of its sensors."""
+    positions, compasses = votes.positions, votes.compasses
+    given = (*positions.fixes, *compasses.headings)
+    rejected = [zero + (one.valid > use) for one, use in zip(given, (*positions.used, *compasses.used), strict=True)]
+    names = "position_1_rejected position_2_rejected position_3_rejected compass_1_rejected compass_2_rejected"
+    used = zero + sum(positions.used), zero + sum(compasses.used), zero + (votes.wind.wind.valid < 0.5)
+    reckoned = voting.dead_reckoning_time(votes, parameters=system.voting)
+    return _named("controller", names, rejected) | _named(
+        "controller", "positions_used compasses_used wind_rejected dead_reckoning_time", (*used, reckoned)
+    )
 
 
 def _named(component, names, values):
@@ -349,13 +391,17 @@ def _loads(units, shown, show, ship, system):
 
 
 def _controlled(t, state, system, design):
-    """Estimate, control state and number of samples after those that are due at t."""
-    estimate, law, samples = state.estimate, state.control, state.samples
+    """Votes, estimate, control state and number of samples after those that are due at t."""
+    votes, estimate, law, samples = state.voting, state.estimate, state.control, state.samples
+    period = system.observer.sample_period
     allocated = state.allocation[3:6]
     while samples < samples_due(t, system.observer.sample_period):
+        votes, estimate = voting.step(
+            samples * period, votes, state.sensors.telegrams, estimate, period, parameters=system.voting
+        )
         estimate = observer.step(
             estimate,
-            observer.Measurement(_measured(state.sensors)),
+            voting.measurement(votes),
             control.known_load(law, allocated),
             ship=system.ship,
             parameters=system.observer,
@@ -366,13 +412,13 @@ def _controlled(t, state, system, design):
             estimate,
             state.reference,
             allocated,
-            wind_loads(*state.sensors.measured[6:], wind=system.known_wind),
-            system.observer.sample_period,
+            voting.wind_load(votes, estimate, mast=system.known_mast, wind=system.known_wind),
+            period,
             ship=system.ship,
             parameters=system.control,
         )
         samples += 1
-    return estimate, law, samples
+    return votes, estimate, law, samples
 
 
 def _truth(ship, show):
@@ -380,7 +426,3 @@ def _truth(ship, show):
     if show.motion is None:
         return None
     return sensors.Truth(*(a + b for a, b in zip(ship, show.motion, strict=True)), *show.apparent_wind)
-
-
-def _measured(state):
-    return Motion(*state.measured[:6])

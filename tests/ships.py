@@ -23,6 +23,7 @@ COMPONENTS = {
     "DpShip": "controller",
     "ObserverParameters": "controller",
     "ControlParameters": "controller",
+    "MastParameters": "sensors",
     "AllocationParameters": "allocator",
     "PowerParameters": "allocator",
 }

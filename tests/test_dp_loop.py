@@ -65,7 +65,13 @@ SHIP = ("x", "y", "psi", "u", "v", "r")
 FLOW = ("u_r", "v_r", "r")
 WATER = ("wind_north", "wind_east", "current_north", "current_east")
 APPARENT = ("apparent_wind_speed", "apparent_wind_from")
-MEASURED = tuple(f"{name}_meas" for name in (*SHIP, "wind_speed", "wind_from"))
+MEASURED = (
+    *(f"{name}_{i}_meas" for i in (1, 2, 3) for name in ("x", "y", "u", "v")),
+    *(f"position_{i}_valid" for i in (1, 2, 3)),
+    *(f"{name}_meas" for name in ("psi_1", "psi_2", "r", "wind_speed", "wind_from")),
+    *("compass_1_valid", "compass_2_valid", "wind_valid"),
+    *(f"{name}_time_meas" for name in ("position", "heading", "wind")),
+)
 DESIRED = ("x_d", "y_d", "psi_d", "x_d_dot", "y_d_dot", "r_d", "x_d_ddot", "y_d_ddot", "r_d_dot")
 CONNECTIONS = [
     *(("environment", name, "vessel", name) for name in (*WATER, *WAVES)),

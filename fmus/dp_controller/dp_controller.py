@@ -1,26 +1,45 @@
-"""FMU of the DP controller: observer and control law."""
+"""FMU of the DP controller: voting on the sensors, observer and control law."""
 
 from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.control import observer
+from shipcosim.models.control import observer, voting
 from shipcosim.models.control import pid as control
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
-from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.ship.mast import MastParameters
+from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
 
 
 class DpController(Fmu):
-    """Observer with wave filter, and nonlinear PID with feedforward of reference and wind."""
+    """Voting on sensors, observer with wave filter, and nonlinear PID with feedforward of reference and wind."""
 
-    x_meas = Input("m", "measured north position")
-    y_meas = Input("m", "measured east position")
-    psi_meas = Input("rad", "measured heading, clockwise from north")
-    u_meas = Input("m/s", "measured surge velocity over ground")
-    v_meas = Input("m/s", "measured sway velocity over ground")
-    r_meas = Input("rad/s", "measured yaw rate")
-    wind_speed_meas = Input("m/s", "measured apparent wind speed")
-    wind_from_meas = Input("rad", "measured direction of the apparent wind, clockwise from the bow")
+    x_1_meas = Input("m", "north position by reference 1")
+    y_1_meas = Input("m", "east position by reference 1")
+    u_1_meas = Input("m/s", "surge velocity over ground by reference 1")
+    v_1_meas = Input("m/s", "sway velocity over ground by reference 1")
+    position_1_valid = Input("1", "reference 1 says that it works", start=True)
+    x_2_meas = Input("m", "north position by reference 2")
+    y_2_meas = Input("m", "east position by reference 2")
+    u_2_meas = Input("m/s", "surge velocity over ground by reference 2")
+    v_2_meas = Input("m/s", "sway velocity over ground by reference 2")
+    position_2_valid = Input("1", "reference 2 says that it works", start=True)
+    x_3_meas = Input("m", "north position by reference 3")
+    y_3_meas = Input("m", "east position by reference 3")
+    u_3_meas = Input("m/s", "surge velocity over ground by reference 3")
+    v_3_meas = Input("m/s", "sway velocity over ground by reference 3")
+    position_3_valid = Input("1", "reference 3 says that it works", start=True)
+    psi_1_meas = Input("rad", "heading by compass 1, clockwise from north")
+    compass_1_valid = Input("1", "compass 1 says that it works", start=True)
+    psi_2_meas = Input("rad", "heading by compass 2, clockwise from north")
+    compass_2_valid = Input("1", "compass 2 says that it works", start=True)
+    r_meas = Input("rad/s", "yaw rate by the rate gyro")
+    wind_speed_meas = Input("m/s", "apparent wind speed at the mast")
+    wind_from_meas = Input("rad", "direction of the apparent wind at the mast, clockwise from the bow")
+    wind_valid = Input("1", "the anemometer says that it works", start=True)
+    position_time_meas = Input("s", "time at which positions and velocities were sampled")
+    heading_time_meas = Input("s", "time at which headings and yaw rate were sampled")
+    wind_time_meas = Input("s", "time at which the wind was sampled")
     x_d = Input("m", "desired north position")
     y_d = Input("m", "desired east position")
     psi_d = Input("rad", "desired heading, clockwise from north")
@@ -48,28 +67,45 @@ class DpController(Fmu):
     tau_N_bias = Output("N.m", "estimated yaw moment that neither thrust nor measured wind explains")
     position_error = Output("m", "distance of the estimated ship from the reference")
     heading_error = Output("rad", "estimated heading less the reference")
+    dead_reckoning_time = Output("s", "time since the last trusted position; 0 while there is one")
+    positions_used = Output("1", "position references in use", start=3)
+    compasses_used = Output("1", "compasses in use", start=2)
+    position_1_rejected = Output("1", "reference 1 says that it works and is not believed", start=False)
+    position_2_rejected = Output("1", "reference 2 says that it works and is not believed", start=False)
+    position_3_rejected = Output("1", "reference 3 says that it works and is not believed", start=False)
+    compass_1_rejected = Output("1", "compass 1 says that it works and is not believed", start=False)
+    compass_2_rejected = Output("1", "compass 2 says that it works and is not believed", start=False)
+    wind_rejected = Output("1", "the anemometer is lost or not believed: the wind is not fed forward", start=False)
 
     ship = Parameters(observer.DpShip)
     noise = Parameters(observer.ObserverParameters)
     law = Parameters(control.ControlParameters)
     wind = Parameters(WindParameters)
+    mast = Parameters(MastParameters)
+    limits = Parameters(voting.VotingParameters)
 
     def start(self):
         self.design = observer.design(self.ship, self.noise)
         self.taken = samples_due(self.start_time, self.noise.sample_period) - 1
-        self._show(observer.at_rest(self._measured()), control.at_rest(self._wind_load()))
+        self.voting = voting.start(self._telegrams())
+        estimate = observer.at_rest(voting.measurement(self.voting).motion)
+        self._show(estimate, control.at_rest(self._wind_load(estimate)))
 
     def step(self, t, h):
         due = samples_due(t, self.noise.sample_period)
         while self.taken < due:
-            self._sample()
+            self._sample(self.taken * self.noise.sample_period)
             self.taken += 1
 
-    def _sample(self):
+    def _sample(self, t):
         allocated = (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated)
+        period = self.noise.sample_period
+        self.voting, estimate = voting.step(
+            t, self.voting, self._telegrams(), self.estimate, period, parameters=self.limits
+        )
         estimate = observer.step(
-            self.estimate,
-            observer.Measurement(self._measured()),
+            estimate,
+            voting.measurement(self.voting),
             control.known_load(self.state, allocated),
             ship=self.ship,
             parameters=self.noise,
@@ -80,15 +116,30 @@ class DpController(Fmu):
             estimate,
             self._desired(),
             allocated,
-            self._wind_load(),
-            self.noise.sample_period,
+            self._wind_load(estimate),
+            period,
             ship=self.ship,
             parameters=self.law,
         )
         self._show(estimate, state)
 
-    def _measured(self):
-        return Motion(self.x_meas, self.y_meas, self.psi_meas, self.u_meas, self.v_meas, self.r_meas)
+    def _telegrams(self):
+        return Telegrams(
+            (
+                Fix(self.x_1_meas, self.y_1_meas, self.u_1_meas, self.v_1_meas, float(self.position_1_valid)),
+                Fix(self.x_2_meas, self.y_2_meas, self.u_2_meas, self.v_2_meas, float(self.position_2_valid)),
+                Fix(self.x_3_meas, self.y_3_meas, self.u_3_meas, self.v_3_meas, float(self.position_3_valid)),
+            ),
+            (
+                Heading(self.psi_1_meas, float(self.compass_1_valid)),
+                Heading(self.psi_2_meas, float(self.compass_2_valid)),
+            ),
+            self.r_meas,
+            Wind(self.wind_speed_meas, self.wind_from_meas, float(self.wind_valid)),
+            self.position_time_meas,
+            self.heading_time_meas,
+            self.wind_time_meas,
+        )
 
     def _desired(self):
         return control.Desired(
@@ -103,8 +154,8 @@ class DpController(Fmu):
             self.r_d_dot,
         )
 
-    def _wind_load(self):
-        return wind_loads(self.wind_speed_meas, self.wind_from_meas, wind=self.wind)
+    def _wind_load(self, estimate):
+        return voting.wind_load(self.voting, estimate, mast=self.mast, wind=self.wind)
 
     def _show(self, estimate, state):
         self.estimate, self.state = estimate, state
@@ -114,3 +165,17 @@ class DpController(Fmu):
         self.tau_X_bias, self.tau_Y_bias = to_body(estimate.psi, estimate.bias_north, estimate.bias_east)
         self.tau_N_bias = estimate.bias_N
         self.position_error, self.heading_error = control.errors(estimate, self._desired())
+        self._say()
+
+    def _say(self):
+        """Outputs on which sensors are believed."""
+        positions, compasses = self.voting.positions, self.voting.compasses
+        self.dead_reckoning_time = voting.dead_reckoning_time(self.voting, parameters=self.limits)
+        self.positions_used, self.compasses_used = round(sum(positions.used)), round(sum(compasses.used))
+        self.position_1_rejected, self.position_2_rejected, self.position_3_rejected = (
+            fix.valid > used for fix, used in zip(positions.fixes, positions.used, strict=True)
+        )
+        self.compass_1_rejected, self.compass_2_rejected = (
+            heading.valid > used for heading, used in zip(compasses.headings, compasses.used, strict=True)
+        )
+        self.wind_rejected = self.voting.wind.wind.valid < 0.5

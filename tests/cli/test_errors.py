@@ -203,7 +203,7 @@ def wired(start, end):
         (CONNECTIONS, wired("vessel.x", "sensors.xx"), ["sensors has no input 'xx'", "Did you mean 'x'?"]),
         (CONNECTIONS, wired("vesel.x", "sensors.x"), ["There is no element 'vesel'", "Did you mean 'vessel'?"]),
         (CONNECTIONS, wired("vessel.y", "sensors.x"), ["A second connection into sensors.x.", "Remove one of them."]),
-        (CONNECTIONS, wired("vessel.y", "sensors.x_meas"), ["neither takes one", "Connect an output to an input."]),
+        (CONNECTIONS, wired("vessel.y", "sensors.x_1_meas"), ["neither takes one", "Connect an output to an input."]),
         (CONNECTIONS, wired("vessel.y", "vessel.tau_X_6"), ["vessel.y is in m, vessel.tau_X_6 in N; these cannot"]),
         ('tau_X_6" kind="input"><ssc:Real unit="N"', 'tau_X_6" kind="input"><ssc:Real unit="m"', ['Write unit="N".']),
         ("resources/sensors.fmu", "resources/sensor.fmu", ["'resources/sensor.fmu' does not exist", "Did you mean"]),
@@ -469,7 +469,7 @@ results.save = limited
 
 
 @needs_posix
-@pytest.mark.parametrize(("size", "file"), [(20_000, "result.nc"), (400_000, "report.html")])
+@pytest.mark.parametrize(("size", "file"), [(20_000, "result.nc"), (1_000_000, "report.html")])
 def test_full_disk_costs_no_old_result_and_leaves_no_part_of_a_new_one(gunnerus, size, file):
     before = old_results()
     done = command("run", "short", before=LIMITED_SAVE.format(size=size))

@@ -19,7 +19,7 @@ from shipcosim import angles
 from shipcosim.models.allocation import monitor, power
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.power import PowerParameters
-from shipcosim.models.control import observer, reference
+from shipcosim.models.control import compass_voting, observer, position_voting, reference, voting
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths
 from shipcosim.models.core.motion import Motion
@@ -29,7 +29,8 @@ from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning as prediction
 from shipcosim.models.propulsion import azimuth, drive, propeller, slipstream, tunnel
 from shipcosim.models.propulsion.failures import Failures
-from shipcosim.models.ship import hull, instruments, vessel
+from shipcosim.models.ship import hull, instruments, mast, vessel
+from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
 LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
@@ -126,7 +127,66 @@ def of_prediction(*row):
     return ship, (1e3, 2e3, -3e4), (0.0, 5e2, 1e3), (-6.0, 3.0), (0.2, -0.1)
 
 
+def of_fixes(*row):
+    return tuple(Fix(*row[i : i + 2], 0.2, -0.1, 1.0 + 0.0 * row[i]) for i in (0, 2, 4))
+
+
+def of_positions(*row):
+    """The telegrams after others, when one of them has moved."""
+    before = position_voting.start(of_fixes(*(0.5 * value for value in row[:6])))
+    before = before._replace(age=row[9], memory=row[:6], north_shift=row[6], east_shift=row[7])
+    return before, of_fixes(*row), Motion(*row[6:9], 0.2, -0.1, 0.0), 0.0 * row[0], 1.0
+
+
+def of_compasses(*row):
+    before = compass_voting.start(tuple(Heading(0.9 * psi, 1.0 + 0.0 * psi) for psi in row[:2]))
+    given = tuple(Heading(psi, 1.0 + 0.0 * psi) for psi in row[:2])
+    return before._replace(apart=row[4]), given, row[2], row[3], 0.0 * row[0], 0.1
+
+
+def of_voting(*row):
+    headings = tuple(Heading(psi, 1.0 + 0.0 * psi) for psi in row[6:8])
+    return Telegrams(of_fixes(*row), headings, row[8], Wind(row[9], row[7], 1.0 + 0.0 * row[9]), 0.0, 0.0, 0.0)
+
+
+def of_votes(*row):
+    """Voting that has gone on for 2 s, and the estimate."""
+    state, estimate = voting.start(of_voting(*row)), observer.Estimate(*row[6:], *(0.0 * row[0],) * 11)
+    later = of_voting(*(1.01 * value for value in row))._replace(position_time=2.0, heading_time=2.0)
+    return voting.step(2.4, state, later, estimate, 2.0, parameters=voting.VotingParameters())
+
+
+def of_votes_alone(*row):
+    return of_votes(*row)[:1]
+
+
+FIXES = [
+    (0.1, 0.2, -0.1, 0.1, 0.2, -0.2, 0.0, 0.1, 0.3, 0.0),
+    (0.1, 0.2, -0.1, 0.1, 7.0, -0.2, 0.0, 0.1, 0.3, 0.0),
+    (9.1, 0.2, 9.2, 0.1, 9.4, -0.2, 0.0, 0.1, 3.1, 0.5),
+    (9.1, 0.2, 9.2, 0.1, 9.4, -0.2, 0.0, 0.1, 3.1, 90.0),
+]
+BELIEF, MAST = voting.VotingParameters(), mast.MastParameters(mast_x=3.0, mast_y=-1.0, mast_height=15.0)
 CASES = [
+    *(
+        Case(f, [(8.0, -2.0, *w) for w in WATER], constants=dict(mast=MAST))
+        for f in (mast.wind_at_mast, mast.wind_from_mast)
+    ),
+    Case(position_voting.start, FIXES, lambda *row: (of_fixes(*row),)),
+    Case(position_voting.step, FIXES, of_positions, dict(parameters=BELIEF)),
+    Case(position_voting.later, FIXES, lambda *row: (of_positions(*row)[0], 0.1), dict(parameters=BELIEF)),
+    Case(compass_voting.start, PAIRS, lambda *row: (tuple(Heading(psi, 1.0 + 0.0 * psi) for psi in row),)),
+    Case(
+        compass_voting.step,
+        [(3.1, -3.1, 0.01, 3.12, 0.0), (0.3, 0.5, 0.0, 0.3, 0.2)],
+        of_compasses,
+        dict(parameters=BELIEF),
+    ),
+    Case(voting.start, FIXES, lambda *row: (of_voting(*row),)),
+    Case(of_votes, FIXES),
+    Case(voting.measurement, FIXES, of_votes_alone),
+    Case(voting.dead_reckoning_time, FIXES, of_votes_alone, dict(parameters=BELIEF)),
+    Case(voting.wind_load, FIXES, of_votes, dict(mast=MAST, wind=parameters(wind.WindParameters))),
     *(Case(getattr(maths, name), ANGLES) for name in ("sin", "cos", "exp", "floor")),
     Case(angles.wrap, ANGLES),
     *(Case(getattr(maths, name), PAIRS) for name in ("atan2", "hypot", "minimum", "maximum")),

@@ -207,7 +207,7 @@ def _differences(one, other):
     track = np.hypot(one["vessel.x"] - other["vessel.x"], one["vessel.y"] - other["vessel.y"])
     heading = np.degrees(np.abs(_wrapped(one["vessel.psi"] - other["vessel.psi"])))
     thrust = np.max([np.abs(one[f"{unit}.thrust"] - other[f"{unit}.thrust"]) for unit in THRUSTERS], axis=0)
-    errors = [run["sensors.x_meas"] - run["vessel.x"] - run["vessel.x_wave"] for run in (one, other)]
+    errors = [run["sensors.x_1_meas"] - run["vessel.x"] - run["vessel.x_wave"] for run in (one, other)]
     measured = np.abs(errors[0] - errors[1])
     return {"track": track.values, "heading": heading.values, "thrust": thrust, "measured": measured.values}
 

@@ -1,54 +1,65 @@
-"""Sensors: true values with Gauss-Markov error, white noise and bias, sampled at a period of their own.
+"""Sensors: true values with Gauss-Markov error, white noise and failures, each channel with its period and latency.
 
-Sample k is taken at the first step that starts at k * period or later, of the truth at that time, with random numbers
-that depend on the seed and k alone. So a finer step gives the same measurements.
+All channels count the samples of one clock, that of the compasses: tick k is taken at the first step that starts at
+k * period or later, of the truth at that time. A channel takes a sample every so many ticks and gives it out so many
+ticks later. Random numbers depend on the seed and the number of the sample alone. So a finer step gives the same
+measurements.
 
 References
 ----------
 Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper II, Table I,
-read as the nominal model says under sensors.
+read as the nominal model says under sensors. Periods and latencies: assumed, typical of DP telegrams.
 """
 
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, atan2, cos, exp, hypot, sin, sqrt
+from shipcosim.models.core.maths import Arithmetic, atan2, exp, hypot, sqrt, where
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.core.sampling import normals, samples_due
-
-_PAPER = "thesis paper II, Table I"
-_COURSE = "parameter sheet 7 (TMR4240), grade B"
+from shipcosim.models.ship.mast import MastParameters, wind_at_mast
+from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
 
 
 @dataclass(frozen=True, kw_only=True)
 class SensorParameters:
-    """Errors of position and heading reference, velocity sensors and anemometer."""
+    """Periods, latencies and errors of three position references, two compasses, a rate gyro and an anemometer."""
 
-    period: float = required("s", "sample period", minimum=1e-3)
+    period: float = required("s", "sample period of compasses and rate gyro, the clock of all sensors", minimum=1e-3)
+    heading_latency: float = required(
+        "s", "age of headings and yaw rate when they are given out, whole periods", minimum=0.0
+    )
+    position_period: float = required("s", "sample period of the position references, whole periods", minimum=1e-3)
+    position_latency: float = required(
+        "s", "age of positions and velocities when they are given out, whole periods", minimum=0.0
+    )
+    wind_period: float = required("s", "period at which the anemometer gives a mean, whole periods", minimum=1e-3)
+    wind_latency: float = required("s", "age of that mean when it is given out, whole periods", minimum=0.0)
     position_drift_std: float = required(
         "m", "stationary standard deviation of the Gauss-Markov error, north and east each", minimum=0.0
     )
     position_drift_time: float = required("s", "its correlation time", minimum=1e-3)
     position_noise_std: float = required("m", "white noise of north and east each", minimum=0.0)
+    velocity_noise_std: float = required("m/s", "white noise of surge and sway each", minimum=0.0)
     heading_drift_std: float = required(
         "rad", "stationary standard deviation of the Gauss-Markov error of the heading", minimum=0.0
     )
     heading_drift_time: float = required("s", "its correlation time", minimum=1e-3)
     heading_noise_std: float = required("rad", "white noise of the heading", minimum=0.0)
-    velocity_noise_std: float = required("m/s", "white noise of surge and sway each", minimum=0.0)
     yaw_rate_noise_std: float = required("rad/s", "white noise of the yaw rate", minimum=0.0)
-    x_bias: float = quantity(0.0, "m", "bias of the north position", _PAPER + ": within 0.2 m; 0 in our scenarios")
-    y_bias: float = quantity(0.0, "m", "bias of the east position", _PAPER + ": within 0.2 m; 0 in our scenarios")
-    psi_bias: float = quantity(0.0, "rad", "bias of the heading", _PAPER + ": within 0.1 deg; 0 in our scenarios")
     wind_average_time: float = required("s", "span of the mean that the anemometer gives", minimum=0.0)
     wind_speed_noise: float = required("1", "white noise of the wind speed, over the wind speed", minimum=0.0)
     wind_from_noise_std: float = required("rad", "white noise of the wind direction", minimum=0.0)
     seed: int = quantity(1, "1", "seed of all errors", "any", minimum=0)
 
+    def clock(self, period: float, latency: float) -> tuple[int, int]:
+        """Ticks from one sample to the next, and from a sample to when it is given out."""
+        return max(1, round(period / self.period)), round(latency / self.period)
+
 
 class Truth(NamedTuple):
-    """What is measured: motion, low-frequency and wave motion added, and apparent wind; true or as measured.
+    """What is measured: motion, low-frequency and wave motion added, and apparent wind.
 
     Parameters
     ----------
@@ -57,7 +68,7 @@ class Truth(NamedTuple):
     u, v, r : like x
         Velocity over ground in body axes. [m/s, m/s, rad/s]
     apparent_wind_speed, apparent_wind_from : like x
-        Wind relative to the ship, from the bow. [m/s, rad]
+        Wind at 10 m above the origin relative to the ship, from the bow. [m/s, rad]
     """
 
     x: Arithmetic
@@ -70,29 +81,125 @@ class Truth(NamedTuple):
     apparent_wind_from: Arithmetic
 
 
+class ReferenceFailure(NamedTuple):
+    """What is wrong with a position reference.
+
+    Parameters
+    ----------
+    lost, frozen : bool or (m,) array of bool
+        It drops out; it repeats its last value. [1]
+    north, east : float or (m,) array
+        Offset of its position. [m]
+    north_rate, east_rate : float or (m,) array
+        Rate of a drift of its position that starts where this becomes other than 0, and ends at 0. [m/s]
+    """
+
+    lost: Arithmetic = False
+    frozen: Arithmetic = False
+    north: Arithmetic = 0.0
+    east: Arithmetic = 0.0
+    north_rate: Arithmetic = 0.0
+    east_rate: Arithmetic = 0.0
+
+
+class CompassFailure(NamedTuple):
+    """What is wrong with a compass.
+
+    Parameters
+    ----------
+    lost, frozen : bool or (m,) array of bool
+        It drops out; it repeats its last value. [1]
+    offset : float or (m,) array
+        Offset of its heading. [rad]
+    rate : float or (m,) array
+        Rate at which it runs off, from where this becomes other than 0 until it is 0 again. [rad/s]
+    """
+
+    lost: Arithmetic = False
+    frozen: Arithmetic = False
+    offset: Arithmetic = 0.0
+    rate: Arithmetic = 0.0
+
+
+class WindFailure(NamedTuple):
+    """What is wrong with the anemometer.
+
+    Parameters
+    ----------
+    lost, frozen : bool or (m,) array of bool
+        It drops out; it sticks to its last value. [1]
+    scale : float or (m,) array
+        Factor on its speed. [1]
+    offset : float or (m,) array
+        Offset of its direction. [rad]
+    """
+
+    lost: Arithmetic = False
+    frozen: Arithmetic = False
+    scale: Arithmetic = 1.0
+    offset: Arithmetic = 0.0
+
+
+class SensorFailures(NamedTuple):
+    """What is wrong with the sensors; nothing by default.
+
+    Parameters
+    ----------
+    positions : tuple of three ReferenceFailure
+        Of the position references.
+    compasses : tuple of two CompassFailure
+        Of the compasses.
+    wind : WindFailure
+        Of the anemometer.
+    """
+
+    positions: tuple[ReferenceFailure, ...] = (ReferenceFailure(),) * 3
+    compasses: tuple[CompassFailure, ...] = (CompassFailure(),) * 2
+    wind: WindFailure = WindFailure()
+
+
+class Channel(NamedTuple):
+    """State of like sensors between samples.
+
+    Parameters
+    ----------
+    wander : tuple
+        Gauss-Markov errors, or latest samples of the wind's components from ahead and from starboard. [m, rad, m/s]
+    drift : tuple
+        Drifts by failure so far. [m, rad]
+    history : tuple
+        Latest samples, of all like sensors each, the newest last: as many as latency and period ask for. [m, m/s, rad]
+    """
+
+    wander: tuple
+    drift: tuple
+    history: tuple
+
+
 class SensorState(NamedTuple):
-    """State of the sensors between samples.
+    """State of the sensors between ticks.
 
     Parameters
     ----------
     taken : int
-        Samples taken so far, counted from t = 0. [1]
-    drift : tuple of three
-        Gauss-Markov errors of x, y, psi. [m, m, rad]
-    wind : tuple of pairs
-        Latest samples of the wind's components from ahead and from starboard. [m/s, m/s]
-    measured : Truth
-        Last sample, which holds until the next.
+        Ticks so far, counted from t = 0. [1]
+    positions, headings, wind : Channel
+        Of position references; of compasses and rate gyro; of the anemometer.
+    telegrams : Telegrams
+        What the sensors give out until the next tick.
     """
 
     taken: int
-    drift: tuple
-    wind: tuple
-    measured: Truth
+    positions: Channel
+    headings: Channel
+    wind: Channel
+    telegrams: Telegrams
 
 
-def start(t: float, truth: Truth, *, parameters: SensorParameters) -> SensorState:
-    """First sample, with the Gauss-Markov errors drawn from their stationary distribution.
+def start(
+    t: float, truth: Truth, failures: SensorFailures, *, parameters: SensorParameters, mast: MastParameters
+) -> SensorState:
+    """First sample of every channel, given out at once, with Gauss-Markov errors of their stationary distribution.
 
     Parameters
     ----------
@@ -100,78 +207,191 @@ def start(t: float, truth: Truth, *, parameters: SensorParameters) -> SensorStat
         Time of the start. [s]
     truth : Truth
         True values at t.
+    failures : SensorFailures
+        What is wrong with the sensors at t.
     parameters : SensorParameters
-        Errors and sample period.
+        Errors and sample periods.
+    mast : MastParameters
+        Where the anemometer stands.
 
     Returns
     -------
     SensorState
-        State after the first sample.
+        State after the first tick.
     """
-    k = samples_due(t, parameters.period) - 1
-    numbers = normals("sensors", parameters.seed, k, 11)
-    stds = parameters.position_drift_std, parameters.position_drift_std, parameters.heading_drift_std
-    drift = tuple(std * number for std, number in zip(stds, numbers[:3], strict=True))
-    return _sampled(k, drift, (), numbers, truth, parameters)
+    p, k = parameters, samples_due(t, parameters.period) - 1
+    clocks = _clocks(p)
+    numbers = _numbers(p, k, clocks)
+    fixes = (Fix(truth.x, truth.y, truth.u, truth.v, 1.0),) * 3
+    headings = ((Heading(truth.psi, 1.0),) * 2, truth.r)
+    wander = tuple(p.position_drift_std * number for number in numbers[0][:6])
+    positions = Channel(wander, (0.0,) * 6, (fixes,))
+    positions = positions._replace(history=(_fixes(positions, numbers[0], truth, failures, p),) * _length(clocks[0]))
+    wander = tuple(p.heading_drift_std * number for number in numbers[1][:2])
+    compasses = Channel(wander, (0.0,) * 2, (headings,))
+    compasses = compasses._replace(history=(_headings(compasses, numbers[1], truth, failures, p),) * _length(clocks[1]))
+    air = _air(truth, mast)
+    wind = Channel((air,), (), (Wind(*air, 1.0),))
+    wind = wind._replace(history=(_wind(wind, numbers[2], failures, p),) * _length(clocks[2]))
+    return SensorState(k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, clocks, p))
 
 
-def step(t: float, state: SensorState, truth: Truth, *, parameters: SensorParameters) -> SensorState:
-    """State after all samples that are due by t.
+def step(
+    t: float,
+    state: SensorState,
+    truth: Truth,
+    failures: SensorFailures,
+    *,
+    parameters: SensorParameters,
+    mast: MastParameters,
+) -> SensorState:
+    """State after all ticks that are due by t.
 
     Parameters
     ----------
     t : float
         Time at the start of a step. [s]
     state : SensorState
-        State after the samples before.
+        State after the ticks before.
     truth : Truth
         True values at t.
+    failures : SensorFailures
+        What is wrong with the sensors at t.
     parameters : SensorParameters
-        Errors and sample period.
+        Errors and sample periods.
+    mast : MastParameters
+        Where the anemometer stands.
 
     Returns
     -------
     SensorState
-        State after the samples.
+        State after the ticks.
     """
     due = samples_due(t, parameters.period)
-    while state.taken < due:
-        numbers = normals("sensors", parameters.seed, state.taken, 11)
-        drift = _wandered(state.drift, numbers, parameters)
-        state = _sampled(state.taken, drift, state.wind, numbers, truth, parameters)
+    if state.taken < due:
+        clocks = _clocks(parameters)
+        while state.taken < due:
+            state = _ticked(state, truth, failures, parameters, mast, clocks)
     return state
 
 
-def _wandered(drift, numbers, parameters):
-    """Gauss-Markov errors one period later, exactly: b <- phi b + sigma sqrt(1 - phi^2) w, phi = exp(-period/T)."""
-    position = exp(-parameters.period / parameters.position_drift_time)
-    heading = exp(-parameters.period / parameters.heading_drift_time)
-    position_kick = parameters.position_drift_std * sqrt(1.0 - position * position)
-    heading_kick = parameters.heading_drift_std * sqrt(1.0 - heading * heading)
+def _ticked(state, truth, failures, p, mast, clocks):
+    """State after one more tick, at which every channel whose turn it is takes a sample."""
+    k, positions, headings, wind = state.taken, state.positions, state.headings, state.wind
+    numbers = _numbers(p, k, clocks)
+    if k % clocks[0][0] == 0:
+        positions = _wandered(positions, numbers[0][:6], p.position_period, p.position_drift_std, p.position_drift_time)
+        positions = _drifted(positions, [r for f in failures.positions for r in f[4:]], p.position_period)
+        positions = _noted(positions, _fixes(positions, numbers[0], truth, failures, p))
+    headings = _wandered(headings, numbers[1][:2], p.period, p.heading_drift_std, p.heading_drift_time)
+    headings = _drifted(headings, [failure.rate for failure in failures.compasses], p.period)
+    headings = _noted(headings, _headings(headings, numbers[1], truth, failures, p))
+    spans = max(1, round(p.wind_average_time / p.period))
+    wind = wind._replace(wander=(*wind.wander, _air(truth, mast))[-spans:])
+    if k % clocks[2][0] == 0:
+        wind = _noted(wind, _wind(wind, numbers[2], failures, p))
+    return SensorState(k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, clocks, p))
+
+
+def _clocks(p):
+    """Ticks a sample and ticks of latency of positions, headings and wind."""
     return (
-        position * drift[0] + position_kick * numbers[0],
-        position * drift[1] + position_kick * numbers[1],
-        heading * drift[2] + heading_kick * numbers[2],
+        p.clock(p.position_period, p.position_latency),
+        p.clock(p.period, p.heading_latency),
+        p.clock(p.wind_period, p.wind_latency),
     )
 
 
-def _sampled(k, drift, wind, numbers, truth, parameters):
-    """State after sample k, with its random numbers."""
-    p = parameters
-    latest = (
-        truth.apparent_wind_speed * cos(truth.apparent_wind_from),
-        truth.apparent_wind_speed * sin(truth.apparent_wind_from),
+def _length(clock):
+    """How many samples a history holds, so that one as old as the latency is among them at any tick."""
+    return clock[1] // clock[0] + 2
+
+
+def _numbers(p, k, clocks):
+    """Random numbers of the samples of tick k; of a channel whose turn it is not they are those of its last."""
+    widths = ("positions", 18), ("headings", 5), ("anemometer", 2)
+    return [normals(name, p.seed, k // clock[0], n) for (name, n), clock in zip(widths, clocks, strict=True)]
+
+
+def _wandered(channel, numbers, period, std, time):
+    """Gauss-Markov errors one period later, exactly: b <- phi b + sigma sqrt(1 - phi^2) w, phi = exp(-period/T)."""
+    phi = exp(-period / time)
+    kick = std * sqrt(1.0 - phi * phi)
+    wander = tuple(phi * b + kick * w for b, w in zip(channel.wander, numbers, strict=True))
+    return channel._replace(wander=wander)
+
+
+def _drifted(channel, rates, period):
+    """Drifts by failure one period later; they start and end with their rates."""
+    drift = (where(rate == 0.0, 0.0, d + period * rate) for d, rate in zip(channel.drift, rates, strict=True))
+    return channel._replace(drift=tuple(drift))
+
+
+def _noted(channel, sample):
+    """History with a new sample."""
+    return channel._replace(history=(*channel.history[1:], sample))
+
+
+def _fixes(channel, numbers, truth, failures, p):
+    """Sample of all position references; numbers: six of the Gauss-Markov errors, then four for each of them."""
+    (fixes, wander, drift), p_std, v_std = _last(channel), p.position_noise_std, p.velocity_noise_std
+    found = []
+    for i, (failure, last) in enumerate(zip(failures.positions, fixes, strict=True)):
+        n, e = 2 * i, 2 * i + 1
+        a, b, c, d = numbers[6 + 4 * i : 10 + 4 * i]
+        fresh = (
+            truth.x + wander[n] + drift[n] + p_std * a + failure.north,
+            truth.y + wander[e] + drift[e] + p_std * b + failure.east,
+            truth.u + v_std * c,
+            truth.v + v_std * d,
+        )
+        found.append(Fix._make(_held(failure, fresh, last)))
+    return tuple(found)
+
+
+def _headings(channel, numbers, truth, failures, p):
+    """Sample of both compasses, and of the rate gyro; numbers: two Gauss-Markov errors, then compasses, gyro."""
+    (headings, _), wander, drift = _last(channel)
+    found = []
+    for i, (failure, last) in enumerate(zip(failures.compasses, headings, strict=True)):
+        fresh = wrap(truth.psi + wander[i] + drift[i] + p.heading_noise_std * numbers[2 + i] + failure.offset)
+        found.append(Heading._make(_held(failure, (fresh,), last)))
+    return tuple(found), truth.r + p.yaw_rate_noise_std * numbers[4]
+
+
+def _wind(channel, numbers, failures, p):
+    """Sample of the anemometer: the mean of what it had."""
+    failure, last = failures.wind, channel.history[-1]
+    ahead, starboard = (sum(component) / len(channel.wander) for component in zip(*channel.wander, strict=True))
+    fresh = (
+        hypot(ahead, starboard) * (1.0 + p.wind_speed_noise * numbers[0]) * failure.scale,
+        wrap(atan2(starboard, ahead) + p.wind_from_noise_std * numbers[1] + failure.offset),
     )
-    wind = (*wind, latest)[-max(1, round(p.wind_average_time / p.period)) :]
-    ahead, starboard = (sum(component) / len(wind) for component in zip(*wind, strict=True))
-    measured = Truth(
-        truth.x + drift[0] + p.position_noise_std * numbers[3] + p.x_bias,
-        truth.y + drift[1] + p.position_noise_std * numbers[4] + p.y_bias,
-        wrap(truth.psi + drift[2] + p.heading_noise_std * numbers[5] + p.psi_bias),
-        truth.u + p.velocity_noise_std * numbers[6],
-        truth.v + p.velocity_noise_std * numbers[7],
-        truth.r + p.yaw_rate_noise_std * numbers[8],
-        hypot(ahead, starboard) * (1.0 + p.wind_speed_noise * numbers[9]),
-        wrap(atan2(starboard, ahead) + p.wind_from_noise_std * numbers[10]),
-    )
-    return SensorState(k + 1, drift, wind, measured)
+    return Wind._make(_held(failure, fresh, last))
+
+
+def _last(channel):
+    """Newest sample, Gauss-Markov errors and drifts of a channel."""
+    return channel.history[-1], channel.wander, channel.drift
+
+
+def _held(failure, fresh, last):
+    """Fresh values, or where a sensor is frozen or lost its last ones; then whether it is valid."""
+    held = ((where(failure.frozen, old, new), old) for new, old in zip(fresh, last, strict=False))
+    return [*(where(failure.lost, old, new) for new, old in held), where(failure.lost, 0.0, 1.0)]
+
+
+def _air(truth, mast):
+    """Components of the apparent wind at the mast from ahead and from starboard."""
+    wind = truth.apparent_wind_speed, truth.apparent_wind_from
+    return wind_at_mast(*wind, truth.u, truth.v, truth.r, mast=mast)
+
+
+def _telegrams(k, positions, headings, wind, clocks, p):
+    """What is given out at tick k: of each channel the newest sample that is as old as the latency, or the first."""
+    found, times = [], []
+    for channel, (every, delay) in zip((positions, headings, wind), clocks, strict=True):
+        sample = max(0, (k - delay) // every)
+        found.append(channel.history[sample - k // every - 1])
+        times.append(sample * every * p.period)
+    return Telegrams._make([found[0], *found[1], found[2], *times])

@@ -1,0 +1,188 @@
+"""Which of two compasses is believed, and the heading that they give together.
+
+Two compasses that disagree are told apart by the rate gyro: the one that turned otherwise than the gyro over the last
+minute is at fault. Where no compass is believed the heading is the observer's, carried by the gyro.
+
+References
+----------
+IMO MSC.1/Circ.1580 and IMCA M 252, which ask for such tests without giving formulae; the formulae are our own.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import Arithmetic, exp, maximum, minimum, where
+from shipcosim.models.core.parameters import quantity
+from shipcosim.models.ship.telegrams import Heading
+
+_DEGREE = 0.017453292519943295
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompassVotingParameters:
+    """Limits of the tests of compasses."""
+
+    compass_freeze_time: float = quantity(
+        5.0, "s", "unchanged for so long while others change, a compass is frozen", "assumed: a coarse scale may rest"
+    )
+    compass_apart_max: float = quantity(
+        _DEGREE, "rad", "filtered difference from which two compasses disagree", "seven standard deviations of drift"
+    )
+    compass_filter: float = quantity(2.0, "s", "time constant of that filter", "assumed", minimum=1e-3)
+    compass_memory: float = quantity(
+        60.0, "s", "how long it is remembered that a compass turned otherwise than the gyro", "assumed"
+    )
+    compass_gyro_max: float = quantity(
+        3.0 * _DEGREE, "rad", "turn otherwise than the gyro from which a compass is not believed", "assumed"
+    )
+    compass_return_time: float = quantity(
+        30.0, "s", "a rejected compass is believed again after agreeing for so long", "assumed"
+    )
+    gyro_drift: float = quantity(
+        0.02 * _DEGREE,
+        "rad/s",
+        "error of the rate gyro: without a compass, the limit against the predicted heading grows with it",
+        "assumed, data sheets of fibre-optic gyros give less",
+        minimum=0.0,
+    )
+
+
+class CompassVote(NamedTuple):
+    """State of the vote on compasses; what is of each compass comes in pairs.
+
+    Parameters
+    ----------
+    headings : tuple of two Heading
+        Latest telegrams.
+    unchanged : tuple of two
+        How long each has not changed. [s]
+    memory : tuple of two
+        How much farther each turned than the gyro says, forgotten slowly. [rad]
+    apart : float or (...) array or tensor
+        Low-pass filtered difference of the two. [rad]
+    believed : tuple of two
+        1 unless it was found to be at fault, 0 from then on until it is believed again. [1]
+    agreed : tuple of two
+        How long each has agreed with what is used. [s]
+    used : tuple of two
+        1 of each that is part of the voted heading. [1]
+    psi : like apart
+        Voted heading. [rad]
+    age : like apart
+        Time since the last trusted heading. [s]
+    """
+
+    headings: tuple[Heading, Heading]
+    unchanged: tuple
+    memory: tuple
+    apart: Arithmetic
+    believed: tuple
+    agreed: tuple
+    used: tuple
+    psi: Arithmetic
+    age: Arithmetic
+
+
+def start(headings: tuple[Heading, Heading]) -> CompassVote:
+    """Vote at the start: the mean of what is valid.
+
+    Parameters
+    ----------
+    headings : tuple of two Heading
+        First telegrams.
+
+    Returns
+    -------
+    CompassVote
+        State of the vote.
+    """
+    zero = 0.0 * headings[0].psi
+    one, used = zero + 1.0, tuple(zero + heading.valid for heading in headings)
+    psi = _mean(headings, used, headings[0].psi)
+    return CompassVote(headings, (zero,) * 2, (zero,) * 2, zero, (one,) * 2, (zero,) * 2, used, psi, zero)
+
+
+def step(
+    state: CompassVote,
+    headings: tuple[Heading, Heading],
+    r: Arithmetic,
+    predicted: Arithmetic,
+    quiet: Arithmetic,
+    dt: Arithmetic,
+    *,
+    parameters: CompassVotingParameters,
+) -> CompassVote:
+    """Vote on new telegrams.
+
+    Parameters
+    ----------
+    state : CompassVote
+        State after the telegrams before.
+    headings : tuple of two Heading
+        Telegrams.
+    r : float or (...) array or tensor
+        Yaw rate of the gyro. [rad/s]
+    predicted : like r
+        Heading as the observer has it for the time of the telegrams, motion in waves included. [rad]
+    quiet : like r
+        How long no other sensor has changed. [s]
+    dt : float
+        Time since the last telegrams. [s]
+    parameters : CompassVotingParameters
+        Limits.
+
+    Returns
+    -------
+    CompassVote
+        State of the vote; `psi` is the heading to use, the predicted one where no compass is believed.
+    """
+    p, turned = parameters, dt * r
+    keep, gain = exp(-dt / p.compass_memory), 1.0 - exp(-dt / p.compass_filter)
+    unchanged, usable, memory = [], [], []
+    for new, old, time, off in zip(headings, state.headings, state.unchanged, state.memory, strict=True):
+        moved = wrap(new.psi - old.psi)
+        unchanged.append(where(moved == 0.0, time + dt, 0.0 * time))
+        memory.append(where(old.valid > 0.5, keep * off + moved - turned, wrap(new.psi - predicted)))
+    for i, heading in enumerate(headings):
+        others = minimum(quiet, unchanged[1 - i])
+        frozen = (unchanged[i] >= p.compass_freeze_time) & (others < p.compass_freeze_time)
+        usable.append(where(frozen, 0.0, heading.valid))
+    both, difference = usable[0] * usable[1], wrap(headings[0].psi - headings[1].psi)
+    apart = both * (state.apart + gain * wrap(difference - state.apart))
+    passed = _passed(state, usable, memory, abs(apart) > p.compass_apart_max, p)
+    agreed = _agreed(state, headings, usable, passed, apart, predicted, dt, p)
+    believed = tuple(
+        maximum(where(heading.valid > 0.5, ok, was), where(time >= p.compass_return_time, 1.0, 0.0))
+        for heading, ok, was, time in zip(headings, passed, state.believed, agreed, strict=True)
+    )
+    psi, age = _mean(headings, passed, predicted), where(sum(passed) > 0.5, 0.0, state.age + dt)
+    return CompassVote(headings, tuple(unchanged), tuple(memory), apart, believed, agreed, passed, psi, age)
+
+
+def _passed(state, usable, memory, disagree, p):
+    """1 of each compass that is believed still: of two that disagree, the one that turned with the gyro."""
+    first, second = (a * b for a, b in zip(usable, state.believed, strict=True))
+    apart = disagree & (first * second > 0.5)
+    off = abs(memory[0]), abs(memory[1])
+    return (
+        where((off[0] > p.compass_gyro_max) | (apart & (off[0] >= off[1])), 0.0, first),
+        where((off[1] > p.compass_gyro_max) | (apart & (off[1] > off[0])), 0.0, second),
+    )
+
+
+def _agreed(state, headings, usable, passed, apart, predicted, dt, p):
+    """How long each compass has agreed with the other where that is used, else with the prediction."""
+    limit, found = p.compass_gyro_max + p.gyro_drift * state.age, []
+    for i, heading in enumerate(headings):
+        off = where(passed[1 - i] > 0.5, abs(apart) - p.compass_apart_max, abs(wrap(heading.psi - predicted)) - limit)
+        found.append(where(off <= 0.0, usable[i], 0.0) * (state.agreed[i] + dt))
+    return tuple(found)
+
+
+def _mean(headings, weights, otherwise):
+    """Mean of the headings with weight, or another heading where none has."""
+    (first, second), (a, b) = headings, weights
+    half = 0.5 * wrap(second.psi - first.psi)
+    only = where(a > 0.5, first.psi, where(b > 0.5, second.psi, otherwise))
+    return where(a * b > 0.5, wrap(first.psi + half), only)

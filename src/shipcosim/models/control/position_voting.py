@@ -1,0 +1,310 @@
+"""Which of three position references are believed, and the position that they give together.
+
+At each telegram: a reference that does not change while others do is frozen; pairs that are apart are noticed, and the
+one at fault is the one that is apart from most, of equals the one that moved otherwise than the measured velocity
+says; what the rest agrees on must lie near the observer's prediction. The longer there was no trusted position, the
+farther from the prediction it may lie. So a jump that all references agree on is believed in the end.
+
+References
+----------
+IMO MSC.1/Circ.1580 and IMCA M 252, which ask for such tests without giving formulae; the formulae are our own.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.models.core.kinematics import to_ned
+from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum, where
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.parameters import quantity
+from shipcosim.models.ship.telegrams import Fix
+
+PAIRS = ((0, 1), (0, 2), (1, 2))
+_COUNTS_MORE = 1e6  # m, by which being apart from one more reference outweighs any movement
+
+
+@dataclass(frozen=True, kw_only=True)
+class PositionVotingParameters:
+    """Limits of the tests of position references."""
+
+    position_freeze_time: float = quantity(
+        3.0, "s", "unchanged for so long while others change, a reference is frozen", "assumed: three samples"
+    )
+    position_apart_max: float = quantity(
+        2.0, "m", "distance of two references from which they disagree", "six standard deviations of noise 0.2 m"
+    )
+    position_drift_max: float = quantity(
+        0.8, "m", "the same of their low-pass filtered distance", "five standard deviations of drifts of 0.1 m"
+    )
+    position_drift_filter: float = quantity(20.0, "s", "time constant of that filter", "assumed", minimum=1e-3)
+    position_memory: float = quantity(
+        60.0, "s", "how long it is remembered that a reference moved otherwise than measured velocity", "assumed"
+    )
+    position_innovation_max: float = quantity(
+        2.0, "m", "distance from the prediction from which a position is not believed", "as position_apart_max"
+    )
+    position_model_error: float = quantity(
+        0.003,
+        "m/s2",
+        "acceleration that the model may miss: the limit grows with half of it times the square of the time without "
+        "trusted position",
+        "assumed: 1.7 kN on 560 t",
+        minimum=0.0,
+    )
+    position_return_time: float = quantity(
+        30.0, "s", "a rejected reference is believed again after agreeing for so long", "assumed"
+    )
+    position_timeout: float = quantity(
+        1.5, "s", "time without a trusted position from which the controller rides on its model", "1.5 periods"
+    )
+    realignment_time: float = quantity(
+        20.0,
+        "s",
+        "time constant with which the estimate goes to the position that returns after dead reckoning",
+        "assumed: slow against the thrusters, quick against the loop",
+        minimum=1e-3,
+    )
+
+
+class PositionVote(NamedTuple):
+    """State of the vote on position references; what is of each reference comes in tuples of three.
+
+    Parameters
+    ----------
+    fixes : tuple of three Fix
+        Latest telegrams.
+    unchanged : tuple of three
+        How long each has not changed. [s]
+    memory : tuple of six
+        North and east: how much farther each moved than measured velocity says, forgotten slowly. [m]
+    apart : tuple of six
+        North and east: low-pass filtered differences of the `PAIRS`. [m]
+    believed : tuple of three
+        1 unless it was found to be at fault, 0 from then on until it is believed again. [1]
+    agreed : tuple of three
+        How long each has agreed with what is used. [s]
+    used : tuple of three
+        1 of each that is part of the voted position. [1]
+    fix : Fix
+        Voted position and velocity, the position with the shift; valid 1 where it is trusted.
+    north_rate, east_rate : float or (...) array or tensor
+        Measured velocity over ground. [m/s]
+    north_shift, east_shift : like north_rate
+        What is added to positions after dead reckoning, fading, so that the estimate returns smoothly. [m]
+    age : like north_rate
+        Time since the last trusted position. [s]
+    """
+
+    fixes: tuple[Fix, Fix, Fix]
+    unchanged: tuple
+    memory: tuple
+    apart: tuple
+    believed: tuple
+    agreed: tuple
+    used: tuple
+    fix: Fix
+    north_rate: Arithmetic
+    east_rate: Arithmetic
+    north_shift: Arithmetic
+    east_shift: Arithmetic
+    age: Arithmetic
+
+
+def start(fixes: tuple[Fix, Fix, Fix]) -> PositionVote:
+    """Vote at the start: the mean of what is valid.
+
+    Parameters
+    ----------
+    fixes : tuple of three Fix
+        First telegrams.
+
+    Returns
+    -------
+    PositionVote
+        State of the vote.
+    """
+    zero = 0.0 * fixes[0].x
+    used = tuple(zero + fix.valid for fix in fixes)
+    three, six, one = (zero,) * 3, (zero,) * 6, zero + 1.0
+    return PositionVote(fixes, three, six, six, (one,) * 3, three, used, _mean(fixes, used), *(zero,) * 5)
+
+
+def step(
+    state: PositionVote,
+    fixes: tuple[Fix, Fix, Fix],
+    predicted: Motion,
+    quiet: Arithmetic,
+    dt: Arithmetic,
+    *,
+    parameters: PositionVotingParameters,
+) -> PositionVote:
+    """Vote on new telegrams.
+
+    Parameters
+    ----------
+    state : PositionVote
+        State after the telegrams before.
+    fixes : tuple of three Fix
+        Telegrams.
+    predicted : Motion
+        As the observer has it for the time of the telegrams, motion in waves included.
+    quiet : float or (...) array or tensor
+        How long no other sensor has changed. [s]
+    dt : float
+        Time since the last telegrams. [s]
+    parameters : PositionVotingParameters
+        Limits.
+
+    Returns
+    -------
+    PositionVote
+        State of the vote; `fix` is the position to use.
+    """
+    p = parameters
+    unchanged, usable = _usable(state, fixes, quiet, dt, p)
+    candidates = tuple(a * b for a, b in zip(usable, state.believed, strict=True))
+    rates = _rates(fixes, candidates, predicted)
+    memory = _memory(state, fixes, predicted, rates, dt, p)
+    apart, disagree = _pairs(state, fixes, usable, dt, p)
+    candidates = _without_worst(candidates, disagree, memory)
+    mean = _mean(fixes, candidates)
+    limit = p.position_innovation_max + 0.5 * p.position_model_error * state.age * state.age
+    off_north, off_east = _innovation(state, mean, predicted)
+    near = where(hypot(off_north, off_east) <= limit, mean.valid, 0.0)
+    back = near * where(state.age > p.position_timeout, 1.0, 0.0)
+    north, east = state.north_shift - back * off_north, state.east_shift - back * off_east
+    used = tuple(near * candidate for candidate in candidates)
+    agreed = _agreed(state, fixes, usable, used, disagree, predicted, limit, dt)
+    return PositionVote(
+        fixes,
+        unchanged,
+        memory,
+        apart,
+        _believed(state, fixes, candidates, agreed, p),
+        agreed,
+        used,
+        Fix(mean.x + north, mean.y + east, mean.u, mean.v, near),
+        *rates,
+        north,
+        east,
+        where(near > 0.5, 0.0, state.age),
+    )
+
+
+def later(
+    state: PositionVote, dt: float, *, parameters: PositionVotingParameters
+) -> tuple[PositionVote, Arithmetic, Arithmetic]:
+    """State some time later without telegrams, and how far the fading shift moves the estimate.
+
+    Parameters
+    ----------
+    state : PositionVote
+        State of the vote.
+    dt : float
+        Time since then. [s]
+    parameters : PositionVotingParameters
+        Limits.
+
+    Returns
+    -------
+    tuple of PositionVote and two like state.age
+        State, and what is to be added to the estimated position. [m, m]
+    """
+    keep = exp(-dt / parameters.realignment_time)
+    north, east = keep * state.north_shift, keep * state.east_shift
+    moved = north - state.north_shift, east - state.east_shift
+    return state._replace(north_shift=north, east_shift=east, age=state.age + dt), *moved
+
+
+def _usable(state, fixes, quiet, dt, p):
+    """How long each reference has not changed; 1 of those that are valid and not frozen."""
+    unchanged = tuple(
+        where((new.x == old.x) & (new.y == old.y), time + dt, 0.0 * time)
+        for new, old, time in zip(fixes, state.fixes, state.unchanged, strict=True)
+    )
+    usable = []
+    for i, fix in enumerate(fixes):
+        others = minimum(quiet, minimum(unchanged[i - 1], unchanged[i - 2]))
+        frozen = (unchanged[i] >= p.position_freeze_time) & (others < p.position_freeze_time)
+        usable.append(where(frozen, 0.0, fix.valid))
+    return unchanged, tuple(usable)
+
+
+def _mean(fixes, weights):
+    """Weighted mean of telegrams; valid 1 where there is any weight."""
+    total = sum(weights)
+    share = 1.0 / maximum(total, 1.0)
+    x, y, u, v = (sum(w * value for w, value in zip(weights, of, strict=True)) * share for of in _columns(fixes))
+    return Fix(x, y, u, v, where(total > 0.5, 1.0, 0.0))
+
+
+def _columns(fixes):
+    """x, y, u, v of all telegrams."""
+    return tuple(zip(*(fix[:4] for fix in fixes), strict=True))
+
+
+def _rates(fixes, candidates, predicted):
+    """Measured velocity over ground north and east; where nothing measures it, the predicted one."""
+    mean = _mean(fixes, candidates)
+    u, v = where(mean.valid > 0.5, mean.u, predicted.u), where(mean.valid > 0.5, mean.v, predicted.v)
+    return to_ned(predicted.psi, u, v)
+
+
+def _innovation(state, fix, predicted):
+    """A position less the predicted one, north and east, in the frame of the estimate."""
+    return fix.x + state.north_shift - predicted.x, fix.y + state.east_shift - predicted.y
+
+
+def _memory(state, fixes, predicted, rates, dt, p):
+    """How much farther each reference moved than measured velocity says; of one that comes new, its innovation."""
+    keep, found = exp(-dt / p.position_memory), []
+    north, east = 0.5 * dt * (state.north_rate + rates[0]), 0.5 * dt * (state.east_rate + rates[1])
+    for i, (new, old) in enumerate(zip(fixes, state.fixes, strict=True)):
+        known, fresh = old.valid > 0.5, _innovation(state, new, predicted)
+        found.append(where(known, keep * state.memory[2 * i] + new.x - old.x - north, fresh[0]))
+        found.append(where(known, keep * state.memory[2 * i + 1] + new.y - old.y - east, fresh[1]))
+    return tuple(found)
+
+
+def _pairs(state, fixes, usable, dt, p):
+    """Filtered differences of all pairs; 1 of those that are apart."""
+    gain, apart, disagree = 1.0 - exp(-dt / p.position_drift_filter), [], []
+    for k, (i, j) in enumerate(PAIRS):
+        both = usable[i] * usable[j]
+        x, y, was = fixes[i].x - fixes[j].x, fixes[i].y - fixes[j].y, state.apart[2 * k : 2 * k + 2]
+        north, east = both * (was[0] + gain * (x - was[0])), both * (was[1] + gain * (y - was[1]))
+        far = (hypot(x, y) > p.position_apart_max) | (hypot(north, east) > p.position_drift_max)
+        disagree.append(where(far, both, 0.0))
+        apart += [north, east]
+    return tuple(apart), tuple(disagree)
+
+
+def _without_worst(candidates, disagree, memory):
+    """Candidates without the one that is apart from most others, of equals the one that moved on its own most."""
+    a, b, c = candidates
+    first, second, third = a * b * disagree[0], a * c * disagree[1], b * c * disagree[2]
+    counts = first + second, first + third, second + third
+    scores = [n * (_COUNTS_MORE + hypot(*memory[2 * i : 2 * i + 2])) for i, n in enumerate(counts)]
+    worst = maximum(scores[0], maximum(scores[1], scores[2]))
+    return tuple(
+        where((n > 0.5) & (score >= worst), 0.0, candidate)
+        for n, score, candidate in zip(counts, scores, candidates, strict=True)
+    )
+
+
+def _agreed(state, fixes, usable, used, disagree, predicted, limit, dt):
+    """How long each reference has agreed with all that are used, or where none is with the prediction."""
+    found, alone = [], sum(used) < 0.5
+    for i, fix in enumerate(fixes):
+        against = sum(disagree[k] * used[sum(pair) - i] for k, pair in enumerate(PAIRS) if i in pair)
+        off = where(alone, hypot(*_innovation(state, fix, predicted)) - limit, against - 0.5)
+        found.append(where(off <= 0.0, usable[i], 0.0) * (state.agreed[i] + dt))
+    return tuple(found)
+
+
+def _believed(state, fixes, candidates, agreed, p):
+    """Who is believed: of those that speak who passed, or has agreed for long enough."""
+    found = []
+    for fix, was, passed, time in zip(fixes, state.believed, candidates, agreed, strict=True):
+        found.append(maximum(where(fix.valid > 0.5, passed, was), where(time >= p.position_return_time, 1.0, 0.0)))
+    return tuple(found)

@@ -1,0 +1,246 @@
+"""Voting: from three position references, two compasses, rate gyro and anemometer to what observer and law use.
+
+References
+----------
+`position_voting`, `compass_voting`; the wind's part: definition.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.angles import wrap
+from shipcosim.models.control import compass_voting, position_voting
+from shipcosim.models.control.compass_voting import CompassVote, CompassVotingParameters
+from shipcosim.models.control.observer import Estimate, Measurement
+from shipcosim.models.control.position_voting import PositionVote, PositionVotingParameters
+from shipcosim.models.core.kinematics import to_ned
+from shipcosim.models.core.maths import Arithmetic, exp, minimum, where
+from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.parameters import quantity
+from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
+from shipcosim.models.ship.mast import MastParameters, wind_from_mast
+from shipcosim.models.ship.telegrams import Telegrams, Wind
+
+
+@dataclass(frozen=True, kw_only=True)
+class VotingParameters(PositionVotingParameters, CompassVotingParameters):
+    """Limits of the tests of all sensors."""
+
+    wind_freeze_time: float = quantity(
+        10.0, "s", "unchanged for so long while others change, the anemometer sticks", "assumed: ten samples"
+    )
+    wind_fade_time: float = quantity(
+        60.0,
+        "s",
+        "time constant with which the wind's feedforward fades when the anemometer is rejected, and returns",
+        "assumed: slow enough for bias and integral to take over",
+        minimum=1e-3,
+    )
+
+
+class WindVote(NamedTuple):
+    """State of the test of the anemometer.
+
+    Parameters
+    ----------
+    wind : Wind
+        Latest telegram; valid 1 where it is believed.
+    unchanged : float or (...) array or tensor
+        How long it has not changed. [s]
+    share : like unchanged
+        Share of the wind's load to feed forward. [1]
+    """
+
+    wind: Wind
+    unchanged: Arithmetic
+    share: Arithmetic
+
+
+class VotingState(NamedTuple):
+    """State of the voting.
+
+    Parameters
+    ----------
+    positions : PositionVote
+        Of the position references.
+    compasses : CompassVote
+        Of the compasses.
+    wind : WindVote
+        Of the anemometer.
+    r : float or (...) array or tensor
+        Yaw rate of the gyro. [rad/s]
+    position_time, heading_time : float
+        Times of the latest samples. [s]
+    position_new, heading_new : float
+        1 where positions, or headings, came anew at the last step. [1]
+    """
+
+    positions: PositionVote
+    compasses: CompassVote
+    wind: WindVote
+    r: Arithmetic
+    position_time: float
+    heading_time: float
+    position_new: float
+    heading_new: float
+
+
+def start(telegrams: Telegrams) -> VotingState:
+    """Voting at the start, on what is valid.
+
+    Parameters
+    ----------
+    telegrams : Telegrams
+        First telegrams.
+
+    Returns
+    -------
+    VotingState
+        State of the voting.
+    """
+    zero, wind = 0.0 * telegrams.r, telegrams.wind
+    return VotingState(
+        position_voting.start(telegrams.positions),
+        compass_voting.start(telegrams.compasses),
+        WindVote(wind, zero, zero + wind.valid),
+        telegrams.r,
+        telegrams.position_time,
+        telegrams.heading_time,
+        1.0,
+        1.0,
+    )
+
+
+def step(
+    t: float,
+    state: VotingState,
+    telegrams: Telegrams,
+    estimate: Estimate,
+    dt: float,
+    *,
+    parameters: VotingParameters,
+) -> tuple[VotingState, Estimate]:
+    """Voting a sample later, on the telegrams that came.
+
+    Parameters
+    ----------
+    t : float
+        Time. [s]
+    state : VotingState
+        State at the last sample.
+    telegrams : Telegrams
+        What the sensors give out.
+    estimate : Estimate
+        Of the observer at t.
+    dt : float
+        Time since the last sample. [s]
+    parameters : VotingParameters
+        Limits.
+
+    Returns
+    -------
+    tuple of VotingState and Estimate
+        State; and the estimate, moved to where positions are after dead reckoning.
+    """
+    positions, north, east = position_voting.later(state.positions, dt, parameters=parameters)
+    estimate = estimate._replace(x=estimate.x + north, y=estimate.y + east)
+    compasses, since = state.compasses, telegrams.heading_time - state.heading_time
+    heading_new = 1.0 if since > 0.0 else 0.0
+    if since > 0.0:
+        quiet = minimum(minimum(*positions.unchanged[:2]), positions.unchanged[2])
+        predicted = estimate.psi + estimate.yaw_wave - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
+        compasses = compass_voting.step(
+            compasses, telegrams.compasses, telegrams.r, predicted, quiet, since, parameters=parameters
+        )
+    since, quiet = telegrams.position_time - state.position_time, minimum(*compasses.unchanged)
+    position_new = 1.0 if since > 0.0 else 0.0
+    if since > 0.0:
+        positions = position_voting.step(
+            positions,
+            telegrams.positions,
+            _at(estimate, t - telegrams.position_time),
+            quiet,
+            since,
+            parameters=parameters,
+        )
+    wind = _wind(state.wind, telegrams.wind, minimum(quiet, positions.unchanged[0]), dt, parameters)
+    times = telegrams.position_time, telegrams.heading_time
+    return VotingState(positions, compasses, wind, telegrams.r, *times, position_new, heading_new), estimate
+
+
+def measurement(state: VotingState) -> Measurement:
+    """What the observer is given.
+
+    Parameters
+    ----------
+    state : VotingState
+        State of the voting.
+
+    Returns
+    -------
+    Measurement
+        Voted motion, and what of it is new and trusted.
+    """
+    fix = state.positions.fix
+    motion = Motion(fix.x, fix.y, state.compasses.psi, fix.u, fix.v, state.r)
+    return Measurement(motion, state.position_new * fix.valid, state.heading_new)
+
+
+def dead_reckoning_time(state: VotingState, *, parameters: VotingParameters) -> Arithmetic:
+    """Time since the last trusted position while the controller rides on its model, else 0.
+
+    Parameters
+    ----------
+    state : VotingState
+        State of the voting.
+    parameters : VotingParameters
+        Limits.
+
+    Returns
+    -------
+    float or (...) array or tensor
+        Time. [s]
+    """
+    age = state.positions.age
+    return where(age > parameters.position_timeout, age, 0.0 * age)
+
+
+def wind_load(state: VotingState, estimate: Estimate, *, mast: MastParameters, wind: WindParameters) -> Load:
+    """Load of the wind by the anemometer, as far as that is believed.
+
+    Parameters
+    ----------
+    state : VotingState
+        State of the voting.
+    estimate : Estimate
+        Of the observer.
+    mast : MastParameters
+        Where the anemometer stands.
+    wind : WindParameters
+        Wind load coefficients.
+
+    Returns
+    -------
+    tuple of three, like estimate.x
+        X, Y, N to feed forward. [N, N, N.m]
+    """
+    given, share = state.wind.wind, state.wind.share
+    at_ship = wind_from_mast(given.speed, given.wind_from, estimate.u, estimate.v, estimate.r, mast=mast)
+    X, Y, N = wind_loads(*at_ship, wind=wind)
+    return share * X, share * Y, share * N
+
+
+def _at(e, delay):
+    """Motion some time before the estimate, motion in waves included."""
+    north, east = to_ned(e.psi, e.surge_wave - delay * (e.u + e.u_wave), e.sway_wave - delay * (e.v + e.v_wave))
+    return Motion(e.x + north, e.y + east, wrap(e.psi), e.u + e.u_wave, e.v + e.v_wave, e.r + e.r_wave)
+
+
+def _wind(state, wind, quiet, dt, p):
+    """Test of the anemometer a sample later: it sticks where it does not change while others do."""
+    same = (wind.speed == state.wind.speed) & (wind.wind_from == state.wind.wind_from)
+    unchanged = where(same, state.unchanged + dt, 0.0 * state.unchanged)
+    stuck = (unchanged >= p.wind_freeze_time) & (quiet < p.wind_freeze_time)
+    valid = where(stuck, 0.0, wind.valid)
+    share = state.share + (1.0 - exp(-dt / p.wind_fade_time)) * (valid - state.share)
+    return WindVote(wind._replace(valid=valid), unchanged, share)
