@@ -19,7 +19,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 
 def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case, ...]:
-    """The ship with all thrusters, without each of them, and without each group.
+    """The ship with all thrusters, without each of them, without each bus of more than one, and without each group.
 
     Parameters
     ----------
@@ -37,11 +37,15 @@ def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case
         There is no thruster of some name.
     """
     known = [thruster.name for thruster in vessel.thrusters]
-    lost = [(name,) for name in known] + [tuple(dict.fromkeys(group)) for group in groups]
-    unknown = dict.fromkeys(name for group in lost for name in group if name not in known)
+    given = [tuple(dict.fromkeys(group)) for group in groups]
+    unknown = dict.fromkeys(name for group in given for name in group if name not in known)
     if unknown:
         raise ShipcosimError([Problem("--failure", f"'{n}' is no thruster.", suggestion(n, known)) for n in unknown])
-    return (Case("intact", ()), *(Case(f"without {' and '.join(group)}", group) for group in dict.fromkeys(lost)))
+    lost = {frozenset(group): f"without {' and '.join(group)}" for group in [*((name,) for name in known), *given]}
+    for bus, fed in vessel.buses.items():
+        if len(fed) > 1:
+            lost[frozenset(fed)] = f"without bus {bus} ({' and '.join(fed)})"
+    return (Case("intact", ()), *(Case(name, tuple(n for n in known if n in group)) for group, name in lost.items()))
 
 
 def capability_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> Capability:

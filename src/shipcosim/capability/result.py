@@ -63,18 +63,20 @@ class Capability:
         holds = np.cumprod(self.used[method] <= BALANCED, axis=1)
         return holds.sum(axis=1)
 
-    def worst(self, method: str = LEVEL_1) -> NDArray:
-        """The lowest number after any of the failures, (directions,)."""
-        return self.numbers(method)[1:].min(axis=0)
+    def worst(self, method: str = LEVEL_1, *, most_lost: int | None = None) -> NDArray:
+        """The lowest number after any of the failures, (directions,); `most_lost`: of those of so many thrusters."""
+        lost = [len(case.failed) for case in self.cases]
+        counts = [0 < number <= (most_lost or number) for number in lost]
+        return self.numbers(method)[counts].min(axis=0)
 
-    def elements(self, method: str = LEVEL_1) -> tuple[int, int, int, int]:
+    def elements(self, method: str = LEVEL_1, *, most_lost: int | None = None) -> tuple[int, int, int, int]:
         """A, B, C, D of the notation.
 
         A: the lowest number of the intact ship with the weather within 30 deg of the bow; B: from anywhere; C and D:
-        the same after the worst single failure.
+        the same after the worst single failure, with `most_lost` of so many thrusters at most.
         """
         near_bow = np.minimum(DIRECTIONS, 2.0 * np.pi - DIRECTIONS) <= BOW_SECTOR + 1e-9
-        intact, worst = self.numbers(method)[0], self.worst(method)
+        intact, worst = self.numbers(method)[0], self.worst(method, most_lost=most_lost)
         return int(intact[near_bow].min()), int(intact.min()), int(worst[near_bow].min()), int(worst.min())
 
 

@@ -66,6 +66,8 @@ class Vessel:
     simulated : Simulated
     particulars : tuple of Particular
         All that was read from the files of the ship.
+    buses : mapping of str to tuple of str
+        Names of the thrusters that each bus of the switchboard feeds; empty where the system has none.
     """
 
     name: str
@@ -75,6 +77,7 @@ class Vessel:
     thrusters: tuple[Thruster, ...]
     simulated: Simulated
     particulars: tuple[Particular, ...]
+    buses: Mapping[str, tuple[str, ...]]
 
 
 def read_vessel(system: System, ship: Ship) -> Vessel:
@@ -112,7 +115,8 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     hull = Hull(**values[HULL_FILE], **known)
     made = [_thruster(unit, ThrusterParticulars(**values[_file(name)]), hull) for name, unit in units.items()]
     listed = [Particular(f, q.description, q.value, q.unit, q.origin) for f, e in said.items() for q in e.values()]
-    return Vessel(ship.name, ship.description, system.name, hull, tuple(made), _simulated(body, units), tuple(listed))
+    simulated, buses = _simulated(body, units), _buses(system, list(units))
+    return Vessel(ship.name, ship.description, system.name, hull, tuple(made), simulated, tuple(listed), buses)
 
 
 def _file(thruster: str) -> str:
@@ -145,6 +149,17 @@ def _forces(system: System) -> list[tuple[str, str]]:
     """Names of the components (from, to) that a force `tau_Y` goes between."""
     ends = [(c.source, c.target[0]) for c in system.connections]
     return [(source[0], target) for source, target in ends if source[0] and target and source[1] == "tau_Y"]
+
+
+def _buses(system: System, thrusters: list[str]) -> dict[str, tuple[str, ...]]:
+    """Thrusters by the bus that feeds them, as the parameters ``NAME_bus`` of an allocator say: 0 is A, 1 is B."""
+    for part in system.components.values():
+        names = {thruster: f"{thruster.rpartition('.')[2]}_bus" for thruster in thrusters}
+        if part.fmu.variables.keys() >= set(names.values()):
+            number = {thruster: int(_real(part, name)) for thruster, name in names.items()}
+            known = sorted(set(number.values()))
+            return {chr(ord("A") + k): tuple(t for t in thrusters if number[t] == k) for k in known}
+    return {}
 
 
 def _real(part: Component, name: str) -> float:

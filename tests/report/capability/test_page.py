@@ -43,9 +43,10 @@ def test_bow_is_up_and_directions_go_clockwise(figures):
 
 
 def test_curves_are_the_numbers_and_closed(figures, capability):
-    intact, worst = figures[0]["data"]
+    intact, single, worst = figures[0]["data"]
     assert intact["theta"][0] == 0.0 and intact["theta"][-1] == 360.0
     assert intact["r"][:-1] == capability.numbers()[0].tolist() and intact["r"][-1] == intact["r"][0]
+    assert single["r"][:-1] == capability.worst(most_lost=1).tolist()
     assert worst["r"][:-1] == capability.worst().tolist()
 
 

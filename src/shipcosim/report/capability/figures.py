@@ -23,16 +23,17 @@ SOURCES = {"wind": palette.SKY, "current": palette.ORANGE, "waves": palette.GREE
 def capability_figures(capability: Capability) -> tuple[Figure, ...]:
     """Level 1; Level 1 beside the simulator; every failure."""
     numbers = {method: capability.numbers(method) for method in (LEVEL_1, SIMULATOR)}
-    worst = {method: capability.worst(method) for method in (LEVEL_1, SIMULATOR)}
+    single = {method: capability.worst(method, most_lost=1) for method in (LEVEL_1, SIMULATOR)}
     level_1 = (
         _curve("intact", numbers[LEVEL_1][0], palette.BLUE, fill=0.18),
-        _curve("worst single failure", worst[LEVEL_1], palette.VERMILLION, fill=0.3),
+        _curve("worst loss of one thruster", single[LEVEL_1], palette.ORANGE, fill=0.3),
+        _curve("worst single failure", capability.worst(), palette.VERMILLION, dash="dot"),
     )
     beside = (
         _curve("Level 1, intact", numbers[LEVEL_1][0], palette.BLUE),
-        _curve("Level 1, worst failure", worst[LEVEL_1], palette.BLUE, dash="dot"),
+        _curve("Level 1, one thruster lost", single[LEVEL_1], palette.BLUE, dash="dot"),
         _curve("simulator, intact", numbers[SIMULATOR][0], palette.PURPLE),
-        _curve("simulator, worst failure", worst[SIMULATOR], palette.PURPLE, dash="dot"),
+        _curve("simulator, one thruster lost", single[SIMULATOR], palette.PURPLE, dash="dot"),
     )
     each = tuple(
         _curve(case.name, row, palette.CYCLE[k % len(palette.CYCLE)], dash="solid" if k == 0 else "dot")

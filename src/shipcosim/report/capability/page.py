@@ -101,8 +101,19 @@ def _page(capability: Capability) -> CapabilityPage:
 def _outcome(capability: Capability) -> Outcome:
     a, b, c, d = capability.elements()
     intact = f"With all thrusters she keeps position and heading {_weather(a)} from within 30° of the bow"
-    failed = f"After the worst single failure it is number {c} from ahead and {d} from anywhere."
-    return Outcome("named", notation(capability), f"{intact}, and {_weather(b)} from anywhere. {failed}")
+    failed = (
+        f"After the worst single failure{_always_worst(capability)} it is number {c} from ahead and {d} from anywhere"
+    )
+    if any(len(case.failed) > 1 for case in capability.cases):
+        *_, c, d = capability.elements(most_lost=1)
+        failed += f"; where only one thruster is lost, {c} and {d}"
+    return Outcome("named", notation(capability), f"{intact}, and {_weather(b)} from anywhere. {failed}.")
+
+
+def _always_worst(capability: Capability) -> str:
+    """Name of the failure that is the worst from every direction, between commas; nothing where there is none."""
+    same = (capability.numbers() == capability.worst()).all(axis=1)
+    return next((f", {case.name}," for case, is_worst in zip(capability.cases, same, strict=True) if is_worst), "")
 
 
 def _weather(number: int) -> str:
