@@ -24,7 +24,7 @@ PAGES = {
     "diagnosis": ["diagnose", "docs/examples/gunnerus_log.csv.gz"],
     "capability": ["capability"],
 }
-HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 990}
+HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
 SWITCHES = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars")
