@@ -26,6 +26,7 @@ COMPONENTS = {
     "MastParameters": "sensors",
     "AllocationParameters": "allocator",
     "PowerParameters": "allocator",
+    "SurroundingsParameters": "predictor",
 }
 """Class of parameters: a component that has them."""
 

@@ -26,7 +26,7 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
-from shipcosim.models.prediction import dead_reckoning as prediction
+from shipcosim.models.prediction import dead_reckoning, known, surroundings
 from shipcosim.models.propulsion import azimuth, drive, propeller, slipstream, tunnel
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.ship import hull, instruments, mast, vessel
@@ -79,6 +79,8 @@ LOOP = [
 POWER, WATCH = parameters(PowerParameters), monitor.MonitorParameters()
 OBSERVER = dict(ship=DP_SHIP, parameters=NOISE, design=observer.design(DP_SHIP, NOISE))
 AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=parameters(wind.WindParameters))
+ASSUMED = parameters(surroundings.SurroundingsParameters)
+AROUND = dict(hull=LONG, ship=DP_SHIP, parameters=ASSUMED)
 REQUESTS = [(5e3, -4e3, 2e4), (9e3, 7e4, 1e5), (-2e5, 0.0, 9e5)]
 
 
@@ -122,9 +124,19 @@ def of_monitor(*row):
     return state, (unit, unit, unit._replace(available=False)), (row[3], -row[3]), (1e4 * row[3], 0.0)
 
 
-def of_prediction(*row):
+def of_known(*row):
     ship = Motion(*row)
-    return ship, (1e3, 2e3, -3e4), (0.0, 5e2, 1e3), (-6.0, 3.0), (0.2, -0.1)
+    return known.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0)
+
+
+def of_surroundings(*row):
+    start = of_known(*row)
+    return surroundings.unknown(start, parameters=ASSUMED), start
+
+
+def of_prediction(*row):
+    start = of_known(*row)
+    return start, surroundings.Surroundings(-6.0, 3.0, 0.2, -0.1, 2e2, 5e2 + 0.0 * start.ship.u, 1e3, ())
 
 
 def of_fixes(*row):
@@ -321,7 +333,10 @@ CASES = [
         lambda *row: (monitor.MonitorState(*row),),
         dict(parameters=WATCH),
     ),
-    Case(prediction.predict, SHIP, of_prediction, AHEAD),
+    Case(known.air_velocity, SHIP, lambda *row: (of_known(*row),)),
+    Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(parameters=ASSUMED)),
+    Case(surroundings.step, SHIP, of_surroundings, dict(h=1.0, **AROUND)),
+    Case(dead_reckoning.predict, SHIP, of_prediction, AHEAD),
     Case(earth.onset, [(3.0,), (8.0,), (20.0,)], constants=dict(onset_time=5.0, ramp_time=10.0)),
     Case(earth.earth_force, [(0.4, 1e3, -2e3), (-2.0, 0.0, 0.0)], constants=dict(x=-17.0)),
     Case(earth.drift_force, [(0.4, 1e3, -2e3), (-2.0, 3e3, 2e3), (0.0, 0.0, 0.0)], constants=dict(yaw_arm=-1.5)),

@@ -69,6 +69,18 @@ def test_a_component_is_like_another_of_the_same_ship_and_a_ship_like_another_bu
     assert (starboard.diameter, starboard.pitch, starboard.loss) == (2.0, 0.9, 0.2)
 
 
+def test_a_component_like_several_takes_the_first_that_says_a_number_and_only_what_it_has(yard):
+    engine = 'diameter = { value = 9.0, unit = "m", origin = "engine" }\n'
+    engine += 'loss = { value = 0.3, unit = "1", origin = "engine" }\n'
+    engine += 'stroke = { value = 0.2, unit = "m", origin = "engine" }'
+    files = {"own__ship": "", "own__port": WHOLE, "own__curve": CURVE, "own__engine": engine}
+    folder = yard(**files, own__starboard='like = ["port", "engine"]')
+    ship = read_ship(folder / "own")
+    found = ship.parameter_set({"starboard": (Screw,)})["starboard"]
+    assert (found["diameter"].value, found["loss"].value) == (2.0, 0.3)
+    assert "stroke" not in found
+
+
 def test_of_a_second_base_only_its_own_files_count(yard):
     wide = 'diameter = { value = 3.0, unit = "m", origin = "drawing" }'
     folder = yard(
@@ -125,6 +137,7 @@ loss = { value = 1.5, unit = "1", origin = "assumed" }
         ({"own__ship": 'based_on = "own"'}, "based on itself: own -> own"),
         ({"own__ship": "colour = 3"}, "colour: found 3"),
         ({"own__ship": "", "own__port": "like = 'port'"}, "like itself"),
+        ({"own__ship": "", "own__port": "like = 3"}, "Name the components"),
         ({"own__ship": "", "own__port": "like = 'prot'"}, "like 'prot', which this ship does not have"),
         ({"own__ship": "", "own__port": "diameter = 2.0"}, r"diameter: found 2\.0\. Write"),
         ({"own__ship": "", "own__port": "diameter"}, "no TOML"),

@@ -1,7 +1,7 @@
 """Ships as folders of files: what each component needs of a ship, with unit, origin and tolerance.
 
 A folder holds a ``ship.toml``, one parameter file a component (``vessel.toml``) and tables as CSV. A ship may be based
-on others, a component like another one of the same ship: no number stands twice. See docs/your-own-ship.md.
+on others, a component like others of the same ship: no number stands twice. See docs/your-own-ship.md.
 """
 
 import csv
@@ -41,7 +41,8 @@ class Quantity(NamedTuple):
 
 
 class _Entry(NamedTuple):
-    """A parameter as a file says it: value, unit, tolerance, origin, columns of a table, and file and name."""
+    """A parameter as a file says it: value, unit, tolerance, origin, columns of a table, file and name, and whether it
+    is said of another component that this one is like."""
 
     value: Any
     unit: str
@@ -49,6 +50,7 @@ class _Entry(NamedTuple):
     origin: str
     columns: tuple[str, ...]
     where: str
+    inherited: bool = False
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,7 @@ class Ship:
     def _find_unknown(self, component: str, kinds: Iterable[type], problems: list[Problem]) -> None:
         known = {field.name for kind in kinds for field in fields(kind)}
         for name, entry in self.entries.get(component, {}).items():
-            if name not in known:
+            if name not in known and not entry.inherited:
                 problems.append(Problem(entry.where, f"{component} has no such parameter.", suggestion(name, known)))
 
 
@@ -213,14 +215,15 @@ def _toml(file: Path, problems: list[Problem]) -> dict[str, Any]:
 
 
 def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
-    """Entries of a parameter file by name, and ``like`` as it is; nothing where there is no file."""
+    """Entries of a parameter file by name, and ``like`` as a list; nothing where there is no file."""
     if not file.is_file():
         return {}
     found = {name: _entry(file, name, said, problems) for name, said in _toml(file, problems).items() if name != "like"}
-    like = _toml(file, []).get("like")
-    if like is not None and not isinstance(like, str):
-        problems.append(Problem(f"{file}: like", f"found {like!r}.", "Name the component that this one is like."))
-        like = None
+    said = _toml(file, []).get("like", [])
+    like = [said] if isinstance(said, str) else said
+    if not isinstance(like, list) or not all(isinstance(one, str) for one in like):
+        problems.append(Problem(f"{file}: like", f"found {said!r}.", "Name the components that this one is like."))
+        like = []
     return {"like": like} | {name: entry for name, entry in found.items() if entry is not None}
 
 
@@ -267,14 +270,16 @@ def _table(file: Path, where: str, problems: list[Problem]) -> _Entry | None:
 def _entries(
     name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]
 ) -> dict[str, _Entry]:
-    """What a ship's files say of a component: of the one that it is like, then of itself."""
-    layers = files.get(name, [])
-    like = next((layer["like"] for layer in reversed(layers) if layer.get("like")), None)
-    if like in above or (like is not None and like not in files):
-        found = "like itself" if like in above else f"like '{like}', which this ship does not have"
-        problems.append(Problem(f"{name}.toml", f"{found}.", suggestion(str(like), set(files) - {name, *above})))
-        like = None
-    found = _entries(like, files, (*above, name), problems) if like else {}
+    """What a ship's files say of a component: of those that it is like, the first before the next, then of itself."""
+    layers, found = files.get(name, []), {}
+    likes = next((layer["like"] for layer in reversed(layers) if layer.get("like")), [])
+    for like in reversed(likes):
+        if like in (*above, name) or like not in files:
+            wrong = "like itself" if like in files else f"like '{like}', which this ship does not have"
+            problems.append(Problem(f"{name}.toml", f"{wrong}.", suggestion(like, set(files) - {name, *above})))
+            continue
+        taken = _entries(like, files, (*above, name), problems)
+        found |= {key: entry._replace(inherited=True) for key, entry in taken.items()}
     for layer in layers:
         found |= {key: entry for key, entry in layer.items() if key != "like"}
     return found

@@ -1,41 +1,36 @@
-"""Dead reckoning: motion to come if thrust, wind, current and waves stay as they are."""
+"""Dead reckoning: motion to come if thrust, wind, current and remaining force stay as they are known now."""
 
 from math import ceil
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import Arithmetic
-from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations, through_water
 
 
 def predict(
-    vessel: Motion,
-    thrusters: Load,
-    drift: Load,
-    air: tuple[Arithmetic, Arithmetic],
-    current: tuple[Arithmetic, Arithmetic],
+    known: Known,
+    surroundings: Surroundings,
     *,
     horizons: tuple[float, ...],
     longest_step: float,
     hull: HullParameters,
     wind: WindParameters,
 ) -> tuple[Motion, ...]:
-    """Motion of the ship ahead in time by its equations of motion, with constant thrust, wind, current and wave drift.
+    """Motion of the ship ahead in time by her equations of motion.
 
     Parameters
     ----------
-    vessel : Motion
-        State now.
-    thrusters : tuple of three
-        Load of the thrusters, held in body axes. [N, N, N.m]
-    drift : tuple of three
-        Mean wave drift load, held in body axes. [N, N, N.m]
-    air, current : tuple of two
-        Velocity of air and water, north and east, held; the wind load follows the heading of the ship. [m/s]
+    known : Known
+        State now, and load of the thrusters, which is held in body axes; floats, (...) arrays or tensors.
+    surroundings : Surroundings
+        Wind, current and remaining force, held earth-fixed, and remaining moment; the load of the wind follows heading
+        and speed of the ship, that of the current her velocity through the water.
     horizons : tuple of float, increasing
         How far ahead. [s]
     longest_step : float
@@ -52,32 +47,34 @@ def predict(
 
     Notes
     -----
-    Midpoint rule, with the wind load at the middle heading of each step.
+    Midpoint rule, with the loads of wind and force at the middle heading of each step.
 
     References
     ----------
     Equations of motion as `ship.vessel`; integration as `core.integrate.midpoint_motion`.
     """
-    held = [thrust + wave for thrust, wave in zip(thrusters, drift, strict=True)]
-    motion = *vessel, *through_water(vessel.psi, vessel.u, vessel.v, *current)
+    ship, current = known.ship, (surroundings.current_north, surroundings.current_east)
+    motion = *ship, *through_water(ship.psi, ship.u, ship.v, *current)
     predictions, before = [], 0.0
     for horizon in horizons:
         steps = ceil((horizon - before) / longest_step)
         for _ in range(steps):
-            motion = _advance(motion, held, air, current, (horizon - before) / steps, hull=hull, wind=wind)
+            motion = _advance(motion, known.thrusters, surroundings, (horizon - before) / steps, hull=hull, wind=wind)
         predictions.append(Motion(*motion[:6]))
         before = horizon
     return tuple(predictions)
 
 
-def _advance(motion, held, air, current, h, *, hull, wind):
+def _advance(motion, thrusters, around, h, *, hull, wind):
     """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`.
 
     `motion` is x, y, psi, u, v, r and the velocity through the water, u_r and v_r.
     """
     x, y, psi, u, v, r, u_r, v_r = motion
-    wind_X, wind_Y, wind_N = wind_loads(*apparent_wind(psi + 0.5 * h * r, u, v, *air), wind=wind)
-    X, Y, N = held[0] + wind_X, held[1] + wind_Y, held[2] + wind_N
+    current, middle = (around.current_north, around.current_east), psi + 0.5 * h * r
+    wind_X, wind_Y, wind_N = wind_loads(*apparent_wind(middle, u, v, around.wind_north, around.wind_east), wind=wind)
+    force_X, force_Y = to_body(middle, around.force_north, around.force_east)
+    X, Y, N = thrusters[0] + wind_X + force_X, thrusters[1] + wind_Y + force_Y, thrusters[2] + wind_N + around.moment
 
     def rates(u_r, v_r, r):
         return accelerations(u_r, v_r, r, X, Y, N, hull=hull)

@@ -1,0 +1,55 @@
+"""What a ship knows of herself and of the weather: all that a predictor is given, whatever it makes of it.
+
+A predictor is a state and two functions: `step` takes the state and a `Known` to the next sample, `predict` gives the
+motion to come from both. Dead reckoning has its state in `surroundings`, and `predict` in `dead_reckoning`.
+"""
+
+from typing import NamedTuple
+
+from shipcosim.models.core.kinematics import to_ned
+from shipcosim.models.core.maths import Arithmetic, cos, sin
+from shipcosim.models.core.motion import Load, Motion
+
+
+class Known(NamedTuple):
+    """What the DP system of a ship knows at one time.
+
+    Parameters
+    ----------
+    ship : Motion
+        The low-frequency ship as the observer of the DP controller estimates her.
+    bias : tuple of three floats or (...) arrays or tensors
+        Load in body axes that neither allocated thrust nor measured wind explains, as the same observer estimates it.
+        [N, N, N.m]
+    thrusters : like bias
+        Load in body axes that the thrusters were told to give. [N, N, N.m]
+    wind_speed, wind_from : float or (...) array or tensor
+        Measured apparent wind: speed, and direction it comes from, clockwise from the bow. [m/s, rad]
+    """
+
+    ship: Motion
+    bias: Load
+    thrusters: Load
+    wind_speed: Arithmetic
+    wind_from: Arithmetic
+
+
+def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:
+    """Velocity of the air over ground: the measured apparent wind, and the ship's own velocity.
+
+    Parameters
+    ----------
+    known : Known
+        Floats, (...) arrays or tensors.
+
+    Returns
+    -------
+    tuple of two, like known
+        North and east. [m/s]
+
+    References
+    ----------
+    Definition; the inverse of `wind_loads.apparent_wind`.
+    """
+    ship, speed = known.ship, known.wind_speed
+    return to_ned(ship.psi, ship.u - speed * cos(known.wind_from), ship.v - speed * sin(known.wind_from))

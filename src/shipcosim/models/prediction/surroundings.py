@@ -1,0 +1,207 @@
+"""Wind, current and remaining force around a ship, as she can tell them from what she knows of herself.
+
+The bias load of the DP observer is one load at one state. Held while the ship drifts, it would push her for ever;
+but what pushes her most is the water's motion, and she comes to move with the water. So the bias is taken apart, into a
+current that loads the hull, and a force: only as she moves does she learn which is which.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.models.control.observer import DpShip
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.maths import Arithmetic, exp, maximum, sqrt
+from shipcosim.models.core.parameters import quantity, required
+from shipcosim.models.prediction.known import Known, air_velocity
+from shipcosim.models.ship.hull import HullParameters, hull_loads
+from shipcosim.models.ship.vessel import through_water
+
+_LEAST = 0.05  # m/s, least half of the span over which slopes are taken
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurroundingsParameters:
+    """What is assumed of current, remaining force and wind before they are seen."""
+
+    current_std: float = quantity(
+        0.4, "m/s", "standard deviation of the current north and east, before it is estimated", "assumed", minimum=1e-3
+    )
+    current_drift: float = quantity(
+        1e-5, "m2/s3", "intensity of the random walk of the current", "assumed: 0.2 m/s in an hour", minimum=0.0
+    )
+    force_std: float = required("N", "standard deviation of the remaining force north and east", minimum=1.0)
+    force_time: float = quantity(
+        100.0, "s", "correlation time of the remaining force", "assumed: slow wave drift", minimum=1.0
+    )
+    load_noise: float = required(
+        "N2.s", "intensity of the white noise of the load that the observer leaves to explain", minimum=1.0
+    )
+    wind_time: float = quantity(30.0, "s", "time constant of the mean of the wind", "assumed: gusts pass", minimum=1e-3)
+
+
+class Surroundings(NamedTuple):
+    """Wind, current and remaining load as estimated.
+
+    Parameters
+    ----------
+    wind_north, wind_east : float or (...) array or tensor
+        Mean velocity of the air. [m/s]
+    current_north, current_east : like wind_north
+        Velocity of the water. [m/s]
+    force_north, force_east, moment : like wind_north
+        Load that neither explains: wave drift, errors of the models. [N, N, N.m]
+    covariance : tuple of four tuples of four, like wind_north
+        Of current north, current east, force north, force east. [products of m/s and N]
+    """
+
+    wind_north: Arithmetic
+    wind_east: Arithmetic
+    current_north: Arithmetic
+    current_east: Arithmetic
+    force_north: Arithmetic
+    force_east: Arithmetic
+    moment: Arithmetic
+    covariance: tuple
+
+
+def unknown(known: Known, *, parameters: SurroundingsParameters) -> Surroundings:
+    """Surroundings at the start: the wind as measured, the rest unknown.
+
+    Parameters
+    ----------
+    known : Known
+        Floats, (...) arrays or tensors.
+    parameters : SurroundingsParameters
+        What is assumed.
+
+    Returns
+    -------
+    Surroundings
+        With the current, the force and the moment 0.
+
+    References
+    ----------
+    Definition.
+    """
+    zero = 0.0 * known.wind_speed
+    current, force = parameters.current_std * parameters.current_std, parameters.force_std * parameters.force_std
+    variances = (current, current, force, force)
+    covariance = tuple(tuple(zero + variances[i] * (i == j) for j in range(4)) for i in range(4))
+    return Surroundings(*air_velocity(known), zero, zero, zero, zero, zero, covariance)
+
+
+def step(
+    surroundings: Surroundings,
+    known: Known,
+    h: float,
+    *,
+    hull: HullParameters,
+    ship: DpShip,
+    parameters: SurroundingsParameters,
+) -> Surroundings:
+    """Surroundings one sample later, from what is known at its end.
+
+    Parameters
+    ----------
+    surroundings : Surroundings
+        As estimated at the last sample; floats, (...) arrays or tensors.
+    known : Known
+        What is known now.
+    h : float
+        Time since the last sample. [s]
+    hull : HullParameters
+        The hull, which the current loads.
+    ship : DpShip
+        Model in which the bias load was estimated, for its linear damping.
+    parameters : SurroundingsParameters
+        What is assumed.
+
+    Returns
+    -------
+    Surroundings
+        As estimated now.
+
+    Notes
+    -----
+    A Kalman filter of four states, current V_c (a random walk) and force f (first-order Gauss-Markov), both north and
+    east. The observer of the DP controller has explained the motion by the bias b and its damping -D ν; here the same
+    load is that of the hull in the water, and f:
+
+        b - D ν = τ_hull(ν - R(ψ)ᵀ V_c) + R(ψ)ᵀ f + noise, forward and to starboard.
+
+    Hull loads are quadratic and have no slope at rest. So their slopes over the velocity through the water are taken
+    between one standard deviation of the current below and above it, as in a central-difference filter. The moment is
+    what remains of that of the bias. Left out: what the added mass does in turns beside its part in the hull's loads,
+    some A22 r u_r.
+
+    References
+    ----------
+    Nørgaard, Poulsen, Ravn, New developments in state estimation for nonlinear systems, Automatica 36, 2000.
+    """
+    mean, covariance = _elapsed(surroundings, h, parameters)
+    spread = maximum(sqrt(0.5 * (covariance[0][0] + covariance[1][1])), _LEAST)
+    rows = _slopes(known, mean, spread, hull)
+    missed = _missed(known, mean, hull, ship)[:2]
+    predicted, noise = mean, parameters.load_noise / h
+    for innovation, row in zip(missed, rows, strict=True):
+        explained = sum(slope * (now - before) for slope, now, before in zip(row, mean, predicted, strict=True))
+        mean, covariance = _corrected(mean, covariance, row, innovation - explained, noise)
+    moment = _missed(known, mean, hull, ship)[2]
+    air = _averaged(surroundings, known, h, parameters)
+    return Surroundings(*air, *mean, moment=moment, covariance=covariance)
+
+
+def _missed(known, mean, hull, ship):
+    """Load that current and force leave of what the observer has to explain, its bias less its damping."""
+    motion, (X, Y, N) = known.ship, known.bias
+    hull_X, hull_Y, hull_N = hull_loads(*through_water(*motion[2:5], *mean[:2]), motion.r, hull=hull)
+    force_X, force_Y = to_body(motion.psi, *mean[2:])
+    return (
+        X - ship.damping_surge * motion.u - hull_X - force_X,
+        Y - ship.damping_sway * motion.v - hull_Y - force_Y,
+        N - ship.damping_yaw * motion.r - hull_N,
+    )
+
+
+def _slopes(known, mean, span, hull):
+    """Slopes of the load forward, and of the load to starboard, over current and force, north and east each."""
+    psi, r = known.ship.psi, known.ship.r
+    u_r, v_r = through_water(*known.ship[2:5], *mean[:2])
+    over_u = zip(hull_loads(u_r + span, v_r, r, hull=hull), hull_loads(u_r - span, v_r, r, hull=hull), strict=True)
+    over_v = zip(hull_loads(u_r, v_r + span, r, hull=hull), hull_loads(u_r, v_r - span, r, hull=hull), strict=True)
+    X_u, Y_u, _ = [(below - above) / (2.0 * span) for above, below in over_u]  # a current takes from u_r
+    X_v, Y_v, _ = [(below - above) / (2.0 * span) for above, below in over_v]
+    one = 1.0 + 0.0 * psi
+    return (*to_ned(psi, X_u, X_v), *to_ned(psi, one, 0.0)), (*to_ned(psi, Y_u, Y_v), *to_ned(psi, 0.0, one))
+
+
+def _elapsed(surroundings, h, parameters):
+    """Mean and covariance of current and force a sample later, before the measurement."""
+    p, keep = parameters, exp(-h / parameters.force_time)
+    kept = (1.0, 1.0, keep, keep)
+    force = p.force_std * p.force_std * (1.0 - keep * keep)
+    grown = (h * p.current_drift, h * p.current_drift, force, force)
+    mean = [factor * value for factor, value in zip(kept, surroundings[2:6], strict=True)]
+    P = surroundings.covariance
+    covariance = tuple(tuple(kept[i] * kept[j] * P[i][j] + grown[i] * (i == j) for j in range(4)) for i in range(4))
+    return mean, covariance
+
+
+def _corrected(mean, covariance, row, innovation, noise):
+    """Mean and covariance after one scalar measurement: Kalman's update."""
+    spread = [sum(p * slope for p, slope in zip(line, row, strict=True)) for line in covariance]
+    variance = sum(slope * p for slope, p in zip(row, spread, strict=True)) + noise
+    gain = [p / variance for p in spread]
+    mean = [value + k * innovation for value, k in zip(mean, gain, strict=True)]
+    covariance = tuple(
+        tuple(p - k * other for p, other in zip(line, spread, strict=True))
+        for line, k in zip(covariance, gain, strict=True)
+    )
+    return mean, covariance
+
+
+def _averaged(surroundings, known, h, parameters):
+    """Mean velocity of the air a sample later."""
+    keep = exp(-h / parameters.wind_time)
+    before = surroundings.wind_north, surroundings.wind_east
+    return tuple(now + keep * (mean - now) for now, mean in zip(air_velocity(known), before, strict=True))
