@@ -12,18 +12,20 @@ from shipcosim.cli.project import build_stale
 from shipcosim.cosim import RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import Component, read_fmu, read_system, with_values
 
 FMUS = (
     "allocator azimuth_thruster dp_controller drift_force earth_force environment instruments predictor reference "
-    "sensors tunnel_thruster varying_current vessel"
+    "sensors thruster_monitor tunnel_thruster varying_current vessel"
 ).split()
 NOT_NEUTRAL = {
     "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0, "yaw_arm": -1.5},
     "earth_force": {"x": -17.0, "north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
     "instruments": {"lag": 1.33},
+    "thruster_monitor": {"position_limit": 0.15, "alarm_delay": 0.2},
     "varying_current": {"north_end": 0.5},
 }
 """FMU: parameters without which it does nothing."""
@@ -36,20 +38,21 @@ def built(root):
 
 
 class Driven:
-    """An FMU alone, whose real inputs move; outputs after each step."""
+    """An FMU alone, whose real inputs move; real outputs, or those that it has, after each step."""
 
     def __init__(self, fmu, instances, name="alone"):
-        self.inputs, self.outputs = (
-            [v for v in fmu.variables.values() if v.causality == causality and v.kind == "Real"]
-            for causality in ("input", "output")
-        )
+        self.inputs = [v for v in fmu.variables.values() if v.causality == "input" and v.kind == "Real"]
+        outputs = [v for v in fmu.variables.values() if v.causality == "output"]
+        kind = "Real" if any(v.kind == "Real" for v in outputs) else "Boolean"
+        self.outputs = [v for v in outputs if v.kind == kind]
         self.slave = instances.instance_of(Component(name, fmu))
         changed = given_to(fmu.path.stem) | NOT_NEUTRAL.get(fmu.path.stem, {})
-        set_start_values(self.slave, [(fmu.variables[key], value) for key, value in changed.items()])
+        known = fmu.variables.keys() & changed.keys()  # a component that is like others takes from them what it has
+        set_start_values(self.slave, [(fmu.variables[key], changed[key]) for key in known])
         self.starts = np.array([variable.start for variable in self.inputs])
-        self.given, self.seen = self.starts.copy(), np.zeros(len(self.outputs))
+        self.given, self.seen = self.starts.copy(), np.zeros(len(self.outputs), BUFFER_TYPES[kind])
         self.set = self.slave.setter("Real", self.inputs, self.given)
-        self.get, self.step = self.slave.getter("Real", self.outputs, self.seen), self.slave.stepper()
+        self.get, self.step = self.slave.getter(kind, self.outputs, self.seen), self.slave.stepper()
         self.slave.enter_initialisation(0.0, 1000.0)
         self.slave.exit_initialisation()
 
