@@ -17,6 +17,7 @@ from shipcosim.models.prediction.dead_reckoning import predict
 from shipcosim.models.prediction.known import Known, air_velocity
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_ship, read_system
 
@@ -64,7 +65,9 @@ def predictions(table):
     estimate = Motion(*of(table, "controller", "x_hat y_hat psi_hat u_hat v_hat r_hat"))
     bias = of(table, "controller", "tau_X_bias tau_Y_bias tau_N_bias")
     allocated = of(table, "allocator", "tau_X tau_Y tau_N")
-    known = Known(estimate, bias, allocated, *of(table, "sensors", "wind_speed_meas wind_from_meas"))
+    mast = ship.parameters(MastParameters, "controller")
+    measured = of(table, "sensors", "wind_speed_meas wind_from_meas")
+    known = Known(estimate, bias, allocated, *wind_from_mast(*measured, *estimate[3:], mast=mast))
     told = known._replace(thrusters=of(table, "vessel", "tau_thrusters_X tau_thrusters_Y tau_thrusters_N"))
     psi, none = estimate.psi, 0.0 * estimate.psi
     drift = earth_fixed(table["vessel.psi"].values, of(table, "vessel", "tau_drift_X tau_drift_Y tau_drift_N"))

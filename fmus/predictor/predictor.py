@@ -9,6 +9,7 @@ from shipcosim.models.prediction.dead_reckoning import predict
 from shipcosim.models.prediction.known import Known
 from shipcosim.models.prediction.surroundings import SurroundingsParameters, step, unknown
 from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 
 HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
 
@@ -28,8 +29,9 @@ class Predictor(Fmu):
     tau_X_allocated = Input("N", "force forward that the allocator's commands give")
     tau_Y_allocated = Input("N", "force to starboard that the allocator's commands give")
     tau_N_allocated = Input("N.m", "yaw moment that the allocator's commands give")
-    wind_speed_meas = Input("m/s", "measured apparent wind speed")
-    wind_from_meas = Input("rad", "measured direction of the apparent wind, clockwise from the bow")
+    wind_speed_meas = Input("m/s", "measured apparent wind speed at the mast")
+    wind_from_meas = Input("rad", "measured direction of the apparent wind at the mast, clockwise from the bow")
+    wind_rejected = Input("1", "the anemometer is lost or not believed: the bias has the wind's load", start=False)
 
     x_10 = Output("m", "north position in 10 s")
     y_10 = Output("m", "east position in 10 s")
@@ -50,6 +52,7 @@ class Predictor(Fmu):
 
     hull = Parameters(HullParameters)
     wind = Parameters(WindParameters)
+    mast = Parameters(MastParameters)
     ship = Parameters(DpShip)
     assumed = Parameters(SurroundingsParameters)
     prediction_period = Parameter(1.0, "s", "time between predictions", minimum=0.01)
@@ -67,16 +70,25 @@ class Predictor(Fmu):
             self.made = due
             self._show(
                 known,
-                step(self.surroundings, known, since, hull=self.hull, ship=self.ship, parameters=self.assumed),
+                step(
+                    self.surroundings,
+                    known,
+                    since,
+                    hull=self.hull,
+                    wind=self.wind,
+                    ship=self.ship,
+                    parameters=self.assumed,
+                ),
             )
 
     def _known(self):
+        ship = Motion(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat)
         return Known(
-            Motion(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat),
+            ship,
             (self.tau_X_bias, self.tau_Y_bias, self.tau_N_bias),
             (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated),
-            self.wind_speed_meas,
-            self.wind_from_meas,
+            *wind_from_mast(self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast),
+            1.0 - self.wind_rejected,
         )
 
     def _show(self, known, surroundings):

@@ -80,7 +80,7 @@ POWER, WATCH = parameters(PowerParameters), monitor.MonitorParameters()
 OBSERVER = dict(ship=DP_SHIP, parameters=NOISE, design=observer.design(DP_SHIP, NOISE))
 AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=parameters(wind.WindParameters))
 ASSUMED = parameters(surroundings.SurroundingsParameters)
-AROUND = dict(hull=LONG, ship=DP_SHIP, parameters=ASSUMED)
+AROUND = dict(hull=LONG, wind=parameters(wind.WindParameters), ship=DP_SHIP, parameters=ASSUMED)
 REQUESTS = [(5e3, -4e3, 2e4), (9e3, 7e4, 1e5), (-2e5, 0.0, 9e5)]
 
 
@@ -126,7 +126,7 @@ def of_monitor(*row):
 
 def of_known(*row):
     ship = Motion(*row)
-    return known.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0)
+    return known.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0, 0.7)
 
 
 def of_surroundings(*row):

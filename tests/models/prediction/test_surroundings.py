@@ -10,7 +10,7 @@ from ships import parameters
 from shipcosim.models.control.observer import DpShip
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction import surroundings
 from shipcosim.models.prediction.dead_reckoning import predict
 from shipcosim.models.prediction.known import Known
@@ -19,7 +19,8 @@ from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 
 HULL, DP_SHIP = parameters(HullParameters), parameters(DpShip)
-STILL = replace(parameters(WindParameters), wind_load_scale=0.0)
+WIND = parameters(WindParameters)
+STILL = replace(WIND, wind_load_scale=0.0)
 ASSUMED = parameters(SurroundingsParameters)
 
 
@@ -35,8 +36,8 @@ def known_of(ship, current, force, thrusters=(0.0, 0.0, 0.0)):
     return Known(ship, bias, thrusters, math.hypot(ship.u, ship.v), math.atan2(ship.v, ship.u))
 
 
-def step(state, known, assumed=ASSUMED):
-    return surroundings.step(state, known, 1.0, hull=HULL, ship=DP_SHIP, parameters=assumed)
+def step(state, known, assumed=ASSUMED, wind=STILL):
+    return surroundings.step(state, known, 1.0, hull=HULL, wind=wind, ship=DP_SHIP, parameters=assumed)
 
 
 def held_then_adrift(current, force, psi=0.4, held=300, adrift=600, assumed=ASSUMED):
@@ -134,6 +135,19 @@ def test_wind_is_averaged():
     for _ in range(round(ASSUMED.wind_time)):
         state = step(state, blow)
     assert state[:2] == pytest.approx((-8.0 * (1.0 - math.exp(-1.0)), 0.0))
+
+
+def test_wind_that_is_not_believed_is_held_and_its_load_found_in_the_bias():
+    """The controller feeds no wind forward then, so the bias grows by its load: current and force stay as they were."""
+    *_, (state, known) = held_then_adrift((0.3, -0.2), (400.0, -700.0), adrift=0)
+    state = state._replace(wind_north=-8.0, wind_east=1.0)
+    ship = known.ship
+    blown = wind_loads(*apparent_wind(ship.psi, ship.u, ship.v, -8.0, 1.0), wind=WIND)
+    bias = tuple(load + more for load, more in zip(known.bias, blown, strict=True))
+    lost = known._replace(bias=bias, wind_speed=0.0, wind_believed=0.0)
+    found, expected = step(state, lost, wind=WIND), step(state, known)
+    assert found[:2] == (-8.0, 1.0)
+    assert found[2:7] == pytest.approx(expected[2:7])
 
 
 def test_what_is_known_well_is_not_learned():

@@ -24,7 +24,10 @@ class Known(NamedTuple):
     thrusters : like bias
         Load in body axes that the thrusters were told to give. [N, N, N.m]
     wind_speed, wind_from : float or (...) array or tensor
-        Measured apparent wind: speed, and direction it comes from, clockwise from the bow. [m/s, rad]
+        Measured apparent wind at 10 m above the ship: speed, and direction it comes from, clockwise from the bow.
+        [m/s, rad]
+    wind_believed : like wind_speed
+        1 where the DP controller believes that wind, 0 where it does not: then its load is part of the bias. [1]
     """
 
     ship: Motion
@@ -32,6 +35,7 @@ class Known(NamedTuple):
     thrusters: Load
     wind_speed: Arithmetic
     wind_from: Arithmetic
+    wind_believed: Arithmetic = 1.0
 
 
 def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:

@@ -12,6 +12,7 @@ from shipcosim.models.control.observer import DpShip
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.maths import Arithmetic, exp, maximum, sqrt
 from shipcosim.models.core.parameters import quantity, required
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.known import Known, air_velocity
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import through_water
@@ -96,6 +97,7 @@ def step(
     h: float,
     *,
     hull: HullParameters,
+    wind: WindParameters,
     ship: DpShip,
     parameters: SurroundingsParameters,
 ) -> Surroundings:
@@ -111,6 +113,8 @@ def step(
         Time since the last sample. [s]
     hull : HullParameters
         The hull, which the current loads.
+    wind : WindParameters
+        Wind load coefficients.
     ship : DpShip
         Model in which the bias load was estimated, for its linear damping.
     parameters : SurroundingsParameters
@@ -131,36 +135,42 @@ def step(
 
     Hull loads are quadratic and have no slope at rest. So their slopes over the velocity through the water are taken
     between one standard deviation of the current below and above it, as in a central-difference filter. The moment is
-    what remains of that of the bias. Left out: what the added mass does in turns beside its part in the hull's loads,
+    what remains of that of the bias. While the measured wind is not believed, its mean is held, and its load taken off
+    the bias, which then has it. Left out: what the added mass does in turns beside its part in the hull's loads,
     some A22 r u_r.
 
     References
     ----------
     Nørgaard, Poulsen, Ravn, New developments in state estimation for nonlinear systems, Automatica 36, 2000.
     """
+    air = _averaged(surroundings, known, h, parameters)
+    wind_load = wind_loads(*apparent_wind(*known.ship[2:5], *air), wind=wind)
+    left = _left_to_explain(known, wind_load, ship)
     mean, covariance = _elapsed(surroundings, h, parameters)
     spread = maximum(sqrt(0.5 * (covariance[0][0] + covariance[1][1])), _LEAST)
     rows = _slopes(known, mean, spread, hull)
-    missed = _missed(known, mean, hull, ship)[:2]
+    missed = _missed(known, left, mean, hull)[:2]
     predicted, noise = mean, parameters.load_noise / h
     for innovation, row in zip(missed, rows, strict=True):
         explained = sum(slope * (now - before) for slope, now, before in zip(row, mean, predicted, strict=True))
         mean, covariance = _corrected(mean, covariance, row, innovation - explained, noise)
-    moment = _missed(known, mean, hull, ship)[2]
-    air = _averaged(surroundings, known, h, parameters)
+    moment = _missed(known, left, mean, hull)[2]
     return Surroundings(*air, *mean, moment=moment, covariance=covariance)
 
 
-def _missed(known, mean, hull, ship):
-    """Load that current and force leave of what the observer has to explain, its bias less its damping."""
-    motion, (X, Y, N) = known.ship, known.bias
-    hull_X, hull_Y, hull_N = hull_loads(*through_water(*motion[2:5], *mean[:2]), motion.r, hull=hull)
+def _left_to_explain(known, wind_load, ship):
+    """Load that the observer leaves to explain in body axes: bias less damping and less a wind not believed."""
+    motion, bias, lost = known.ship, known.bias, 1.0 - known.wind_believed
+    damping = ship.damping_surge * motion.u, ship.damping_sway * motion.v, ship.damping_yaw * motion.r
+    return [load - damped - lost * air for load, damped, air in zip(bias, damping, wind_load, strict=True)]
+
+
+def _missed(known, left, mean, hull):
+    """What current and force do not explain of a load."""
+    motion = known.ship
+    X, Y, N = hull_loads(*through_water(*motion[2:5], *mean[:2]), motion.r, hull=hull)
     force_X, force_Y = to_body(motion.psi, *mean[2:])
-    return (
-        X - ship.damping_surge * motion.u - hull_X - force_X,
-        Y - ship.damping_sway * motion.v - hull_Y - force_Y,
-        N - ship.damping_yaw * motion.r - hull_N,
-    )
+    return left[0] - X - force_X, left[1] - Y - force_Y, left[2] - N
 
 
 def _slopes(known, mean, span, hull):
@@ -201,7 +211,7 @@ def _corrected(mean, covariance, row, innovation, noise):
 
 
 def _averaged(surroundings, known, h, parameters):
-    """Mean velocity of the air a sample later."""
-    keep = exp(-h / parameters.wind_time)
+    """Mean velocity of the air a sample later; held while the measured wind is not believed."""
+    keep = 1.0 - known.wind_believed * (1.0 - exp(-h / parameters.wind_time))
     before = surroundings.wind_north, surroundings.wind_east
     return tuple(now + keep * (mean - now) for now, mean in zip(air_velocity(known), before, strict=True))
