@@ -30,6 +30,12 @@ def test_parameters_and_ship_are_found_by_name_and_groups_are_added(call, gunner
     assert sorted(path.name for path in out.iterdir()) == FILES
 
 
+def test_a_packed_system_knows_her_ship_by_its_parameter_set(call, gunnerus):
+    call("build", "gunnerus_dp")
+    done = call("capability", "build/ssp/gunnerus_dp.ssp")
+    assert done.code == 0 and "of gunnerus-33m9" in done.out
+
+
 @pytest.mark.parametrize(
     "arguments, words",
     [

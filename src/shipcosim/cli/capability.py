@@ -9,7 +9,7 @@ from pathlib import Path
 from shipcosim.capability import Capability, as_json, capability_of, dataset, notation, numbers_table, read_vessel
 from shipcosim.capability.result import SIMULATOR
 from shipcosim.cli.console import shown_path
-from shipcosim.cli.project import find_parameters, find_project, find_system
+from shipcosim.cli.project import find_parameters, find_system
 from shipcosim.cli.requests import system_of
 from shipcosim.cli.results import check_targets, staged
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -78,8 +78,7 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
     ShipcosimError
         If there is none.
     """
-    project = find_project(Path(system.partition("#")[0])) or find_project(Path.cwd()) or Path.cwd()
-    ships = project / "ssp" / "ships"
+    ships = _ships(Path(system.partition("#")[0]))
     if ship is not None:
         names = [ship]
     else:
@@ -91,6 +90,14 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
     known = [file.parent.name for file in sorted(ships.glob("*/ship.toml"))]
     found = f"There is no ship '{ship}'." if ship else "Nothing says which ship this is."
     raise ShipcosimError(Problem("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip()))
+
+
+def _ships(system: Path) -> Path:
+    """Nearest folder of ships above a system, else above the working folder."""
+    above = [*system.resolve().parents, Path.cwd(), *Path.cwd().parents]
+    return next(
+        (folder / "ssp" / "ships" for folder in above if (folder / "ssp" / "ships").is_dir()), Path("ssp/ships")
+    )
 
 
 def print_capability(capability: Capability, folder: Path, as_json_: bool) -> None:

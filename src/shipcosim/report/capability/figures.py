@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shipcosim.capability import Capability
-from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACTOR
+from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACTOR, Condition
 from shipcosim.capability.loads import level_1_parts
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.simulator import simulated_parts
@@ -50,9 +50,14 @@ def capability_figures(capability: Capability) -> tuple[Figure, ...]:
     )
 
 
+def limiting_condition(capability: Capability) -> Condition:
+    """The hardest condition that the intact ship holds from everywhere; the first where there is none."""
+    return CONDITIONS[max(capability.elements()[1], 1) - 1]
+
+
 def load_figures(capability: Capability) -> tuple[Figure, ...]:
     """Sway force and yaw moment by source, by Level 1 and by the simulator, where the intact ship's limit is."""
-    condition = CONDITIONS[min(max(capability.elements()[1], 1), len(CONDITIONS)) - 1]
+    condition = limiting_condition(capability)
     vessel = capability.vessel
     parts = {
         LEVEL_1: level_1_parts(vessel.hull, condition, DIRECTIONS),

@@ -10,9 +10,9 @@ from shipcosim.capability import Capability, notation
 from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACTOR
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.sectors import sectors
-from shipcosim.capability.thrust import BETA_MISC, Thruster
+from shipcosim.capability.thrust import BETA_MISC, Thruster, ventilation
 from shipcosim.capability.vessel import Particular
-from shipcosim.report.capability.figures import capability_figures, load_figures
+from shipcosim.report.capability.figures import capability_figures, limiting_condition, load_figures
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
@@ -153,11 +153,13 @@ def _numbers(capability: Capability) -> Table:
 
 
 def _thrusters(capability: Capability) -> Table:
-    """Thrust as Level 1 grants it beside what the simulator's may be asked for."""
-    limits = capability.vessel.simulated.limits
+    """Thrust by Level 1, nominal and in weather that she holds from anywhere; limits of the simulator's thrusters."""
+    limits, hull = capability.vessel.simulated.limits, capability.vessel.hull
+    condition = limiting_condition(capability)
     rows = []
     for thruster in capability.vessel.thrusters:
         asked = limits[thruster.name]
+        left = BETA_MISC * ventilation(thruster, hull, condition, DIRECTIONS)
         rows.append(
             (
                 thruster.name,
@@ -165,12 +167,22 @@ def _thrusters(capability: Capability) -> Table:
                 f"{thruster.diameter:g} m, {thruster.power / 1000:g} kW",
                 f"{thruster.x:g}, {thruster.y:g} m",
                 f"{plain(thruster.ahead / 1e3)} kN",
-                f"{plain(BETA_MISC * thruster.ahead / 1e3)} kN",
+                f"{' to '.join(dict.fromkeys(plain(end * thruster.ahead / 1e3) for end in (left.min(), left.max())))} kN",
                 f"{plain(asked.ahead / 1e3)} kN",
                 _forbidden(thruster, capability.vessel.thrusters),
             )
         )
-    head = ("thruster", "kind", "propeller", "forward, to starboard", "nominal", "less 10 %", "simulator", "forbidden")
+    effective = f"thrust in condition {condition.number}"
+    head = (
+        "thruster",
+        "kind",
+        "propeller",
+        "forward, starboard",
+        "nominal thrust",
+        effective,
+        "simulator's",
+        "forbidden",
+    )
     return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6, 7))
 
 
