@@ -159,7 +159,8 @@ def _thrusters(capability: Capability) -> Table:
     rows = []
     for thruster in capability.vessel.thrusters:
         asked = limits[thruster.name]
-        left = BETA_MISC * ventilation(thruster, hull, condition, DIRECTIONS)
+        left = BETA_MISC * ventilation(thruster, hull, condition, DIRECTIONS) * thruster.ahead / 1e3
+        ends = (plain(left.min()), plain(left.max()))
         rows.append(
             (
                 thruster.name,
@@ -167,7 +168,7 @@ def _thrusters(capability: Capability) -> Table:
                 f"{thruster.diameter:g} m, {thruster.power / 1000:g} kW",
                 f"{thruster.x:g}, {thruster.y:g} m",
                 f"{plain(thruster.ahead / 1e3)} kN",
-                f"{' to '.join(dict.fromkeys(plain(end * thruster.ahead / 1e3) for end in (left.min(), left.max())))} kN",
+                f"{' to '.join(dict.fromkeys(ends))} kN",
                 f"{plain(asked.ahead / 1e3)} kN",
                 _forbidden(thruster, capability.vessel.thrusters),
             )
