@@ -1,9 +1,10 @@
 """Which of three position references are believed, and the position that they give together.
 
-At each telegram: a reference that does not change while others do is frozen; pairs that are apart are noticed, and the
-one at fault is the one that is apart from most, of equals the one that moved otherwise than the measured velocity
-says; what the rest agrees on must lie near the observer's prediction. The longer there was no trusted position, the
-farther from the prediction it may lie. So a jump that all references agree on is believed in the end.
+At each telegram: a reference that does not change while others do is frozen. One far from the observer's prediction is
+out while another, which does not agree with it, is near. Pairs that are apart are noticed, and the one at fault is the
+one that is apart from most, of equals the one that moved otherwise than the measured velocity says. What the rest
+agrees on must lie near the prediction; the longer there was no trusted position, the farther from it. So a jump that
+all references agree on is believed in the end.
 
 References
 ----------
@@ -14,7 +15,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.models.core.kinematics import to_ned
-from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum, where
+from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum, minimum, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.telegrams import Fix
@@ -166,9 +167,10 @@ def step(
     rates = _rates(fixes, candidates, predicted)
     memory = _memory(state, fixes, predicted, rates, dt, p)
     apart, disagree = _pairs(state, fixes, usable, dt, p)
+    limit = p.position_innovation_max + 0.5 * p.position_model_error * state.age * state.age
+    candidates = _near_if_any(state, fixes, candidates, disagree, predicted, limit)
     candidates = _without_worst(candidates, disagree, memory)
     mean = _mean(fixes, candidates)
-    limit = p.position_innovation_max + 0.5 * p.position_model_error * state.age * state.age
     off_north, off_east = _innovation(state, mean, predicted)
     near = where(hypot(off_north, off_east) <= limit, mean.valid, 0.0)
     back = near * where(state.age > p.position_timeout, 1.0, 0.0)
@@ -267,16 +269,34 @@ def _memory(state, fixes, predicted, rates, dt, p):
 
 
 def _pairs(state, fixes, usable, dt, p):
-    """Filtered differences of all pairs; 1 of those that are apart."""
+    """Filtered differences of all pairs, limited so that a jump that ends is forgotten; 1 of those that are apart."""
+    most = p.position_apart_max
     gain, apart, disagree = 1.0 - exp(-dt / p.position_drift_filter), [], []
     for k, (i, j) in enumerate(PAIRS):
         both = usable[i] * usable[j]
         x, y, was = fixes[i].x - fixes[j].x, fixes[i].y - fixes[j].y, state.apart[2 * k : 2 * k + 2]
-        north, east = both * (was[0] + gain * (x - was[0])), both * (was[1] + gain * (y - was[1]))
+        north = both * (was[0] + gain * (clip(x, -most, most) - was[0]))
+        east = both * (was[1] + gain * (clip(y, -most, most) - was[1]))
         far = (hypot(x, y) > p.position_apart_max) | (hypot(north, east) > p.position_drift_max)
         disagree.append(where(far, both, 0.0))
         apart += [north, east]
     return tuple(apart), tuple(disagree)
+
+
+def _near_if_any(state, fixes, candidates, disagree, predicted, limit):
+    """Candidates near the prediction, or that agree with one that is; all where none is.
+
+    So two that jump together do not outvote a third.
+    """
+    near = [
+        where(hypot(*_innovation(state, fix, predicted)) <= limit, candidate, 0.0)
+        for fix, candidate in zip(fixes, candidates, strict=True)
+    ]
+    found, kept = sum(near) > 0.5, []
+    for i, candidate in enumerate(candidates):
+        beside = [near[sum(pair) - i] * (1.0 - disagree[k]) for k, pair in enumerate(PAIRS) if i in pair]
+        kept.append(where(found, candidate * maximum(near[i], maximum(*beside)), candidate))
+    return tuple(kept)
 
 
 def _without_worst(candidates, disagree, memory):
