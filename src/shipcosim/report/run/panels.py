@@ -97,7 +97,7 @@ def _motion(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[P
     for axis, title in AXES.items():
         if ship := roles.signal(roles.ship, axis):
             lines = [
-                Line(_first(roles.anywhere(f"{axis}_meas")), "measured", palette.MEASURED, width=1.0),
+                Line(_first(roles.anywhere(f"{axis}_meas", f"{axis}_1_meas")), "measured", palette.MEASURED, width=1.0),
                 Line(_first(roles.anywhere(f"{axis}_set")), "set point", palette.SET_POINT, "dot"),
                 Line(roles.signal(roles.reference, f"{axis}_d"), "reference", palette.REFERENCE, "dash"),
                 Line(ship, "ship", palette.SHIP, width=2.0),

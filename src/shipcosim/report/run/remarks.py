@@ -6,7 +6,7 @@ from xarray import Dataset
 
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE
 from shipcosim.report.run.details import parsed
-from shipcosim.report.run.roles import Roles
+from shipcosim.report.run.roles import Roles, join
 
 STRETCH = 60.0  # s over which a ship that cannot hold is recognised
 AT_LIMIT = 0.5  # share of the stretch in which something must be at its limit
@@ -30,7 +30,7 @@ def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
     list of str
     """
     said = [*parsed(table.attrs.get("remarks", "[]")), *_not_finite(shown)]
-    return said + _failures(shown, roles) + _lost_hold(shown, roles)
+    return said + _failures(shown, roles) + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
 
 
 _DERIVED = {*ERRORS.values(), FROM_REFERENCE, FROM_EXPECTED}
@@ -55,6 +55,30 @@ def _failures(shown: Dataset, roles: Roles) -> list[str]:
         if signal in shown and (failed := shown[signal].values > 0.5).any():
             begin.setdefault(shown["time"].values[np.argmax(failed)], []).append(component)
     return [f"Failed from {time:g} s on: {', '.join(components)}." for time, components in begin.items()]
+
+
+def _rejected(shown: Dataset, roles: Roles) -> list[str]:
+    """Sensors that a controller did not believe, and when first."""
+    said = []
+    for component, connectors in roles.connectors.items():
+        for connector in (c for c in connectors if c.endswith("_rejected") and join(component, c) in shown):
+            flags = shown[join(component, connector)].values > 0.5
+            if flags.any():
+                first, share = shown["time"].values[np.argmax(flags)], 100.0 * flags.mean()
+                what = connector.removesuffix("_rejected").replace("_", " ")
+                said.append(f"{component} rejects {what} from {first:g} s on, in {share:.0f} % of the run.")
+    return said
+
+
+def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
+    """How long a controller had no trusted position."""
+    said = []
+    for component, signal in roles.flagged("dead_reckoning_time").items():
+        times = shown[signal].values if signal in shown else np.zeros(1)
+        if times.max() > 0.0:
+            until = shown["time"].values[np.argmax(times)]
+            said.append(f"{component} has no trusted position for up to {times.max():.0f} s, until {until:g} s.")
+    return said
 
 
 def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
