@@ -44,7 +44,7 @@ def test_help_imports_nothing_heavy():
     assert not {"numpy", "xarray", "pydantic", "rich", "plotly", "fmpy", "lxml", "pint"} & set(loaded)
 
 
-@pytest.mark.parametrize("name", ["build", "run", "simulate", "check"])
+@pytest.mark.parametrize("name", ["build", "run", "simulate", "check", "capability"])
 def test_help_of_each_command_names_the_exit_codes(call, name):
     help_ = call(name, "--help")
     assert help_.code == 0 and "Exit codes" in help_.out
