@@ -56,7 +56,7 @@ class Predictor(Fmu):
     ship = Parameters(DpShip)
     assumed = Parameters(SurroundingsParameters)
     prediction_period = Parameter(1.0, "s", "time between predictions", minimum=0.01)
-    longest_step = Parameter(1.0, "s", "longest step of the integration", minimum=0.01)
+    longest_step = Parameter(2.0, "s", "longest step of the integration", minimum=0.01)
 
     def start(self):
         self.made = samples_due(self.start_time, self.prediction_period)

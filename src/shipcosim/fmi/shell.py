@@ -166,7 +166,7 @@ class Fmi2Slave:
         """`set_real` for the same variables every time, for a master in this process that can call it by itself.
 
         What goes wrong is raised as it is; `failure` turns it into what `set_real` raises. The same holds for
-        `real_getter`.
+        `prepared_getter`.
         """
         found, put = self._real[references], self.__dict__.update
 
@@ -180,16 +180,23 @@ class Fmi2Slave:
 
         return set_values
 
-    def real_getter(self, references: tuple[int, ...]) -> Callable[[], tuple]:
-        """`get_real` for the same variables every time; see `real_setter`."""
-        take, values = self._real[references].values, self.__dict__
+    def prepared_getter(self, kind: str, references: tuple[int, ...]) -> Callable[[], Sequence]:
+        """`get_real`, `get_integer` or `get_boolean` for the same variables every time; see `real_setter`."""
+        found, values = getattr(self, f"_{kind.lower()}")[references], self.__dict__
+        take, names = found.values, found.names
 
         def get_values() -> tuple:
             if self._stale:
                 self._start()
             return take(values)
 
-        return get_values
+        def get_integers() -> list[int]:
+            return [whole_number(name, value) for name, value in zip(names, get_values(), strict=True)]
+
+        def get_booleans() -> list[bool]:
+            return [bool(value) for value in get_values()]
+
+        return {"Real": get_values, "Integer": get_integers, "Boolean": get_booleans}[kind]
 
     def _set(self, found: Found, values: Sequence) -> None:
         if found.fixed and self._initialised:

@@ -28,7 +28,7 @@ def python_object_of(folder: Path, name: str) -> Any:
     shell = sys.modules.get(f"{entry}_code.shipcosim.fmi.shell")
     reference = getattr(getattr(shell, "Fmi2Slave", None), "newest", None)
     made = reference() if reference is not None else None
-    ours = made is not None and made.instance_name == name and hasattr(made, "real_setter")
+    ours = made is not None and made.instance_name == name and hasattr(made, "prepared_getter")
     return made if ours else None
 
 
@@ -64,16 +64,14 @@ class DirectCalls:
 
     def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
         """See `Slave.getter`."""
-        if kind == "Real":
-            return self._reals_getter(_references(variables), buffer)
-        method, references = getattr(self._target, f"get_{kind.lower()}"), _references(variables)
-        pack = _packer(buffer, "i")
+        get_values = self._target.prepared_getter(kind, _references(variables))
+        pack = _packer(buffer, "d" if kind == "Real" else "i")
 
         def get_all():
             try:
-                pack(*method(references))
+                pack(*get_values())
             except Exception as error:
-                return self._failed(error)
+                return self._failed(self._target.failure(error))
             return OK
 
         return get_all
@@ -89,18 +87,6 @@ class DirectCalls:
             return OK
 
         return set_all
-
-    def _reals_getter(self, references, buffer):
-        get_values, pack = self._target.real_getter(references), _packer(buffer, "d")
-
-        def get_all():
-            try:
-                pack(*get_values())
-            except Exception as error:
-                return self._failed(self._target.failure(error))
-            return OK
-
-        return get_all
 
     def stepper(self) -> Callable[[float, float], int]:
         """See `Slave.stepper`."""
