@@ -59,6 +59,8 @@ def values(system: str, ship: Ship) -> Iterator:
         for name, q in quantities.items():
             unit = q.unit if isinstance(q.value, float) and q.unit != "1" else None
             text = f"{q.description}; {q.origin}"
+            if q.uncertainty:
+                text += f"; sources from {q.uncertainty[0]:g} to {q.uncertainty[1]:g}"
             yield parameter(f"{component}.{name}", q.value, unit, text, tolerance=q.tolerance or None)
 
 

@@ -3,13 +3,14 @@
 from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.parameters import acts
 from shipcosim.models.core.sampling import tidy_time
 from shipcosim.models.environment.wave_loads import drift_table
 from shipcosim.models.environment.wave_motion import wave_response
 from shipcosim.models.environment.waves import components
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.ship.hull import HullParameters
-from shipcosim.models.ship.vessel import DriftParameters, at_present, step
+from shipcosim.models.ship.vessel import DriftParameters, at_present, carried, step
 
 
 class Vessel(Fmu):
@@ -87,10 +88,15 @@ class Vessel(Fmu):
 
     def start(self):
         self.state = Motion(self.x_start, self.y_start, wrap(self.psi_start), self.u_start, self.v_start, self.r_start)
+        self.water = self.current_north, self.current_east
         self._meet_waves(self.start_time)
         self._write()
 
     def step(self, t, h):
+        before, self.water = self.water, (self.current_north, self.current_east)
+        if acts(self.hull.current_acceleration):
+            change = (now - then for now, then in zip(self.water, before, strict=True))
+            self.state = carried(self.state, *change, hull=self.hull)
         tau = self._loads()
         self.state = step(self.state, *tau, self.current_north, self.current_east, h, hull=self.hull)
         self._meet_waves(tidy_time(t + h))

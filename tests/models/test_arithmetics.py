@@ -337,6 +337,12 @@ CASES = [
     Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(parameters=ASSUMED)),
     Case(surroundings.step, SHIP, of_surroundings, dict(h=1.0, **AROUND)),
     Case(dead_reckoning.predict, SHIP, of_prediction, AHEAD),
+    Case(
+        vessel.carried,
+        [(*ship, 0.3, -0.1) for ship in SHIP],
+        of_vessel,
+        dict(hull=replace(parameters(hull.HullParameters), current_acceleration=0.3)),
+    ),
     Case(earth.onset, [(3.0,), (8.0,), (20.0,)], constants=dict(onset_time=5.0, ramp_time=10.0)),
     Case(earth.earth_force, [(0.4, 1e3, -2e3), (-2.0, 0.0, 0.0)], constants=dict(x=-17.0)),
     Case(earth.drift_force, [(0.4, 1e3, -2e3), (-2.0, 3e3, 2e3), (0.0, 0.0, 0.0)], constants=dict(yaw_arm=-1.5)),

@@ -51,9 +51,9 @@ def test_a_ship_is_her_numbers_with_origin_and_tolerance_and_her_tables_digit_by
     ship = read_ship(folder / "own")
     assert (ship.name, ship.description, ship.systems) == ("own", "a boat", ("here",))
     found = ship.parameter_set({"port": [Screw]})["port"]
-    assert found["diameter"] == (2.0, "m", "diameter", "drawing", 0.01) and type(found["diameter"].value) is float
-    assert found["curve"] == ("0 0.40; 1 0.1", "1", "rows 'J KT'", "tank test", 0.0)
-    assert found["loss"] == (0.0, "1", "loss of thrust", "neutral", 0.0)
+    assert found["diameter"] == (2.0, "m", "diameter", "drawing", 0.01, ()) and type(found["diameter"].value) is float
+    assert found["curve"] == ("0 0.40; 1 0.1", "1", "rows 'J KT'", "tank test", 0.0, ())
+    assert found["loss"] == (0.0, "1", "loss of thrust", "neutral", 0.0, ())
     assert ship.parameters(Screw, "port") == Screw(diameter=2.0, pitch=1.1, curve="0 0.40; 1 0.1")
 
 
@@ -127,6 +127,29 @@ loss = { value = 1.5, unit = "1", origin = "assumed" }
         "own/port.toml: diametre: port has no such parameter. There is: curve, diameter, loss, pitch. "
         "Did you mean 'diameter'?",
     ]
+
+
+DOUBTFUL = WHOLE + 'loss = { value = 0.1, unit = "1", uncertainty = [0.0, 0.3], origin = "two tanks" }'
+
+
+def test_what_sources_disagree_on_is_a_number_beside_its_tolerance(yard):
+    folder = yard(own__ship="", own__port=DOUBTFUL, own__curve=CURVE)
+    found = read_ship(folder / "own").parameter_set({"port": [Screw]})["port"]
+    assert (found["loss"].uncertainty, found["loss"].tolerance) == ((0.0, 0.3), 0.0)
+    assert found["diameter"].uncertainty == ()
+
+
+def test_a_value_outside_its_uncertainty_is_a_mistake(yard):
+    folder = yard(own__ship="", own__port=DOUBTFUL.replace("[0.0, 0.3]", "[0.2, 0.3]"), own__curve=CURVE)
+    (found,) = problems_of(folder / "own")
+    assert "loss: 0.1 is outside its uncertainty." in found
+
+
+@pytest.mark.parametrize("uncertainty", ["0.3", "[0.3]", "[0.3, 0.0]", "['a', 'b']"])
+def test_an_uncertainty_that_is_no_range_is_said(uncertainty, yard):
+    folder = yard(own__ship="", own__port=DOUBTFUL.replace("[0.0, 0.3]", uncertainty), own__curve=CURVE)
+    with pytest.raises(ShipcosimError, match="'uncertainty' is"):
+        read_ship(folder / "own")
 
 
 @pytest.mark.parametrize(

@@ -108,6 +108,8 @@ def validate_thesis():
         "thesis_late_heading": old["late_heading"],
         "late": calm["late"],
         "late_heading": calm["late_heading"],
+        **{f"noisy_{key}": value for key, value in figures["33m9, calm"].items()},
+        **{f"windy_{key}": value for key, value in wind.items()},
     }
 
 

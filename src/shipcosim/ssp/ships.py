@@ -31,6 +31,8 @@ class Quantity(NamedTuple):
         FMI's spelling of the unit, one line of text, where the number comes from.
     tolerance : float
         Standard deviation within which it counts as known, in its unit; 0 where nobody says.
+    uncertainty : tuple of two floats, or empty
+        Least and largest value that one source or another has, in its unit. The diagnosis takes no notice of it.
     """
 
     value: Any
@@ -38,11 +40,12 @@ class Quantity(NamedTuple):
     description: str
     origin: str
     tolerance: float
+    uncertainty: tuple[float, ...] = ()
 
 
 class _Entry(NamedTuple):
-    """A parameter as a file says it: value, unit, tolerance, origin, columns of a table, file and name, and whether it
-    is said of another component that this one is like."""
+    """A parameter as a file says it: value, unit, tolerance, origin, columns of a table, file and name, uncertainty,
+    and whether it is said of another component that this one is like."""
 
     value: Any
     unit: str
@@ -50,6 +53,7 @@ class _Entry(NamedTuple):
     origin: str
     columns: tuple[str, ...]
     where: str
+    uncertainty: tuple[float, ...] = ()
     inherited: bool = False
 
 
@@ -237,7 +241,10 @@ def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> _Entry 
         return None
     if is_table:
         return _table(file.parent / said["table"], where, problems)
-    return _Entry(said["value"], said["unit"], float(said.get("tolerance", 0.0)), said["origin"], (), where)
+    uncertainty = tuple(map(float, said.get("uncertainty", ())))
+    return _Entry(
+        said["value"], said["unit"], float(said.get("tolerance", 0.0)), said["origin"], (), where, uncertainty
+    )
 
 
 def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
@@ -245,7 +252,7 @@ def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
     if not isinstance(said, dict):
         return [f"found {said!r}"]
     wrong = [f"'{key}' is no key" for key in said if key not in keys]
-    wrong += [f"'{key}' is missing" for key in keys if key not in said and key != "tolerance"]
+    wrong += [f"'{key}' is missing" for key in keys if key not in said and key not in _OPTIONAL]
     wrong += [f"'{key}' is {said[key]!r}" for key, is_right in keys.items() if key in said and not is_right(said[key])]
     return wrong
 
@@ -293,7 +300,7 @@ def _quantity(field: Field, entry: _Entry | None, problems: list[Problem]) -> Qu
     found, remedy = _wrong(value, entry, about)
     if found:
         problems.append(Problem(entry.where, found, remedy))
-    return Quantity(value, about["unit"], about["description"], entry.origin, entry.tolerance)
+    return Quantity(value, about["unit"], about["description"], entry.origin, entry.tolerance, entry.uncertainty)
 
 
 def _wrong(value: Any, entry: _Entry, about: Mapping[str, Any]) -> tuple[str, str]:
@@ -311,6 +318,8 @@ def _wrong(value: Any, entry: _Entry, about: Mapping[str, Any]) -> tuple[str, st
     if kind is not str and (low is not None and value < low or high is not None and value > high):
         bounds = [f"at least {low:g}" if low is not None else "", f"at most {high:g}" if high is not None else ""]
         return f"found {value!r}.", f"It must be {' and '.join(filter(None, bounds))} {about['unit']}."
+    if kind is float and entry.uncertainty and not entry.uncertainty[0] <= value <= entry.uncertainty[1]:
+        return f"{value!r} is outside its uncertainty.", "Give the least and the largest value, with it in between."
     return "", ""
 
 
@@ -329,10 +338,16 @@ def _is_text(value: Any) -> bool:
     return isinstance(value, str)
 
 
+def _is_range(value: Any) -> bool:
+    return isinstance(value, list) and len(value) == 2 and all(map(_is_number, value)) and value[0] <= value[1]
+
+
 _VALUE_KEYS: Mapping[str, Any] = {
     "value": lambda value: isinstance(value, (bool, int, float, str)),
     "unit": _is_text,
     "tolerance": lambda value: _is_number(value) and value >= 0.0,
+    "uncertainty": _is_range,
     "origin": _is_text,
 }
+_OPTIONAL = ("tolerance", "uncertainty")
 _TABLE_KEYS: Mapping[str, Any] = {"table": _is_text}

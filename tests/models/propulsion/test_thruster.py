@@ -87,6 +87,15 @@ def test_thesis_set_has_the_curves_of_the_thesis(shared):
     np.testing.assert_allclose(2.0 * pi * n * torque, power[strong], rtol=0.015)
 
 
+@pytest.mark.parametrize("n", [-2.0, 0.0, 2.0])
+def test_side_force_astern_has_its_factor_on_what_goes_with_shaft_speed(n):
+    """-c rho D² (V + factor abs(n) D) u_s: continuous through n = 0."""
+    unit, u, v = replace(UNIT, side_force_astern=0.71), 0.3, -0.4
+    side = azimuth_loads(azimuth_replay(n, 0.0, u, v, 0.0, unit=unit), u, v, 0.0, unit=unit).side_force
+    wash = (0.71 if n < 0.0 else 1.0) * abs(n) * 1.9
+    assert side == pytest.approx(-0.80 * 1025.0 * 1.9**2 * (0.5 + wash) * v, rel=1e-9)
+
+
 def test_thesis_set_has_no_side_force():
     assert azimuth_loads(azimuth_replay(2.0, 0.0, 0.0, 1.0, 0.0, unit=THESIS), 0.0, 1.0, 0.0, unit=THESIS).tau_Y == 0.0
 

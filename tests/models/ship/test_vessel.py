@@ -10,7 +10,7 @@ from ships import parameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.ship.hull import HullParameters, hull_loads
-from shipcosim.models.ship.vessel import nu_dot, step, through_water
+from shipcosim.models.ship.vessel import carried, nu_dot, step, through_water
 
 from .test_hull import mass_matrix
 
@@ -159,3 +159,30 @@ def test_halving_the_step_changes_nothing_that_matters():
         return ship
 
     np.testing.assert_allclose(run(0.1), run(0.05), atol=1e-5)
+
+
+def swayed(share, *, parts=400):
+    """Sway of a ship beam on to a current that grows from 0 to 0.4 m/s in 20 s, without damping or yaw. [m/s]"""
+    plain = dict.fromkeys(("A26", "A62", "cross_flow_drag", "lift", "X_uu"), 0.0)
+    hull = replace(LONG, **plain, added_mass_coriolis=0.0, current_acceleration=share)
+    ship, h, change = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 20.0 / parts, 0.4 / parts
+    for k in range(parts):
+        ship = step(carried(ship, 0.0, change, hull=hull), 0.0, 0.0, 0.0, 0.0, (k + 1) * change, h, hull=hull)
+    return ship.v
+
+
+def test_accelerating_water_carries_the_ship_by_the_share_of_its_force_that_acts():
+    """(m + A22) v_dot = F: nothing; the added mass alone, F = A22 v_c_dot; with the displaced mass, as the water."""
+    assert swayed(0.0) == 0.0
+    m, A22 = LONG.mass, LONG.A22
+    assert swayed(A22 / (m + A22)) == pytest.approx(A22 * 0.4 / (m + A22))
+    assert swayed(1.0) == pytest.approx(0.4)
+
+
+def test_carried_by_all_of_the_force_the_ship_feels_no_change_of_a_current():
+    hull = replace(LONG, current_acceleration=1.0)
+    ship = Motion(1.0, 2.0, 0.7, 0.5, -0.2, 0.02)
+    after = carried(ship, 0.3, -0.1, hull=hull)
+    before = through_water(ship.psi, ship.u, ship.v, 0.1, 0.2)
+    assert through_water(after.psi, after.u, after.v, 0.1 + 0.3, 0.2 - 0.1) == pytest.approx(before)
+    assert carried(ship, 0.3, -0.1, hull=LONG) == ship

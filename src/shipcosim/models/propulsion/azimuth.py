@@ -28,6 +28,13 @@ class AzimuthParameters(PropellerParameters):
     side_force_coefficient: float = required(
         "1", "side force coefficient: momentum drag and strut", share=0.1, minimum=0.0
     )
+    side_force_astern: float = quantity(
+        1.0,
+        "1",
+        "factor on the side force's part that goes with shaft speed, at negative speed",
+        "neutral",
+        minimum=0.0,
+    )
     thrust_min: float = required("N", "largest thrust astern, negative", maximum=0.0)
     thrust_max: float = required("N", "largest thrust ahead", minimum=0.0)
     thrust_rate: float = required("N/s", "largest rate of the thrust command", minimum=0.0)
@@ -194,6 +201,8 @@ def azimuth_loads(
 ) -> Loads:
     """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, with their load on the ship.
 
+    Where n < 0, abs(n) D has the factor `side_force_astern`, 1 by default.
+
     The thrust is that of the propeller less its losses:
     (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - interaction_loss · `slipstream_share`).
 
@@ -223,7 +232,10 @@ def azimuth_loads(
     if unit.loses:
         thrust = thrust * _kept(n, neighbour_azimuth, neighbour_rpm, unit)
     D = unit.diameter
-    side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + abs(n) * D) * u_s
+    wash = abs(n) * D
+    if acts(unit.side_force_astern, neutral=1.0):
+        wash = wash * where(n < 0.0, unit.side_force_astern, 1.0)
+    side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + wash) * u_s
     c, s = cos(azimuth), sin(azimuth)
     return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
 

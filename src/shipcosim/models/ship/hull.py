@@ -39,6 +39,14 @@ class HullParameters:
         1.0, "1", "share of C_A(nu_r) nu_r; 0 for coefficients that contain it already", "Fossen 2021", minimum=0.0
     )
 
+    current_acceleration: float = quantity(
+        0.0,
+        "1",
+        "share of the force (M_RB + M_A) nu_c_dot of the water's acceleration; 0 leaves it out",
+        "neutral: the current holds between changes, Fossen 2021",
+        minimum=0.0,
+        maximum=1.0,
+    )
     water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
     length: float = required("m", "length between perpendiculars", minimum=0.1)
     breadth: float = required("m", "breadth", minimum=0.1)

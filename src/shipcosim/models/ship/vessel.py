@@ -78,6 +78,38 @@ def step(
     return Motion(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
 
 
+def carried(vessel: Motion, change_north: Arithmetic, change_east: Arithmetic, *, hull: HullParameters) -> Motion:
+    """Motion of the ship right after the water has changed its velocity.
+
+    Water that accelerates as one carries the ship: its pressure acts on her as on the water that she displaces, and the
+    water around her adds its mass, (M_RB + M_A) ν̇_c if she floats freely. All of it (a share of 1) changes her velocity
+    as the water's; none of it (0) lets her keep the velocity over ground that she had. In sway a share of
+    A22/(m + A22) is the added mass alone, M_A ν̇_c.
+
+    Parameters
+    ----------
+    vessel : Motion
+        State before.
+    change_north, change_east : like the state
+        Change of the water's velocity. [m/s]
+    hull : HullParameters
+        Whose `current_acceleration` is that share.
+
+    Returns
+    -------
+    Motion
+        State after; the place is the same.
+
+    References
+    ----------
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 10, for M_A; Faltinsen,
+    Sea Loads on Ships and Offshore Structures, Cambridge, 1990, for the pressure of the accelerated water.
+    """
+    u_c, v_c = to_body(vessel.psi, change_north, change_east)
+    share = hull.current_acceleration
+    return vessel._replace(u=vessel.u + share * u_c, v=vessel.v + share * v_c)
+
+
 def accelerations(
     u_r: Arithmetic,
     v_r: Arithmetic,
