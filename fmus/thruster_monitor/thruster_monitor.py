@@ -1,7 +1,7 @@
 """FMU of the monitor of thrusters and of the ship's place."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.allocation.monitor import MonitorParameters, Unit, alarms, at_rest, step
+from shipcosim.models.allocation.monitor import MonitorParameters, alarms, at_rest, deviation, step
 
 
 class ThrusterMonitor(Fmu):
@@ -28,6 +28,9 @@ class ThrusterMonitor(Fmu):
     port_faulty = Output("1", "port azimuth does not do what is commanded; stays so", start=False)
     starboard_faulty = Output("1", "starboard azimuth does not do what is commanded; stays so", start=False)
     tunnel_faulty = Output("1", "tunnel thruster does not do what is commanded; stays so", start=False)
+    port_deviation = Output("1", "port azimuth's feedback less its command, over the tolerance: above 1 is beyond it")
+    starboard_deviation = Output("1", "the same of the starboard azimuth")
+    tunnel_deviation = Output("1", "the same of the tunnel thruster")
     position_alarm = Output("1", "the ship has left her place", start=False)
     heading_alarm = Output("1", "the ship has left her heading", start=False)
     force_alarm = Output("1", "the unexplained force is larger than weather gives", start=False)
@@ -38,25 +41,32 @@ class ThrusterMonitor(Fmu):
         self._show(at_rest())
 
     def step(self, t, h):
-        units = (
-            Unit(
-                self.port_thrust_cmd,
-                self.port_thrust_feedback,
-                self.port_azimuth_cmd,
-                self.port_azimuth_feedback,
-                self.port_available,
-            ),
-            Unit(
-                self.starboard_thrust_cmd,
-                self.starboard_thrust_feedback,
-                self.starboard_azimuth_cmd,
-                self.starboard_azimuth_feedback,
-                self.starboard_available,
-            ),
-            Unit(self.tunnel_thrust_cmd, self.tunnel_thrust_feedback, 0.0, 0.0, self.tunnel_available),
-        )
+        available = (self.port_available, self.starboard_available, self.tunnel_available)
         errors, bias = (self.position_error, self.heading_error), (self.tau_X_bias, self.tau_Y_bias)
-        self._show(step(self.state, units, errors, bias, h, parameters=self.monitor))
+        self._show(step(self.state, self._deviations(), available, errors, bias, h, parameters=self.monitor))
+
+    def _deviations(self):
+        limits = self.monitor
+        azimuth = {
+            "thrust_tolerance": limits.azimuth_thrust_tolerance,
+            "azimuth_tolerance": limits.azimuth_tolerance,
+        }
+        self.port_deviation = deviation(
+            (self.port_thrust_cmd, self.port_thrust_feedback),
+            (self.port_azimuth_cmd, self.port_azimuth_feedback),
+            **azimuth,
+        )
+        self.starboard_deviation = deviation(
+            (self.starboard_thrust_cmd, self.starboard_thrust_feedback),
+            (self.starboard_azimuth_cmd, self.starboard_azimuth_feedback),
+            **azimuth,
+        )
+        self.tunnel_deviation = deviation(
+            (self.tunnel_thrust_cmd, self.tunnel_thrust_feedback),
+            thrust_tolerance=limits.tunnel_thrust_tolerance,
+            azimuth_tolerance=limits.azimuth_tolerance,
+        )
+        return self.port_deviation, self.starboard_deviation, self.tunnel_deviation
 
     def _show(self, state):
         self.state = state

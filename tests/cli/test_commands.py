@@ -95,6 +95,21 @@ def test_run_with_a_missed_expectation_ends_with_1_and_keeps_the_results(call, p
     assert "1 of 1 expectations missed" in (project / "results" / "fill" / "report.html").read_text(encoding="utf-8")
 
 
+def test_run_of_a_folder_runs_every_scenario_and_writes_one_table(call, project):
+    folder = project / "scenarios" / "both"
+    folder.mkdir()
+    text = (project / "scenarios" / "fill.toml").read_text(encoding="utf-8")
+    (folder / "fill.toml").write_text(text, encoding="utf-8")
+    assert call("run", "both").code == 0
+    (folder / "slow.toml").write_text(text.replace("= 0.5", "= 50.0"), encoding="utf-8")
+    failed = call("run", "scenarios/both")
+    assert failed.code == 1 and "1 of 2 scenarios miss something: slow." in failed.out
+    results = project / "results" / "both"
+    assert {name: names(results / name) for name in ("fill", "slow")} == {"fill": RESULTS, "slow": RESULTS}
+    page = (results / "report.html").read_text(encoding="utf-8")
+    assert 'href="fill/report.html"' in page and "✗ FAIL" in page and "✓ pass" in page
+
+
 def test_csv_and_netcdf_hold_the_same_numbers(call, project):
     call("run", "fill")
     tables = [read_table(project / "results" / "fill" / f"result.{kind}") for kind in ("nc", "csv")]

@@ -118,10 +118,9 @@ def of_allocation(*row):
 
 
 def of_monitor(*row):
-    """Port's feedback is wrong by the first number, its direction by the second; the rest is of the ship."""
-    state = monitor.MonitorState(5.9, *(row[2] for _ in range(5)))
-    unit = monitor.Unit(5e3, 5e3 + row[0], 0.3, 0.3 + row[1], True)
-    return state, (unit, unit, unit._replace(available=False)), (row[3], -row[3]), (1e4 * row[3], 0.0)
+    """Deviations of all units, a time already beyond, and an error of the ship."""
+    state = monitor.MonitorState(5.9, *(row[1] for _ in range(5)))
+    return state, (row[0],) * 3, (True, True, False), (row[2], -row[2]), (1e4 * row[2], 0.0)
 
 
 def of_known(*row):
@@ -322,8 +321,14 @@ CASES = [
     Case(power.thrust_shares, [(1e5, 2e4, 0.0), (1e9, 3e5, 1.0)], lambda *row: (row,), dict(parameters=POWER)),
     Case(monitor.at_rest, [(1.0,)]),
     Case(
+        monitor.deviation,
+        [(5e3, 9e3, 0.3, 0.4), (0.0, 0.0, 3.1, -3.1), (1e3, -1e3, 0.0, 1.0)],
+        lambda *row: (row[:2], row[2:]),
+        dict(thrust_tolerance=3e3, azimuth_tolerance=0.2),
+    ),
+    Case(
         monitor.step,
-        [(0.0, 0.0, 1.0, 0.5), (4e3, 0.0, 7.0, 5.0), (0.0, 0.4, 0.0, 0.0), (0.0, 6.28, 3.0, 3.0)],
+        [(0.0, 1.0, 0.5), (1.4, 7.0, 5.0), (2.0, 0.0, 0.0), (0.5, 3.0, 3.0)],
         of_monitor,
         dict(h=0.5, parameters=WATCH),
     ),

@@ -19,6 +19,7 @@ from shipcosim.errors import Problem, worth_showing
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.report.theme.views import Outcome
     from shipcosim.scenario import Verdict
 
 WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
@@ -80,6 +81,19 @@ def print_summary(
     console.print(Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence))
     if page is not None:
         console.print(f"Page: {shown_path(page)}", markup=False)
+
+
+def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: Path) -> None:
+    """How several scenarios went: one line each, then all together, and where the page is."""
+    console = Console(highlight=False, soft_wrap=True)
+    listed = Table(box=None, pad_edge=False)
+    for heading in ("", "scenario", ""):
+        listed.add_column(heading, no_wrap=True)
+    for name, one in rows:
+        listed.add_row(Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, Text(one.sentence))
+    console.print(listed)
+    console.print(Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence))
+    console.print(f"Page: {shown_path(page)}", markup=False)
 
 
 def shown_path(path: str | os.PathLike[str]) -> Path:

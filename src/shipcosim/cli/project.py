@@ -45,6 +45,24 @@ def find_scenario(given: str) -> Path:
     raise ShipcosimError(Problem(given, "There is no such scenario file.", remedy))
 
 
+def find_scenarios(given: str) -> list[Path]:
+    """Scenario files of a folder: a path, or a name in the project's scenarios/; empty if it is no folder.
+
+    Raises
+    ------
+    ShipcosimError
+        If the folder holds none.
+    """
+    project = find_project(Path.cwd()) or Path.cwd()
+    folder = next((f for f in (Path(given), project / "scenarios" / given) if f.is_dir()), None)
+    if folder is None:
+        return []
+    found = sorted(folder.glob("*.toml"))
+    if not found:
+        raise ShipcosimError(Problem(given, "There is no scenario file in this folder.", "Name a .toml file."))
+    return found
+
+
 def check_is_system(given: str) -> None:
     """Raise ShipcosimError where what should be a system has the ending of something else."""
     suffix = Path(given).suffix.lower()

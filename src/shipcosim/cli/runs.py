@@ -13,7 +13,7 @@ from shipcosim.cli.exits import FAILED, INTERRUPTED
 from shipcosim.cli.results import check_targets, save
 from shipcosim.cosim import Interrupted, RunError, RunOptions, Snapshot, simulate, write_snapshot
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Scenario, judge
+from shipcosim.scenario import Scenario, Verdict, judge
 from shipcosim.ssp import System
 
 if TYPE_CHECKING:
@@ -23,6 +23,21 @@ if TYPE_CHECKING:
 def simulate_and_save(
     system: System, scenario: Scenario, out: Path, options: RunOptions, store: Path | None = None
 ) -> None:
+    """Run, judge, write, and say how it went; arguments and errors as for `simulated_and_saved`.
+
+    Raises
+    ------
+    typer.Exit
+        If an expectation does not hold, too.
+    """
+    _, verdicts = simulated_and_saved(system, scenario, out, options, store)
+    if not all(verdict.passed for verdict in verdicts):
+        raise typer.Exit(FAILED)
+
+
+def simulated_and_saved(
+    system: System, scenario: Scenario, out: Path, options: RunOptions, store: Path | None = None
+) -> tuple[xarray.Dataset, list[Verdict]]:
     """Run, judge, write, and say how it went.
 
     Parameters
@@ -38,11 +53,17 @@ def simulate_and_save(
     store : Path, optional
         File for the state of the whole system at the end.
 
+    Returns
+    -------
+    xarray.Dataset
+        The run.
+    list of Verdict
+        On what was expected of it.
+
     Raises
     ------
     typer.Exit
-        If an expectation does not hold, or a component fails in its own process, which is a finding and not unusable
-        input; if the run was interrupted.
+        If a component fails in its own process, which is a finding and not unusable input; if the run was interrupted.
     ShipcosimError
         If the input cannot be used or the results cannot be written.
     """
@@ -59,8 +80,7 @@ def simulate_and_save(
     if store:
         for snapshot in snapshots:
             write_snapshot(snapshot, store)
-    if not all(verdict.passed for verdict in verdicts):
-        raise typer.Exit(FAILED)
+    return table, verdicts
 
 
 def _simulated(system: System, scenario: Scenario, out: Path, options: RunOptions) -> xarray.Dataset:

@@ -1,16 +1,26 @@
 """The command `shipcosim run`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Settings, Store, Timeout, Until
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    from shipcosim.options import RunOptions
+    from shipcosim.scenario import Scenario
+    from shipcosim.ssp import System
 
 
 def run(
-    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="A scenario file, or its name in scenarios/.")],
+    scenario: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENARIO", help="A scenario file, or its name in scenarios/; or a folder, for all scenarios in it."
+        ),
+    ],
     out: Out = None,
     engine: Engine = "fmpy",
     settings: Settings = None,
@@ -23,24 +33,57 @@ def run(
 ) -> None:
     """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO.
 
-    A part of a run is checked for what is expected within it.
+    A part of a run is checked for what is expected within it. The scenarios of a folder are run one after another;
+    report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it.
     """
-    from shipcosim.cli.console import print_problems
-    from shipcosim.cli.project import build_stale, find_scenario
+    from shipcosim.cli.project import find_scenario, find_scenarios
     from shipcosim.cli.requests import isolation, parsed_settings
     from shipcosim.cli.runs import simulate_and_save
     from shipcosim.options import RunOptions
+
+    given = parsed_settings(settings or [])
+    options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
+    if files := find_scenarios(scenario):
+        if store or resume:
+            found = "This is a folder of scenarios: there is no one state to store or to go on from."
+            raise ShipcosimError(Problem(scenario, found, "Name one scenario, or leave out --store and --from."))
+        _run_all(files, out or Path("results") / files[0].resolve().parent.name, given, options)
+        return
+    system, happening = _prepared(find_scenario(scenario), given)
+    simulate_and_save(system, happening, out or Path("results") / happening.name, options, store)
+
+
+def _run_all(files: list[Path], out: Path, given: dict[str, object], options: "RunOptions") -> None:
+    """Run scenarios one after another, and write the table of all of them. All are read before the first one runs."""
+    from shipcosim.cli.console import print_overview
+    from shipcosim.cli.exits import FAILED
+    from shipcosim.cli.runs import simulated_and_saved
+    from shipcosim.report import ScenarioRow, digest, overview_outcome, write_overview
+
+    rows = []
+    for system, happening in [_prepared(file, given) for file in files]:
+        table, verdicts = simulated_and_saved(system, happening, out / happening.name, options)
+        page = f"{happening.name}/report.html"
+        rows.append(ScenarioRow(happening.name, happening.description, page, digest(table, verdicts)))
+    page = out / "report.html"
+    write_overview(rows, page, title=f"Scenarios of {files[0].resolve().parent.name}")
+    print_overview(overview_outcome(rows), [(row.name, row.outcome) for row in rows], page)
+    if overview_outcome(rows).kind == "failed":
+        raise typer.Exit(FAILED)
+
+
+def _prepared(path: Path, given: dict[str, object]) -> "tuple[System, Scenario]":
+    """System and scenario of a file, checked, with the values that are set for this run."""
+    from shipcosim.cli.console import print_problems
+    from shipcosim.cli.project import build_stale
     from shipcosim.scenario import check_files, check_times, read_scenario
     from shipcosim.ssp import read_system, with_values
 
-    happening = read_scenario(find_scenario(scenario))
+    happening = read_scenario(path)
     if missing := check_files(happening):
         raise ShipcosimError(missing)
     fmus = build_stale(happening.project)
     system = read_system(happening.system_path, happening.parameter_paths, fmus=[fmus])
-    given = parsed_settings(settings or [])
     with_values(system, given, "--set")
     print_problems(check_times(happening))
-    happening = happening.model_copy(update={"set": happening.set | given})
-    options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
-    simulate_and_save(system, happening, out or Path("results") / happening.name, options, store)
+    return system, happening.model_copy(update={"set": happening.set | given})

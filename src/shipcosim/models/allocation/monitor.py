@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, hypot, pi, where
+from shipcosim.models.core.maths import Arithmetic, hypot, maximum, pi, where
 from shipcosim.models.core.parameters import quantity
 
 _DEG = pi / 180.0
@@ -61,26 +61,6 @@ class MonitorState(NamedTuple):
     force: Arithmetic
 
 
-class Unit(NamedTuple):
-    """Command and feedback of a unit.
-
-    Parameters
-    ----------
-    thrust_cmd, thrust_feedback : float or (...) array or tensor
-        Commanded and reported thrust. [N]
-    azimuth_cmd, azimuth_feedback : like thrust_cmd
-        Commanded and reported direction, 0 of a unit that does not turn. [rad]
-    available : bool or (...) array or tensor of bool
-        Whether the unit runs; one that does not is no fault. [1]
-    """
-
-    thrust_cmd: Arithmetic
-    thrust_feedback: Arithmetic
-    azimuth_cmd: Arithmetic
-    azimuth_feedback: Arithmetic
-    available: Arithmetic
-
-
 class Alarms(NamedTuple):
     """What the monitor says.
 
@@ -120,9 +100,46 @@ def at_rest(like: Arithmetic = 0.0) -> MonitorState:
     return MonitorState(*(0.0 * like,) * 6)
 
 
+def deviation(
+    thrusts: tuple[Arithmetic, Arithmetic],
+    azimuths: tuple[Arithmetic, Arithmetic] = (0.0, 0.0),
+    *,
+    thrust_tolerance: float,
+    azimuth_tolerance: float,
+) -> Arithmetic:
+    """How far the feedback of a unit is from its command, over the tolerance: above 1 is beyond it.
+
+    Parameters
+    ----------
+    thrusts : tuple of two floats or (...) arrays or tensors
+        Commanded and reported thrust. [N, N]
+    azimuths : tuple of two, like thrusts
+        Commanded and reported direction; none of a unit that does not turn. [rad, rad]
+    thrust_tolerance, azimuth_tolerance : float
+        Tolerances. [N, rad]
+
+    Returns
+    -------
+    like thrusts
+        The larger of both ratios. [1]
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    >>> deviation((10e3, 8.5e3), (0.0, 0.1), thrust_tolerance=3e3, azimuth_tolerance=0.05)
+    2.0
+    """
+    of_thrust = abs(thrusts[0] - thrusts[1]) / thrust_tolerance
+    return maximum(of_thrust, abs(wrap(azimuths[0] - azimuths[1])) / azimuth_tolerance)
+
+
 def step(
     state: MonitorState,
-    units: tuple[Unit, Unit, Unit],
+    deviations: tuple[Arithmetic, Arithmetic, Arithmetic],
+    available: tuple,
     errors: tuple[Arithmetic, Arithmetic],
     bias: tuple[Arithmetic, Arithmetic],
     h: float,
@@ -135,11 +152,13 @@ def step(
     ----------
     state : MonitorState
         State at the start.
-    units : tuple of three Unit
-        Port, starboard and tunnel.
-    errors : tuple of two floats or (...) arrays or tensors
+    deviations : tuple of three floats or (...) arrays or tensors
+        `deviation` of port, starboard and tunnel. [1]
+    available : tuple of three bools or (...) arrays or tensors of bool
+        Whether the units run; one that does not is not watched. [1]
+    errors : tuple of two, like deviations
         Distance from the reference, and heading off it. [m, rad]
-    bias : tuple of two floats or (...) arrays or tensors
+    bias : tuple of two, like deviations
         Estimated force forward and to starboard that neither thrust nor measured wind explains. [N, N]
     h : float
         Time since the last step. [s]
@@ -157,20 +176,13 @@ def step(
     practice of DP systems; tolerances and times are assumed.
     """
     p = parameters
-    tolerances = (p.azimuth_thrust_tolerance, p.azimuth_thrust_tolerance, p.tunnel_thrust_tolerance)
-    times = []
-    for time, unit, tolerance in zip(state[:3], units, tolerances, strict=True):
-        off = abs(unit.thrust_cmd - unit.thrust_feedback) > tolerance
-        off = off | (abs(wrap(unit.azimuth_cmd - unit.azimuth_feedback)) > p.azimuth_tolerance)
-        kept = where(time >= p.fault_delay, time, 0.0)
-        times.append(where(off & unit.available, time + h, kept))
-    beyond = (
-        errors[0] > p.position_limit,
-        abs(errors[1]) > p.heading_limit,
-        hypot(*bias) > p.force_limit,
-    )
-    times += [where(over, time + h, 0.0) for over, time in zip(beyond, state[3:], strict=True)]
-    return MonitorState(*times)
+    units = [
+        where((off > 1.0) & on, time + h, where(time >= p.fault_delay, time, 0.0))
+        for time, off, on in zip(state[:3], deviations, available, strict=True)
+    ]
+    beyond = (errors[0] > p.position_limit, abs(errors[1]) > p.heading_limit, hypot(*bias) > p.force_limit)
+    ship = [where(over, time + h, 0.0) for time, over in zip(state[3:], beyond, strict=True)]
+    return MonitorState(*units, *ship)
 
 
 def alarms(state: MonitorState, *, parameters: MonitorParameters) -> Alarms:

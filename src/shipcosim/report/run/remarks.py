@@ -30,7 +30,8 @@ def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
     list of str
     """
     said = [*parsed(table.attrs.get("remarks", "[]")), *_not_finite(shown)]
-    return said + _failures(shown, roles) + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
+    said += _failures(shown, roles) + _alarms(shown, roles)
+    return said + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
 
 
 _DERIVED = {*ERRORS.values(), FROM_REFERENCE, FROM_EXPECTED}
@@ -79,6 +80,16 @@ def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
             until = shown["time"].values[np.argmax(times)]
             said.append(f"{component} has no trusted position for up to {times.max():.0f} s, until {until:g} s.")
     return said
+
+
+def _alarms(shown: Dataset, roles: Roles) -> list[str]:
+    """Alarms that came on, and when: signals that end in _alarm or _faulty."""
+    begin: dict[float, list[str]] = {}
+    for component, connectors in roles.connectors.items():
+        for signal in (join(component, name) for name in connectors if name.endswith(("_alarm", "_faulty"))):
+            if signal in shown and (on := shown[signal].values > 0.5).any():
+                begin.setdefault(shown["time"].values[np.argmax(on)], []).append(signal)
+    return [f"Alarm from {time:g} s on: {', '.join(begin[time])}." for time in sorted(begin)]
 
 
 def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:

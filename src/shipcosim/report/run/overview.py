@@ -1,0 +1,78 @@
+"""The page of several scenarios: one table of what happened, what must hold, what was measured, and the verdict."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.report.run.expectations import Judged
+from shipcosim.report.run.page import Digest
+from shipcosim.report.theme.pages import render
+from shipcosim.report.theme.views import Fact, Outcome, Page
+from shipcosim.series import write_file
+
+
+class ScenarioRow(NamedTuple):
+    """A scenario in the table: its name, what happens, its page relative to this one, and how it went."""
+
+    name: str
+    description: str
+    page: str
+    digest: Digest
+
+    @property
+    def outcome(self) -> Outcome:
+        """What the run comes to."""
+        return self.digest.outcome
+
+    @property
+    def expectations(self) -> tuple[Judged, ...]:
+        """What must hold, with the worst value of each."""
+        return self.digest.expectations
+
+    @property
+    def remarks(self) -> list[str]:
+        """What must not be overlooked: failures, alarms and their times."""
+        return self.digest.remarks
+
+
+@dataclass(frozen=True)
+class OverviewPage(Page):
+    """What the page of several scenarios shows.
+
+    Attributes
+    ----------
+    rows : tuple of ScenarioRow
+    """
+
+    rows: tuple[ScenarioRow, ...]
+
+
+def overview_outcome(rows: Sequence[ScenarioRow]) -> Outcome:
+    """What the scenarios come to, taken together."""
+    missed = [row.name for row in rows if row.outcome.kind not in ("passed", "plain")]
+    if missed:
+        return Outcome("failed", "FAIL", f"{len(missed)} of {len(rows)} scenarios miss something: {', '.join(missed)}.")
+    return Outcome("passed", "PASS", f"All {len(rows)} scenarios hold.")
+
+
+def write_overview(rows: Sequence[ScenarioRow], path: str | os.PathLike[str], *, title: str) -> None:
+    """Write the page of several scenarios.
+
+    Parameters
+    ----------
+    rows : sequence of ScenarioRow
+        The scenarios, in the order of the table.
+    path : path
+        HTML file; it is there completely or not at all.
+    title : str
+        Its heading.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be written.
+    """
+    facts = (Fact("Scenarios", str(len(rows))),)
+    page = OverviewPage(title, facts, overview_outcome(rows), (), (), tuple(rows))
+    write_file(path, render("run/templates/overview.html.jinja", page).encode())
