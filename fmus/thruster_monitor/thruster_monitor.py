@@ -2,6 +2,7 @@
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models.allocation.monitor import MonitorParameters, alarms, at_rest, deviation, step
+from shipcosim.models.core.sampling import samples_due
 
 
 class ThrusterMonitor(Fmu):
@@ -38,9 +39,17 @@ class ThrusterMonitor(Fmu):
     monitor = Parameters(MonitorParameters)
 
     def start(self):
+        self.looked = samples_due(self.start_time, self.monitor.monitor_period) - 1
         self._show(at_rest())
 
     def step(self, t, h):
+        due = samples_due(t, self.monitor.monitor_period)
+        if self.looked < due:
+            since = (due - self.looked) * self.monitor.monitor_period
+            self.looked = due
+            self._look(since)
+
+    def _look(self, h):
         available = (self.port_available, self.starboard_available, self.tunnel_available)
         errors, bias = (self.position_error, self.heading_error), (self.tau_X_bias, self.tau_Y_bias)
         self._show(step(self.state, self._deviations(), available, errors, bias, h, parameters=self.monitor))

@@ -40,6 +40,9 @@ class MonitorParameters:
         40e3, "N", "unexplained force that is no alarm", "assumed: above 25 kN, the most in the scenarios' weather"
     )
     alarm_delay: float = quantity(2.0, "s", "time beyond a limit after which there is an alarm", "assumed")
+    monitor_period: float = quantity(
+        0.2, "s", "time between two looks at commands and feedback", "assumed: short beside the delays", minimum=1e-3
+    )
 
 
 class MonitorState(NamedTuple):
