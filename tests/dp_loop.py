@@ -175,7 +175,7 @@ def start(system, design, inputs, variations):
     show = _show(0.0, ship, air, current, system, design)
     truth = _truth(ship, show)
     measured = sensors.start(0.0, truth, inputs.sensor_failures, parameters=system.sensors, mast=system.mast)
-    votes = voting.start(measured.telegrams)
+    votes = voting.start(0.0, measured.telegrams, mast=system.known_mast, wind=system.known_wind)
     estimate = observer.at_rest(voting.measurement(votes).motion)
     units = (
         drive.at_rest(system.port_azimuth_start + zero),
@@ -195,7 +195,7 @@ def start(system, design, inputs, variations):
         votes,
         reference.at_rest(zero, zero, zero),
         estimate,
-        control.at_rest(voting.wind_load(votes, estimate, mast=system.known_mast, wind=system.known_wind)),
+        control.at_rest(votes.wind.load),
         0,
         allocation.at_rest((zero, zero, zero)),
     )
@@ -315,21 +315,22 @@ def signals(t, state, system):
     rows |= _named("reference", "x_d y_d psi_d", (desired.x, desired.y, wrap(desired.psi)))
     e, law = state.estimate, state.control
     rows |= _named("controller", "x_hat y_hat psi_hat u_hat v_hat r_hat", (e.x, e.y, wrap(e.psi), e.u, e.v, e.r))
-    rows |= _said(state.voting, zero, system)
+    rows |= _said(state, zero, system)
     rows |= _named("controller", "tau_X_cmd tau_Y_cmd tau_N_cmd", law[-3:])
     a = state.allocation
     rows |= _named("allocator", "port_thrust_cmd starboard_thrust_cmd tunnel_thrust_cmd tau_X tau_Y tau_N", a)
     return rows | {"allocator.saturated": zero + a.saturated}
 
 
-def _said(votes, zero, system):
+def _said(state, zero, system):
     """What the controller says of its sensors."""
+    votes, period = state.voting, system.observer.sample_period
     positions, compasses = votes.positions, votes.compasses
     given = (*positions.fixes, *compasses.headings)
     rejected = [zero + (one.valid > use) for one, use in zip(given, (*positions.used, *compasses.used), strict=True)]
     names = "position_1_rejected position_2_rejected position_3_rejected compass_1_rejected compass_2_rejected"
     used = zero + sum(positions.used), zero + sum(compasses.used), zero + (votes.wind.wind.valid < 0.5)
-    reckoned = voting.dead_reckoning_time(votes, parameters=system.voting)
+    reckoned = voting.dead_reckoning_time(max(0, state.samples - 1) * period, votes, parameters=system.voting)
     return _named("controller", names, rejected) | _named(
         "controller", "positions_used compasses_used wind_rejected dead_reckoning_time", (*used, reckoned)
     )
@@ -397,7 +398,13 @@ def _controlled(t, state, system, design):
     allocated = state.allocation[3:6]
     while samples < samples_due(t, system.observer.sample_period):
         votes, estimate = voting.step(
-            samples * period, votes, state.sensors.telegrams, estimate, period, parameters=system.voting
+            samples * period,
+            votes,
+            state.sensors.telegrams,
+            estimate,
+            parameters=system.voting,
+            mast=system.known_mast,
+            wind=system.known_wind,
         )
         estimate = observer.step(
             estimate,
@@ -412,7 +419,7 @@ def _controlled(t, state, system, design):
             estimate,
             state.reference,
             allocated,
-            voting.wind_load(votes, estimate, mast=system.known_mast, wind=system.known_wind),
+            votes.wind.load,
             period,
             ship=system.ship,
             parameters=system.control,

@@ -9,6 +9,8 @@ import pytest
 from dp_loop import dp_system, simulate
 from ships import equipped
 
+from shipcosim.models.ship.sensors import ReferenceFailure, SensorFailures
+
 NORTH_EAST = math.pi / 4.0
 MODERATE = dict(significant_wave_height=0.3, peak_period=5.0, waves_from=NORTH_EAST)
 ROUGH = dict(significant_wave_height=0.5, peak_period=6.0, waves_from=NORTH_EAST)
@@ -159,6 +161,23 @@ def test_half_the_step_changes_the_track_by_less_than_5_cm():
     coarse = simulate(system, events, variations=2, stop_time=100.0, every=20)
     fine = simulate(system, events, variations=2, stop_time=100.0, h=0.025, every=40)
     assert np.hypot(coarse["vessel.x"] - fine["vessel.x"], coarse["vessel.y"] - fine["vessel.y"]).max() < 0.05
+
+
+@pytest.mark.slow
+def test_a_minute_of_dead_reckoning_ends_within_5_m_on_20_seeds_and_the_thrust_does_not_jump():
+    """Seeds that nothing was tuned on."""
+    lost = SensorFailures(positions=(ReferenceFailure(lost=True),) * 3)
+    events = [(0.0, WIND_8), (300.0, dict(sensor_failures=lost)), (360.0, dict(sensor_failures=SensorFailures()))]
+    run = simulate(with_seeds(range(3001, 3021), **MODERATE), events, variations=20, stop_time=420.0, every=10)
+    time, distance = run["time"], np.hypot(run["vessel.x"], run["vessel.y"])
+    last = distance[np.argmin(np.abs(time - 360.0))]
+    print(f"after 60 s: {last.mean():.2f} m in the mean, {last.max():.2f} m at worst")
+    assert last.max() < 5.0 and distance[time > 400.0].max() < 1.0
+    assert run["controller.dead_reckoning_time"].max(axis=0).min() > 59.0
+    before, at_return = (time > 200.0) & (time < 300.0), (time > 358.0) & (time < 380.0)
+    for unit in ("port", "starboard", "tunnel"):
+        changes = np.abs(np.diff(run[f"{unit}.thrust"], axis=0))
+        assert changes[at_return[1:]].max() < 1.5 * changes[before[1:]].max()
 
 
 @pytest.mark.slow

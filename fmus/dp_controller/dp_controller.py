@@ -87,9 +87,11 @@ class DpController(Fmu):
     def start(self):
         self.design = observer.design(self.ship, self.noise)
         self.taken = samples_due(self.start_time, self.noise.sample_period) - 1
-        self.voting = voting.start(self._telegrams())
+        given = self._telegrams(self._fixes())
+        self.voting = voting.start(self.start_time, given, mast=self.mast, wind=self.wind)
         estimate = observer.at_rest(voting.measurement(self.voting).motion)
-        self._show(estimate, control.at_rest(self._wind_load(estimate)))
+        self._show(estimate, control.at_rest(self.voting.wind.load))
+        self._say(self.start_time)
 
     def step(self, t, h):
         due = samples_due(t, self.noise.sample_period)
@@ -100,8 +102,15 @@ class DpController(Fmu):
     def _sample(self, t):
         allocated = (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated)
         period = self.noise.sample_period
+        fixes = self._fixes() if self.position_time_meas > self.voting.position_time else self.voting.positions.fixes
         self.voting, estimate = voting.step(
-            t, self.voting, self._telegrams(), self.estimate, period, parameters=self.limits
+            t,
+            self.voting,
+            self._telegrams(fixes),
+            self.estimate,
+            parameters=self.limits,
+            mast=self.mast,
+            wind=self.wind,
         )
         estimate = observer.step(
             estimate,
@@ -116,20 +125,24 @@ class DpController(Fmu):
             estimate,
             self._desired(),
             allocated,
-            self._wind_load(estimate),
+            self.voting.wind.load,
             period,
             ship=self.ship,
             parameters=self.law,
         )
         self._show(estimate, state)
+        self._say(t)
 
-    def _telegrams(self):
+    def _fixes(self):
+        return (
+            Fix(self.x_1_meas, self.y_1_meas, self.u_1_meas, self.v_1_meas, float(self.position_1_valid)),
+            Fix(self.x_2_meas, self.y_2_meas, self.u_2_meas, self.v_2_meas, float(self.position_2_valid)),
+            Fix(self.x_3_meas, self.y_3_meas, self.u_3_meas, self.v_3_meas, float(self.position_3_valid)),
+        )
+
+    def _telegrams(self, fixes):
         return Telegrams(
-            (
-                Fix(self.x_1_meas, self.y_1_meas, self.u_1_meas, self.v_1_meas, float(self.position_1_valid)),
-                Fix(self.x_2_meas, self.y_2_meas, self.u_2_meas, self.v_2_meas, float(self.position_2_valid)),
-                Fix(self.x_3_meas, self.y_3_meas, self.u_3_meas, self.v_3_meas, float(self.position_3_valid)),
-            ),
+            fixes,
             (
                 Heading(self.psi_1_meas, float(self.compass_1_valid)),
                 Heading(self.psi_2_meas, float(self.compass_2_valid)),
@@ -154,9 +167,6 @@ class DpController(Fmu):
             self.r_d_dot,
         )
 
-    def _wind_load(self, estimate):
-        return voting.wind_load(self.voting, estimate, mast=self.mast, wind=self.wind)
-
     def _show(self, estimate, state):
         self.estimate, self.state = estimate, state
         self.tau_X_cmd, self.tau_Y_cmd, self.tau_N_cmd = state.tau_X, state.tau_Y, state.tau_N
@@ -165,17 +175,17 @@ class DpController(Fmu):
         self.tau_X_bias, self.tau_Y_bias = to_body(estimate.psi, estimate.bias_north, estimate.bias_east)
         self.tau_N_bias = estimate.bias_N
         self.position_error, self.heading_error = control.errors(estimate, self._desired())
-        self._say()
 
-    def _say(self):
+    def _say(self, t):
         """Outputs on which sensors are believed."""
         positions, compasses = self.voting.positions, self.voting.compasses
-        self.dead_reckoning_time = voting.dead_reckoning_time(self.voting, parameters=self.limits)
-        self.positions_used, self.compasses_used = round(sum(positions.used)), round(sum(compasses.used))
-        self.position_1_rejected, self.position_2_rejected, self.position_3_rejected = (
-            fix.valid > used for fix, used in zip(positions.fixes, positions.used, strict=True)
-        )
-        self.compass_1_rejected, self.compass_2_rejected = (
-            heading.valid > used for heading, used in zip(compasses.headings, compasses.used, strict=True)
-        )
+        self.dead_reckoning_time = voting.dead_reckoning_time(t, self.voting, parameters=self.limits)
+        (one, two), (first, second) = compasses.used, compasses.headings
+        self.compasses_used = round(one + two)
+        self.compass_1_rejected, self.compass_2_rejected = first.valid > one, second.valid > two
+        if self.voting.position_new:
+            self.positions_used = round(sum(positions.used))
+            self.position_1_rejected, self.position_2_rejected, self.position_3_rejected = (
+                fix.valid > used for fix, used in zip(positions.fixes, positions.used, strict=True)
+            )
         self.wind_rejected = self.voting.wind.wind.valid < 0.5

@@ -5,6 +5,8 @@ from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.ship import sensors
 from shipcosim.models.ship.mast import MastParameters
 
+HEALTHY = sensors.SensorFailures().positions
+
 
 class Sensors(Fmu):
     """Three position references, two compasses, a rate gyro and an anemometer: sampled, late, noisy, and failing."""
@@ -86,13 +88,15 @@ class Sensors(Fmu):
     mast = Parameters(MastParameters)
 
     def start(self):
-        truth, failures = self._truth(), self._failures()
-        self._show(sensors.start(self.start_time, truth, failures, parameters=self.model, mast=self.mast))
+        failures = self._failures(self._references())
+        self._show(sensors.start(self.start_time, self._truth(), failures, parameters=self.model, mast=self.mast))
 
     def step(self, t, h):
-        if self.state.taken < samples_due(t, self.model.period):
-            truth, failures = self._truth(), self._failures()
-            self._show(sensors.step(t, self.state, truth, failures, parameters=self.model, mast=self.mast))
+        taken, due = self.state.taken, samples_due(t, self.model.period)
+        if taken < due:
+            position_due = taken % self.model.clocks[0][0] == 0 or due - taken > 1
+            failures = self._failures(self._references() if position_due else HEALTHY)
+            self._show(sensors.step(t, self.state, self._truth(), failures, parameters=self.model, mast=self.mast))
 
     def _truth(self):
         return sensors.Truth(
@@ -106,8 +110,8 @@ class Sensors(Fmu):
             self.apparent_wind_from,
         )
 
-    def _failures(self):
-        positions = (
+    def _references(self):
+        return (
             sensors.ReferenceFailure(
                 self.position_1_lost,
                 self.position_1_frozen,
@@ -133,6 +137,8 @@ class Sensors(Fmu):
                 self.position_3_east_rate,
             ),
         )
+
+    def _failures(self, positions):
         compasses = (
             sensors.CompassFailure(
                 self.compass_1_lost, self.compass_1_frozen, self.compass_1_offset, self.compass_1_rate

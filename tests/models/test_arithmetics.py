@@ -144,9 +144,9 @@ def of_fixes(*row):
 
 def of_positions(*row):
     """The telegrams after others, when one of them has moved."""
-    before = position_voting.start(of_fixes(*(0.5 * value for value in row[:6])))
-    before = before._replace(age=row[9], memory=row[:6], north_shift=row[6], east_shift=row[7])
-    return before, of_fixes(*row), Motion(*row[6:9], 0.2, -0.1, 0.0), 0.0 * row[0], 1.0
+    before = position_voting.start(0.0, of_fixes(*(0.5 * value for value in row[:6])))
+    before = before._replace(trusted_at=-row[9], memory=row[:6], north_shift=row[6], east_shift=row[7])
+    return 0.0, before, of_fixes(*row), Motion(*row[6:9], 0.2, -0.1, 0.0), 0.0 * row[0], 1.0
 
 
 def of_compasses(*row):
@@ -162,9 +162,10 @@ def of_voting(*row):
 
 def of_votes(*row):
     """Voting that has gone on for 2 s, and the estimate."""
-    state, estimate = voting.start(of_voting(*row)), observer.Estimate(*row[6:], *(0.0 * row[0],) * 11)
-    later = of_voting(*(1.01 * value for value in row))._replace(position_time=2.0, heading_time=2.0)
-    return voting.step(2.4, state, later, estimate, 2.0, parameters=voting.VotingParameters())
+    state = voting.start(0.0, of_voting(*row), **AIR)
+    estimate = observer.Estimate(*row[6:], *(0.0 * row[0],) * 11)
+    later = of_voting(*(1.01 * value for value in row))._replace(position_time=2.0, heading_time=2.0, wind_time=2.0)
+    return voting.step(2.4, state, later, estimate, parameters=voting.VotingParameters(), **AIR)
 
 
 def of_votes_alone(*row):
@@ -178,14 +179,15 @@ FIXES = [
     (9.1, 0.2, 9.2, 0.1, 9.4, -0.2, 0.0, 0.1, 3.1, 90.0),
 ]
 BELIEF, MAST = voting.VotingParameters(), mast.MastParameters(mast_x=3.0, mast_y=-1.0, mast_height=15.0)
+AIR = dict(mast=MAST, wind=parameters(wind.WindParameters))
 CASES = [
     *(
         Case(f, [(8.0, -2.0, *w) for w in WATER], constants=dict(mast=MAST))
         for f in (mast.wind_at_mast, mast.wind_from_mast)
     ),
-    Case(position_voting.start, FIXES, lambda *row: (of_fixes(*row),)),
+    Case(position_voting.start, FIXES, lambda *row: (0.0, of_fixes(*row))),
     Case(position_voting.step, FIXES, of_positions, dict(parameters=BELIEF)),
-    Case(position_voting.later, FIXES, lambda *row: (of_positions(*row)[0], 0.1), dict(parameters=BELIEF)),
+    Case(position_voting.faded, FIXES, lambda *row: (of_positions(*row)[1], 0.1), dict(parameters=BELIEF)),
     Case(compass_voting.start, PAIRS, lambda *row: (tuple(Heading(psi, 1.0 + 0.0 * psi) for psi in row),)),
     Case(
         compass_voting.step,
@@ -193,11 +195,10 @@ CASES = [
         of_compasses,
         dict(parameters=BELIEF),
     ),
-    Case(voting.start, FIXES, lambda *row: (of_voting(*row),)),
+    Case(voting.start, FIXES, lambda *row: (0.0, of_voting(*row)), AIR),
     Case(of_votes, FIXES),
     Case(voting.measurement, FIXES, of_votes_alone),
-    Case(voting.dead_reckoning_time, FIXES, of_votes_alone, dict(parameters=BELIEF)),
-    Case(voting.wind_load, FIXES, of_votes, dict(mast=MAST, wind=parameters(wind.WindParameters))),
+    Case(voting.dead_reckoning_time, FIXES, lambda *row: (4.0, *of_votes_alone(*row)), dict(parameters=BELIEF)),
     *(Case(getattr(maths, name), ANGLES) for name in ("sin", "cos", "exp", "floor")),
     Case(angles.wrap, ANGLES),
     *(Case(getattr(maths, name), PAIRS) for name in ("atan2", "hypot", "minimum", "maximum")),

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, exp, maximum, minimum, where
+from shipcosim.models.core.maths import Arithmetic, exp, minimum, where
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.telegrams import Heading
 
@@ -137,47 +137,57 @@ def step(
     CompassVote
         State of the vote; `psi` is the heading to use, the predicted one where no compass is believed.
     """
-    p, turned = parameters, dt * r
+    p, (first, second), (one, two) = parameters, headings, state.headings
     keep, gain = exp(-dt / p.compass_memory), 1.0 - exp(-dt / p.compass_filter)
-    unchanged, usable, memory = [], [], []
-    for new, old, time, off in zip(headings, state.headings, state.unchanged, state.memory, strict=True):
-        moved = wrap(new.psi - old.psi)
-        unchanged.append(where(moved == 0.0, time + dt, 0.0 * time))
-        memory.append(where(old.valid > 0.5, keep * off + moved - turned, wrap(new.psi - predicted)))
-    for i, heading in enumerate(headings):
-        others = minimum(quiet, unchanged[1 - i])
-        frozen = (unchanged[i] >= p.compass_freeze_time) & (others < p.compass_freeze_time)
-        usable.append(where(frozen, 0.0, heading.valid))
-    both, difference = usable[0] * usable[1], wrap(headings[0].psi - headings[1].psi)
-    apart = both * (state.apart + gain * wrap(difference - state.apart))
-    passed = _passed(state, usable, memory, abs(apart) > p.compass_apart_max, p)
-    agreed = _agreed(state, headings, usable, passed, apart, predicted, dt, p)
-    believed = tuple(
-        maximum(where(heading.valid > 0.5, ok, was), where(time >= p.compass_return_time, 1.0, 0.0))
-        for heading, ok, was, time in zip(headings, passed, state.believed, agreed, strict=True)
+    off_one, off_two = wrap(first.psi - predicted), wrap(second.psi - predicted)
+    moved_one, moved_two = wrap(first.psi - one.psi), wrap(second.psi - two.psi)
+    memory = (
+        where(one.valid > 0.5, keep * state.memory[0] + moved_one - dt * r, off_one),
+        where(two.valid > 0.5, keep * state.memory[1] + moved_two - dt * r, off_two),
     )
-    psi, age = _mean(headings, passed, predicted), where(sum(passed) > 0.5, 0.0, state.age + dt)
-    return CompassVote(headings, tuple(unchanged), tuple(memory), apart, believed, agreed, passed, psi, age)
+    unchanged = (
+        where(moved_one == 0.0, state.unchanged[0] + dt, 0.0 * dt),
+        where(moved_two == 0.0, state.unchanged[1] + dt, 0.0 * dt),
+    )
+    usable = (
+        _usable(first, unchanged[0], minimum(quiet, unchanged[1]), p.compass_freeze_time),
+        _usable(second, unchanged[1], minimum(quiet, unchanged[0]), p.compass_freeze_time),
+    )
+    difference = wrap(first.psi - second.psi - state.apart)
+    apart = usable[0] * usable[1] * (state.apart + gain * difference)
+    passed = _passed(state, usable, memory, abs(apart) > p.compass_apart_max, p)
+    limit, between = p.compass_gyro_max + p.gyro_drift * state.age, abs(apart) - p.compass_apart_max
+    agreed = (
+        _agreed(state.agreed[0] + dt, usable[0], passed[1], between, abs(off_one) - limit),
+        _agreed(state.agreed[1] + dt, usable[1], passed[0], between, abs(off_two) - limit),
+    )
+    believed = (
+        where((agreed[0] >= p.compass_return_time), 1.0, where(first.valid > 0.5, passed[0], state.believed[0])),
+        where((agreed[1] >= p.compass_return_time), 1.0, where(second.valid > 0.5, passed[1], state.believed[1])),
+    )
+    psi, age = _mean(headings, passed, predicted), where(passed[0] + passed[1] > 0.5, 0.0 * dt, state.age + dt)
+    return CompassVote(headings, unchanged, memory, apart, believed, agreed, passed, psi, age)
+
+
+def _usable(heading, unchanged, others, limit):
+    """1 of a compass that is valid, and not frozen: unchanged while others change."""
+    return where((unchanged >= limit) & (others < limit), 0.0, heading.valid)
 
 
 def _passed(state, usable, memory, disagree, p):
     """1 of each compass that is believed still: of two that disagree, the one that turned with the gyro."""
-    first, second = (a * b for a, b in zip(usable, state.believed, strict=True))
+    first, second = usable[0] * state.believed[0], usable[1] * state.believed[1]
     apart = disagree & (first * second > 0.5)
-    off = abs(memory[0]), abs(memory[1])
+    one, two = abs(memory[0]), abs(memory[1])
     return (
-        where((off[0] > p.compass_gyro_max) | (apart & (off[0] >= off[1])), 0.0, first),
-        where((off[1] > p.compass_gyro_max) | (apart & (off[1] > off[0])), 0.0, second),
+        where((one > p.compass_gyro_max) | (apart & (one >= two)), 0.0, first),
+        where((two > p.compass_gyro_max) | (apart & (two > one)), 0.0, second),
     )
 
 
-def _agreed(state, headings, usable, passed, apart, predicted, dt, p):
-    """How long each compass has agreed with the other where that is used, else with the prediction."""
-    limit, found = p.compass_gyro_max + p.gyro_drift * state.age, []
-    for i, heading in enumerate(headings):
-        off = where(passed[1 - i] > 0.5, abs(apart) - p.compass_apart_max, abs(wrap(heading.psi - predicted)) - limit)
-        found.append(where(off <= 0.0, usable[i], 0.0) * (state.agreed[i] + dt))
-    return tuple(found)
+def _agreed(time, usable, other, between, alone):
+    """How long a compass has agreed with the other where that is used, else with the prediction."""
+    return where(where(other > 0.5, between, alone) <= 0.0, usable * time, 0.0 * time)
 
 
 def _mean(headings, weights, otherwise):

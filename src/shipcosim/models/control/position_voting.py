@@ -92,8 +92,8 @@ class PositionVote(NamedTuple):
         Measured velocity over ground. [m/s]
     north_shift, east_shift : like north_rate
         What is added to positions after dead reckoning, fading, so that the estimate returns smoothly. [m]
-    age : like north_rate
-        Time since the last trusted position. [s]
+    trusted_at : like north_rate
+        Time at which the last trusted position came. [s]
     """
 
     fixes: tuple[Fix, Fix, Fix]
@@ -108,14 +108,16 @@ class PositionVote(NamedTuple):
     east_rate: Arithmetic
     north_shift: Arithmetic
     east_shift: Arithmetic
-    age: Arithmetic
+    trusted_at: Arithmetic
 
 
-def start(fixes: tuple[Fix, Fix, Fix]) -> PositionVote:
+def start(t: float, fixes: tuple[Fix, Fix, Fix]) -> PositionVote:
     """Vote at the start: the mean of what is valid.
 
     Parameters
     ----------
+    t : float
+        Time. [s]
     fixes : tuple of three Fix
         First telegrams.
 
@@ -127,10 +129,12 @@ def start(fixes: tuple[Fix, Fix, Fix]) -> PositionVote:
     zero = 0.0 * fixes[0].x
     used = tuple(zero + fix.valid for fix in fixes)
     three, six, one = (zero,) * 3, (zero,) * 6, zero + 1.0
-    return PositionVote(fixes, three, six, six, (one,) * 3, three, used, _mean(fixes, used), *(zero,) * 5)
+    mean = _mean(fixes, used)
+    return PositionVote(fixes, three, six, six, (one,) * 3, three, used, mean, zero, zero, zero, zero, zero + t)
 
 
 def step(
+    t: float,
     state: PositionVote,
     fixes: tuple[Fix, Fix, Fix],
     predicted: Motion,
@@ -143,8 +147,10 @@ def step(
 
     Parameters
     ----------
+    t : float
+        Time. [s]
     state : PositionVote
-        State after the telegrams before.
+        State after the telegrams before, faded by `faded`.
     fixes : tuple of three Fix
         Telegrams.
     predicted : Motion
@@ -161,19 +167,19 @@ def step(
     PositionVote
         State of the vote; `fix` is the position to use.
     """
-    p = parameters
+    p, age = parameters, t - state.trusted_at
     unchanged, usable = _usable(state, fixes, quiet, dt, p)
     candidates = tuple(a * b for a, b in zip(usable, state.believed, strict=True))
     rates = _rates(fixes, candidates, predicted)
     memory = _memory(state, fixes, predicted, rates, dt, p)
     apart, disagree = _pairs(state, fixes, usable, dt, p)
-    limit = p.position_innovation_max + 0.5 * p.position_model_error * state.age * state.age
+    limit = p.position_innovation_max + 0.5 * p.position_model_error * age * age
     candidates = _near_if_any(state, fixes, candidates, disagree, predicted, limit)
     candidates = _without_worst(candidates, disagree, memory)
     mean = _mean(fixes, candidates)
     off_north, off_east = _innovation(state, mean, predicted)
     near = where(hypot(off_north, off_east) <= limit, mean.valid, 0.0)
-    back = near * where(state.age > p.position_timeout, 1.0, 0.0)
+    back = near * where(age > p.position_timeout, 1.0, 0.0)
     north, east = state.north_shift - back * off_north, state.east_shift - back * off_east
     used = tuple(near * candidate for candidate in candidates)
     agreed = _agreed(state, fixes, usable, used, disagree, predicted, limit, dt)
@@ -189,14 +195,14 @@ def step(
         *rates,
         north,
         east,
-        where(near > 0.5, 0.0, state.age),
+        where(near > 0.5, t, state.trusted_at),
     )
 
 
-def later(
+def faded(
     state: PositionVote, dt: float, *, parameters: PositionVotingParameters
 ) -> tuple[PositionVote, Arithmetic, Arithmetic]:
-    """State some time later without telegrams, and how far the fading shift moves the estimate.
+    """State with the shift of some time later, and how far that moves the estimate.
 
     Parameters
     ----------
@@ -209,13 +215,13 @@ def later(
 
     Returns
     -------
-    tuple of PositionVote and two like state.age
+    tuple of PositionVote and two like state.north_shift
         State, and what is to be added to the estimated position. [m, m]
     """
     keep = exp(-dt / parameters.realignment_time)
     north, east = keep * state.north_shift, keep * state.east_shift
     moved = north - state.north_shift, east - state.east_shift
-    return state._replace(north_shift=north, east_shift=east, age=state.age + dt), *moved
+    return state._replace(north_shift=north, east_shift=east), *moved
 
 
 def _usable(state, fixes, quiet, dt, p):

@@ -49,11 +49,14 @@ class WindVote(NamedTuple):
         How long it has not changed. [s]
     share : like unchanged
         Share of the wind's load to feed forward. [1]
+    load : tuple of three, like unchanged
+        Load of the wind to feed forward. [N, N, N.m]
     """
 
     wind: Wind
     unchanged: Arithmetic
     share: Arithmetic
+    load: Load
 
 
 class VotingState(NamedTuple):
@@ -69,7 +72,7 @@ class VotingState(NamedTuple):
         Of the anemometer.
     r : float or (...) array or tensor
         Yaw rate of the gyro. [rad/s]
-    position_time, heading_time : float
+    position_time, heading_time, wind_time : float
         Times of the latest samples. [s]
     position_new, heading_new : float
         1 where positions, or headings, came anew at the last step. [1]
@@ -81,31 +84,38 @@ class VotingState(NamedTuple):
     r: Arithmetic
     position_time: float
     heading_time: float
+    wind_time: float
     position_new: float
     heading_new: float
 
 
-def start(telegrams: Telegrams) -> VotingState:
+def start(t: float, telegrams: Telegrams, *, mast: MastParameters, wind: WindParameters) -> VotingState:
     """Voting at the start, on what is valid.
 
     Parameters
     ----------
+    t : float
+        Time. [s]
     telegrams : Telegrams
         First telegrams.
+    mast : MastParameters
+        Where the anemometer stands.
+    wind : WindParameters
+        Wind load coefficients.
 
     Returns
     -------
     VotingState
         State of the voting.
     """
-    zero, wind = 0.0 * telegrams.r, telegrams.wind
+    zero, given = 0.0 * telegrams.r, telegrams.wind
+    share = zero + given.valid
     return VotingState(
-        position_voting.start(telegrams.positions),
+        position_voting.start(t, telegrams.positions),
         compass_voting.start(telegrams.compasses),
-        WindVote(wind, zero, zero + wind.valid),
+        WindVote(given, zero, share, _wind_load(given, share, (zero, zero, zero), mast, wind)),
         telegrams.r,
-        telegrams.position_time,
-        telegrams.heading_time,
+        *telegrams[4:],
         1.0,
         1.0,
     )
@@ -116,11 +126,12 @@ def step(
     state: VotingState,
     telegrams: Telegrams,
     estimate: Estimate,
-    dt: float,
     *,
     parameters: VotingParameters,
+    mast: MastParameters,
+    wind: WindParameters,
 ) -> tuple[VotingState, Estimate]:
-    """Voting a sample later, on the telegrams that came.
+    """Voting a sample later, on the telegrams that came; what came when is the same for all variations.
 
     Parameters
     ----------
@@ -132,40 +143,39 @@ def step(
         What the sensors give out.
     estimate : Estimate
         Of the observer at t.
-    dt : float
-        Time since the last sample. [s]
     parameters : VotingParameters
         Limits.
+    mast : MastParameters
+        Where the anemometer stands.
+    wind : WindParameters
+        Wind load coefficients.
 
     Returns
     -------
     tuple of VotingState and Estimate
         State; and the estimate, moved to where positions are after dead reckoning.
     """
-    positions, north, east = position_voting.later(state.positions, dt, parameters=parameters)
-    estimate = estimate._replace(x=estimate.x + north, y=estimate.y + east)
-    compasses, since = state.compasses, telegrams.heading_time - state.heading_time
-    heading_new = 1.0 if since > 0.0 else 0.0
-    if since > 0.0:
-        quiet = minimum(minimum(*positions.unchanged[:2]), positions.unchanged[2])
-        predicted = estimate.psi + estimate.yaw_wave - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
+    positions, compasses, air = state.positions, state.compasses, state.wind
+    heading_since = telegrams.heading_time - state.heading_time
+    position_since = telegrams.position_time - state.position_time
+    wind_since = telegrams.wind_time - state.wind_time
+    if heading_since > 0.0:
+        quiet = minimum(minimum(positions.unchanged[0], positions.unchanged[1]), positions.unchanged[2])
+        psi = estimate.psi + estimate.yaw_wave - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
         compasses = compass_voting.step(
-            compasses, telegrams.compasses, telegrams.r, predicted, quiet, since, parameters=parameters
+            compasses, telegrams.compasses, telegrams.r, psi, quiet, heading_since, parameters=parameters
         )
-    since, quiet = telegrams.position_time - state.position_time, minimum(*compasses.unchanged)
-    position_new = 1.0 if since > 0.0 else 0.0
-    if since > 0.0:
-        positions = position_voting.step(
-            positions,
-            telegrams.positions,
-            _at(estimate, t - telegrams.position_time),
-            quiet,
-            since,
-            parameters=parameters,
-        )
-    wind = _wind(state.wind, telegrams.wind, minimum(quiet, positions.unchanged[0]), dt, parameters)
-    times = telegrams.position_time, telegrams.heading_time
-    return VotingState(positions, compasses, wind, telegrams.r, *times, position_new, heading_new), estimate
+    quiet = minimum(*compasses.unchanged)
+    if position_since > 0.0:
+        positions, north, east = position_voting.faded(positions, position_since, parameters=parameters)
+        estimate = estimate._replace(x=estimate.x + north, y=estimate.y + east)
+        at, fixes = _at(estimate, t - telegrams.position_time), telegrams.positions
+        positions = position_voting.step(t, positions, fixes, at, quiet, position_since, parameters=parameters)
+    if wind_since > 0.0:
+        quiet = minimum(quiet, positions.unchanged[0])
+        air = _wind(air, telegrams.wind, quiet, wind_since, parameters, estimate, mast, wind)
+    came = 1.0 if position_since > 0.0 else 0.0, 1.0 if heading_since > 0.0 else 0.0
+    return VotingState(positions, compasses, air, telegrams.r, *telegrams[4:], *came), estimate
 
 
 def measurement(state: VotingState) -> Measurement:
@@ -186,11 +196,13 @@ def measurement(state: VotingState) -> Measurement:
     return Measurement(motion, state.position_new * fix.valid, state.heading_new)
 
 
-def dead_reckoning_time(state: VotingState, *, parameters: VotingParameters) -> Arithmetic:
+def dead_reckoning_time(t: float, state: VotingState, *, parameters: VotingParameters) -> Arithmetic:
     """Time since the last trusted position while the controller rides on its model, else 0.
 
     Parameters
     ----------
+    t : float
+        Time. [s]
     state : VotingState
         State of the voting.
     parameters : VotingParameters
@@ -201,33 +213,8 @@ def dead_reckoning_time(state: VotingState, *, parameters: VotingParameters) -> 
     float or (...) array or tensor
         Time. [s]
     """
-    age = state.positions.age
+    age = t - state.positions.trusted_at
     return where(age > parameters.position_timeout, age, 0.0 * age)
-
-
-def wind_load(state: VotingState, estimate: Estimate, *, mast: MastParameters, wind: WindParameters) -> Load:
-    """Load of the wind by the anemometer, as far as that is believed.
-
-    Parameters
-    ----------
-    state : VotingState
-        State of the voting.
-    estimate : Estimate
-        Of the observer.
-    mast : MastParameters
-        Where the anemometer stands.
-    wind : WindParameters
-        Wind load coefficients.
-
-    Returns
-    -------
-    tuple of three, like estimate.x
-        X, Y, N to feed forward. [N, N, N.m]
-    """
-    given, share = state.wind.wind, state.wind.share
-    at_ship = wind_from_mast(given.speed, given.wind_from, estimate.u, estimate.v, estimate.r, mast=mast)
-    X, Y, N = wind_loads(*at_ship, wind=wind)
-    return share * X, share * Y, share * N
 
 
 def _at(e, delay):
@@ -236,11 +223,19 @@ def _at(e, delay):
     return Motion(e.x + north, e.y + east, wrap(e.psi), e.u + e.u_wave, e.v + e.v_wave, e.r + e.r_wave)
 
 
-def _wind(state, wind, quiet, dt, p):
-    """Test of the anemometer a sample later: it sticks where it does not change while others do."""
-    same = (wind.speed == state.wind.speed) & (wind.wind_from == state.wind.wind_from)
+def _wind(state, given, quiet, dt, p, estimate, mast, wind):
+    """Test of the anemometer on a new telegram: it sticks where it does not change while others do."""
+    same = (given.speed == state.wind.speed) & (given.wind_from == state.wind.wind_from)
     unchanged = where(same, state.unchanged + dt, 0.0 * state.unchanged)
     stuck = (unchanged >= p.wind_freeze_time) & (quiet < p.wind_freeze_time)
-    valid = where(stuck, 0.0, wind.valid)
+    valid = where(stuck, 0.0, given.valid)
     share = state.share + (1.0 - exp(-dt / p.wind_fade_time)) * (valid - state.share)
-    return WindVote(wind._replace(valid=valid), unchanged, share)
+    load = _wind_load(given, share, (estimate.u, estimate.v, estimate.r), mast, wind)
+    return WindVote(given._replace(valid=valid), unchanged, share, load)
+
+
+def _wind_load(given, share, velocity, mast, wind):
+    """Load of the measured wind on a ship with a velocity, as far as it is believed."""
+    at_ship = wind_from_mast(given.speed, given.wind_from, *velocity, mast=mast)
+    X, Y, N = wind_loads(*at_ship, wind=wind)
+    return share * X, share * Y, share * N

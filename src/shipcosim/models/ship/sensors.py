@@ -12,6 +12,7 @@ read as the nominal model says under sensors. Periods and latencies: assumed, ty
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
@@ -53,9 +54,25 @@ class SensorParameters:
     wind_from_noise_std: float = required("rad", "white noise of the wind direction", minimum=0.0)
     seed: int = quantity(1, "1", "seed of all errors", "any", minimum=0)
 
-    def clock(self, period: float, latency: float) -> tuple[int, int]:
-        """Ticks from one sample to the next, and from a sample to when it is given out."""
-        return max(1, round(period / self.period)), round(latency / self.period)
+    @cached_property
+    def clocks(self):
+        """Of positions, headings, wind: ticks from sample to sample, and from a sample to when it is given out."""
+        periods = self.position_period, self.period, self.wind_period
+        latencies = self.position_latency, self.heading_latency, self.wind_latency
+        return tuple(
+            (max(1, round(period / self.period)), round(latency / self.period))
+            for period, latency in zip(periods, latencies, strict=True)
+        )
+
+    @cached_property
+    def position_wander(self):
+        """Factors of the Gauss-Markov error and of a random number, from one sample to the next."""
+        return _wander(self.position_period, self.position_drift_std, self.position_drift_time)
+
+    @cached_property
+    def heading_wander(self):
+        """The same of the heading."""
+        return _wander(self.period, self.heading_drift_std, self.heading_drift_time)
 
 
 class Truth(NamedTuple):
@@ -219,9 +236,8 @@ def start(
     SensorState
         State after the first tick.
     """
-    p, k = parameters, samples_due(t, parameters.period) - 1
-    clocks = _clocks(p)
-    numbers = _numbers(p, k, clocks)
+    p, k, clocks = parameters, samples_due(t, parameters.period) - 1, parameters.clocks
+    numbers = [_numbers(p, k, channel) for channel in range(3)]
     fixes = (Fix(truth.x, truth.y, truth.u, truth.v, 1.0),) * 3
     headings = ((Heading(truth.psi, 1.0),) * 2, truth.r)
     wander = tuple(p.position_drift_std * number for number in numbers[0][:6])
@@ -233,7 +249,7 @@ def start(
     air = _air(truth, mast)
     wind = Channel((air,), (), (Wind(*air, 1.0),))
     wind = wind._replace(history=(_wind(wind, numbers[2], failures, p),) * _length(clocks[2]))
-    return SensorState(k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, clocks, p))
+    return SensorState(k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, p))
 
 
 def step(
@@ -268,38 +284,27 @@ def step(
         State after the ticks.
     """
     due = samples_due(t, parameters.period)
-    if state.taken < due:
-        clocks = _clocks(parameters)
-        while state.taken < due:
-            state = _ticked(state, truth, failures, parameters, mast, clocks)
+    while state.taken < due:
+        state = _ticked(state, truth, failures, parameters, mast)
     return state
 
 
-def _ticked(state, truth, failures, p, mast, clocks):
+def _ticked(state, truth, failures, p, mast):
     """State after one more tick, at which every channel whose turn it is takes a sample."""
     k, positions, headings, wind = state.taken, state.positions, state.headings, state.wind
-    numbers = _numbers(p, k, clocks)
-    if k % clocks[0][0] == 0:
-        positions = _wandered(positions, numbers[0][:6], p.position_period, p.position_drift_std, p.position_drift_time)
-        positions = _drifted(positions, [r for f in failures.positions for r in f[4:]], p.position_period)
-        positions = _noted(positions, _fixes(positions, numbers[0], truth, failures, p))
-    headings = _wandered(headings, numbers[1][:2], p.period, p.heading_drift_std, p.heading_drift_time)
-    headings = _drifted(headings, [failure.rate for failure in failures.compasses], p.period)
-    headings = _noted(headings, _headings(headings, numbers[1], truth, failures, p))
+    if k % p.clocks[0][0] == 0:
+        numbers = _numbers(p, k, 0)
+        rates = [rate for failure in failures.positions for rate in failure[4:]]
+        positions = _moved(positions, numbers, p.position_wander, rates, p.position_period)
+        positions = _noted(positions, _fixes(positions, numbers, truth, failures, p))
+    numbers, rates = _numbers(p, k, 1), [failure.rate for failure in failures.compasses]
+    headings = _moved(headings, numbers, p.heading_wander, rates, p.period)
+    headings = _noted(headings, _headings(headings, numbers, truth, failures, p))
     spans = max(1, round(p.wind_average_time / p.period))
-    wind = wind._replace(wander=(*wind.wander, _air(truth, mast))[-spans:])
-    if k % clocks[2][0] == 0:
-        wind = _noted(wind, _wind(wind, numbers[2], failures, p))
-    return SensorState(k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, clocks, p))
-
-
-def _clocks(p):
-    """Ticks a sample and ticks of latency of positions, headings and wind."""
-    return (
-        p.clock(p.position_period, p.position_latency),
-        p.clock(p.period, p.heading_latency),
-        p.clock(p.wind_period, p.wind_latency),
-    )
+    wind = Channel((*wind.wander, _air(truth, mast))[-spans:], (), wind.history)
+    if k % p.clocks[2][0] == 0:
+        wind = _noted(wind, _wind(wind, _numbers(p, k, 2), failures, p))
+    return SensorState(k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, p))
 
 
 def _length(clock):
@@ -307,29 +312,32 @@ def _length(clock):
     return clock[1] // clock[0] + 2
 
 
-def _numbers(p, k, clocks):
-    """Random numbers of the samples of tick k; of a channel whose turn it is not they are those of its last."""
-    widths = ("positions", 18), ("headings", 5), ("anemometer", 2)
-    return [normals(name, p.seed, k // clock[0], n) for (name, n), clock in zip(widths, clocks, strict=True)]
+_DRAWS = ("positions", 18), ("headings", 5), ("anemometer", 2)
 
 
-def _wandered(channel, numbers, period, std, time):
-    """Gauss-Markov errors one period later, exactly: b <- phi b + sigma sqrt(1 - phi^2) w, phi = exp(-period/T)."""
+def _numbers(p, k, channel):
+    """Random numbers of a channel's sample at tick k."""
+    name, width = _DRAWS[channel]
+    return normals(name, p.seed, k // p.clocks[channel][0], width)
+
+
+def _wander(period, std, time):
+    """Gauss-Markov errors from sample to sample, exact: b <- phi b + sigma sqrt(1 - phi^2) w, phi = exp(-period/T)."""
     phi = exp(-period / time)
-    kick = std * sqrt(1.0 - phi * phi)
-    wander = tuple(phi * b + kick * w for b, w in zip(channel.wander, numbers, strict=True))
-    return channel._replace(wander=wander)
+    return phi, std * sqrt(1.0 - phi * phi)
 
 
-def _drifted(channel, rates, period):
-    """Drifts by failure one period later; they start and end with their rates."""
-    drift = (where(rate == 0.0, 0.0, d + period * rate) for d, rate in zip(channel.drift, rates, strict=True))
-    return channel._replace(drift=tuple(drift))
+def _moved(channel, numbers, wander, rates, period):
+    """Gauss-Markov errors and drifts by failure one period later; the latter start and end with their rates."""
+    phi, kick = wander
+    errors = tuple([phi * b + kick * w for b, w in zip(channel.wander, numbers, strict=False)])
+    drift = tuple([where(rate == 0.0, 0.0, d + period * rate) for d, rate in zip(channel.drift, rates, strict=True)])
+    return Channel(errors, drift, channel.history)
 
 
 def _noted(channel, sample):
     """History with a new sample."""
-    return channel._replace(history=(*channel.history[1:], sample))
+    return Channel(channel.wander, channel.drift, (*channel.history[1:], sample))
 
 
 def _fixes(channel, numbers, truth, failures, p):
@@ -387,10 +395,10 @@ def _air(truth, mast):
     return wind_at_mast(*wind, truth.u, truth.v, truth.r, mast=mast)
 
 
-def _telegrams(k, positions, headings, wind, clocks, p):
+def _telegrams(k, positions, headings, wind, p):
     """What is given out at tick k: of each channel the newest sample that is as old as the latency, or the first."""
     found, times = [], []
-    for channel, (every, delay) in zip((positions, headings, wind), clocks, strict=True):
+    for channel, (every, delay) in zip((positions, headings, wind), p.clocks, strict=True):
         sample = max(0, (k - delay) // every)
         found.append(channel.history[sample - k // every - 1])
         times.append(sample * every * p.period)
