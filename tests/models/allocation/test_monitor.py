@@ -53,8 +53,8 @@ def test_directions_are_compared_the_shorter_way_round():
 
 def test_alarms_of_the_ship_come_after_their_delay_and_go():
     for kind, away in (
-        ("position", {"errors": (3.1, 0.0)}),
-        ("heading", {"errors": (0.0, -0.1)}),
+        ("position", {"errors": (5.1, 0.0)}),
+        ("heading", {"errors": (0.0, -0.2)}),
         ("force", {"bias": (30e3, 30e3)}),
     ):
         assert said(watched(LIMITS.alarm_delay - H, **away)) == []

@@ -34,8 +34,8 @@ class MonitorParameters:
     fault_delay: float = quantity(
         6.0, "s", "time beyond a tolerance after which the unit is faulty", "assumed; turning by 45 deg takes 4.5 s"
     )
-    position_limit: float = quantity(3.0, "m", "distance from the reference that is no alarm", "assumed, usual")
-    heading_limit: float = quantity(5.0 * _DEG, "rad", "heading off the reference that is no alarm", "assumed, usual")
+    position_limit: float = quantity(5.0, "m", "distance from the reference that is no alarm", "assumed, usual")
+    heading_limit: float = quantity(10.0 * _DEG, "rad", "heading off the reference that is no alarm", "assumed")
     force_limit: float = quantity(
         40e3, "N", "unexplained force that is no alarm", "assumed: above 25 kN, the most in the scenarios' weather"
     )
