@@ -176,7 +176,7 @@ def start(system, design, inputs, variations):
     truth = _truth(ship, show)
     measured = sensors.start(0.0, truth, inputs.sensor_failures, parameters=system.sensors, mast=system.mast)
     votes = voting.start(0.0, measured.telegrams, mast=system.known_mast, wind=system.known_wind)
-    estimate = observer.at_rest(voting.measurement(votes).motion)
+    estimate = observer.at_rest(voting.measurement(votes).motion, parameters=system.observer)
     units = (
         drive.at_rest(system.port_azimuth_start + zero),
         drive.at_rest(system.starboard_azimuth_start + zero),

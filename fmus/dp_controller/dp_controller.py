@@ -65,6 +65,7 @@ class DpController(Fmu):
     tau_X_bias = Output("N", "estimated force forward that neither thrust nor measured wind explains")
     tau_Y_bias = Output("N", "estimated force to starboard that neither thrust nor measured wind explains")
     tau_N_bias = Output("N.m", "estimated yaw moment that neither thrust nor measured wind explains")
+    wave_frequency_hat = Output("rad/s", "frequency that the wave filter has adapted to")
     position_error = Output("m", "distance of the estimated ship from the reference")
     heading_error = Output("rad", "estimated heading less the reference")
     dead_reckoning_time = Output("s", "time since the last trusted position; 0 while there is one")
@@ -89,7 +90,7 @@ class DpController(Fmu):
         self.taken = samples_due(self.start_time, self.noise.sample_period) - 1
         given = self._telegrams(self._fixes())
         self.voting = voting.start(self.start_time, given, mast=self.mast, wind=self.wind)
-        estimate = observer.at_rest(voting.measurement(self.voting).motion)
+        estimate = observer.at_rest(voting.measurement(self.voting).motion, parameters=self.noise)
         self._show(estimate, control.at_rest(self.voting.wind.load))
         self._say(self.start_time)
 
@@ -174,6 +175,7 @@ class DpController(Fmu):
         self.u_hat, self.v_hat, self.r_hat = estimate.u, estimate.v, estimate.r
         self.tau_X_bias, self.tau_Y_bias = to_body(estimate.psi, estimate.bias_north, estimate.bias_east)
         self.tau_N_bias = estimate.bias_N
+        self.wave_frequency_hat = estimate.wave_frequency
         self.position_error, self.heading_error = control.errors(estimate, self._desired())
 
     def _say(self, t):

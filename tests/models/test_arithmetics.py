@@ -19,7 +19,7 @@ from shipcosim import angles
 from shipcosim.models.allocation import monitor, power
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.power import PowerParameters
-from shipcosim.models.control import compass_voting, observer, position_voting, reference, voting
+from shipcosim.models.control import compass_voting, observer, position_voting, reference, voting, wave_filter
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths
 from shipcosim.models.core.motion import Motion
@@ -105,7 +105,7 @@ def of_reference(*row):
 
 
 def of_observer(*row):
-    return observer.Estimate(*row), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
+    return observer.Estimate(*row, 0.8, 30.0, 0.7), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
 
 
 def of_control(*row):
@@ -299,6 +299,7 @@ CASES = [
         of_reference,
         dict(h=0.05, parameters=replace(parameters(reference.ReferenceParameters), speed_max=0.3)),
     ),
+    Case(wave_filter.filter_at, [(0.45,), (0.9,), (2.0,)], constants=dict(table=OBSERVER["design"].filters)),
     Case(observer.step, LOOP, of_observer, OBSERVER),
     Case(control.step, LOOP, of_control, dict(h=0.1, ship=DP_SHIP, parameters=parameters(control.ControlParameters))),
     Case(

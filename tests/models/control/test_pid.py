@@ -13,7 +13,7 @@ from shipcosim.models.control.pid import ControlParameters, Desired, at_rest
 from shipcosim.models.core.kinematics import to_body
 
 FREE = replace(parameters(DpShip), damping_surge=0.0, damping_sway=0.0, damping_yaw=0.0)
-PARAMETERS = parameters(ControlParameters)
+PARAMETERS = replace(parameters(ControlParameters), force_filter_time=1e-3, moment_filter_time=1e-3)
 MASS = np.array(
     [[FREE.mass_surge, 0.0, 0.0], [0.0, FREE.mass_sway, FREE.mass_sway_yaw], [0.0, FREE.mass_sway_yaw, FREE.mass_yaw]]
 )
@@ -86,7 +86,7 @@ def test_turning_everything_turns_no_load(heading):
 
 def test_integral_takes_up_a_constant_force_at_any_heading():
     for heading in (0.0, 2.0):
-        rows = sail((0.0, 0.0, heading), 400.0, force=(5e3, -8e3, 4e4), desired=STAY._replace(psi=heading))
+        rows = sail((0.0, 0.0, heading), 800.0, force=(5e3, -8e3, 4e4), desired=STAY._replace(psi=heading))
         assert np.abs(rows[-1] - [0.0, 0.0, heading]).max() < 1e-3
 
 
@@ -113,3 +113,14 @@ def test_errors_are_distance_and_shortest_turn():
     distance, turn = control.errors(Estimate(3.0, 4.0, 3.1), STAY._replace(psi=-3.1))
     assert distance == 5.0
     assert turn == pytest.approx(6.2 - 2.0 * math.pi)
+
+
+def test_step_of_the_estimate_reaches_the_request_over_its_filters_time():
+    slow = replace(PARAMETERS, force_filter_time=2.0, moment_filter_time=1.0, integral_ratio=0.0)
+    state, asked = at_rest(CALM), []
+    for _ in range(100):
+        state = ask(Estimate(-0.1, 0.0, -0.01), state=state, parameters=slow)
+        asked.append((state.tau_X, state.tau_N))
+    X, N = np.transpose(asked)
+    assert X[19] / X[-1] == pytest.approx(1.0 - math.exp(-1.0), rel=0.01)
+    assert N[9] / N[-1] == pytest.approx(1.0 - math.exp(-1.0), rel=0.01)

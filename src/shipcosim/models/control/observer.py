@@ -1,7 +1,8 @@
-"""Observer of the low-frequency ship: Kalman filter with wave filter and bias force, with constant gains.
+"""Observer of the low-frequency ship: Kalman filter with wave filter and bias force, with steady gains.
 
 The position is estimated in north-east-down, everything else in the body frame, so that one set of gains fits every
-heading.
+heading. Measurements come at rates of their own and late: each is compared with the estimate of the time it is of,
+which is the estimate now run backwards. The frequency of the wave filter follows the sea.
 
 References
 ----------
@@ -12,13 +13,20 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from shipcosim.angles import wrap
-from shipcosim.models.control.wave_filter import AxisGains, axis_gains, wave_transition
-from shipcosim.models.core.maths import Arithmetic, cos, sin
+from shipcosim.models.control.wave_filter import AxisNoise, filter_at, filter_table
+from shipcosim.models.core.interpolation import EvenTable
+from shipcosim.models.core.maths import Arithmetic, clip, cos, minimum, sin
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import required
 
 DEGREE = math.pi / 180.0
+FREQUENCIES = 129
+"""Number of frequencies in the table of gains."""
+CALM = 0.01
+"""Wave power below which the frequency rather returns to its default than follows. [1/s2]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,17 +44,30 @@ class DpShip:
 
 @dataclass(frozen=True, kw_only=True)
 class ObserverParameters:
-    """Noise, waves and disturbances as the observer assumes them."""
+    """Rates, ages and noise of the measurements, waves and disturbances as the observer assumes them."""
 
     sample_period: float = required("s", "period of observer and control law", minimum=1e-3)
+    position_period: float = required("s", "time from one new position and velocity to the next", minimum=1e-3)
+    heading_period: float = required("s", "time from one new heading and yaw rate to the next", minimum=1e-3)
+    position_delay: float = required("s", "age of a new position and velocity", minimum=0.0)
+    heading_delay: float = required("s", "age of a new heading and yaw rate", minimum=0.0)
     position_noise: float = required("m", "white noise of measured positions", minimum=1e-6)
     heading_noise: float = required("rad", "white noise of measured heading", minimum=1e-9)
     velocity_noise: float = required("m/s", "white noise of measured velocity", minimum=1e-6)
     rate_noise: float = required("rad/s", "white noise of measured yaw rate", minimum=1e-9)
-    wave_frequency: float = required("rad/s", "middle frequency of the motion in waves", minimum=0.1)
+    wave_frequency: float = required(
+        "rad/s", "middle frequency of the motion in waves: at the start, and in calm water", minimum=0.1
+    )
+    wave_frequency_min: float = required("rad/s", "lowest frequency that the wave filter goes to", minimum=0.1)
+    wave_frequency_max: float = required("rad/s", "highest frequency that the wave filter goes to", minimum=0.1)
+    full_frequency: float = required(
+        "rad/s", "wave frequency below which observer and law slow down in proportion to it", minimum=0.1
+    )
+    wave_time: float = required("s", "time in which the wave filter's frequency follows the sea", minimum=1.0)
+    wave_peak_ratio: float = required("1", "peak frequency over that at which the motion in waves swings", minimum=0.5)
     wave_damping: float = required("1", "relative damping of the wave model: its bandwidth", minimum=0.01)
-    wave_motion: float = required("m", "standard deviation of surge and sway in waves", minimum=0.0)
-    wave_yaw: float = required("rad", "standard deviation of yaw in waves", minimum=0.0)
+    wave_motion: float = required("m", "standard deviation of surge and sway in waves", minimum=1e-6)
+    wave_yaw: float = required("rad", "standard deviation of yaw in waves", minimum=1e-9)
     velocity_disturbance: float = required("m2/s3", "intensity of the white disturbance of velocity", minimum=1e-18)
     rate_disturbance: float = required("rad2/s3", "intensity of the white disturbance of yaw rate", minimum=1e-18)
     bias_drift: float = required("m2/s5", "intensity of the random walk of the bias force over mass", minimum=1e-18)
@@ -87,6 +108,12 @@ class Estimate(NamedTuple):
         Wave motion in body axes. [m, m, rad]
     u_wave, v_wave, r_wave : like x
         Rates of the wave motion. [m/s, m/s, rad/s]
+    wave_frequency : like x
+        Middle frequency of the wave motion. [rad/s]
+    wave_power : like x
+        Mean square of the rates of the wave motion, each over the motion that the observer assumes. [1/s2]
+    pace : like x
+        How quick observer and law are, 1 in short waves: in long ones they slow down with the sea. [1]
     """
 
     x: Arithmetic
@@ -104,6 +131,9 @@ class Estimate(NamedTuple):
     u_wave: Arithmetic = 0.0
     v_wave: Arithmetic = 0.0
     r_wave: Arithmetic = 0.0
+    wave_frequency: Arithmetic = 1.0
+    wave_power: Arithmetic = 0.0
+    pace: Arithmetic = 1.0
 
 
 class Design(NamedTuple):
@@ -111,50 +141,56 @@ class Design(NamedTuple):
 
     Parameters
     ----------
-    horizontal, yaw : AxisGains
-        Gains of surge and sway, gains of yaw.
-    wave : tuple of four floats or (...) arrays
-        Transition of the wave model over a sample, as `wave_filter.wave_transition`. [1, s, 1/s, 1]
+    filters : EvenTable
+        Wave models and gains over the frequency of the waves. [as `wave_filter.WaveFilter` says]
     inverse_mass : tuple of four floats or (...) arrays
         Elements 11, 22, 26, 66 of the inverse of the mass matrix. [1/kg, 1/kg, 1/(kg.m), 1/(kg.m2)]
     """
 
-    horizontal: AxisGains
-    yaw: AxisGains
-    wave: tuple
+    filters: EvenTable
     inverse_mass: tuple
 
 
 def design(ship: DpShip, parameters: ObserverParameters) -> Design:
-    """Gains, wave model and inverse of the mass matrix for a ship.
+    """Gains, wave models and inverse of the mass matrix for a ship.
 
     Parameters
     ----------
     ship : DpShip
         The ship; fields may be arrays of one shape.
     parameters : ObserverParameters
-        Noise, waves and disturbances; fields may be arrays of one shape.
+        Measurements, waves and disturbances.
 
     Returns
     -------
     Design
         What `step` needs.
+
+    Notes
+    -----
+    In waves longer than `full_frequency` all frequencies of the filter shrink with that of the waves: the intensities
+    of the disturbances go with its third and fifth power, as their units do.
     """
     p = parameters
-    dt = p.sample_period
-    wave = wave_transition(dt, p.wave_frequency, p.wave_damping)
-    horizontal = axis_gains(
-        dt,
-        wave,
-        p.wave_motion,
-        p.wave_frequency,
-        p.velocity_disturbance,
-        p.bias_drift,
+    frequencies = np.linspace(p.wave_frequency_min, p.wave_frequency_max, FREQUENCIES)
+    pace = np.minimum(1.0, frequencies / p.full_frequency)
+    horizontal = AxisNoise(
+        p.position_period,
+        p.position_delay,
         p.position_noise,
         p.velocity_noise,
+        p.wave_motion,
+        p.velocity_disturbance * pace**3,
+        p.bias_drift * pace**5,
     )
-    yaw = axis_gains(
-        dt, wave, p.wave_yaw, p.wave_frequency, p.rate_disturbance, p.bias_drift_yaw, p.heading_noise, p.rate_noise
+    yaw = AxisNoise(
+        p.heading_period,
+        p.heading_delay,
+        p.heading_noise,
+        p.rate_noise,
+        p.wave_yaw,
+        p.rate_disturbance * pace**3,
+        p.bias_drift_yaw * pace**5,
     )
     determinant = ship.mass_sway * ship.mass_yaw - ship.mass_sway_yaw * ship.mass_sway_yaw
     inverse = (
@@ -163,16 +199,18 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
         -ship.mass_sway_yaw / determinant,
         ship.mass_sway / determinant,
     )
-    return Design(horizontal, yaw, wave, inverse)
+    return Design(filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse)
 
 
-def at_rest(measured: Motion) -> Estimate:
+def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
     """Estimate at the start: the ship as measured, standing still, no bias, no waves.
 
     Parameters
     ----------
     measured : Motion
         First measurement.
+    parameters : ObserverParameters
+        Of which the wave frequency is used here.
 
     Returns
     -------
@@ -180,7 +218,9 @@ def at_rest(measured: Motion) -> Estimate:
         The estimate.
     """
     zero = 0.0 * measured.x
-    return Estimate(measured.x, measured.y, measured.psi, *(zero,) * 12)
+    return Estimate(
+        measured.x, measured.y, measured.psi, *(zero,) * 12, *_paced(zero + parameters.wave_frequency, zero, parameters)
+    )
 
 
 def step(
@@ -205,7 +245,7 @@ def step(
     ship : DpShip
         The ship.
     parameters : ObserverParameters
-        Of which the sample period is used here.
+        Periods and ages of the measurements, and limits of the wave frequency.
     design : Design
         Made of the same ship and parameters by `design`.
 
@@ -214,71 +254,115 @@ def step(
     Estimate
         Estimate at the end.
     """
-    predicted = _predict(estimate, load, dt=parameters.sample_period, ship=ship, design=design)
-    return _correct(predicted, measurement, ship=ship, design=design)
+    filters = filter_at(estimate.wave_frequency, design.filters)
+    acceleration = _acceleration(estimate, load, ship=ship, inverse_mass=design.inverse_mass)
+    predicted = _predict(estimate, acceleration, dt=parameters.sample_period, wave=filters.wave)
+    innovations = _innovations(predicted, acceleration, measurement, parameters, filters)
+    corrected = _correct(predicted, innovations, ship=ship, filters=filters)
+    frequency, power, pace = _paced(*_wave_frequency(corrected, parameters), parameters)
+    return corrected._replace(wave_frequency=frequency, wave_power=power, pace=pace)
 
 
-def _predict(e, load, *, dt, ship, design):
-    """Estimate after a sample without measurement: acceleration held, wave model integrated exactly."""
+def _acceleration(e, load, *, ship, inverse_mass):
+    """Acceleration of the low-frequency ship in body axes."""
     c, s = cos(e.psi), sin(e.psi)
     X = load[0] - ship.damping_surge * e.u + c * e.bias_north + s * e.bias_east
     Y = load[1] - ship.damping_sway * e.v - s * e.bias_north + c * e.bias_east
     N = load[2] - ship.damping_yaw * e.r + e.bias_N
-    i11, i22, i26, i66 = design.inverse_mass
-    u_dot = i11 * X + e.r * e.v
-    v_dot = i22 * Y + i26 * N - e.r * e.u
-    r_dot = i26 * Y + i66 * N
+    i11, i22, i26, i66 = inverse_mass
+    return i11 * X + e.r * e.v, i22 * Y + i26 * N - e.r * e.u, i26 * Y + i66 * N
+
+
+def _predict(e, acceleration, *, dt, wave):
+    """Estimate after a sample without measurement: acceleration held, wave model integrated exactly."""
+    c, s = cos(e.psi), sin(e.psi)
+    u_dot, v_dot, r_dot = acceleration
     surge, sway = dt * (e.u + 0.5 * dt * u_dot), dt * (e.v + 0.5 * dt * v_dot)
-    w11, w12, w21, w22 = design.wave
-    return Estimate(
-        e.x + c * surge - s * sway,
-        e.y + s * surge + c * sway,
-        e.psi + dt * (e.r + 0.5 * dt * r_dot),
-        e.u + dt * u_dot,
-        e.v + dt * v_dot,
-        e.r + dt * r_dot,
-        e.bias_north,
-        e.bias_east,
-        e.bias_N,
-        w11 * e.surge_wave + w12 * e.u_wave,
-        w11 * e.sway_wave + w12 * e.v_wave,
-        w11 * e.yaw_wave + w12 * e.r_wave,
-        w21 * e.surge_wave + w22 * e.u_wave,
-        w21 * e.sway_wave + w22 * e.v_wave,
-        w21 * e.yaw_wave + w22 * e.r_wave,
+    w11, w12, w21, w22 = wave
+    return e._replace(
+        x=e.x + c * surge - s * sway,
+        y=e.y + s * surge + c * sway,
+        psi=e.psi + dt * (e.r + 0.5 * dt * r_dot),
+        u=e.u + dt * u_dot,
+        v=e.v + dt * v_dot,
+        r=e.r + dt * r_dot,
+        surge_wave=w11 * e.surge_wave + w12 * e.u_wave,
+        sway_wave=w11 * e.sway_wave + w12 * e.v_wave,
+        yaw_wave=w11 * e.yaw_wave + w12 * e.r_wave,
+        u_wave=w21 * e.surge_wave + w22 * e.u_wave,
+        v_wave=w21 * e.sway_wave + w22 * e.v_wave,
+        r_wave=w21 * e.yaw_wave + w22 * e.r_wave,
     )
 
 
-def _correct(e, measurement, *, ship, design):
-    """Estimate corrected by the innovations, each in body axes; biases are accelerations times mass."""
+def _innovations(e, acceleration, measurement, parameters, filters):
+    """Measurement less the estimate of its time, which is the estimate now run backwards; 0 where nothing is new."""
     measured, position, heading = measurement
+    u_dot, v_dot, r_dot = acceleration
     c, s = cos(e.psi), sin(e.psi)
+    age, (b11, b12, b21, b22) = parameters.position_delay, filters.horizontal_age
     dx, dy = measured.x - e.x, measured.y - e.y
-    surge, du = c * dx + s * dy - e.surge_wave, measured.u - e.u - e.u_wave
-    sway, dv = c * dy - s * dx - e.sway_wave, measured.v - e.v - e.v_wave
-    surge, sway, du, dv = position * surge, position * sway, position * du, position * dv
-    yaw, dr = heading * wrap(measured.psi - e.psi - e.yaw_wave), heading * (measured.r - e.r - e.r_wave)
-    g, k = design.horizontal, design.yaw
+    surge_wave, u_wave = b11 * e.surge_wave + b12 * e.u_wave, b21 * e.surge_wave + b22 * e.u_wave
+    sway_wave, v_wave = b11 * e.sway_wave + b12 * e.v_wave, b21 * e.sway_wave + b22 * e.v_wave
+    surge = c * dx + s * dy + age * (e.u - 0.5 * age * u_dot) - surge_wave
+    sway = c * dy - s * dx + age * (e.v - 0.5 * age * v_dot) - sway_wave
+    u, v = measured.u - e.u + age * u_dot - u_wave, measured.v - e.v + age * v_dot - v_wave
+    age, (b11, b12, b21, b22) = parameters.heading_delay, filters.yaw_age
+    yaw_wave, r_wave = b11 * e.yaw_wave + b12 * e.r_wave, b21 * e.yaw_wave + b22 * e.r_wave
+    yaw = wrap(measured.psi - e.psi + age * (e.r - 0.5 * age * r_dot) - yaw_wave)
+    r = measured.r - e.r + age * r_dot - r_wave
+    return position * surge, position * sway, heading * yaw, position * u, position * v, heading * r
+
+
+def _correct(e, innovations, *, ship, filters):
+    """Estimate corrected by the innovations; biases are accelerations times mass."""
+    surge, sway, yaw, du, dv, dr = innovations
+    c, s = cos(e.psi), sin(e.psi)
+    g, k = filters.horizontal, filters.yaw
     move_surge = g.position_position * surge + g.position_velocity * du
     move_sway = g.position_position * sway + g.position_velocity * dv
     bias_u = g.bias_position * surge + g.bias_velocity * du
     bias_v = g.bias_position * sway + g.bias_velocity * dv
     bias_r = k.bias_position * yaw + k.bias_velocity * dr
     X, Y = ship.mass_surge * bias_u, ship.mass_sway * bias_v + ship.mass_sway_yaw * bias_r
-    return Estimate(
-        e.x + c * move_surge - s * move_sway,
-        e.y + s * move_surge + c * move_sway,
-        e.psi + k.position_position * yaw + k.position_velocity * dr,
-        e.u + g.velocity_position * surge + g.velocity_velocity * du,
-        e.v + g.velocity_position * sway + g.velocity_velocity * dv,
-        e.r + k.velocity_position * yaw + k.velocity_velocity * dr,
-        e.bias_north + c * X - s * Y,
-        e.bias_east + s * X + c * Y,
-        e.bias_N + ship.mass_sway_yaw * bias_v + ship.mass_yaw * bias_r,
-        e.surge_wave + g.wave_position * surge + g.wave_velocity * du,
-        e.sway_wave + g.wave_position * sway + g.wave_velocity * dv,
-        e.yaw_wave + k.wave_position * yaw + k.wave_velocity * dr,
-        e.u_wave + g.rate_position * surge + g.rate_velocity * du,
-        e.v_wave + g.rate_position * sway + g.rate_velocity * dv,
-        e.r_wave + k.rate_position * yaw + k.rate_velocity * dr,
+    return e._replace(
+        x=e.x + c * move_surge - s * move_sway,
+        y=e.y + s * move_surge + c * move_sway,
+        psi=e.psi + k.position_position * yaw + k.position_velocity * dr,
+        u=e.u + g.velocity_position * surge + g.velocity_velocity * du,
+        v=e.v + g.velocity_position * sway + g.velocity_velocity * dv,
+        r=e.r + k.velocity_position * yaw + k.velocity_velocity * dr,
+        bias_north=e.bias_north + c * X - s * Y,
+        bias_east=e.bias_east + s * X + c * Y,
+        bias_N=e.bias_N + ship.mass_sway_yaw * bias_v + ship.mass_yaw * bias_r,
+        surge_wave=e.surge_wave + g.wave_position * surge + g.wave_velocity * du,
+        sway_wave=e.sway_wave + g.wave_position * sway + g.wave_velocity * dv,
+        yaw_wave=e.yaw_wave + k.wave_position * yaw + k.wave_velocity * dr,
+        u_wave=e.u_wave + g.rate_position * surge + g.rate_velocity * du,
+        v_wave=e.v_wave + g.rate_position * sway + g.rate_velocity * dv,
+        r_wave=e.r_wave + k.rate_position * yaw + k.rate_velocity * dr,
     )
+
+
+def _wave_frequency(e, parameters):
+    """Wave frequency and power a sample later: towards the peak of the estimated wave motion's spectrum.
+
+    The motion swings at the root of the mean square of its rate over that of itself, somewhat above the peak. In calm
+    water the frequency returns to its default. Each axis counts by its motion over the assumed one.
+    """
+    p, w = parameters, e.wave_frequency
+    horizontal, yaw = 1.0 / p.wave_motion**2, 1.0 / p.wave_yaw**2
+    motion = horizontal * (e.surge_wave * e.surge_wave + e.sway_wave * e.sway_wave) + yaw * e.yaw_wave * e.yaw_wave
+    rate = horizontal * (e.u_wave * e.u_wave + e.v_wave * e.v_wave) + yaw * e.r_wave * e.r_wave
+    swing = w / p.wave_peak_ratio
+    motion = swing * swing * motion
+    share, size = p.sample_period / p.wave_time, 0.5 * (rate + motion)
+    power = e.wave_power + share * (size - e.wave_power)
+    rise = 0.5 * w * (rate - motion) + (p.wave_frequency - w) * CALM
+    limited = power + CALM + 0.1 * size
+    return clip(w + share * rise / limited, p.wave_frequency_min, p.wave_frequency_max), power
+
+
+def _paced(frequency, power, parameters):
+    """Wave frequency, power, and the pace of observer and law."""
+    return frequency, power, minimum(1.0, frequency / parameters.full_frequency)

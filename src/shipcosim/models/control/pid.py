@@ -32,6 +32,8 @@ class ControlParameters:
     )
     missed_moment_max: float = required("N.m", "the same for the yaw moment", minimum=0.0)
     wind_time: float = required("s", "time constant of the filter of the wind's load", minimum=1e-3)
+    force_filter_time: float = required("s", "time constant of the filter of the requested force", minimum=1e-3)
+    moment_filter_time: float = required("s", "time constant of the filter of the requested yaw moment", minimum=1e-3)
     wind_share: float = required("1", "share of the wind's load that is fed forward", minimum=0.0)
 
 
@@ -169,9 +171,11 @@ def step(
 
         τ = M (Rᵀ η̈_d + a) + D ν_d + Rᵀ i - τ_wind,  a = 2 ζ ω (ν_d - ν) + ω² e.
 
+    ω is the axis' frequency times the pace of the estimate.
+
     The integral i grows with κ ω M a, not with e alone: on a long way back, where e is limited, a is zero at a steady
     speed. Anti-windup: i grows no further in a direction in which the last request was not met (thrusters at their
-    limits).
+    limits). A low-pass filter of first order behind all that keeps steps of the estimate out of the commands.
 
     References
     ----------
@@ -179,20 +183,21 @@ def step(
     """
     psi = estimate.psi
     nu_d = (*to_body(psi, desired.x_dot, desired.y_dot), desired.r)
-    correction = _correction(estimate, desired, nu_d, parameters=parameters)
-    integral = _integral(state, psi, correction, allocated, h, ship=ship, parameters=parameters)
+    p, pace = parameters, estimate.pace
+    frequencies = (pace * p.surge_frequency, pace * p.sway_frequency, pace * p.yaw_frequency)
+    correction = _correction(estimate, desired, nu_d, frequencies, parameters=parameters)
+    integral = _integral(state, psi, correction, allocated, h, frequencies, ship=ship, parameters=parameters)
     wind = _filtered(state, wind_load, h, parameters=parameters)
     u_dot, v_dot = to_body(psi, desired.x_ddot, desired.y_ddot)
     X, Y, N = _load(u_dot + correction[0], v_dot + correction[1], desired.r_dot + correction[2], ship=ship)
     i_X, i_Y = to_body(psi, integral[0], integral[1])
     share = parameters.wind_share
-    return ControlState(
-        *integral,
-        *wind,
+    wanted = (
         X + ship.damping_surge * nu_d[0] + i_X - share * wind[0],
         Y + ship.damping_sway * nu_d[1] + i_Y - share * wind[1],
         N + ship.damping_yaw * nu_d[2] + integral[2] - share * wind[2],
     )
+    return ControlState(*integral, *wind, *_smoothed(state, wanted, h, parameters=parameters))
 
 
 def errors(estimate: Estimate, desired: Desired | ReferenceState) -> tuple[Arithmetic, Arithmetic]:
@@ -217,28 +222,25 @@ def errors(estimate: Estimate, desired: Desired | ReferenceState) -> tuple[Arith
     return hypot(estimate.x - desired.x, estimate.y - desired.y), wrap(estimate.psi - desired.psi)
 
 
-def _correction(estimate, desired, nu_d, *, parameters):
+def _correction(estimate, desired, nu_d, frequencies, *, parameters):
     """Acceleration by proportional and derivative action, with limited errors of position and heading."""
     p, damping = parameters, 2.0 * parameters.damping_ratio
+    in_surge, in_sway, in_yaw = frequencies
     surge, sway = to_body(estimate.psi, desired.x - estimate.x, desired.y - estimate.y)
     scale = p.position_error_max / maximum(hypot(surge, sway), p.position_error_max)
     yaw = clip(wrap(desired.psi - estimate.psi), -p.heading_error_max, p.heading_error_max)
     return (
-        p.surge_frequency * (damping * (nu_d[0] - estimate.u) + p.surge_frequency * scale * surge),
-        p.sway_frequency * (damping * (nu_d[1] - estimate.v) + p.sway_frequency * scale * sway),
-        p.yaw_frequency * (damping * (nu_d[2] - estimate.r) + p.yaw_frequency * yaw),
+        in_surge * (damping * (nu_d[0] - estimate.u) + in_surge * scale * surge),
+        in_sway * (damping * (nu_d[1] - estimate.v) + in_sway * scale * sway),
+        in_yaw * (damping * (nu_d[2] - estimate.r) + in_yaw * yaw),
     )
 
 
-def _integral(state, psi, correction, allocated, h, *, ship, parameters):
+def _integral(state, psi, correction, allocated, h, frequencies, *, ship, parameters):
     """Integral load a sample later."""
     p, k = parameters, parameters.integral_ratio
-    X, Y, N = _load(
-        k * p.surge_frequency * correction[0],
-        k * p.sway_frequency * correction[1],
-        k * p.yaw_frequency * correction[2],
-        ship=ship,
-    )
+    rates = (k * frequency * part for frequency, part in zip(frequencies, correction, strict=True))
+    X, Y, N = _load(*rates, ship=ship)
     north, east = to_ned(
         psi,
         _unless_missed(X, state.tau_X - allocated[0], p.missed_force_max),
@@ -258,6 +260,13 @@ def _filtered(state, wind_load, h, *, parameters):
     keep = exp(-h / parameters.wind_time)
     X, Y, N = wind_load
     return X + keep * (state.wind_X - X), Y + keep * (state.wind_Y - Y), N + keep * (state.wind_N - N)
+
+
+def _smoothed(state, wanted, h, *, parameters):
+    """Requested load behind its low-pass filter a sample later."""
+    force, moment = exp(-h / parameters.force_filter_time), exp(-h / parameters.moment_filter_time)
+    X, Y, N = wanted
+    return X + force * (state.tau_X - X), Y + force * (state.tau_Y - Y), N + moment * (state.tau_N - N)
 
 
 def _load(u_dot, v_dot, r_dot, *, ship):

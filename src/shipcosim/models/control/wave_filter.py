@@ -1,7 +1,8 @@
 """Wave filter of the observer: a model of the wave motion of one axis, and the steady Kalman gains with it.
 
 Each axis is taken alone, with acceleration as input: a wave motion p'' + 2 ζ ω p' + ω² p = noise, and a ship x' = u,
-u' = b + noise, b' = noise; measured are x + p and u + p'.
+u' = b + noise, b' = noise; measured are x + p and u + p' as they were when the sample was taken. The gains are computed
+once over a range of ω and read from a table, so that the filter can follow the sea.
 
 References
 ----------
@@ -12,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from shipcosim.models.core.interpolation import EvenTable, even_table, interp_even
 from shipcosim.models.core.maths import Arithmetic
 
 
@@ -80,7 +82,7 @@ def kalman_gain(transition: np.ndarray, noise: np.ndarray, output: np.ndarray, o
         State over one sample. [units of the states over those of the states]
     noise : (..., n, n) array
         Covariance that a sample adds. [products of the units of the states]
-    output : (m, n) array
+    output : (..., m, n) array
         Measured combination of states. [units of the measurements over those of the states]
     output_noise : (..., m, m) array
         Covariance of the measurements. [products of the units of the measurements]
@@ -99,66 +101,154 @@ def kalman_gain(transition: np.ndarray, noise: np.ndarray, output: np.ndarray, o
     Anderson and Moore, Optimal Filtering, Prentice-Hall, 1979, section 6.7.
     """
     a, h = np.swapaxes(transition, -1, -2), noise
-    g = output.T @ np.linalg.inv(output_noise) @ output
+    transposed = np.swapaxes(output, -1, -2)
+    g = transposed @ np.linalg.inv(output_noise) @ output
     eye = np.eye(output.shape[-1])
     for _ in range(20):
         inverse = np.linalg.inv(eye + g @ h)
         at = np.swapaxes(a, -1, -2)
         g, h, a = g + a @ inverse @ g @ at, h + at @ h @ inverse @ a, a @ inverse @ a
-    return h @ output.T @ np.linalg.inv(output @ h @ output.T + output_noise)
+    return h @ transposed @ np.linalg.inv(output @ h @ transposed + output_noise)
 
 
-def axis_gains(
-    dt: Arithmetic,
-    wave: tuple[Arithmetic, Arithmetic, Arithmetic, Arithmetic],
-    wave_std: Arithmetic,
-    wave_frequency: Arithmetic,
-    disturbance: Arithmetic,
-    bias_drift: Arithmetic,
-    position_noise: Arithmetic,
-    velocity_noise: Arithmetic,
-) -> AxisGains:
+class AxisNoise(NamedTuple):
+    """What the filter of one axis assumes. For yaw, m is rad.
+
+    Parameters
+    ----------
+    period, delay : float
+        Time from one measurement to the next, and age of a new one. [s, s]
+    position, velocity : float
+        Standard deviations of the measurements. [m, m/s]
+    wave : float
+        Standard deviation of the wave motion. [m]
+    disturbance : float or (n,) array
+        Intensity of the white disturbance of velocity. [m2/s3]
+    bias_drift : float or (n,) array
+        Intensity of the random walk of the bias acceleration. [m2/s5]
+    """
+
+    period: float
+    delay: float
+    position: float
+    velocity: float
+    wave: float
+    disturbance: Arithmetic
+    bias_drift: Arithmetic
+
+
+def axis_gains(frequency: Arithmetic, damping: float, noise: AxisNoise) -> AxisGains:
     """Steady Kalman gains of one axis; the noise of the wave model is scaled so that its motion has a given deviation.
 
     Parameters
     ----------
-    dt : float or (...) array
-        Sample period. [s]
-    wave : tuple of four, like dt
-        Transition of the wave model over a sample, as `wave_transition`. [1, s, 1/s, 1]
-    wave_std : like dt
-        Standard deviation of the wave motion. [m or rad]
-    wave_frequency : like dt
+    frequency : float or (...) array
         Middle frequency of the wave motion. [rad/s]
-    disturbance : like dt
-        Intensity of the white disturbance of velocity. [m2/s3 or rad2/s3]
-    bias_drift : like dt
-        Intensity of the random walk of the bias acceleration. [m2/s5 or rad2/s5]
-    position_noise, velocity_noise : like dt
-        Standard deviations of the measurements. [m or rad, m/s or rad/s]
+    damping : float
+        Relative damping of the wave model. [1]
+    noise : AxisNoise
+        Measurements, waves and disturbances.
 
     Returns
     -------
     AxisGains
-        The gains, Python floats where the arguments are scalars.
+        The gains, Python floats where the frequency is one.
+
+    Notes
+    -----
+    A measurement of age d corrects the estimate of its time; the correction now is that one, moved on over d by the
+    model: the transition over d times the usual gain.
     """
-    one, zero = dt / dt, 0.0 * dt
-    w11, w12, w21, w22 = wave
-    transition = _matrix(
+    transition = _transition(noise.period, frequency, damping)
+    output = np.array([[1.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0]])
+    one = frequency / frequency
+    size = noise.wave * noise.wave * one
+    stationary = _diagonal(size, size * frequency * frequency, 0.0, 0.0, 0.0)
+    added = stationary - transition @ stationary @ np.swapaxes(transition, -1, -2)
+    added = added + _diagonal(0.0, 0.0, 0.0, noise.disturbance * noise.period, noise.bias_drift * noise.period)
+    then = kalman_gain(transition, added, output, np.diag([noise.position**2, noise.velocity**2]))
+    gain = _transition(noise.delay, frequency, damping) @ then
+    return AxisGains(*_floats(*(gain[..., state, measured] for measured in (0, 1) for state in range(5))))
+
+
+class WaveFilter(NamedTuple):
+    """The observer's wave model and gains at one frequency.
+
+    Parameters
+    ----------
+    wave : tuple of four floats or (...) arrays or tensors
+        Transition of the wave model over a sample of the observer, as `wave_transition`. [1, s, 1/s, 1]
+    horizontal_age, yaw_age : like wave
+        The same backwards, over the age of a measurement of surge and sway, and of yaw. [1, s, 1/s, 1]
+    horizontal, yaw : AxisGains
+        Gains of surge and sway, gains of yaw.
+    """
+
+    wave: tuple
+    horizontal_age: tuple
+    yaw_age: tuple
+    horizontal: AxisGains
+    yaw: AxisGains
+
+
+def filter_table(
+    frequencies: np.ndarray, damping: float, sample_period: float, horizontal: AxisNoise, yaw: AxisNoise
+) -> EvenTable:
+    """Wave models and gains over a range of frequencies, for `filter_at`.
+
+    Parameters
+    ----------
+    frequencies : (n,) array, evenly spaced
+        Middle frequencies of the wave motion. [rad/s]
+    damping : float
+        Relative damping of the wave model. [1]
+    sample_period : float
+        Period of the observer. [s]
+    horizontal, yaw : AxisNoise
+        What the filters assume of surge and sway, and of yaw.
+
+    Returns
+    -------
+    EvenTable
+        The table.
+    """
+    spans = sample_period, -horizontal.delay, -yaw.delay
+    columns = [column for span in spans for column in wave_transition(span, frequencies, damping)]
+    columns += [column for noise in (horizontal, yaw) for column in axis_gains(frequencies, damping, noise)]
+    return even_table(frequencies, *columns)
+
+
+def filter_at(frequency: Arithmetic, table: EvenTable) -> WaveFilter:
+    """Wave model and gains at a frequency, by interpolation.
+
+    Parameters
+    ----------
+    frequency : float or (...) array or tensor
+        Middle frequency of the wave motion, within the table. [rad/s]
+    table : EvenTable
+        Made by `filter_table`.
+
+    Returns
+    -------
+    WaveFilter
+        Its values like the frequency.
+    """
+    row = interp_even(frequency, table)
+    return WaveFilter(row[:4], row[4:8], row[8:12], AxisGains(*row[12:22]), AxisGains(*row[22:]))
+
+
+def _transition(dt, frequency, damping):
+    """(..., 5, 5) transition of wave motion, its rate, position, velocity and bias acceleration."""
+    w11, w12, w21, w22 = wave_transition(dt, frequency, damping)
+    return _matrix(
         [
-            [w11, w12, zero, zero, zero],
-            [w21, w22, zero, zero, zero],
-            [zero, zero, one, dt, 0.5 * dt * dt],
-            [zero, zero, zero, one, dt],
-            [zero, zero, zero, zero, one],
+            [w11, w12, 0.0, 0.0, 0.0],
+            [w21, w22, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, dt, 0.5 * dt * dt],
+            [0.0, 0.0, 0.0, 1.0, dt],
+            [0.0, 0.0, 0.0, 0.0, 1.0],
         ]
     )
-    output = np.array([[1.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0]])
-    stationary = _diagonal(wave_std**2, (wave_std * wave_frequency) ** 2, zero, zero, zero)
-    noise = stationary - transition @ stationary @ np.swapaxes(transition, -1, -2)
-    noise = noise + _diagonal(zero, zero, zero, disturbance * dt, bias_drift * dt)
-    gain = kalman_gain(transition, noise, output, _diagonal(position_noise**2, velocity_noise**2))
-    return AxisGains(*_floats(*(gain[..., state, measured] for measured in (0, 1) for state in range(5))))
 
 
 def _matrix(rows):

@@ -1,0 +1,303 @@
+"""Stability margins of the DP loop, computed from the parameters of observer and control law.
+
+The loop is opened where the thrusters act on the ship, axis by axis, the other axes closed. Observer and law are the
+functions that run in the controller, linearised by differences at rest; the ship is the model that they use. Around
+them go the steps of the co-simulation, the latencies of the sensors and the lag of the thrusters. Positions come less
+often than the controller runs, so the loop is periodic: its response is that of the frequency it is excited with.
+
+References
+----------
+Åström and Murray, Feedback Systems, 2nd ed., Princeton, 2021, chapters 10 and 13; periodic loops: Bittanti and
+Colaneri, Periodic Systems, Springer, 2009.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.models.control import observer, pid
+from shipcosim.models.control.observer import DpShip, Estimate, Measurement, ObserverParameters
+from shipcosim.models.control.pid import ControlParameters, ControlState, Desired
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.parameters import quantity
+
+AXES = ("surge", "sway", "yaw")
+_ESTIMATE, _CONTROL = 15, 9
+_SMALL = 1e-5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Delays:
+    """What delays the loop beside observer and law, all of it in whole samples of the controller but the lag."""
+
+    position: float = quantity(
+        0.4, "s", "age of a position when the controller gets it", "docs/dp-loop.md", minimum=0.1
+    )
+    heading: float = quantity(0.2, "s", "age of a heading when the controller gets it", "docs/dp-loop.md", minimum=0.1)
+    command: float = quantity(0.2, "s", "from a sample of the controller to the thrusters", "docs/dp-loop.md")
+    thruster: float = quantity(0.3, "s", "time constant of the thrusters", "docs/dp-loop.md", minimum=1e-3)
+
+
+class Margins(NamedTuple):
+    """Margins of one axis.
+
+    Parameters
+    ----------
+    crossover : float
+        Highest frequency at which the loop gain is 1. [rad/s]
+    phase : float
+        Smallest phase margin. [rad]
+    gain : float
+        Factor on the loop gain at which the loop is unstable. [1]
+    sensitivity : float
+        Largest size Ms of the sensitivity 1/(1 + L). [1]
+    delay : float
+        Further delay at which the loop is unstable. [s]
+    """
+
+    crossover: float
+    phase: float
+    gain: float
+    sensitivity: float
+    delay: float
+
+
+class Loop(NamedTuple):
+    """The open loop as a periodic linear system, x[k+1] = A[k] x[k] + B d, load on the ship y = C x.
+
+    Parameters
+    ----------
+    transitions : tuple of (n, n) arrays
+        A over one period of the positions, sample by sample. [units of the states over those of the states]
+    push : (n, 3) array
+        B, of a load on the ship over one sample. [units of the states over N or N.m]
+    waves : (n, 6) array
+        Of wave motion (surge, sway, yaw and their rates) that is measured. [units of the states over m, rad and so on]
+    thrust, request : (3, n) array
+        C, load of the thrusters; and requested load. [N or N.m over units of the states]
+    per_mass : (3, 3) array
+        Acceleration of the ship over load. [1/kg, 1/(kg.m), 1/(kg.m2)]
+    sample : float
+        Sample period. [s]
+    """
+
+    transitions: tuple
+    push: np.ndarray
+    waves: np.ndarray
+    thrust: np.ndarray
+    request: np.ndarray
+    per_mass: np.ndarray
+    sample: float
+
+
+def linear_loop(
+    ship: DpShip, parameters: ObserverParameters, law: ControlParameters, delays: Delays, wave_frequency: float
+) -> Loop:
+    """The linear open loop of all three axes.
+
+    Parameters
+    ----------
+    ship : DpShip
+        The ship, in the observer and as the plant.
+    parameters : ObserverParameters
+        Of the observer.
+    law : ControlParameters
+        Of the control law.
+    delays : Delays
+        What else delays the loop.
+    wave_frequency : float
+        Frequency that the wave filter has adapted to. [rad/s]
+
+    Returns
+    -------
+    Loop
+        The open loop.
+    """
+    h, period = parameters.sample_period, round(parameters.position_period / parameters.sample_period)
+    late, later = round(delays.heading / h), round(delays.position / h)
+    queue = max(1, round(delays.command / h))
+    plant, push = _ship(ship, h)
+    sizes = [6, 6 * later, _ESTIMATE + _CONTROL, 3 * queue, 3]
+    ends = np.cumsum([0, *sizes])
+    body, past, controller, commands, thrust = (slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
+    n, keep = ends[-1], np.exp(-h / delays.thruster)
+    transitions = []
+    for sample in range(period):
+        own, measured = _controller(ship, parameters, law, wave_frequency, float(sample == 0))
+        a = np.zeros((n, n))
+        a[body, body] = plant
+        a[past, body] = np.eye(6 * later, 6)
+        a[past, past] = np.eye(6 * later, k=-6)
+        a[controller, controller] = own
+        for i, age in enumerate((later, later, late) * 2):
+            a[controller, past.start + 6 * (age - 1) + i] = measured[:, i]
+        a[commands, controller.stop - 3 : controller.stop] = np.eye(3 * queue, 3)
+        a[commands, commands] = np.eye(3 * queue, k=-3)
+        a[thrust, thrust] = keep * np.eye(3)
+        a[thrust, commands.stop - 3 : commands.stop] = (1.0 - keep) * np.eye(3)
+        transitions.append(a)
+    b, w, rows = np.zeros((n, 3)), np.zeros((n, 6)), np.eye(n)
+    b[body], w[past.start : past.start + 6] = push, np.eye(6)
+    request = rows[controller.stop - 3 : controller.stop]
+    return Loop(tuple(transitions), b, w, rows[thrust], request, np.linalg.inv(_mass(ship)), h)
+
+
+def open_loop(loop: Loop, axis: int, frequencies: np.ndarray) -> np.ndarray:
+    """Loop gain L of one axis, the other two closed.
+
+    Parameters
+    ----------
+    loop : Loop
+        The open loop.
+    axis : int
+        0 surge, 1 sway, 2 yaw. [1]
+    frequencies : (n,) array
+        Frequencies. [rad/s]
+
+    Returns
+    -------
+    (n,) complex array
+        Load of the thrusters for a load on the ship, with opposite sign. [1]
+    """
+    others = [i for i in range(3) if i != axis]
+    closed = [a + loop.push[:, others] @ loop.thrust[others] for a in loop.transitions]
+    push = loop.push[:, [axis]]
+    return -_responses(closed, push, loop.thrust[[axis]], frequencies, loop.sample)[:, 0, 0]
+
+
+def margins(loop: Loop, axis: int) -> Margins:
+    """Margins of one axis, the other two closed.
+
+    Parameters
+    ----------
+    loop : Loop
+        The open loop.
+    axis : int
+        0 surge, 1 sway, 2 yaw. [1]
+
+    Returns
+    -------
+    Margins
+        The margins; from frequencies that lie 2 % apart, those between them by interpolation.
+    """
+    w = np.geomspace(3e-3, 2.0, 300)
+    gain = open_loop(loop, axis, w)
+    size, angle = np.log(np.abs(gain)), np.unwrap(np.angle(gain))
+    crossed = np.flatnonzero(size[:-1] * size[1:] < 0.0)
+    share = size[crossed] / (size[crossed] - size[crossed + 1])
+    at = w[crossed] * (w[crossed + 1] / w[crossed]) ** share
+    lag = np.mod(angle[crossed] + share * (angle[crossed + 1] - angle[crossed]) + np.pi, 2.0 * np.pi)
+    turned = np.flatnonzero((np.diff(np.sign(gain.imag)) != 0) & (gain.real[:-1] < 0.0) & (w[:-1] > at[-1]))
+    limit = 1.0 / np.abs(gain[turned]).max() if turned.size else np.inf
+    phase = np.minimum(lag, 2.0 * np.pi - lag)
+    return Margins(
+        float(at[-1]), float(phase.min()), float(limit), float(1.0 / np.abs(1.0 + gain).min()), float((lag / at).min())
+    )
+
+
+def wave_suppression(loop: Loop, axis: int, frequencies: np.ndarray, law: ControlParameters) -> np.ndarray:
+    """Response of the requested load to wave motion, over that of the same law without observer and filters.
+
+    Parameters
+    ----------
+    loop : Loop
+        The open loop; here it is closed.
+    axis : int
+        0 surge, 1 sway, 2 yaw. [1]
+    frequencies : (n,) array
+        Frequencies of the wave motion. [rad/s]
+    law : ControlParameters
+        Of the control law.
+
+    Returns
+    -------
+    (n,) array
+        Ratio of the two responses; below 1 the waves are suppressed. [1]
+    """
+    closed = [a + loop.push @ loop.thrust for a in loop.transitions]
+    w0 = (law.surge_frequency, law.sway_frequency, law.yaw_frequency)[axis]
+    w = np.asarray(frequencies)
+    motion = loop.waves[:, [axis]] + 1j * w[:, None, None] * loop.waves[:, [axis + 3]]
+    asked = _responses(closed, motion, loop.request, w, loop.sample)[:, :, 0]
+    plain = np.abs(w0 * w0 + 2j * law.damping_ratio * w0 * w)
+    return np.abs(loop.per_mass[axis] @ asked.T) / plain
+
+
+def is_stable(loop: Loop) -> bool:
+    """Whether the closed loop is stable.
+
+    Parameters
+    ----------
+    loop : Loop
+        The open loop; here it is closed.
+
+    Returns
+    -------
+    bool
+        Whether all eigenvalues of the closed loop over one period lie within the unit circle. [1]
+    """
+    over = np.eye(len(loop.push))
+    for a in loop.transitions:
+        over = (a + loop.push @ loop.thrust) @ over
+    return bool(np.abs(np.linalg.eigvals(over)).max() < 1.0)
+
+
+def _mass(ship):
+    """Mass matrix."""
+    mass = np.diag([ship.mass_surge, ship.mass_sway, ship.mass_yaw])
+    mass[1, 2] = mass[2, 1] = ship.mass_sway_yaw
+    return mass
+
+
+def _ship(ship, h):
+    """Transition of (x, y, psi, u, v, r) at heading 0 over a sample, and effect of a load that is held over it."""
+    mass = _mass(ship)
+    drag = np.linalg.solve(mass, np.diag([ship.damping_surge, ship.damping_sway, ship.damping_yaw]))
+    eye, zero = np.eye(3), np.zeros((3, 3))
+    a = np.block([[zero, eye, zero], [zero, -drag, np.linalg.inv(mass)], [zero, zero, zero]]) * h
+    held = np.eye(9) + a + a @ a / 2.0 + a @ a @ a / 6.0
+    return held[:6, :6], held[:6, 6:]
+
+
+def _controller(ship, parameters, law, wave_frequency, new):
+    """One sample of observer and law, linearised at rest: effect of their own state, and of the measurement."""
+    design = observer.design(ship, parameters)
+    scale = np.concatenate([np.full(_ESTIMATE, _SMALL), np.full(_CONTROL, 1.0), np.full(6, _SMALL)])
+    scale[6:9] = 1.0
+    x = np.concatenate([np.diag(scale), -np.diag(scale)], axis=1)
+    own, measured = _ESTIMATE + _CONTROL, x[_ESTIMATE + _CONTROL :]
+    zero = np.zeros(x.shape[1])
+    pace = np.minimum(1.0, (zero + wave_frequency) / parameters.full_frequency)
+    estimate = Estimate(*x[:_ESTIMATE], zero + wave_frequency, zero, pace)
+    state = ControlState(*x[_ESTIMATE:own])
+    allocated = state[-3:]
+    estimate = observer.step(
+        estimate,
+        Measurement(Motion(*measured), new, 1.0),
+        pid.known_load(state, allocated),
+        ship=ship,
+        parameters=parameters,
+        design=design,
+    )
+    desired, calm, h = Desired(*(zero,) * 9), (zero,) * 3, parameters.sample_period
+    state = pid.step(state, estimate, desired, allocated, calm, h, ship=ship, parameters=law)
+    found = np.array([*estimate[:_ESTIMATE], *state])
+    slopes = (found[:, : len(scale)] - found[:, len(scale) :]) / (2.0 * scale)
+    return slopes[:, :own], slopes[:, own:]
+
+
+def _responses(transitions, push, shown, frequencies, h):
+    """Part with a frequency of what a periodic system shows when it is pushed with it; (frequencies, shown, pushed)."""
+    n, m = push.shape[-2:]
+    count, step = len(transitions), np.exp(1j * h * np.asarray(frequencies))
+    turns = step[:, None, None] ** np.arange(count + 1)[:, None, None, None]
+    over, forced = np.eye(n), np.zeros((len(step), n, m), complex)
+    for a, turn in zip(transitions, turns, strict=False):
+        over, forced = a @ over, a @ forced + push * turn
+    x = np.linalg.solve(turns[-1] * np.eye(n) - over, forced)
+    total = np.zeros((len(step), len(shown), m), complex)
+    for a, turn in zip(transitions, turns, strict=False):
+        total += shown @ x / turn
+        x = a @ x + push * turn
+    return total / count
