@@ -31,7 +31,7 @@ class ControlParameters:
         "N", "missing force beyond which the integral grows no further that way", minimum=0.0
     )
     missed_moment_max: float = required("N.m", "the same for the yaw moment", minimum=0.0)
-    wind_time: float = required("s", "time constant of the filter of the wind's load", minimum=1e-3)
+    wind_filter_time: float = required("s", "time constant of the filter of the wind's load", minimum=1e-3)
     force_filter_time: float = required("s", "time constant of the filter of the requested force", minimum=1e-3)
     moment_filter_time: float = required("s", "time constant of the filter of the requested yaw moment", minimum=1e-3)
     wind_share: float = required("1", "share of the wind's load that is fed forward", minimum=0.0)
@@ -257,7 +257,7 @@ def _unless_missed(rate, missed, most):
 
 def _filtered(state, wind_load, h, *, parameters):
     """Wind load behind its low-pass filter a sample later."""
-    keep = exp(-h / parameters.wind_time)
+    keep = exp(-h / parameters.wind_filter_time)
     X, Y, N = wind_load
     return X + keep * (state.wind_X - X), Y + keep * (state.wind_Y - Y), N + keep * (state.wind_N - N)
 
