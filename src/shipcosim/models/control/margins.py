@@ -188,7 +188,7 @@ def margins(loop: Loop, axis: int) -> Margins:
     share = size[crossed] / (size[crossed] - size[crossed + 1])
     at = w[crossed] * (w[crossed + 1] / w[crossed]) ** share
     lag = np.mod(angle[crossed] + share * (angle[crossed + 1] - angle[crossed]) + np.pi, 2.0 * np.pi)
-    turned = np.flatnonzero((np.diff(np.sign(gain.imag)) != 0) & (gain.real[:-1] < 0.0) & (w[:-1] > at[-1]))
+    turned = np.flatnonzero((np.diff(np.sign(np.imag(gain))) != 0) & (np.real(gain)[:-1] < 0.0) & (w[:-1] > at[-1]))
     limit = 1.0 / np.abs(gain[turned]).max() if turned.size else np.inf
     phase = np.minimum(lag, 2.0 * np.pi - lag)
     return Margins(
@@ -269,7 +269,7 @@ def _controller(ship, parameters, law, wave_frequency, new):
     own, measured = _ESTIMATE + _CONTROL, x[_ESTIMATE + _CONTROL :]
     zero = np.zeros(x.shape[1])
     pace = np.minimum(1.0, (zero + wave_frequency) / parameters.full_frequency)
-    estimate = Estimate(*x[:_ESTIMATE], zero + wave_frequency, zero, pace)
+    estimate = Estimate(*x[:_ESTIMATE])._replace(wave_frequency=zero + wave_frequency, wave_power=zero, pace=pace)
     state = ControlState(*x[_ESTIMATE:own])
     allocated = state[-3:]
     estimate = observer.step(
@@ -280,7 +280,7 @@ def _controller(ship, parameters, law, wave_frequency, new):
         parameters=parameters,
         design=design,
     )
-    desired, calm, h = Desired(*(zero,) * 9), (zero,) * 3, parameters.sample_period
+    desired, calm, h = Desired(*(zero,) * 9), (0.0, 0.0, 0.0), parameters.sample_period
     state = pid.step(state, estimate, desired, allocated, calm, h, ship=ship, parameters=law)
     found = np.array([*estimate[:_ESTIMATE], *state])
     slopes = (found[:, : len(scale)] - found[:, len(scale) :]) / (2.0 * scale)

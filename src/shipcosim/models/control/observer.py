@@ -218,9 +218,9 @@ def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
         The estimate.
     """
     zero = 0.0 * measured.x
-    return Estimate(
-        measured.x, measured.y, measured.psi, *(zero,) * 12, *_paced(zero + parameters.wave_frequency, zero, parameters)
-    )
+    still = Estimate(measured.x, measured.y, measured.psi, *(zero,) * 12)
+    frequency, power, pace = _paced(zero + parameters.wave_frequency, zero, parameters)
+    return still._replace(wave_frequency=frequency, wave_power=power, pace=pace)
 
 
 def step(

@@ -233,7 +233,7 @@ def filter_at(frequency: Arithmetic, table: EvenTable) -> WaveFilter:
     WaveFilter
         Its values like the frequency.
     """
-    row = interp_even(frequency, table)
+    row = tuple(interp_even(frequency, table))
     return WaveFilter(row[:4], row[4:8], row[8:12], AxisGains(*row[12:22]), AxisGains(*row[22:]))
 
 
