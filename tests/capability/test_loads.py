@@ -7,7 +7,7 @@ import pytest
 from capability.psv import HULL
 
 from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, Condition
-from shipcosim.capability.loads import current, level_1_loads, level_1_parts, wave_drift, wind
+from shipcosim.capability.loads import current, level_1_loads, level_1_parts, waves, wind
 
 SIDES = np.radians([0.0, 90.0, 180.0])
 
@@ -38,7 +38,7 @@ def test_loads_of_condition_6_are_those_of_another_implementation():
 )
 def test_wave_drift_is_that_worked_out_by_hand_elsewhere(height, period, angle, expected):
     hull, sea = replace(HULL, bow_angle=0.4), Condition(0, 0.0, height, period, 0.0)
-    assert wave_drift(hull, sea, np.radians([angle]))[0] == pytest.approx(expected, abs=0.01)
+    assert waves(hull, sea, np.radians([angle]))[0] == pytest.approx(expected, abs=0.01)
 
 
 def test_wind_from_ahead_and_abeam_are_drag_of_the_areas():

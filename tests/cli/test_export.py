@@ -34,11 +34,11 @@ override = { "reference.x_set" = 1.0, "tunnel.failed" = true }
 
 [[events]]
 time  = 6.0
-bias  = { "vessel.u" = 0.05, "controller.y_meas" = 0.5, "environment.wind_speed" = 1.5 }
+bias  = { "vessel.u" = 0.05, "controller.y_1_meas" = 0.5, "environment.wind_speed" = 1.5 }
 
 [[events]]
 time     = 9.0
-reset    = ["vessel.u", "controller.y_meas", "environment.wind_speed"]
+reset    = ["vessel.u", "controller.y_1_meas", "environment.wind_speed"]
 override = { "port.azimuth_cmd" = 0.3 }
 
 [[events]]

@@ -37,7 +37,7 @@ def level_1_parts(hull: Hull, condition: Condition, weather_from: NDArray) -> di
     return {
         "wind": wind(hull, condition.wind_speed, weather_from),
         "current": current(hull, condition.current_speed, weather_from),
-        "waves": wave_drift(hull, condition, weather_from),
+        "waves": waves(hull, condition, weather_from),
     }
 
 
@@ -71,7 +71,7 @@ def current(hull: Hull, speed: float, current_from: NDArray) -> NDArray:
     return _load(hull, -0.07 * q * hull.breadth * hull.draught * np.cos(current_from), across, lever)
 
 
-def wave_drift(hull: Hull, condition: Condition, waves_from: NDArray) -> NDArray:
+def waves(hull: Hull, condition: Condition, waves_from: NDArray) -> NDArray:
     """Mean wave drift load.
 
     Parameters

@@ -160,7 +160,7 @@ def propeller_loads(u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParam
     One whose KT is 0.82 at no speed, 1.9 m wide, at 200 rpm:
 
     >>> tables = {"thrust_polynomial": "30 0.82 -0.7 0.2 -0.1", "torque_polynomial": "30 0.09 -0.04 0 0"}
-    >>> tables |= {"thrust_factors": "-180 0.9; -90 1; 0 1.4; 30 0.4; 90 1; 180 0.9", "torque_factors": "0 1"}
+    >>> tables |= {"thrust_factors": "-180 0.9; -90 1; 0 1.4; 30 0.4; 90 1; 180 0.9", "torque_factors": "-180 1; 180 1"}
     >>> thrust, torque = propeller_loads(0.0, 200.0 / 60.0, propeller=PropellerParameters(diameter=1.9, **tables))
     >>> round(thrust / (1025.0 * (200.0 / 60.0) ** 2 * 1.9**4), 9)
     0.82
