@@ -418,7 +418,6 @@ def _controlled(t, state, system, design):
             law,
             estimate,
             state.reference,
-            allocated,
             votes.wind.load,
             period,
             ship=system.ship,

@@ -125,7 +125,6 @@ class DpController(Fmu):
             self.state,
             estimate,
             self._desired(),
-            allocated,
             self.voting.wind.load,
             period,
             ship=self.ship,

@@ -109,7 +109,7 @@ def of_observer(*row):
 
 
 def of_control(*row):
-    return control.ControlState(*row[:9]), observer.Estimate(*row), control.Desired(*row[6:]), row[:3], row[3:6]
+    return control.ControlState(*row[:6]), observer.Estimate(*row), control.Desired(*row[6:]), row[3:6]
 
 
 def of_allocation(*row):

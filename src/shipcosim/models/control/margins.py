@@ -23,7 +23,7 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
 
 AXES = ("surge", "sway", "yaw")
-_ESTIMATE, _CONTROL = 15, 9
+_ESTIMATE, _CONTROL = 15, 6
 _SMALL = 1e-5
 
 
@@ -281,7 +281,7 @@ def _controller(ship, parameters, law, wave_frequency, new):
         design=design,
     )
     desired, calm, h = Desired(*(zero,) * 9), (0.0, 0.0, 0.0), parameters.sample_period
-    state = pid.step(state, estimate, desired, allocated, calm, h, ship=ship, parameters=law)
+    state = pid.step(state, estimate, desired, calm, h, ship=ship, parameters=law)
     found = np.array([*estimate[:_ESTIMATE], *state])
     slopes = (found[:, : len(scale)] - found[:, len(scale) :]) / (2.0 * scale)
     return slopes[:, :own], slopes[:, own:]

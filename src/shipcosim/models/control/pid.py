@@ -1,4 +1,8 @@
-"""Control law of dynamic positioning: nonlinear PID with feedforward of reference and wind, and anti-windup."""
+"""Control law of dynamic positioning: nonlinear PID with feedforward of reference and wind.
+
+The integral action is the observer's bias load, fed forward with opposite sign. The observer knows what was allocated,
+so a request that the thrusters could not meet winds nothing up.
+"""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -6,8 +10,8 @@ from typing import NamedTuple
 from shipcosim.angles import wrap
 from shipcosim.models.control.observer import DpShip, Estimate
 from shipcosim.models.control.reference import ReferenceState
-from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum, where
+from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
 
@@ -20,17 +24,12 @@ class ControlParameters:
     sway_frequency: float = required("rad/s", "natural frequency of the loop in sway", minimum=0.0)
     yaw_frequency: float = required("rad/s", "natural frequency of the loop in yaw", minimum=0.0)
     damping_ratio: float = required("1", "relative damping of the loops", minimum=0.0)
-    integral_ratio: float = required("1", "rate of the integral action over the loop's natural frequency", minimum=0.0)
     position_error_max: float = required(
         "m", "position error beyond which the restoring force grows no more", minimum=1e-3
     )
     heading_error_max: float = required(
         "rad", "heading error beyond which the restoring moment grows no more", minimum=1e-3
     )
-    missed_force_max: float = required(
-        "N", "missing force beyond which the integral grows no further that way", minimum=0.0
-    )
-    missed_moment_max: float = required("N.m", "the same for the yaw moment", minimum=0.0)
     wind_filter_time: float = required("s", "time constant of the filter of the wind's load", minimum=1e-3)
     force_filter_time: float = required("s", "time constant of the filter of the requested force", minimum=1e-3)
     moment_filter_time: float = required("s", "time constant of the filter of the requested yaw moment", minimum=1e-3)
@@ -66,17 +65,12 @@ class ControlState(NamedTuple):
 
     Parameters
     ----------
-    integral_north, integral_east, integral_N : float or (...) array or tensor
-        Integral load. [N, N, N.m]
-    wind_X, wind_Y, wind_N : like integral_north
+    wind_X, wind_Y, wind_N : float or (...) array or tensor
         Filtered wind load, body frame. [N, N, N.m]
-    tau_X, tau_Y, tau_N : like integral_north
+    tau_X, tau_Y, tau_N : like wind_X
         Load requested last, body frame. [N, N, N.m]
     """
 
-    integral_north: Arithmetic
-    integral_east: Arithmetic
-    integral_N: Arithmetic
     wind_X: Arithmetic
     wind_Y: Arithmetic
     wind_N: Arithmetic
@@ -86,7 +80,7 @@ class ControlState(NamedTuple):
 
 
 def at_rest(wind_load: Load) -> ControlState:
-    """State at the start: no integral, nothing requested, the wind load as measured.
+    """State at the start: nothing requested, the wind load as measured.
 
     Parameters
     ----------
@@ -103,7 +97,7 @@ def at_rest(wind_load: Load) -> ControlState:
     Definition.
     """
     zero = 0.0 * wind_load[0]
-    return ControlState(zero, zero, zero, *wind_load, zero, zero, zero)
+    return ControlState(*wind_load, zero, zero, zero)
 
 
 def known_load(state: ControlState, allocated: Load) -> Load:
@@ -132,7 +126,6 @@ def step(
     state: ControlState,
     estimate: Estimate,
     desired: Desired | ReferenceState,
-    allocated: Load,
     wind_load: Load,
     h: float,
     *,
@@ -149,8 +142,6 @@ def step(
         Low-frequency ship.
     desired : Desired or ReferenceState
         Desired motion.
-    allocated : tuple of three
-        Load that the thrusters were told to give of the last request, body frame. [N, N, N.m]
     wind_load : tuple of three
         Load of the measured wind, body frame. [N, N, N.m]
     h : float
@@ -169,13 +160,12 @@ def step(
     -----
     With the limited error e = Rᵀ(η_d - η) in body axes and ν_d = Rᵀ η̇_d,
 
-        τ = M (Rᵀ η̈_d + a) + D ν_d + Rᵀ i - τ_wind,  a = 2 ζ ω (ν_d - ν) + ω² e.
+        τ = M (Rᵀ η̈_d + a) + D ν_d - Rᵀ b - τ_wind,  a = 2 ζ ω (ν_d - ν) + ω² e.
 
     ω is the axis' frequency times the pace of the estimate.
 
-    The integral i grows with κ ω M a, not with e alone: on a long way back, where e is limited, a is zero at a steady
-    speed. Anti-windup: i grows no further in a direction in which the last request was not met (thrusters at their
-    limits). A low-pass filter of first order behind all that keeps steps of the estimate out of the commands.
+    b is the estimated bias load: it takes the place of an integral. A low-pass filter of first order behind all that
+    keeps steps of the estimate out of the commands.
 
     References
     ----------
@@ -186,18 +176,17 @@ def step(
     p, pace = parameters, estimate.pace
     frequencies = (pace * p.surge_frequency, pace * p.sway_frequency, pace * p.yaw_frequency)
     correction = _correction(estimate, desired, nu_d, frequencies, parameters=parameters)
-    integral = _integral(state, psi, correction, allocated, h, frequencies, ship=ship, parameters=parameters)
     wind = _filtered(state, wind_load, h, parameters=parameters)
     u_dot, v_dot = to_body(psi, desired.x_ddot, desired.y_ddot)
     X, Y, N = _load(u_dot + correction[0], v_dot + correction[1], desired.r_dot + correction[2], ship=ship)
-    i_X, i_Y = to_body(psi, integral[0], integral[1])
+    b_X, b_Y = to_body(psi, estimate.bias_north, estimate.bias_east)
     share = parameters.wind_share
     wanted = (
-        X + ship.damping_surge * nu_d[0] + i_X - share * wind[0],
-        Y + ship.damping_sway * nu_d[1] + i_Y - share * wind[1],
-        N + ship.damping_yaw * nu_d[2] + integral[2] - share * wind[2],
+        X + ship.damping_surge * nu_d[0] - b_X - share * wind[0],
+        Y + ship.damping_sway * nu_d[1] - b_Y - share * wind[1],
+        N + ship.damping_yaw * nu_d[2] - estimate.bias_N - share * wind[2],
     )
-    return ControlState(*integral, *wind, *_smoothed(state, wanted, h, parameters=parameters))
+    return ControlState(*wind, *_smoothed(state, wanted, h, parameters=parameters))
 
 
 def errors(estimate: Estimate, desired: Desired | ReferenceState) -> tuple[Arithmetic, Arithmetic]:
@@ -234,25 +223,6 @@ def _correction(estimate, desired, nu_d, frequencies, *, parameters):
         in_sway * (damping * (nu_d[1] - estimate.v) + in_sway * scale * sway),
         in_yaw * (damping * (nu_d[2] - estimate.r) + in_yaw * yaw),
     )
-
-
-def _integral(state, psi, correction, allocated, h, frequencies, *, ship, parameters):
-    """Integral load a sample later."""
-    p, k = parameters, parameters.integral_ratio
-    rates = (k * frequency * part for frequency, part in zip(frequencies, correction, strict=True))
-    X, Y, N = _load(*rates, ship=ship)
-    north, east = to_ned(
-        psi,
-        _unless_missed(X, state.tau_X - allocated[0], p.missed_force_max),
-        _unless_missed(Y, state.tau_Y - allocated[1], p.missed_force_max),
-    )
-    moment = _unless_missed(N, state.tau_N - allocated[2], p.missed_moment_max)
-    return state.integral_north + h * north, state.integral_east + h * east, state.integral_N + h * moment
-
-
-def _unless_missed(rate, missed, most):
-    """Rate of an integral; 0 where it would ask for more of what is already missed by more than `most`."""
-    return where(rate * missed > most * abs(rate), 0.0, rate)
 
 
 def _filtered(state, wind_load, h, *, parameters):
