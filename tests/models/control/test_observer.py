@@ -115,13 +115,13 @@ def test_less_than_a_fifth_of_the_wave_motion_passes(period):
 
 
 def test_noise_of_the_sensors_is_filtered_to_centimetres():
-    """Positions are the mean of three references, once a second; heading and rate are of each sample."""
+    """Positions are the mean of three references, at each second sample; heading and rate are of each."""
     random, third = np.random.default_rng(1), 3.0**-0.5
     noise = random.normal(size=(6000, 6)) * [0.2, 0.2, 0.1 * observer.DEGREE, 0.02, 0.02, 0.05 * observer.DEGREE]
     estimate, found = at_rest(Motion(*(0.0,) * 6)), []
     for k, (x, y, psi, u, v, r) in enumerate(noise):
         motion = Motion(third * x, third * y, psi, third * u, third * v, r)
-        estimate = step(estimate, motion, position_new=float(k % 10 == 0))
+        estimate = step(estimate, motion, position_new=float(k % 2 == 0))
         found.append(estimate[:6])
     x, y, psi, u, v, r = np.std(found[1000:], axis=0)
     assert max(x, y) < 0.04 and max(u, v) < 0.005

@@ -27,6 +27,8 @@ FREQUENCIES = 129
 """Number of frequencies in the table of gains."""
 CALM = 0.01
 """Wave power below which the frequency rather returns to its default than follows. [1/s2]"""
+FORGETTING = 0.4
+"""Rate at which the swing forgets: below all waves, above slow errors of the estimated rates. [1/s]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,6 +110,8 @@ class Estimate(NamedTuple):
         Wave motion in body axes. [m, m, rad]
     u_wave, v_wave, r_wave : like x
         Rates of the wave motion. [m/s, m/s, rad/s]
+    surge_swing, sway_swing, yaw_swing : like x
+        Rates of the wave motion, integrated with forgetting: tells the frequency. [m, m, rad]
     wave_frequency : like x
         Middle frequency of the wave motion. [rad/s]
     wave_power : like x
@@ -131,6 +135,9 @@ class Estimate(NamedTuple):
     u_wave: Arithmetic = 0.0
     v_wave: Arithmetic = 0.0
     r_wave: Arithmetic = 0.0
+    surge_swing: Arithmetic = 0.0
+    sway_swing: Arithmetic = 0.0
+    yaw_swing: Arithmetic = 0.0
     wave_frequency: Arithmetic = 1.0
     wave_power: Arithmetic = 0.0
     pace: Arithmetic = 1.0
@@ -179,7 +186,7 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
         p.position_delay,
         p.position_noise,
         p.velocity_noise,
-        p.wave_motion,
+        p.wave_motion / pace**2,
         p.velocity_disturbance * pace**3,
         p.bias_drift * pace**5,
     )
@@ -188,7 +195,7 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
         p.heading_delay,
         p.heading_noise,
         p.rate_noise,
-        p.wave_yaw,
+        p.wave_yaw / pace**2,
         p.rate_disturbance * pace**3,
         p.bias_drift_yaw * pace**5,
     )
@@ -218,7 +225,7 @@ def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
         The estimate.
     """
     zero = 0.0 * measured.x
-    still = Estimate(measured.x, measured.y, measured.psi, *(zero,) * 12)
+    still = Estimate(measured.x, measured.y, measured.psi, *(zero,) * 15)
     frequency, power, pace = _paced(zero + parameters.wave_frequency, zero, parameters)
     return still._replace(wave_frequency=frequency, wave_power=power, pace=pace)
 
@@ -259,8 +266,12 @@ def step(
     predicted = _predict(estimate, acceleration, dt=parameters.sample_period, wave=filters.wave)
     innovations = _innovations(predicted, acceleration, measurement, parameters, filters)
     corrected = _correct(predicted, innovations, ship=ship, filters=filters)
-    frequency, power, pace = _paced(*_wave_frequency(corrected, parameters), parameters)
-    return corrected._replace(wave_frequency=frequency, wave_power=power, pace=pace)
+    swings = _swings(corrected, parameters.sample_period)
+    frequency, power, pace = _paced(*_wave_frequency(corrected, swings, parameters), parameters)
+    surge, sway, yaw = swings
+    return corrected._replace(
+        surge_swing=surge, sway_swing=sway, yaw_swing=yaw, wave_frequency=frequency, wave_power=power, pace=pace
+    )
 
 
 def _acceleration(e, load, *, ship, inverse_mass):
@@ -344,21 +355,27 @@ def _correct(e, innovations, *, ship, filters):
     )
 
 
-def _wave_frequency(e, parameters):
+def _swings(e, h):
+    """Wave motion in surge, sway and yaw a sample later, integrated from its rates with forgetting."""
+    keep = 1.0 - h * FORGETTING
+    return keep * e.surge_swing + h * e.u_wave, keep * e.sway_swing + h * e.v_wave, keep * e.yaw_swing + h * e.r_wave
+
+
+def _wave_frequency(e, swings, parameters):
     """Wave frequency and power a sample later: towards the peak of the estimated wave motion's spectrum.
 
-    The motion swings at the root of the mean square of its rate over that of itself, somewhat above the peak. In calm
-    water the frequency returns to its default. Each axis counts by its motion over the assumed one.
+    The swings swing at the root of the mean square of their rate over that of themselves, somewhat above the peak. In
+    calm water the frequency returns to its default. Each axis counts by its motion over the assumed one.
     """
     p, w = parameters, e.wave_frequency
+    surge, sway, turn = swings
+    du, dv, dr = e.u_wave - FORGETTING * surge, e.v_wave - FORGETTING * sway, e.r_wave - FORGETTING * turn
     horizontal, yaw = 1.0 / p.wave_motion**2, 1.0 / p.wave_yaw**2
-    motion = horizontal * (e.surge_wave * e.surge_wave + e.sway_wave * e.sway_wave) + yaw * e.yaw_wave * e.yaw_wave
-    rate = horizontal * (e.u_wave * e.u_wave + e.v_wave * e.v_wave) + yaw * e.r_wave * e.r_wave
-    swing = w / p.wave_peak_ratio
-    motion = swing * swing * motion
-    share, size = p.sample_period / p.wave_time, 0.5 * (rate + motion)
+    rate = horizontal * (du * du + dv * dv) + yaw * dr * dr
+    expected = (w / p.wave_peak_ratio) ** 2 * (horizontal * (surge * surge + sway * sway) + yaw * turn * turn)
+    share, size = p.sample_period / p.wave_time, 0.5 * (rate + expected)
     power = e.wave_power + share * (size - e.wave_power)
-    rise = 0.5 * w * (rate - motion) + (p.wave_frequency - w) * CALM
+    rise = 0.5 * w * (rate - expected) + (p.wave_frequency - w) * CALM
     limited = power + CALM + 0.1 * size
     return clip(w + share * rise / limited, p.wave_frequency_min, p.wave_frequency_max), power
 
