@@ -3,9 +3,7 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models.allocation.power import PowerParameters, granted_power, thrust_shares
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters, at_rest, design, step, used_shares
-
-PLENTY = 1e9
-"""Power from which on a bus is no limit. [W]"""
+from shipcosim.models.propulsion.failures import PLENTY
 
 
 class Allocator(Fmu):

@@ -4,7 +4,7 @@ from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
 from shipcosim.models.propulsion.drive import at_rest, powers
-from shipcosim.models.propulsion.failures import Failures
+from shipcosim.models.propulsion.failures import PLENTY, Failures
 
 
 class AzimuthThruster(Fmu):
@@ -23,7 +23,7 @@ class AzimuthThruster(Fmu):
     rpm_reversed = Input("1", "failure: the measured shaft speed has the wrong sign", start=False)
     azimuth_reversed = Input("1", "failure: the measured direction has the wrong sign", start=False)
     rate_share = Input("1", "share that is left of the largest rates of thrust and turning", start=1.0)
-    power_limit = Input("W", "power that the switchboard grants the motor", start=1e12)
+    power_limit = Input("W", "power that the switchboard grants the motor", start=PLENTY)
     rpm_in = Input("rpm", "shaft speed of a replay")
     azimuth_in = Input("rad", "direction of positive thrust of a replay, clockwise from the bow")
     neighbour_azimuth = Input("rad", "direction of positive thrust of the unit whose slipstream can meet this one")

@@ -3,7 +3,7 @@
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import pi
 from shipcosim.models.propulsion.drive import at_rest, powers
-from shipcosim.models.propulsion.failures import Failures
+from shipcosim.models.propulsion.failures import PLENTY, Failures
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
 
 
@@ -20,7 +20,7 @@ class TunnelThruster(Fmu):
     rpm_frozen = Input("1", "failure: the drive keeps its last set point of thrust", start=False)
     rpm_reversed = Input("1", "failure: the measured motor speed has the wrong sign", start=False)
     rate_share = Input("1", "share that is left of the largest rate of thrust", start=1.0)
-    power_limit = Input("W", "power that the switchboard grants the motor", start=1e12)
+    power_limit = Input("W", "power that the switchboard grants the motor", start=PLENTY)
     rpm_in = Input("rpm", "motor speed of a replay")
 
     thrust = Output("N", "delivered thrust, positive to starboard")

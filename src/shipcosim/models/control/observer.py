@@ -27,6 +27,8 @@ FREQUENCIES = 129
 """Number of frequencies in the table of gains."""
 CALM = 0.01
 """Wave power below which the frequency rather returns to its default than follows. [1/s2]"""
+OUTLIER = 4.0
+"""Motion over its mean square beyond which it is less and less taken for waves. [1]"""
 FORGETTING = 0.4
 """Rate at which the swing forgets: below all waves, above slow errors of the estimated rates. [1/s]"""
 
@@ -68,8 +70,8 @@ class ObserverParameters:
     wave_time: float = required("s", "time in which the wave filter's frequency follows the sea", minimum=1.0)
     wave_peak_ratio: float = required("1", "peak frequency over that at which the motion in waves swings", minimum=0.5)
     wave_damping: float = required("1", "relative damping of the wave model: its bandwidth", minimum=0.01)
-    wave_motion: float = required("m", "standard deviation of surge and sway in waves", minimum=1e-6)
-    wave_yaw: float = required("rad", "standard deviation of yaw in waves", minimum=1e-9)
+    wave_motion: float = required("m", "standard deviation of surge and sway in short waves", minimum=1e-6)
+    wave_yaw: float = required("rad", "standard deviation of yaw in short waves", minimum=1e-9)
     velocity_disturbance: float = required("m2/s3", "intensity of the white disturbance of velocity", minimum=1e-18)
     rate_disturbance: float = required("rad2/s3", "intensity of the white disturbance of yaw rate", minimum=1e-18)
     bias_drift: float = required("m2/s5", "intensity of the random walk of the bias force over mass", minimum=1e-18)
@@ -176,7 +178,8 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
     Notes
     -----
     In waves longer than `full_frequency` all frequencies of the filter shrink with that of the waves: the intensities
-    of the disturbances go with its third and fifth power, as their units do.
+    of the disturbances go with its third and fifth power, as their units do. The expected motion in waves grows with
+    the square of their period, as that of waves of one steepness.
     """
     p = parameters
     frequencies = np.linspace(p.wave_frequency_min, p.wave_frequency_max, FREQUENCIES)
@@ -226,7 +229,8 @@ def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
     """
     zero = 0.0 * measured.x
     still = Estimate(measured.x, measured.y, measured.psi, *(zero,) * 15)
-    frequency, power, pace = _paced(zero + parameters.wave_frequency, zero, parameters)
+    assumed = zero + parameters.wave_frequency
+    frequency, power, pace = _paced(assumed, assumed * assumed, parameters)
     return still._replace(wave_frequency=frequency, wave_power=power, pace=pace)
 
 
@@ -364,8 +368,9 @@ def _swings(e, h):
 def _wave_frequency(e, swings, parameters):
     """Wave frequency and power a sample later: towards the peak of the estimated wave motion's spectrum.
 
-    The swings swing at the root of the mean square of their rate over that of themselves, somewhat above the peak. In
-    calm water the frequency returns to its default. Each axis counts by its motion over the assumed one.
+    The frequency is the root of the mean square of the swings' rates over that of the swings, somewhat above the peak.
+    In calm water it returns to its default. Each axis counts by its motion over the assumed one; what is far above the
+    mean of the last minutes, as the motion after a failure is, hardly counts.
     """
     p, w = parameters, e.wave_frequency
     surge, sway, turn = swings
@@ -373,11 +378,11 @@ def _wave_frequency(e, swings, parameters):
     horizontal, yaw = 1.0 / p.wave_motion**2, 1.0 / p.wave_yaw**2
     rate = horizontal * (du * du + dv * dv) + yaw * dr * dr
     expected = (w / p.wave_peak_ratio) ** 2 * (horizontal * (surge * surge + sway * sway) + yaw * turn * turn)
-    share, size = p.sample_period / p.wave_time, 0.5 * (rate + expected)
-    power = e.wave_power + share * (size - e.wave_power)
-    rise = 0.5 * w * (rate - expected) + (p.wave_frequency - w) * CALM
-    limited = power + CALM + 0.1 * size
-    return clip(w + share * rise / limited, p.wave_frequency_min, p.wave_frequency_max), power
+    share, size, level = p.sample_period / p.wave_time, 0.5 * (rate + expected), e.wave_power + CALM
+    excess = size / (OUTLIER * level)
+    rise = 0.5 * w * (rate - expected) / (1.0 + excess * excess) + (p.wave_frequency - w) * CALM
+    frequency = clip(w + share * rise / level, p.wave_frequency_min, p.wave_frequency_max)
+    return frequency, e.wave_power + share * (minimum(size, OUTLIER * level) - e.wave_power)
 
 
 def _paced(frequency, power, parameters):

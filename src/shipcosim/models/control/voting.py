@@ -33,7 +33,7 @@ class VotingParameters(PositionVotingParameters, CompassVotingParameters):
         60.0,
         "s",
         "time constant with which the wind's feedforward fades when the anemometer is rejected, and returns",
-        "assumed: slow enough for bias and integral to take over",
+        "assumed: slow enough for the bias to take over",
         minimum=1e-3,
     )
 

@@ -120,7 +120,7 @@ class AxisNoise(NamedTuple):
         Time from one measurement to the next, and age of a new one. [s, s]
     position, velocity : float
         Standard deviations of the measurements. [m, m/s]
-    wave : float
+    wave : float or (n,) array
         Standard deviation of the wave motion. [m]
     disturbance : float or (n,) array
         Intensity of the white disturbance of velocity. [m2/s3]
@@ -132,7 +132,7 @@ class AxisNoise(NamedTuple):
     delay: float
     position: float
     velocity: float
-    wave: float
+    wave: Arithmetic
     disturbance: Arithmetic
     bias_drift: Arithmetic
 

@@ -4,6 +4,9 @@ from typing import NamedTuple
 
 from shipcosim.models.core.maths import Arithmetic
 
+PLENTY = 1e8
+"""Power that is no limit to a thruster. [W]"""
+
 
 class Failures(NamedTuple):
     """What has failed in a thruster. The default is a sound one.
@@ -40,7 +43,7 @@ class Failures(NamedTuple):
     rpm_reversed: Arithmetic = False
     azimuth_reversed: Arithmetic = False
     rate_share: Arithmetic = 1.0
-    power_limit: Arithmetic = 1e12
+    power_limit: Arithmetic = PLENTY
 
 
 SOUND = Failures()
