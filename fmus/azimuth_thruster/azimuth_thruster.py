@@ -58,7 +58,8 @@ class AzimuthThruster(Fmu):
         else:
             command, water = (self.thrust_cmd, self.azimuth_cmd), (self.u_r, self.v_r, self.r)
             self.state = azimuth_step(self.state, *command, *water, self._failures(), h, unit=self.unit)
-        self._write()
+        reported = self.state.reported
+        self._write(-reported if self.rpm_reversed and not self.replay else reported)
 
     def _replayed(self):
         water = self.u_r, self.v_r, self.r
@@ -76,10 +77,10 @@ class AzimuthThruster(Fmu):
             self.power_limit,
         )
 
-    def _write(self):
+    def _write(self, propeller_thrust=None):
         state = self.state
         flow, neighbour = (self.u_r, self.v_r, self.r), (self.neighbour_azimuth, self.neighbour_rpm)
-        loads = azimuth_loads(state, *flow, *neighbour, unit=self.unit)
+        loads = azimuth_loads(state, *flow, *neighbour, unit=self.unit, propeller_thrust=propeller_thrust)
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
         self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
         self.power, self.brake_power = powers(state, self.unit)

@@ -8,11 +8,17 @@ from functools import cached_property
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import load_at, velocity_at
-from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, pi, sin, where
+from shipcosim.models.core.maths import Arithmetic, clip, hypot, pi, sincos, where
 from shipcosim.models.core.parameters import acts, quantity, required
 from shipcosim.models.propulsion.drive import Thruster, at_rest, drive_step
 from shipcosim.models.propulsion.failures import Failures
-from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, bollard_torque, propeller_loads
+from shipcosim.models.propulsion.propeller import (
+    PropellerParameters,
+    bollard_speed,
+    bollard_torque,
+    loads_at,
+    propeller_loads,
+)
 from shipcosim.models.propulsion.slipstream import slipstream_share
 from shipcosim.models.propulsion.thruster import LOSS, REGENERATION, Loads
 
@@ -122,14 +128,14 @@ def azimuth_step(
     still = failures.stopped | failures.azimuth_frozen
     towards = where(failures.azimuth_reversed, azimuth_cmd + 2.0 * azimuth, azimuth_cmd)  # it measures -azimuth
     azimuth = turned(azimuth, towards, where(still, 0.0, failures.rate_share * unit.azimuth_rate * h))
-    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
+    u_a, _ = _inflow(*sincos(azimuth + unit.azimuth_offset), u_r, v_r, r, unit)
     return drive_step(
         thruster._replace(azimuth=azimuth),
         thrust_cmd,
         failures,
         h,
         unit,
-        lambda n: propeller_loads(u_a, n, propeller=unit),
+        loads_at(u_a, propeller=unit),
         lambda thrust: bollard_speed(thrust, propeller=unit),
         lambda n: bollard_torque(n, propeller=unit),
     )
@@ -162,7 +168,7 @@ def azimuth_replay(
     """
     thruster = azimuth_given(n, azimuth, unit=unit)
     n = thruster.n
-    u_a, _ = _inflow(azimuth + unit.azimuth_offset, u_r, v_r, r, unit)
+    u_a, _ = _inflow(*sincos(azimuth + unit.azimuth_offset), u_r, v_r, r, unit)
     thrust, torque = propeller_loads(u_a, n, propeller=unit)
     return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n, reported=thrust)
 
@@ -198,6 +204,7 @@ def azimuth_loads(
     neighbour_rpm: Arithmetic = 0.0,
     *,
     unit: AzimuthParameters,
+    propeller_thrust: Arithmetic | None = None,
 ) -> Loads:
     """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, with their load on the ship.
 
@@ -216,6 +223,8 @@ def azimuth_loads(
         Direction of positive thrust and shaft speed of the unit whose slipstream can meet this one. [rad, rpm]
     unit : AzimuthParameters
         The thruster.
+    propeller_thrust : like the state, optional
+        Thrust of the propeller at this state and velocity, where it is known already. [N]
 
     Returns
     -------
@@ -226,9 +235,9 @@ def azimuth_loads(
     ----------
     Side force: nominal model, azimuth thrusters, fitted to the FMU of the unit; losses: definition.
     """
-    n, azimuth = thruster.n, thruster.azimuth + unit.azimuth_offset
-    u_a, u_s = _inflow(azimuth, u_r, v_r, r, unit)
-    thrust, _ = propeller_loads(u_a, n, propeller=unit)
+    n, (s, c) = thruster.n, sincos(thruster.azimuth + unit.azimuth_offset)
+    u_a, u_s = _inflow(s, c, u_r, v_r, r, unit)
+    thrust = propeller_loads(u_a, n, propeller=unit)[0] if propeller_thrust is None else propeller_thrust
     if unit.loses:
         thrust = thrust * _kept(n, neighbour_azimuth, neighbour_rpm, unit)
     D = unit.diameter
@@ -236,7 +245,6 @@ def azimuth_loads(
     if acts(unit.side_force_astern, neutral=1.0):
         wash = wash * where(n < 0.0, unit.side_force_astern, 1.0)
     side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + wash) * u_s
-    c, s = cos(azimuth), sin(azimuth)
     return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
 
 
@@ -270,10 +278,9 @@ def turned(azimuth: Arithmetic, azimuth_cmd: Arithmetic, most: Arithmetic) -> Ar
     return wrap(azimuth + clip(wrap(azimuth_cmd - azimuth), -most, most))
 
 
-def _inflow(azimuth, u_r, v_r, r, unit):
-    """Velocity of the unit through the water, along and across its axis. [m/s]"""
+def _inflow(s, c, u_r, v_r, r, unit):
+    """Velocity of the unit through the water, along and across its axis, whose direction has sine s, cosine c. [m/s]"""
     u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
-    c, s = cos(azimuth), sin(azimuth)
     return c * u + s * v, c * v - s * u
 
 

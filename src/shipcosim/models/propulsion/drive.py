@@ -121,15 +121,11 @@ def drive_step(
     change = clip(running * wanted - start, -rate * h, rate * h)
     gain, ratio = drive.proportional_gain * _TURN, drive.integral_gain / drive.proportional_gain
     integral_gain, friction, inertia = drive.integral_gain * _TURN, drive.friction * _TURN, drive.inertia * _TURN
-    limited = _limits(drive, gain, failures.power_limit)
+    motor = _motor(drive, gain, running, sign, failures.power_limit)
 
     def demand(share):
         n_d = speed(start + share * change)
         return n_d, torque(n_d) + gain * n_d
-
-    def motor(n, integral, forward, load):
-        asked = forward - gain * (sign * n) + integral
-        return asked, running * limited(asked, n, load)
 
     def rates(n, integral, n_d, forward):
         thrust, load = loads(n)
@@ -182,13 +178,18 @@ def powers(thruster: Thruster, drive: Any) -> tuple[Arithmetic, Arithmetic]:
     return driving - drive.regeneration * braking, (1.0 - drive.regeneration) * braking
 
 
-def _limits(drive, gain, power_limit):
-    """Function that keeps a torque within the motor's limits of torque, power and speed."""
+def _motor(drive, gain, running, sign, power_limit):
+    """Function that gives the torque that the drive asks for, and what the motor gives of it.
+
+    The motor keeps within its limits of torque, power and speed.
+    """
     n_max, torque_max = drive.rpm_max / 60.0, drive.torque_max
     power = minimum(drive.power_max, power_limit) / _TURN
 
-    def limited(torque, n, load):
+    def motor(n, integral, forward, load):
+        asked = forward - gain * (sign * n) + integral
         most = minimum(torque_max, power / maximum(abs(n), _SLOW))
-        return clip(torque, maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n)))
+        least, most = maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n))
+        return asked, running * clip(asked, least, most)
 
-    return limited
+    return motor

@@ -16,6 +16,7 @@ predictions of the 4-quadrant Wageningen propeller series, NSWCCD-50-TR-2006/004
 model, azimuth thrusters.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -165,12 +166,37 @@ def propeller_loads(u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParam
     >>> round(thrust / (1025.0 * (200.0 / 60.0) ** 2 * 1.9**4), 9)
     0.82
     """
-    D = propeller.diameter
-    tip, u_a = _TIP * D * n, propeller.inflow * u_a
-    ct, cq, outside = interp_even(atan2(u_a, tip), propeller.curves.table)
-    C = propeller.disc * (u_a * u_a + tip * tip)
-    scale = propeller.thrust_scale * (1.0 + outside * (propeller.thrust_scale_outside - 1.0))
-    return scale * ct * C, propeller.torque_scale * cq * D * C
+    return loads_at(u_a, propeller=propeller)(n)
+
+
+def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Arithmetic], tuple]:
+    """`propeller_loads` over the shaft speed alone, for many shaft speeds at one speed of advance.
+
+    Parameters
+    ----------
+    u_a : float or (...) array or tensor
+        Speed of advance of the unit through the water along its axis. [m/s]
+    propeller : PropellerParameters
+        The propeller.
+
+    Returns
+    -------
+    callable
+        ``loads(n)`` gives thrust and torque at a shaft speed. [N, N.m]
+    """
+    D, disc, table = propeller.diameter, propeller.disc, propeller.curves.table
+    outside_more, tip_per_n = propeller.thrust_scale_outside - 1.0, _TIP * D
+    thrust_scale, torque_scale = propeller.thrust_scale, propeller.torque_scale
+    u_a = propeller.inflow * u_a
+    square = u_a * u_a
+
+    def loads(n):
+        tip = tip_per_n * n
+        ct, cq, outside = interp_even(atan2(u_a, tip), table)
+        C = disc * (square + tip * tip)
+        return thrust_scale * (1.0 + outside * outside_more) * ct * C, torque_scale * cq * D * C
+
+    return loads
 
 
 def bollard_torque(n: Arithmetic, *, propeller: PropellerParameters) -> Arithmetic:
@@ -208,8 +234,9 @@ def bollard_speed(thrust: Arithmetic, *, propeller: PropellerParameters) -> Arit
         Shaft speed. [rev/s]
     """
     ahead, astern, _, _ = propeller.bollard
-    speed = sqrt((abs(thrust) + _ALMOST_NONE) / where(thrust < 0.0, astern, ahead))
-    return where(thrust < 0.0, -speed, speed)
+    back = thrust < 0.0
+    speed = sqrt((abs(thrust) + _ALMOST_NONE) / where(back, astern, ahead))
+    return where(back, -speed, speed)
 
 
 def series(beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
