@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
+from math import isfinite
 from time import perf_counter
 
 import numpy as np
@@ -207,11 +208,13 @@ class Master:
             _transferred(connection, count)
 
     def _check_finite(self, time):
-        reals = self._exchanges.get("Real")
-        if reals is None or np.isfinite(reals.modified_sources).all():
+        if "Real" not in self._exchanges:
             return
-        row = int(np.flatnonzero(~np.isfinite(reals.modified_sources))[0])
-        found = f"is {reals.modified_sources[row]} at t = {time:.9g} s."
+        values = self._exchanges["Real"].modified_sources
+        if isfinite(values.dot(values)) or np.isfinite(values).all():  # quick, as a rule; squares may overflow
+            return
+        row = int(np.flatnonzero(~np.isfinite(values))[0])
+        found = f"is {values[row]} at t = {time:.9g} s."
         raise Failure(Problem(self._names["Real"][0][row], found, "Every value has to be a finite number."))
 
 

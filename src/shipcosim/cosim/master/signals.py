@@ -58,10 +58,17 @@ class InputConnection:
 
 
 class Modifiers:
-    """Overrides and biases that act on an array of values: scale * value + shift on some rows."""
+    """Overrides and biases that act on an array of values: scale * value + shift on some rows.
+
+    Attributes
+    ----------
+    version : int
+        Grows whenever one of them changes.
+    """
 
     def __init__(self):
         self._by_row: dict[int, Modifier] = {}
+        self.version = 0
         self._update()
 
     def override(self, row: int, value: float) -> None:
@@ -93,6 +100,7 @@ class Modifiers:
             values[self._rows] = self._scale * values[self._rows] + self._shift
 
     def _update(self):
+        self.version += 1
         self._rows = np.array(list(self._by_row), dtype=int)
         self._scale = np.array([scale for scale, _ in self._by_row.values()])
         self._shift = np.array([shift for _, shift in self._by_row.values()])
@@ -150,12 +158,19 @@ class Exchange:
         self._type_changes = type_changes
         periods = sorted({connection.period for _, connection in single})
         self._groups = [_ConnectionGroup(single, period, n) for period in periods]
+        self._may_rest = self._counts_versions and periods in ([], [1])
+        self._passed_on = ()
 
     def transfer(self, count: int) -> None:
-        """Pass on what is due after `count` base steps, transformed and with overrides and biases."""
+        """Pass on what is due after `count` base steps, transformed and with overrides and biases.
+
+        Values of types other than Real change seldom: where none has since the last time, nothing is to be done.
+        """
         for row, exchange, source in self._type_changes:
             self.external[row] = exchange.modified_sources[source]
-        np.copyto(self.modified_sources, self.sources)
+        if self._may_rest and self._passed_on == self._state():
+            return
+        self.modified_sources[:] = self.sources
         self.output_modifiers.apply(self.modified_sources)
         for group in self._groups:
             if count % group.period == 0:
@@ -166,11 +181,18 @@ class Exchange:
                 total += term  # one after the other, as libcosim does
             self.transferred[row] = total
         self.refresh()
+        if self._may_rest:
+            self._passed_on = self._state()
+
+    def _state(self):
+        """All that the inputs follow from, and what they were before overrides and biases."""
+        modifiers = self.output_modifiers.version, self.input_modifiers.version
+        return self.sources.tobytes(), self.transferred.tobytes(), modifiers
 
     def refresh(self) -> None:
         """Bring the inputs up to date after a change of overrides and biases."""
         before = self.inputs.tobytes() if self._counts_versions else b""
-        np.copyto(self.inputs, self._unmodified_inputs)
+        self.inputs[:] = self._unmodified_inputs
         self.input_modifiers.apply(self.inputs)
         if self._counts_versions and before != self.inputs.tobytes():
             self.version += 1
@@ -206,7 +228,7 @@ class _ConnectionGroup:
 
     def transfer(self, sources, transferred):
         values = transferred if self.is_all else np.empty(len(self.rows), dtype=transferred.dtype)
-        np.take(sources, self.sources, out=values, mode="clip")
+        sources.take(self.sources, out=values, mode="clip")
         for i, mapping in self.mappings:
             value = values[i].item()
             values[i] = mapping.get(value, value)

@@ -28,7 +28,7 @@ def python_object_of(folder: Path, name: str) -> Any:
     shell = sys.modules.get(f"{entry}_code.shipcosim.fmi.shell")
     reference = getattr(getattr(shell, "Fmi2Slave", None), "newest", None)
     made = reference() if reference is not None else None
-    ours = made is not None and made.instance_name == name and hasattr(made, "prepared_getter")
+    ours = made is not None and made.instance_name == name and hasattr(made, "advance")
     return made if ours else None
 
 
@@ -90,13 +90,13 @@ class DirectCalls:
 
     def stepper(self) -> Callable[[float, float], int]:
         """See `Slave.stepper`."""
-        target, do_step = self._target, self._target.do_step
+        target, advance = self._target, self._target.advance
 
         def step(time, step_size):
             try:
-                do_step(time, step_size)
-            except Exception as error:
-                return self._failed(error)
+                advance(time, step_size)
+            except BaseException as error:
+                return self._failed(target.failure(error))
             if target.messages:
                 self._pass_on_messages()
             return OK

@@ -130,7 +130,8 @@ def azimuth_step(
     azimuth = turned(azimuth, towards, where(still, 0.0, failures.rate_share * unit.azimuth_rate * h))
     u_a, _ = _inflow(*sincos(azimuth + unit.azimuth_offset), u_r, v_r, r, unit)
     return drive_step(
-        thruster._replace(azimuth=azimuth),
+        thruster,
+        azimuth,
         thrust_cmd,
         failures,
         h,

@@ -83,6 +83,7 @@ def at_rest(azimuth: Arithmetic) -> Thruster:
 
 def drive_step(
     thruster: Thruster,
+    azimuth: Arithmetic,
     thrust_cmd: Arithmetic,
     failures: Failures,
     h: float,
@@ -96,7 +97,9 @@ def drive_step(
     Parameters
     ----------
     thruster : Thruster
-        State at the start, its direction already that of the end.
+        State at the start.
+    azimuth : like the state
+        Direction of positive thrust at the end. [rad]
     thrust_cmd : like the state
         Commanded thrust. [N]
     failures : Failures
@@ -142,7 +145,7 @@ def drive_step(
     thrust, load = loads(n)
     asked, given = motor(n, integral, now[1], load)
     at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (running > 0.0)
-    return Thruster(n, running * integral, reached, thruster.azimuth, given, at_limit, sign * thrust)
+    return Thruster(n, running * integral, reached, azimuth, given, at_limit, sign * thrust)
 
 
 def _set_point(thruster, thrust_cmd, failures, drive):

@@ -385,8 +385,8 @@ def _last(channel):
 
 def _held(failure, fresh, last):
     """Fresh values, or where a sensor is frozen or lost its last ones; then whether it is valid."""
-    held = ((where(failure.frozen, old, new), old) for new, old in zip(fresh, last, strict=False))
-    return [*(where(failure.lost, old, new) for new, old in held), where(failure.lost, 0.0, 1.0)]
+    lost, held = failure.lost, failure.frozen | failure.lost
+    return [*[where(held, old, new) for new, old in zip(fresh, last, strict=False)], where(lost, 0.0, 1.0)]
 
 
 def _air(truth, mast):

@@ -107,7 +107,8 @@ def carried(vessel: Motion, change_north: Arithmetic, change_east: Arithmetic, *
     """
     u_c, v_c = to_body(vessel.psi, change_north, change_east)
     share = hull.current_acceleration
-    return vessel._replace(u=vessel.u + share * u_c, v=vessel.v + share * v_c)
+    x, y, psi, u, v, r = vessel
+    return Motion(x, y, psi, u + share * u_c, v + share * v_c, r)
 
 
 def accelerations(
