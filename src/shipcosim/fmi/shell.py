@@ -171,13 +171,14 @@ class Fmi2Slave:
         `prepared_getter`.
         """
         found, put = self._real[references], self.__dict__.update
+        names, fixed, isfinite = found.names, found.fixed, math.isfinite
 
         def set_values(values: Sequence[float]) -> None:
-            if not math.isfinite(sum(values)):
-                refuse_not_finite_inputs(self.variables, found.names, values)
-            if found.fixed and self._initialised:
+            if not isfinite(sum(values)):
+                refuse_not_finite_inputs(self.variables, names, values)
+            if fixed and self._initialised:
                 self._refuse(found)
-            put(zip(found.names, values, strict=True))
+            put(zip(names, values, strict=True))
             self._stale = self._initialising
 
         return set_values
@@ -195,8 +196,8 @@ class Fmi2Slave:
         def get_integers() -> list[int]:
             return [whole_number(name, value) for name, value in zip(names, get_values(), strict=True)]
 
-        def get_booleans() -> list[bool]:
-            return [bool(value) for value in get_values()]
+        def get_booleans() -> tuple[bool, ...]:
+            return tuple(map(bool, get_values()))
 
         return {"Real": get_values, "Integer": get_integers, "Boolean": get_booleans}[kind]
 

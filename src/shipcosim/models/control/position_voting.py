@@ -21,6 +21,7 @@ from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.telegrams import Fix
 
 PAIRS = ((0, 1), (0, 2), (1, 2))
+_PAIRS_OF = (((0, 1), (1, 2)), ((0, 0), (2, 2)), ((1, 0), (2, 1)))  # of each reference: number of the pair, other one
 _COUNTS_MORE = 1e6  # m, by which being apart from one more reference outweighs any movement
 
 
@@ -169,20 +170,21 @@ def step(
     """
     p, age = parameters, t - state.trusted_at
     unchanged, usable = _usable(state, fixes, quiet, dt, p)
-    candidates = tuple(a * b for a, b in zip(usable, state.believed, strict=True))
+    candidates = tuple([a * b for a, b in zip(usable, state.believed, strict=True)])
     rates = _rates(fixes, candidates, predicted)
-    memory = _memory(state, fixes, predicted, rates, dt, p)
+    innovations = [_innovation(state, fix, predicted) for fix in fixes]
+    memory, off = _memory(state, fixes, innovations, rates, dt, p), [hypot(*both) for both in innovations]
     apart, disagree = _pairs(state, fixes, usable, dt, p)
     limit = p.position_innovation_max + 0.5 * p.position_model_error * age * age
-    candidates = _near_if_any(state, fixes, candidates, disagree, predicted, limit)
+    candidates = _near_if_any(candidates, disagree, [distance <= limit for distance in off])
     candidates = _without_worst(candidates, disagree, memory)
     mean = _mean(fixes, candidates)
     off_north, off_east = _innovation(state, mean, predicted)
     near = where(hypot(off_north, off_east) <= limit, mean.valid, 0.0)
     back = near * where(age > p.position_timeout, 1.0, 0.0)
     north, east = state.north_shift - back * off_north, state.east_shift - back * off_east
-    used = tuple(near * candidate for candidate in candidates)
-    agreed = _agreed(state, fixes, usable, used, disagree, predicted, limit, dt)
+    used = tuple([near * candidate for candidate in candidates])
+    agreed = _agreed(state, usable, used, disagree, [distance - limit for distance in off], dt)
     return PositionVote(
         fixes,
         unchanged,
@@ -227,8 +229,10 @@ def faded(
 def _usable(state, fixes, quiet, dt, p):
     """How long each reference has not changed; 1 of those that are valid and not frozen."""
     unchanged = tuple(
-        where((new.x == old.x) & (new.y == old.y), time + dt, 0.0 * time)
-        for new, old, time in zip(fixes, state.fixes, state.unchanged, strict=True)
+        [
+            where((new.x == old.x) & (new.y == old.y), time + dt, 0.0 * time)
+            for new, old, time in zip(fixes, state.fixes, state.unchanged, strict=True)
+        ]
     )
     usable = []
     for i, fix in enumerate(fixes):
@@ -240,15 +244,16 @@ def _usable(state, fixes, quiet, dt, p):
 
 def _mean(fixes, weights):
     """Weighted mean of telegrams; valid 1 where there is any weight."""
-    total = sum(weights)
+    (first, second, third), (a, b, c) = fixes, weights
+    total = a + b + c
     share = 1.0 / maximum(total, 1.0)
-    x, y, u, v = (sum(w * value for w, value in zip(weights, of, strict=True)) * share for of in _columns(fixes))
-    return Fix(x, y, u, v, where(total > 0.5, 1.0, 0.0))
-
-
-def _columns(fixes):
-    """x, y, u, v of all telegrams."""
-    return tuple(zip(*(fix[:4] for fix in fixes), strict=True))
+    return Fix(
+        (a * first.x + b * second.x + c * third.x) * share,
+        (a * first.y + b * second.y + c * third.y) * share,
+        (a * first.u + b * second.u + c * third.u) * share,
+        (a * first.v + b * second.v + c * third.v) * share,
+        where(total > 0.5, 1.0, 0.0),
+    )
 
 
 def _rates(fixes, candidates, predicted):
@@ -263,12 +268,12 @@ def _innovation(state, fix, predicted):
     return fix.x + state.north_shift - predicted.x, fix.y + state.east_shift - predicted.y
 
 
-def _memory(state, fixes, predicted, rates, dt, p):
+def _memory(state, fixes, innovations, rates, dt, p):
     """How much farther each reference moved than measured velocity says; of one that comes new, its innovation."""
     keep, found = exp(-dt / p.position_memory), []
     north, east = 0.5 * dt * (state.north_rate + rates[0]), 0.5 * dt * (state.east_rate + rates[1])
-    for i, (new, old) in enumerate(zip(fixes, state.fixes, strict=True)):
-        known, fresh = old.valid > 0.5, _innovation(state, new, predicted)
+    for i, (new, old, fresh) in enumerate(zip(fixes, state.fixes, innovations, strict=True)):
+        known = old.valid > 0.5
         found.append(where(known, keep * state.memory[2 * i] + new.x - old.x - north, fresh[0]))
         found.append(where(known, keep * state.memory[2 * i + 1] + new.y - old.y - east, fresh[1]))
     return tuple(found)
@@ -289,19 +294,16 @@ def _pairs(state, fixes, usable, dt, p):
     return tuple(apart), tuple(disagree)
 
 
-def _near_if_any(state, fixes, candidates, disagree, predicted, limit):
+def _near_if_any(candidates, disagree, near):
     """Candidates near the prediction, or that agree with one that is; all where none is.
 
     So two that jump together do not outvote a third.
     """
-    near = [
-        where(hypot(*_innovation(state, fix, predicted)) <= limit, candidate, 0.0)
-        for fix, candidate in zip(fixes, candidates, strict=True)
-    ]
+    near = [where(is_near, candidate, 0.0) for is_near, candidate in zip(near, candidates, strict=True)]
     found, kept = sum(near) > 0.5, []
-    for i, candidate in enumerate(candidates):
-        beside = [near[sum(pair) - i] * (1.0 - disagree[k]) for k, pair in enumerate(PAIRS) if i in pair]
-        kept.append(where(found, candidate * maximum(near[i], maximum(*beside)), candidate))
+    for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
+        beside = maximum(near[one] * (1.0 - disagree[k]), near[two] * (1.0 - disagree[n]))
+        kept.append(where(found, candidates[i] * maximum(near[i], beside), candidates[i]))
     return tuple(kept)
 
 
@@ -312,18 +314,19 @@ def _without_worst(candidates, disagree, memory):
     counts = first + second, first + third, second + third
     scores = [n * (_COUNTS_MORE + hypot(*memory[2 * i : 2 * i + 2])) for i, n in enumerate(counts)]
     worst = maximum(scores[0], maximum(scores[1], scores[2]))
-    return tuple(
+    kept = [
         where((n > 0.5) & (score >= worst), 0.0, candidate)
         for n, score, candidate in zip(counts, scores, candidates, strict=True)
-    )
+    ]
+    return tuple(kept)
 
 
-def _agreed(state, fixes, usable, used, disagree, predicted, limit, dt):
+def _agreed(state, usable, used, disagree, too_far, dt):
     """How long each reference has agreed with all that are used, or where none is with the prediction."""
     found, alone = [], sum(used) < 0.5
-    for i, fix in enumerate(fixes):
-        against = sum(disagree[k] * used[sum(pair) - i] for k, pair in enumerate(PAIRS) if i in pair)
-        off = where(alone, hypot(*_innovation(state, fix, predicted)) - limit, against - 0.5)
+    for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
+        against = disagree[k] * used[one] + disagree[n] * used[two]
+        off = where(alone, too_far[i], against - 0.5)
         found.append(where(off <= 0.0, usable[i], 0.0) * (state.agreed[i] + dt))
     return tuple(found)
 

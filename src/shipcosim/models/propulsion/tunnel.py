@@ -89,7 +89,9 @@ def tunnel_step(
         square = n * abs(n)
         return loss * k_T * square, k_Q * square
 
-    return drive_step(thruster, thruster.azimuth, thrust_cmd, failures, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n))
+    return drive_step(
+        thruster, thruster.azimuth, thrust_cmd, failures, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n)
+    )
 
 
 def tunnel_replay(n: Arithmetic, *, tunnel: TunnelParameters) -> Thruster:

@@ -261,8 +261,9 @@ def cross_flow(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     """
     half, k = hull.strips
     w = r * half
-    larger, smaller = maximum(abs(v), abs(w)), minimum(abs(v), abs(w))
-    q = smaller / (abs(w) + _TINY)
+    sway, yaw = abs(v), abs(w)
+    larger, smaller = maximum(sway, yaw), minimum(sway, yaw)
+    q = smaller / (yaw + _TINY)
     q = q * q
     Y = -2.0 * k * v * (larger + smaller * smaller / (3.0 * larger + _TINY))
     return 0.0 * u, Y, -k * half * w * larger * (0.5 + q - q * q / 6.0)

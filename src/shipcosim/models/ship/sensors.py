@@ -397,9 +397,15 @@ def _air(truth, mast):
 
 def _telegrams(k, positions, headings, wind, p):
     """What is given out at tick k: of each channel the newest sample that is as old as the latency, or the first."""
-    found, times = [], []
-    for channel, (every, delay) in zip((positions, headings, wind), p.clocks, strict=True):
-        sample = max(0, (k - delay) // every)
-        found.append(channel.history[sample - k // every - 1])
-        times.append(sample * every * p.period)
-    return Telegrams._make([found[0], *found[1], found[2], *times])
+    for_positions, for_headings, for_wind = p.clocks
+    fixes, position_time = _given_out(k, positions, for_positions, p.period)
+    (compasses, r), heading_time = _given_out(k, headings, for_headings, p.period)
+    air, wind_time = _given_out(k, wind, for_wind, p.period)
+    return Telegrams(fixes, compasses, r, air, position_time, heading_time, wind_time)
+
+
+def _given_out(k, channel, clock, period):
+    """Sample of a channel that is given out at tick k, and its time."""
+    every, delay = clock
+    sample = max(0, (k - delay) // every)
+    return channel.history[sample - k // every - 1], sample * every * period
