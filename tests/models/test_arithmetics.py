@@ -407,6 +407,7 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered |= {maths.library_of}  # tells the arithmetics apart
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
     covered |= {drive.drive_step}  # by the steps of both thrusters
+    covered |= {propeller.loads_at}  # by propeller_loads
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}
     missing = [f"{name}.{function.__name__}" for name, function in promising() if function not in covered]
     assert not missing
