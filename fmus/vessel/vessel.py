@@ -90,13 +90,16 @@ class Vessel(Fmu):
         self.state = Motion(self.x_start, self.y_start, wrap(self.psi_start), self.u_start, self.v_start, self.r_start)
         self.water = self.current_north, self.current_east
         self._meet_waves(self.start_time)
+        self._add_connected()
         self._write()
 
     def step(self, t, h):
-        before, self.water = self.water, (self.current_north, self.current_east)
+        north, east = self.water
+        self.water = self.current_north, self.current_east
         if acts(self.hull.current_acceleration):
-            change = (now - then for now, then in zip(self.water, before, strict=True))
+            change = self.current_north - north, self.current_east - east
             self.state = carried(self.state, *change, hull=self.hull)
+        self._add_connected()
         tau = self._loads()
         self.state = step(self.state, *tau, self.current_north, self.current_east, h, hull=self.hull)
         self._meet_waves(tidy_time(t + h))
@@ -111,15 +114,18 @@ class Vessel(Fmu):
         self.tau_wind_X, self.tau_wind_Y, self.tau_wind_N = wind_loads(
             self.apparent_wind_speed, self.apparent_wind_from, wind=self.wind
         )
+        return (
+            self.tau_thrusters_X + self.tau_wind_X + self.tau_drift_X,
+            self.tau_thrusters_Y + self.tau_wind_Y + self.tau_drift_Y,
+            self.tau_thrusters_N + self.tau_wind_N + self.tau_drift_N,
+        )
+
+    def _add_connected(self):
+        """Sum of the connected loads."""
         X = self.tau_X_1 + self.tau_X_2 + self.tau_X_3 + self.tau_X_4 + self.tau_X_5 + self.tau_X_6
         Y = self.tau_Y_1 + self.tau_Y_2 + self.tau_Y_3 + self.tau_Y_4 + self.tau_Y_5 + self.tau_Y_6
         N = self.tau_N_1 + self.tau_N_2 + self.tau_N_3 + self.tau_N_4 + self.tau_N_5 + self.tau_N_6
         self.tau_thrusters_X, self.tau_thrusters_Y, self.tau_thrusters_N = X, Y, N
-        return (
-            X + self.tau_wind_X + self.tau_drift_X,
-            Y + self.tau_wind_Y + self.tau_drift_Y,
-            N + self.tau_wind_N + self.tau_drift_N,
-        )
 
     def _meet_waves(self, t):
         ship, hull = self.state, self.hull

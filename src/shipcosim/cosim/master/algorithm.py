@@ -183,18 +183,20 @@ class Master:
 
     def _step(self, k, clock):
         """Step all components; in Jacobi's order those in processes of their own do it at the same time."""
+        sequential = self._sequential
         for component in self._components:
-            if self._sequential:
+            if sequential:
                 self._transfer(k + 1)
+            multiple = component.multiple
             try:
-                if k % component.multiple == 0:
+                if k % multiple == 0:
                     component.write()
-                    component.step(clock[k], clock[k + component.multiple] - clock[k])
-                if self._sequential and (k + 1) % component.multiple == 0:
+                    component.step(clock[k], clock[k + multiple] - clock[k])
+                if sequential and (k + 1) % multiple == 0:
                     component.read()
             except SlaveError as error:
                 raise _failed_step(component, clock[k], error) from error
-        for component in () if self._sequential else self._components:
+        for component in () if sequential else self._components:
             try:
                 if (k + 1) % component.multiple == 0:
                     component.read()

@@ -203,10 +203,10 @@ def step(
     X, Y, N = _missing(tau, wanted, design.effect)
     missed = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
     reach = parameters.thrust_rate_max * h
-    port, starboard, tunnel = (
+    port, starboard, tunnel = [
         where(usable, clip(old + clip(new - old, -reach, reach), *limit), 0.0)
         for usable, old, new, limit in zip(available, state[:3], wanted, limits, strict=True)
-    )
+    ]
     X, Y, N = load((port, starboard, tunnel), design.effect)
     return AllocationState(port, starboard, tunnel, X, Y, N, missed > 1.0)
 
@@ -267,9 +267,9 @@ def used_shares(state: AllocationState, *, parameters: AllocationParameters) -> 
 
 def _limits(shares, parameters):
     """Least and largest thrust of port, starboard and tunnel. [N]"""
-    p = parameters
-    azimuth, tunnel = (p.azimuth_thrust_min, p.azimuth_thrust_max), (-p.tunnel_thrust_max, p.tunnel_thrust_max)
-    return [(s * low, s * high) for s, (low, high) in zip(shares, (azimuth, azimuth, tunnel), strict=True)]
+    p, (port, starboard, tunnel) = parameters, shares
+    low, high, most = p.azimuth_thrust_min, p.azimuth_thrust_max, p.tunnel_thrust_max
+    return (port * low, port * high), (starboard * low, starboard * high), (tunnel * -most, tunnel * most)
 
 
 def _within_limits(tau, available, limits, *, design):
@@ -278,11 +278,11 @@ def _within_limits(tau, available, limits, *, design):
     missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
     held = [0.0, 0.0, 0.0]
     for _ in range(3):
-        wanted = _solve(_missing(tau, held, design.effect), free, missing, design.inverses)
-        given = [clip(f, low, high) for f, (low, high) in zip(wanted, limits, strict=True)]
+        a, b, c = _solve(_missing(tau, held, design.effect), free, missing, design.inverses)
+        given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
-        over = [f != g for f, g in zip(wanted, given, strict=True)]
-        if not any(map(_anywhere, over)):
+        over = a != given[0], b != given[1], c != given[2]
+        if not (_anywhere(over[0]) or _anywhere(over[1]) or _anywhere(over[2])):
             break
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]

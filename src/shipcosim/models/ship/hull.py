@@ -122,6 +122,12 @@ class HullParameters:
         return self.mass_scale * self.mass, self.mass_scale * self.inertia_yaw
 
     @cached_property
+    def coriolis(self):
+        """Share of the added mass' Coriolis load, A11 with that share, A22, and the mean of A26 and A62."""
+        share = self.added_mass_coriolis
+        return share, share * self.A11, self.A22, 0.5 * (self.A26 + self.A62)
+
+    @cached_property
     def linear(self):
         """Coefficients X_u, Y_v, Y_r, N_v, N_r with their scales."""
         along, across = self._damping_scales
@@ -182,7 +188,7 @@ def hull_loads(u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, hull: HullPar
     """
     X = Y = N = 0.0 * u_r
     for name in hull.contributions:
-        dX, dY, dN = CONTRIBUTIONS[name][0](u_r, v_r, r, hull=hull)
+        dX, dY, dN = _LOADS[name](u_r, v_r, r, hull=hull)
         X, Y, N = X + dX, Y + dY, N + dN
     return X, Y, N
 
@@ -196,9 +202,9 @@ def added_mass_coriolis(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: Hu
     ----------
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
     """
-    share = hull.added_mass_coriolis
-    surge = share * hull.A11 * u
-    sway = share * (hull.A22 * v + 0.5 * (hull.A26 + hull.A62) * r)
+    share, A11, A22, A26 = hull.coriolis
+    surge = A11 * u
+    sway = share * (A22 * v + A26 * r)
     return sway * r, -surge * r, surge * v - sway * u
 
 
@@ -320,3 +326,5 @@ CONTRIBUTIONS = {
     ),
 }
 """Name: function, and the coefficients without which it is left out."""
+
+_LOADS = {name: function for name, (function, _) in CONTRIBUTIONS.items()}
