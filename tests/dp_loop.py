@@ -4,7 +4,8 @@ Components exchange as in the co-simulation: each goes from t to t + h with what
 follows the run of the FMUs with the same parameters and seeds.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,6 +35,12 @@ from shipcosim.models.ship import sensors, vessel
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters
 from shipcosim.models.ship.sensors import SensorFailures, SensorParameters
+
+NORTH_EAST = math.pi / 4.0
+MODERATE = dict(significant_wave_height=0.3, peak_period=5.0, waves_from=NORTH_EAST)
+ROUGH = dict(significant_wave_height=0.5, peak_period=6.0, waves_from=NORTH_EAST)
+WIND_8 = dict(wind_speed=8.0, wind_from=NORTH_EAST, current_speed=0.3, current_to=math.pi)
+WIND_10 = dict(wind_speed=10.0, wind_from=NORTH_EAST, current_speed=0.5, current_to=math.pi)
 
 
 @dataclass(frozen=True)
@@ -79,6 +86,16 @@ def dp_system(ship: str = "gunnerus-33m9") -> DpSystem:
         parameters(AllocationParameters, ship),
         parameters(MastParameters, ship),
         parameters(MastParameters, ship, "controller"),
+    )
+
+
+def with_seeds(seeds, **environment):
+    """The DP loop in a sea, one variation a seed; the sensors' seed is 100 more."""
+    system, seeds = dp_system(), np.asarray(seeds)
+    return replace(
+        system,
+        environment=replace(system.environment, seed=seeds, **environment),
+        sensors=replace(system.sensors, seed=seeds + 100),
     )
 
 
@@ -316,7 +333,7 @@ def signals(t, state, system):
     e, law = state.estimate, state.control
     rows |= _named("controller", "x_hat y_hat psi_hat u_hat v_hat r_hat", (e.x, e.y, wrap(e.psi), e.u, e.v, e.r))
     rows |= _said(state, zero, system)
-    rows |= _named("controller", "tau_X_cmd tau_Y_cmd tau_N_cmd", law[-3:])
+    rows |= _named("controller", "tau_X_cmd tau_Y_cmd tau_N_cmd wave_frequency_hat", (*law[-3:], e.wave_frequency))
     a = state.allocation
     rows |= _named("allocator", "port_thrust_cmd starboard_thrust_cmd tunnel_thrust_cmd tau_X tau_Y tau_N", a)
     return rows | {"allocator.saturated": zero + a.saturated}

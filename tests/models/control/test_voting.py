@@ -134,7 +134,7 @@ def test_after_dead_reckoning_the_voted_position_starts_at_the_estimate_and_goes
     assert states[back].positions.fix.x == pytest.approx(0.0, abs=1e-9)
     assert states[-1].positions.north_shift == pytest.approx(0.0, abs=0.02)
     steps = np.abs(np.diff([state.positions.north_shift for state in states[back + 1 :]]))
-    assert steps.max() < 3.0 / 20.0 * 1.2
+    assert steps.max() < 3.0 / LIMITS.realignment_time * 1.2
 
 
 def test_a_rejected_reference_is_believed_again_after_agreeing_for_30_s():

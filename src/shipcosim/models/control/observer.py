@@ -27,7 +27,7 @@ FREQUENCIES = 129
 """Number of frequencies in the table of gains."""
 CALM = 0.01
 """Wave power below which the frequency rather returns to its default than follows. [1/s2]"""
-OUTLIER = 4.0
+OUTLIER = 3.0
 """Motion over its mean square beyond which it is less and less taken for waves. [1]"""
 FORGETTING = 0.4
 """Rate at which the swing forgets: below all waves, above slow errors of the estimated rates. [1/s]"""
@@ -380,7 +380,7 @@ def _wave_frequency(e, swings, parameters):
     expected = (w / p.wave_peak_ratio) ** 2 * (horizontal * (surge * surge + sway * sway) + yaw * turn * turn)
     share, size, level = p.sample_period / p.wave_time, 0.5 * (rate + expected), e.wave_power + CALM
     excess = size / (OUTLIER * level)
-    rise = 0.5 * w * (rate - expected) / (1.0 + excess * excess) + (p.wave_frequency - w) * CALM
+    rise = 0.5 * w * (rate - expected) / (1.0 + excess**4) + (p.wave_frequency - w) * CALM
     frequency = clip(w + share * rise / level, p.wave_frequency_min, p.wave_frequency_max)
     return frequency, e.wave_power + share * (minimum(size, OUTLIER * level) - e.wave_power)
 

@@ -30,7 +30,7 @@ class PositionVotingParameters:
     """Limits of the tests of position references."""
 
     position_freeze_time: float = quantity(
-        3.0, "s", "unchanged for so long while others change, a reference is frozen", "assumed: three samples"
+        3.0, "s", "unchanged for so long while others change, a reference is frozen", "assumed"
     )
     position_apart_max: float = quantity(
         2.0, "m", "distance of two references from which they disagree", "six standard deviations of noise 0.2 m"
@@ -57,13 +57,13 @@ class PositionVotingParameters:
         30.0, "s", "a rejected reference is believed again after agreeing for so long", "assumed"
     )
     position_timeout: float = quantity(
-        1.5, "s", "time without a trusted position from which the controller rides on its model", "1.5 periods"
+        1.5, "s", "time without a trusted position from which the controller rides on its model", "assumed"
     )
     realignment_time: float = quantity(
-        20.0,
+        8.0,
         "s",
         "time constant with which the estimate goes to the position that returns after dead reckoning",
-        "assumed: slow against the thrusters, quick against the loop",
+        "tried on twenty runs: quick against the loop, no jump of the thrust",
         minimum=1e-3,
     )
 

@@ -1,0 +1,70 @@
+"""What the DP loop must hold beside her place: quiet commands, a steady heading in spite of delay, suppressed waves."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dp_loop import MODERATE, NORTH_EAST, WIND_8, simulate, with_seeds
+
+from shipcosim.models.control.margins import Delays, linear_loop, wave_suppression
+
+UNITS = ("port", "starboard", "tunnel")
+SETTLED = 120.0  # s
+
+
+@pytest.fixture(scope="module")
+def moderate():
+    """Three seeds in 8 m/s, at the samples of the controller."""
+    return simulate(with_seeds([1, 2, 3], **MODERATE), [(0.0, WIND_8)], variations=3, stop_time=360.0, every=2)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_commands_lie_on_their_rate_limit_in_less_than_3_percent_of_the_controllers_samples(moderate, unit):
+    commands = moderate[f"allocator.{unit}_thrust_cmd"][moderate["time"] > SETTLED]
+    assert np.mean(np.abs(np.diff(commands, axis=0)) > 0.999 * 1000.0 * 0.1) < 0.03
+
+
+def test_heading_stays_within_a_quarter_of_a_degree_with_2_s_more_of_delay():
+    system = with_seeds(range(1, 9), **MODERATE)
+    late = replace(
+        system.sensors,
+        position_latency=system.sensors.position_latency + 2.0,
+        heading_latency=system.sensors.heading_latency + 2.0,
+    )
+    events = [(0.0, WIND_8)]
+    run = simulate(replace(system, sensors=late), events, variations=8, stop_time=420.0, every=2)
+    assert np.std(run["vessel.psi"][run["time"] > SETTLED]) < math.radians(0.25)
+
+
+def suppression(periods, heights, seeds, stop_time, start=1.1):
+    """Largest request for waves at the peak over that without observer and filters, by period, time and axis. [dB]
+
+    The frequency of the filter is the one that it has adapted to in the last 300 s, from `start`.
+    """
+    period, height = np.repeat(periods, len(seeds)), np.repeat(heights, len(seeds))
+    sea = dict(significant_wave_height=height, peak_period=period, waves_from=NORTH_EAST)
+    system = with_seeds(np.tile(seeds, len(periods)), **sea)
+    system = replace(system, observer=replace(system.observer, wave_frequency=start))
+    run = simulate(system, [(0.0, WIND_8)], variations=len(period), stop_time=stop_time, every=200)
+    found = run["controller.wave_frequency_hat"][run["time"] > stop_time - 300.0]
+    worst = {}
+    for one, least, largest in zip(period, found.min(axis=0), found.max(axis=0), strict=True):
+        for frequency in (least, largest):
+            loop = linear_loop(system.ship, system.observer, system.control, Delays(), frequency)
+            sizes = [wave_suppression(loop, axis, np.array([2.0 * math.pi / one]), system.control) for axis in (1, 2)]
+            worst[one] = max(worst.get(one, -99.0), 20.0 * math.log10(np.max(sizes)))
+    return worst
+
+
+@pytest.mark.parametrize(("period", "height", "start"), [(6.0, 0.4, 1.1), (12.0, 0.8, 0.62)])
+def test_waves_are_suppressed_by_20_dB_at_the_frequency_that_the_filter_keeps(period, height, start):
+    assert suppression([period], [height], [7], 500.0, start)[period] < -20.0
+
+
+@pytest.mark.slow
+def test_waves_are_suppressed_by_20_dB_in_seas_of_4_to_12_s():
+    periods, heights = [4.0, 5.0, 6.0, 8.0, 10.0, 12.0], [0.2, 0.3, 0.4, 0.5, 0.7, 0.8]
+    worst = suppression(periods, heights, range(1, 7), 1800.0)
+    print({period: round(value, 1) for period, value in worst.items()})
+    assert max(worst.values()) < -20.0, worst
