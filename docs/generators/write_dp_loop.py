@@ -20,9 +20,17 @@ from shipcosim.ssp import read_ship
 ROOT = Path(__file__).resolve().parents[2]
 PAGE, PICTURE = ROOT / "docs" / "dp-loop.md", ROOT / "docs" / "images" / "dp-loop.png"
 BEGIN, END = "<!-- table of the margins -->\n", "<!-- end of the table -->"
-HEAD = """| peak period [s] | axis | crossover [rad/s] | phase margin [deg] | gain margin | Ms | delay margin [s] | waves at the peak [dB] |
-|---|---|---|---|---|---|---|---|
-"""
+COLUMNS = (
+    "peak period [s]",
+    "axis",
+    "crossover [rad/s]",
+    "phase margin [deg]",
+    "gain margin",
+    "Ms",
+    "delay margin [s]",
+    "waves at the peak [dB]",
+)
+HEAD = f"| {' | '.join(COLUMNS)} |\n{'|---' * len(COLUMNS)}|\n"
 PERIODS = (4, 5, 6, 8, 10, 12)  # s
 SHOWN = {6: "-", 12: "--"}
 """Peak periods in the picture, and their line styles. [s]"""
@@ -32,7 +40,8 @@ COLORS = ("#2a78b8", "#c8632b", "#3d8f4f")
 def loops():
     """Linear loop by peak period, and the control law."""
     ship = read_ship(ROOT / "ssp" / "ships" / "gunnerus-33m9")
-    model, noise, law = (ship.parameters(kind, "controller") for kind in (DpShip, ObserverParameters, ControlParameters))
+    model, noise = ship.parameters(DpShip, "controller"), ship.parameters(ObserverParameters, "controller")
+    law = ship.parameters(ControlParameters, "controller")
     return {period: linear_loop(model, noise, law, Delays(), 2.0 * np.pi / period) for period in PERIODS}, law
 
 
