@@ -9,7 +9,7 @@ from selenium.webdriver.common.by import By
 from shipcosim.errors import ShipcosimError
 from shipcosim.report import write_report
 from shipcosim.report.run.page import render
-from shipcosim.scenario import Scenario
+from shipcosim.scenario import Scenario, judge
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +42,21 @@ def test_expectations_are_listed_in_degrees_with_pass_or_fail(page):
     assert sum("✓ pass" in row for row in rows) == 10 and sum("✗ FAIL" in row for row in rows) == 1
     assert any("vessel.psi" in row and "-45" in row and "deg" in row for row in rows)
     assert any("(20,\u00a0-20)" in row for row in rows)
+
+
+def test_expectations_with_long_names_are_not_cut_off(browse, chromium, four_corner, tmp_path):
+    table = four_corner()
+    table["controller.dead_reckoning_time_since_then"] = table["vessel.psi"]
+    expected = {"signal": "controller.dead_reckoning_time_since_then", "at_least": -59.0, "statistic": "max"}
+    told = Scenario(system="gunnerus_dp", stop_time=1100.0, step_size=0.05, expect=[expected])
+    write_report(table, tmp_path / "long.html", scenario=told, verdicts=judge(table, told))
+    size = {"width": 1280, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    page = browse(tmp_path / "long.html")
+    right = "return document.querySelector('#expectations {}').getBoundingClientRect().right"
+    beyond = page.ask(right.format("table")) - page.ask(right.format("h2"))
+    chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert beyond < 1.0
 
 
 def test_track_is_east_right_and_north_up_to_one_scale(page):
