@@ -1,4 +1,4 @@
-"""The four corners hold on seeds that nobody looked at when the loop was tuned."""
+"""The four corners hold on seeds on which no run of them was looked at when the loop was tuned."""
 
 import pytest
 
