@@ -64,7 +64,8 @@ def test_waves_are_suppressed_by_20_dB_at_the_frequency_that_the_filter_keeps(pe
 
 @pytest.mark.slow
 def test_waves_are_suppressed_by_20_dB_in_seas_of_4_to_12_s():
+    """On seeds that nothing was tuned on."""
     periods, heights = [4.0, 5.0, 6.0, 8.0, 10.0, 12.0], [0.2, 0.3, 0.4, 0.5, 0.7, 0.8]
-    worst = suppression(periods, heights, range(1, 7), 1800.0)
+    worst = suppression(periods, heights, range(2001, 2007), 1800.0)
     print({period: round(value, 1) for period, value in worst.items()})
     assert max(worst.values()) < -20.0, worst
