@@ -58,7 +58,7 @@ class AzimuthThruster(Fmu):
         else:
             command, water = (self.thrust_cmd, self.azimuth_cmd), (self.u_r, self.v_r, self.r)
             self.state = azimuth_step(self.state, *command, *water, self._failures(), h, unit=self.unit)
-        reported = self.state.reported
+        reported = self.state.reported  # the propeller's thrust; of a reversed shaft speed with the wrong sign
         self._write(-reported if self.rpm_reversed and not self.replay else reported)
 
     def _replayed(self):

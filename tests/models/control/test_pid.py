@@ -50,16 +50,19 @@ def observed():
     return estimate
 
 
-def sail(start, seconds, estimate=known, *, force=CALM, most=math.inf, parameters=PARAMETERS, desired=STAY):
+def sail(
+    start, seconds, estimate=known, *, force=CALM, most=math.inf, parameters=PARAMETERS, desired=STAY, told="given"
+):
     """Position and heading, every 0.1 s, of a ship of known mass that gets what is asked for, up to a limit of force.
 
-    `force` is a load in body axes, constant or a function of time.
+    `force` is a load in body axes, constant or a function of time. The estimate is told the load that was given, or
+    the one that was asked for.
     """
     position, velocity, state, rows = np.array(start, float), np.zeros(3), at_rest(CALM), []
     given = np.zeros(3)
     for k in range(round(10 * seconds)):
         pushed = np.array(force(0.1 * k) if callable(force) else force)
-        seen = estimate(position, velocity, tuple(given))
+        seen = estimate(position, velocity, tuple(given) if told == "given" else state[-3:])
         state = control.step(state, seen, desired, CALM, 0.1, ship=FREE, parameters=parameters)
         given = np.clip(state[-3:], [-most, -most, -14.0 * most], [most, most, 14.0 * most])
         for _ in range(10):
@@ -133,7 +136,9 @@ def test_overload_does_not_carry_the_ship_past_her_place():
     def storm(t):
         return (25e3, 0.0, 0.0) if t < 100.0 else CALM
 
+    wound_up = sail((0.0, 0.0, 0.0), 1500.0, observed(), force=storm, most=20e3, told="asked")
     rows = sail((0.0, 0.0, 0.0), 1500.0, observed(), force=storm, most=20e3)
+    assert wound_up[1000:, 0].min() < -10.0
     assert rows[999, 0] > 20.0
     assert rows[1000:, 0].min() > -2.0
     assert np.abs(rows[-1]).max() < 0.05
