@@ -11,6 +11,7 @@ from shipcosim.models.ship.vessel import accelerations
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
+    from shipcosim.models.ship.hull import HullParameters
 
 __all__ = ["Scales", "response_times"]
 
@@ -66,11 +67,17 @@ def response_times(ship: ShipModel, motion: Motion) -> Scales:
     speeds = speeds[:, np.isfinite(speeds).all(0)]
     if not speeds.size:
         return Scales(np.inf, np.inf, np.inf)
-    here = accelerations(*speeds, 0.0, 0.0, 0.0, hull=hull)
+    here = _decelerations(speeds, hull)
     rates = []
     for axis, small in enumerate((_SMALL, _SMALL, 2.0 * _SMALL / hull.length)):
         moved = speeds.copy()
         moved[axis] += np.where(moved[axis] < 0.0, -small, small)
-        slope = (accelerations(*moved, 0.0, 0.0, 0.0, hull=hull)[axis] - here[axis]) / (moved[axis] - speeds[axis])
+        slope = (_decelerations(moved, hull)[axis] - here[axis]) / (moved[axis] - speeds[axis])
         rates.append(float(np.mean(-slope)))
     return Scales(*(1.0 / rate if rate > 0.0 else np.inf for rate in rates))
+
+
+def _decelerations(speeds: np.ndarray, hull: HullParameters) -> np.ndarray:
+    """Rates of surge, sway and yaw, (3, n) array, of a ship that nothing drives."""
+    u, v, r = speeds
+    return np.stack(accelerations(u, v, r, 0.0, 0.0, 0.0, hull=hull))
