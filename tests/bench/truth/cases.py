@@ -93,6 +93,12 @@ def draw_many(kind, seeds, **options):
     after : dict, optional
         A manoeuvre or a loss of power that the ship sails when the log is over, as the fields of `orders.Orders`; its
         rows are added at the end, the others are the same bytes as without it. The weather and the effect go on.
+    day : int
+        Another day in the life of the same ship: weather, plan and noise are others, the ship, her DP and the hidden
+        effect are the same (default 0).
+    ship : str, optional
+        The kind whose ship it is, where another kind's sails: ``draw("trial", 3, ship="work")`` has the ship of
+        ``draw("work", 3)``.
 
     Returns
     -------
@@ -118,15 +124,32 @@ def weekly_seed(day=None):
     return seed
 
 
-def set_up(kind, seed, causes=1, size=1.0, minutes=40, mismatch=1.0, rough=False, among=None, onset=False, after=None):
+def set_up(
+    kind,
+    seed,
+    causes=1,
+    size=1.0,
+    minutes=40,
+    mismatch=1.0,
+    rough=False,
+    among=None,
+    onset=False,
+    after=None,
+    day=0,
+    ship=None,
+):
     """Everything about a log that is drawn before it is simulated; see `draw_many`."""
+
+    def of_day(name):
+        return stream(kind, seed, name_of(name, day))
+
     hidden = set_effects(kind, seed, causes, size, minutes, among, onset)
     names = {e.answer.cause for e in hidden} | {e.answer.note for e in hidden}
-    weather = draw_weather(stream(kind, seed, "weather"))
+    weather = draw_weather(of_day("weather"))
     if names & {"wind_scale", "wind_direction", "wind_shadow"}:
         weather = windier(weather, 5.5)
     ticks, rows = 60 * minutes + AFTER, 60 * minutes + 1
-    rng = stream(kind, seed, "plan")
+    rng = of_day("plan")
     heading = rng.uniform(-np.pi, np.pi)
     if "heading_wrap" in names:
         heading = np.radians(rng.uniform(-0.3, 0.3))
@@ -135,14 +158,13 @@ def set_up(kind, seed, causes=1, size=1.0, minutes=40, mismatch=1.0, rough=False
     plan, longer = planner.plan(), 0
     if after:
         orders = Orders(**after)
-        plan, longer = carried_out(plan, orders, stream(kind, seed, "captain"), AFTER), AFTER + orders.rows
+        plan, longer = carried_out(plan, orders, of_day("captain"), AFTER), AFTER + orders.rows
         if "clock" not in names:  # with one, the last rows of the log may see what comes after them
             hidden = [effects.gone_on(e, 60 * minutes + longer) for e in hidden]
     ends = [(n, n + longer) for n in (BEFORE + ticks, rows)] + [(records(BEFORE + ticks), records(plan.mode.size))]
 
     def lengthened(name):
-        then = stream(kind, seed, f"{name} after")
-        return Lengthened(stream(kind, seed, name), then, {long: short for short, long in ends})
+        return Lengthened(of_day(name), of_day(f"{name} after"), {long: short for short, long in ends})
 
     air = lengthened("air")
     mast, over_ship = wind_series(weather, air, ends[2][1], HALF_SECOND)
@@ -151,16 +173,22 @@ def set_up(kind, seed, causes=1, size=1.0, minutes=40, mismatch=1.0, rough=False
         seed=seed,
         rows=rows + longer,
         planned_rows=rows,
-        coefficients=draw_coefficients(stream(kind, seed, "ship"), mismatch, rough),
+        coefficients=draw_coefficients(stream(ship or kind, seed, "ship"), mismatch, rough),
         weather=weather,
         mast_wind=mast,
         wind=over_ship,
         sea=elevation(weather, air, ends[2][1], HALF_SECOND),
-        style=autopilot.draw_style(stream(kind, seed, "style")),
+        style=autopilot.draw_style(stream(ship or kind, seed, "style")),
         plan=plan,
         noise=sensors.draw_noise(lengthened("noise"), plan.mode.size, rows + longer),
         effects=tuple(hidden),
+        day=day,
     )
+
+
+def name_of(stream_name, day):
+    """Name of a random stream on a day."""
+    return f"{stream_name}, day {day}" if day else stream_name
 
 
 def records(ticks):
@@ -250,7 +278,7 @@ def spoiled(setup, channels, times, rows, name):
         kept &= left
         answer.append(told)
     channels = sensors.wrap_and_round(channels)
-    channels, received = sensors.drop_out(channels, stream(setup.kind, setup.seed, name))
+    channels, received = sensors.drop_out(channels, stream(setup.kind, setup.seed, name_of(name, setup.day)))
     columns = {"time [s]": times.astype(float)}
     columns |= {f"{role} [{sensors.ROLES[role][0]}]": values for role, values in channels.items()}
     return pd.DataFrame(columns)[kept & received], answer

@@ -34,6 +34,7 @@ class Setup:
     plan: Plan
     noise: Noise
     effects: tuple
+    day: int = 0
 
 
 def run(setups):

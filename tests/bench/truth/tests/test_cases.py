@@ -57,6 +57,22 @@ def test_a_draw_gives_for_ever_what_it_gave(kind, seed, options, digest):
     assert hashlib.sha256(log.to_csv().encode()).hexdigest()[:16] == digest
 
 
+def test_another_day_has_the_same_ship_in_other_weather():
+    first, second = (cases.set_up("work", 8, day=day, **SHORT) for day in (0, 1))
+    trial = cases.set_up("trial", 8, causes=0, ship="work", **SHORT)
+    for other in (second, trial):
+        assert all(np.array_equal(a, b) for a, b in zip(*map(coefficients, (first, other)), strict=True))
+        assert other.style == first.style and other.weather != first.weather
+        assert not np.array_equal(other.noise.log, first.noise.log)
+    assert [effect.answer for effect in second.effects] == [effect.answer for effect in first.effects]
+    assert not np.array_equal(second.plan.eta, first.plan.eta)
+
+
+def coefficients(setup):
+    """All coefficients of the ship of a setup."""
+    return vars(setup.coefficients).values()
+
+
 def test_a_healthy_draw_is_its_own_twin_and_that_of_the_faulty_one():
     healthy = draw("work", 2, causes=0, **SHORT)
     faulty = draw("work", 2, among=["tow"], **SHORT)
