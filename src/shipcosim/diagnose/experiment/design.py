@@ -177,7 +177,7 @@ def _shared_columns(fits):
 def _own(fit):
     turned = {path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths}
     turned |= {path for s in fit.hypotheses for path in s.definition.companions}
-    return [column for column in fit.columns if turned & set(column.changes)]
+    return [column for column in fit.columns if column.gives_way(turned)]
 
 
 def _key(column):
@@ -313,7 +313,7 @@ def _shows(products, columns, places, known):
     places = list(places)
     taken = {path for place in places for path in columns[place].changes}
     prior = np.zeros(len(columns))
-    prior[:known] = [0.0 if taken & set(column.changes) else column.prior for column in columns[:known]]
+    prior[:known] = [0.0 if column.gives_way(taken) else column.prior for column in columns[:known]]
     prior[places] = 1.0
     blank = products.copy()
     blank[0, :] = blank[:, 0] = 0.0

@@ -62,7 +62,7 @@ def not_testable(
         prior = known.copy()
         prior[list(places)] = 1.0
         taken = {path for i in places for path in columns[i].changes}
-        prior[[i for i, c in enumerate(columns) if i not in places and taken & set(c.changes)]] = 0.0
+        prior[[i for i, c in enumerate(columns) if i not in places and c.gives_way(taken)]] = 0.0
         covariance = evidence(blank, prior)[2][np.ix_(places, places)]
         information = float(np.max(0.5 * (1.0 / np.diag(covariance) - 1.0)))
         gain = information - 0.5 * float(np.log1p(2.0 * information))

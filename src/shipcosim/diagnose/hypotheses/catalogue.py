@@ -184,6 +184,8 @@ def _parameter(
     if parameter.relative_to:
         size *= model.get(_paths(parameter.relative_to, component, model)[0])
     tolerance = model.tolerances.get(paths[0], parameter.tolerance * size)
+    if paths[0] in model.referenced:
+        tolerance = 0.0  # what is uncertain of it is part of every fit
     return HypothesisParameter(
         name,
         parameter.unit,

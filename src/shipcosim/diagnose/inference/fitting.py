@@ -81,7 +81,9 @@ class IdentificationProblem:
         taken |= {path for hypothesis in hypotheses for path in hypothesis.definition.replaces}
         everyone = self.known_of or self.hypotheses
         taken |= {path for hypothesis in everyone for path in hypothesis.definition.companions}
-        found = [Regressor({path: size}) for path, size in self.model.tolerances.items() if path not in taken]
+        found = [Regressor(direction, beside=True) for direction in self.model.directions]
+        taken |= self.model.referenced
+        found += [Regressor({path: size}) for path, size in self.model.tolerances.items() if path not in taken]
         for hypothesis in everyone:
             for parameter in hypothesis.parameters if hypothesis.definition.law == "linear" else ():
                 listed = all(path in self.model.tolerances for path in parameter.paths)
@@ -183,20 +185,30 @@ def fitted(
     -------
     Fit
     """
-    values, about, motion, last = _bounded(hypotheses, values or {}), {}, problem.motion, None
-    columns = problem.known(hypotheses) + _own(problem, hypotheses)
+    values, about, motion, last = bounded(hypotheses, values or {}), {}, problem.motion, None
+    columns = columns_of(problem, hypotheses)
     for _ in range(rounds):
-        model = problem.model.with_values(values | about)
-        linear = linearise(motion, problem.record, model, columns)
-        fit = _posterior(problem, hypotheses, values, columns, linear, model, motion)
-        motion, values, about = fit.motion, _next(fit), _about(fit)
-        moved = [
-            abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for s in hypotheses for k in s.parameters
-        ]
-        if max(moved, default=0.0) < 0.02 and last and abs(fit.score - last.score) < 1.0:
+        about_it = linearised(problem, columns, values | about, motion)
+        prior = np.array([column.prior for column in columns])
+        score, theta, covariance = evidence(about_it.products.products, prior, about_it.centre)
+        score += float(about_it.products.free)
+        fit = about_it.with_posterior(problem, hypotheses, values, score, theta, covariance)
+        motion, values, about = fit.motion, next_values(fit), tolerated(fit)
+        if _moved(fit, values) < 0.02 and last and abs(fit.score - last.score) < 1.0:
             break
         last = fit
     return fit
+
+
+def columns_of(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
+    """Columns of a fit: known numbers, what is only known within a tolerance about the hypotheses, their parameters."""
+    return problem.known(hypotheses) + _own(problem, hypotheses)
+
+
+def _moved(fit: Fit, values: Mapping[str, float]) -> float:
+    """How far the next values of the parameters are from those of a fit, in typical sizes; the largest."""
+    parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
+    return max((abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for k in parameters), default=0.0)
 
 
 def _own(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
@@ -211,43 +223,76 @@ def _regressor(hypothesis: Hypothesis, parameter: HypothesisParameter) -> Regres
     return Regressor(dict.fromkeys(parameter.paths, parameter.typical), vector=hypothesis.vector_of(parameter))
 
 
-def _posterior(
-    problem: IdentificationProblem,
-    hypotheses: Sequence[Hypothesis],
-    values: Mapping[str, float],
-    columns: list[Regressor],
-    linear: Linear,
-    model: ShipModel,
-    motion: Motion,
-) -> Fit:
-    """The fit about some values."""
+@dataclass(frozen=True)
+class Linearised:
+    """A problem about some values of the numbers, filtered.
+
+    Attributes
+    ----------
+    columns : list of Regressor
+    linear : Linear
+    white : (n, 6, 1 + p) array
+        Whitened innovations.
+    products : Gram
+    centre : (p,) array
+        θ of the columns that they were linearised about.
+    model : ShipModel
+    motion : Motion
+    """
+
+    columns: list[Regressor]
+    linear: Linear
+    white: np.ndarray
+    products: Gram
+    centre: np.ndarray
+    model: ShipModel
+    motion: Motion
+
+    def with_posterior(
+        self,
+        problem: IdentificationProblem,
+        hypotheses: Sequence[Hypothesis],
+        values: Mapping[str, float],
+        score: float,
+        theta: np.ndarray,
+        covariance: np.ndarray,
+    ) -> Fit:
+        """The fit with a posterior of the columns; its motion is smoothed with that."""
+        left = theta - self.centre
+        white = self.white[..., 0] - self.white[..., 1:] @ left
+        motion = _smoothed(explained(self.linear, left), white, problem, self.motion)
+        rest = (self.columns, self.linear, self.products, theta, covariance, self.centre, self.model, motion)
+        return Fit(tuple(hypotheses), dict(values), deviations(hypotheses, covariance), score, *rest)
+
+
+def linearised(
+    problem: IdentificationProblem, columns: list[Regressor], values: Mapping[str, float], motion: Motion
+) -> Linearised:
+    """A problem about some values of the ship's numbers and a motion, with these columns."""
+    model = problem.model.with_values(values)
+    linear = linearise(motion, problem.record, model, columns)
     filtered = innovations(linear, problem.noise, problem.record)
-    products, centre = gram(filtered), _centre(columns, model, problem.model)
-    prior = np.array([column.prior for column in columns])
-    score, theta, covariance = evidence(products.products, prior, centre)
-    score += float(products.free)
-    values, parameters = dict(values), [parameter for hypothesis in hypotheses for parameter in hypothesis.parameters]
-    deviations = np.sqrt(np.diag(covariance))[theta.size - len(parameters) :]
-    std = {
-        parameter.paths[0]: float(d * parameter.typical) for parameter, d in zip(parameters, deviations, strict=True)
-    }
-    left = theta - centre
-    white = filtered.white[..., 0] - filtered.white[..., 1:] @ left
-    motion = _smoothed(explained(linear, left), white, problem, motion)
-    rest = (columns, linear, products, theta, covariance, centre, model, motion)
-    return Fit(tuple(hypotheses), values, std, score, *rest)
+    centre = _centre(columns, model, problem.model)
+    return Linearised(columns, linear, filtered.white, gram(filtered), centre, model, motion)
 
 
-def _next(fit: Fit) -> dict[str, float]:
+def deviations(hypotheses: Sequence[Hypothesis], covariance: np.ndarray) -> dict[str, float]:
+    """Standard deviation of each parameter of some hypotheses, whose columns are the last."""
+    parameters = [parameter for hypothesis in hypotheses for parameter in hypothesis.parameters]
+    found = np.sqrt(np.diag(covariance))[len(covariance) - len(parameters) :]
+    return {one.paths[0]: float(deviation * one.typical) for one, deviation in zip(parameters, found, strict=True)}
+
+
+def next_values(fit: Fit) -> dict[str, float]:
     """Values of the numbers at the posterior's mean, within their bounds."""
     parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
     found = dict(fit.values)
     for parameter, theta in zip(parameters, fit.theta[fit.theta.size - len(parameters) :], strict=True):
         found.update(dict.fromkeys(parameter.paths, float(parameter.neutral + theta * parameter.typical)))
-    return _bounded(fit.hypotheses, found)
+    return bounded(fit.hypotheses, found)
 
 
-def _bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> dict[str, float]:
+def bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> dict[str, float]:
     """Values with the numbers that some hypotheses turn within their bounds."""
     bounds = {
         path: parameter.bounds
@@ -258,7 +303,7 @@ def _bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> d
     return {path: float(np.clip(v, *bounds[path])) if path in bounds else v for path, v in values.items()}
 
 
-def _about(fit: Fit) -> dict[str, float]:
+def tolerated(fit: Fit) -> dict[str, float]:
     """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
     wanted = NONLINEAR | {path for hypothesis in fit.hypotheses for path in hypothesis.definition.companions}
     found = {}
@@ -272,6 +317,7 @@ def _centre(columns: Sequence[Regressor], model: ShipModel, neutral: ShipModel) 
     """θ of the ship model that the columns were linearised about; 0 for known numbers."""
     found = np.zeros(len(columns))
     for i, column in enumerate(columns):
-        path, size = next(iter(column.changes.items()))
-        found[i] = (model.get(path) - neutral.get(path)) / size
+        if not column.beside:
+            path, size = next(iter(column.changes.items()))
+            found[i] = (model.get(path) - neutral.get(path)) / size
     return found

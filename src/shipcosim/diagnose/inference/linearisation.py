@@ -6,7 +6,7 @@ rows of a log and over several logs; only the filter goes from row to row.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -57,11 +57,18 @@ class Regressor:
     vector : tuple of str
         Numbers that are a vector together whose direction matters: one that is short is not turned round by the
         differences that are taken for its slope.
+    beside : bool
+        Whether it stays where a cause changes the same numbers: what a reference leaves uncertain of them.
     """
 
     changes: dict[str, float]
     prior: float = 1.0
     vector: tuple[str, ...] = ()
+    beside: bool = False
+
+    def gives_way(self, taken: Collection[str]) -> bool:
+        """Whether a cause that changes these numbers speaks for what this one would say of them."""
+        return not self.beside and not self.changes.keys().isdisjoint(taken)
 
 
 class Linear(NamedTuple):

@@ -27,8 +27,9 @@ from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+    from shipcosim.diagnose.inference.linearisation import Regressor
 
-__all__ = ["healthy_records", "null_gains"]
+__all__ = ["healthy_products", "healthy_records", "null_gains", "on_track"]
 
 
 def null_gains(
@@ -60,19 +61,43 @@ def null_gains(
     dict of str to (m,) array
         By the hypothesis's label. [nats] Ships that lose the track say nothing and are left out.
     """
+    columns, products = healthy_products(problem, motion, wanted, count=count, seed=seed, batch=batch)
+    found = {hypothesis.label: [] for hypothesis in wanted}
+    for one in products[on_track(products)]:
+        for gain, hypothesis, _ in gains(one, columns, np.zeros(len(columns)), wanted, problem.model.get):
+            found[hypothesis.label].append(gain)
+    return {label: np.array(values) for label, values in found.items()}
+
+
+def healthy_products(
+    problem: IdentificationProblem,
+    motion: Motion,
+    wanted: Sequence[Hypothesis],
+    *,
+    count: int = 50,
+    seed: int = 0,
+    batch: int = 5,
+) -> tuple[list[Regressor], np.ndarray]:
+    """Inner products of simulated healthy logs like this one, arguments as of `null_gains`.
+
+    Returns
+    -------
+    tuple of list of Regressor, (count, 1 + p, 1 + p) array
+        The known numbers; the log, these, and the screening regressors of each wanted hypothesis in turn.
+    """
     records = healthy_records(problem, motion, count, np.random.default_rng(seed))
-    problem = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses)
-    squares, found = [], {hypothesis.label: [] for hypothesis in wanted}
+    problem, found = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses), []
     for first in range(0, count, batch):
         record = _some(records, slice(first, first + batch))
         here = prepared(replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1)
-        columns = problem.known(())
-        for products in gram(innovations(here.linear, problem.noise, record)).products:
-            squares.append(products[0, 0])
-            for gain, hypothesis, _ in gains(products, columns, np.zeros(len(columns)), wanted, problem.model):
-                found[hypothesis.label].append(gain)
-    on_track = np.array(squares) < LOST_TRACK * np.median(squares)
-    return {label: np.array(values)[on_track] for label, values in found.items()}
+        found.append(gram(innovations(here.linear, problem.noise, record)).products)
+    return problem.known(()), np.concatenate(found)
+
+
+def on_track(products: np.ndarray) -> np.ndarray:
+    """Which of simulated ships keep to the track, (m,) bool array: the others' innovations are far larger."""
+    squares = products[:, 0, 0]
+    return squares < LOST_TRACK * np.median(squares)
 
 
 def _some(records, which):
@@ -105,12 +130,14 @@ def healthy_records(problem: IdentificationProblem, motion: Motion, count: int, 
 
 
 def _drawn(model, count, rng):
-    """Ships within the tolerances of a ship model."""
-    values = {
-        path: model.get(path) + tolerance * rng.standard_normal(count)
-        for path, tolerance in model.tolerances.items()
-        if not path.startswith(("instruments.", "water."))
-    }
+    """Ships within what is known of a ship model."""
+    own = {path: size for path, size in model.tolerances.items() if path not in model.referenced}
+    directions = [*model.directions, *({path: size} for path, size in own.items() if not model.is_of_day(path))]
+    values = {}
+    for direction in directions:
+        share = rng.standard_normal(count)
+        for path, size in direction.items():
+            values[path] = values.get(path, model.get(path)) + size * share
     return model.with_values(values)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,6 @@ from shipcosim.diagnose.inference.linearisation import Regressor, beside
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["DIRECTIONS", "Gain", "gains", "screened", "screening_regressors"]
 
@@ -43,7 +42,7 @@ def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
     added = [column for hypothesis in wanted for group in screening_regressors(hypothesis) for column in group]
     linear = beside(fit.linear, problem.base_of(added))
     products = gram(innovations(linear, problem.noise, problem.record)).products
-    return gains(products, fit.columns, fit.centre, wanted, fit.model)
+    return gains(products, fit.columns, fit.centre, wanted, fit.model.get)
 
 
 def gains(
@@ -51,7 +50,7 @@ def gains(
     columns: Sequence[Regressor],
     centre: np.ndarray,
     wanted: Sequence[Hypothesis],
-    model: ShipModel,
+    value_of: Callable[[str], float],
 ) -> list[Gain]:
     """Gain in log-evidence of hypotheses, from inner products of the log and of regressors.
 
@@ -63,8 +62,8 @@ def gains(
     centre : array
         θ of these columns that they were linearised about.
     wanted : sequence of Hypothesis
-    model : ShipModel
-        That they were linearised about.
+    value_of : callable
+        Value of a number that they were linearised about.
 
     Returns
     -------
@@ -81,12 +80,12 @@ def gains(
             here = prior.copy()
             here[place : place + len(group)] = 1.0
             taken = {path for column in group for path in column.changes} | set(hypothesis.definition.replaces)
-            here[[i for i, column in enumerate(columns) if taken & set(column.changes)]] = 0.0
+            here[[i for i, column in enumerate(columns) if column.gives_way(taken)]] = 0.0
             score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
             values = {}
             for column, share in zip(group, theta[place : place + len(group)], strict=True):
                 for path, size in column.changes.items():
-                    values[path] = values.get(path, model.get(path)) + share * size
+                    values[path] = values.get(path, value_of(path)) + share * size
             tries.append((score - nothing, values))
             place += len(group)
         gain, values = _together(tries, hypothesis)

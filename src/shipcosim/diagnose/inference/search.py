@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from shipcosim.diagnose.stages import ExplainedLog, Identification
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.inference.screening import Gain
 
 __all__ = ["at_first_sight", "explain", "names", "with_causes", "without_causes"]
 
@@ -28,13 +30,21 @@ def with_causes(found: Identification) -> ExplainedLog:
 
 
 def explain(
-    problem: IdentificationProblem, *, most: int = 3, likely: int = 6, near: float = 12.0, enough: float = 5.0
+    problem: Any,
+    *,
+    most: int = 3,
+    likely: int = 6,
+    near: float = 12.0,
+    enough: float = 5.0,
+    fitted: Callable[..., Fit] = fitted,
+    screened: Callable[..., list[Gain]] = screened,
 ) -> list[Fit]:
     """The sets of causes that explain a log best.
 
     Parameters
     ----------
     problem : IdentificationProblem
+        Or what `fitted` and `screened` take as one, as several logs together.
     most : int
         Causes at once.
     likely : int
@@ -44,6 +54,8 @@ def explain(
         a current, gains too little. [nats]
     enough : float
         What a further cause has to gain. [nats]
+    fitted, screened : callable
+        How a set of causes is fitted, and how all causes are first looked at beside one.
 
     Returns
     -------
@@ -74,14 +86,18 @@ def explain(
         front = [fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)]
         if not front:
             break
-    _simplify(problem, fits)
+    _simplify(problem, fits, fitted)
     return sorted(fits.values(), key=lambda fit: -fit.score)
 
 
 def _strained(fit: Fit) -> set[str]:
     """Numbers that a fit has far from what is known of them: what they do may be bent there, as a lag's."""
-    known = zip(fit.columns, fit.theta, strict=True)
-    return {path for column, theta in known if abs(theta) > STRAIN for path in column.changes}
+    off, known = defaultdict(float), defaultdict(float)
+    for column, theta in zip(fit.columns, fit.theta, strict=True):
+        for path, size in column.changes.items():
+            off[path] += theta * size
+            known[path] += size**2
+    return {path for path, variance in known.items() if off[path] ** 2 > STRAIN**2 * variance}
 
 
 def at_first_sight(problem: IdentificationProblem) -> float:
@@ -100,7 +116,7 @@ def names(hypotheses: Iterable[Hypothesis]) -> frozenset[str]:
     return frozenset(hypothesis.label for hypothesis in hypotheses)
 
 
-def _simplify(problem: IdentificationProblem, fits: dict[frozenset[str], Fit]) -> None:
+def _simplify(problem: Any, fits: dict[frozenset[str], Fit], fitted: Callable[..., Fit] = fitted) -> None:
     """Fit the best set again without each of its causes, and with simpler ones instead, from the values that it has."""
     while True:
         best = max(fits.values(), key=lambda fit: fit.score)

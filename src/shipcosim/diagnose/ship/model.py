@@ -45,6 +45,9 @@ class ShipModel:
         Name of the ship's component.
     tolerances : dict of str to float
         By ``place.name`` as the system names it, in its unit.
+    directions : tuple of dict of str to float
+        What a reference leaves uncertain of her numbers, instead of their tolerances: changes of several numbers at
+        once, independent of each other, each of one standard deviation.
     span : tuple of two floats
         First and last time of the log, between which the current varies. [s]
     wind_is_true : bool
@@ -62,6 +65,7 @@ class ShipModel:
     parts: dict[str, Any]
     vessel: str = "vessel"
     tolerances: dict[str, float] = field(default_factory=dict)
+    directions: tuple[dict[str, float], ...] = ()
     span: tuple[float, float] = (0.0, 1.0)
     wind_is_true: bool = False
     wiring: Wiring | None = None
@@ -74,6 +78,16 @@ class ShipModel:
         """Every number that a cause can change, ``place.name``."""
         places = {part: self.vessel if part in ("hull", "wind") else part for part in self.parts}
         return [f"{places[part]}.{item.name}" for part, values in self.parts.items() for item in fields(values)]
+
+    @property
+    def referenced(self) -> set[str]:
+        """Numbers that a reference speaks for."""
+        return set().union(*self.directions)
+
+    @staticmethod
+    def is_of_day(path: str) -> bool:
+        """Whether a number is another on each day: what surrounds the ship, and the offsets of her instruments."""
+        return path.startswith(("water.", "instruments."))
 
     @property
     def thrusters(self) -> list[str]:

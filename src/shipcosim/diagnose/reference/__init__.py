@@ -1,0 +1,1 @@
+"""Several logs of one ship: fitted together, the reference that logs of the ship being well make, and what changed."""
