@@ -34,8 +34,10 @@ SETS = {
     "onset": {"onset": True},
     "mismatch": {"mismatch": 2.0},
     "rough": {"rough": True},
+    "form": {"form": 1.0},
     "healthy_mismatch": {"causes": 0, "mismatch": 2.0},
     "healthy_rough": {"causes": 0, "rough": True},
+    "healthy_form": {"causes": 0, "form": 1.0},
     "drift": {"among": [cause for cause in CAUSES if cause not in DATA_FAULTS], "after": DRIFT},
 }
 

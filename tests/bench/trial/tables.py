@@ -210,6 +210,9 @@ ROWS = (
     Row("rough ship: right", "rough", ("", "", ""), _right),
     Row("rough ship: right when it names one", "rough", ("99", "98", "95"), _precise),
     Row("rough ship: false alarm on healthy data", "healthy_rough", ("", "", ""), _alarm),
+    Row("another form: right", "form", ("60", "60", ""), _right),
+    Row("another form: right when it names one", "form", ("95", "95", ""), _precise),
+    Row("another form: false alarm on healthy data", "healthy_form", ("5", "5", ""), _alarm),
     Row("time", "one", ("30 s", "30 s", "60 s"), cell=_seconds),
 )
 
@@ -219,13 +222,15 @@ LEADING = {
     "right when it names one": "what is named is right",
     "false alarm on healthy data": "a healthy ship is called wrong",
     EXPLAINED.format("DP"): "of the error at 60 s that the cause explains, the extended model removes",
-    "rough ship: right when it names one": "what is named is right on a ship of another form than the model",
+    "another form: right": "the hidden cause of a ship of another form than the model is named, and nothing else",
+    "another form: right when it names one": "what is named of her is right",
+    "another form: false alarm on healthy data": "a healthy ship of another form is called wrong",
 }
-"""The five rows that matter most, in plain words; the first row of a label counts."""
+"""The rows that matter most, in plain words; the first row of a label counts."""
 
 
 def leading(results):
-    """The five figures that matter, as Markdown; takes what `table` takes."""
+    """The figures that matter, as Markdown; takes what `table` takes."""
     lines = ["| | " + " | ".join(KINDS) + " |", "|---|" + "---|" * len(KINDS)]
     for label, words in LEADING.items():
         row = next(row for row in ROWS if row.label == label)

@@ -13,6 +13,7 @@ import pandas as pd
 
 from truth import autopilot, effects, faults, sensors, unknowns
 from truth.effects import Answer, Effect
+from truth.form import draw_form
 from truth.loop import AFTER, BEFORE, HALF_SECOND, Setup, run
 from truth.orders import Orders, carried_out
 from truth.ship import draw_coefficients
@@ -86,6 +87,9 @@ def draw_many(kind, seeds, **options):
         Factor on the tolerances from which the ship's coefficients are drawn (default 1).
     rough : bool
         A ship of other forms: roll, other wind and cross-flow tables (default no).
+    form : float
+        A ship of a drawn form, see `form.draw_form`, that differs from the model's by this factor times the usual
+        (default 0: the model's).
     among : sequence of str, optional
         Causes (or names of unknown effects) to draw from; all if not given.
     onset : bool
@@ -132,6 +136,7 @@ def set_up(
     minutes=40,
     mismatch=1.0,
     rough=False,
+    form=0.0,
     among=None,
     onset=False,
     after=None,
@@ -166,6 +171,7 @@ def set_up(
     def lengthened(name):
         return Lengthened(of_day(name), of_day(f"{name} after"), {long: short for short, long in ends})
 
+    drawn = draw_form(stream(ship or kind, seed, "form"), form) if form else None
     air = lengthened("air")
     mast, over_ship = wind_series(weather, air, ends[2][1], HALF_SECOND)
     return Setup(
@@ -173,7 +179,7 @@ def set_up(
         seed=seed,
         rows=rows + longer,
         planned_rows=rows,
-        coefficients=draw_coefficients(stream(ship or kind, seed, "ship"), mismatch, rough),
+        coefficients=draw_coefficients(stream(ship or kind, seed, "ship"), mismatch, rough, drawn),
         weather=weather,
         mast_wind=mast,
         wind=over_ship,

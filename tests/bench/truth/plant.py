@@ -35,6 +35,7 @@ class Ship(NamedTuple):
     v_r: np.ndarray
     momentum: tuple  # of three [kg m/s, kg m/s, kg m2/s]
     rates: tuple  # of the momentum and of psi, one step ago; empty at the start
+    remembered: np.ndarray  # (3, n) velocity through the water that the force with a memory remembers
     rpm: np.ndarray  # (3, n) real speed of port, starboard and tunnel propeller
     azimuth: np.ndarray  # (2, n) real direction of the units
 
@@ -44,7 +45,8 @@ def at_rest(x, y, psi, rpm, azimuth, coefficients, knobs):
     still = np.zeros_like(psi)
     u_c, v_c = to_body(psi, knobs.current_north, knobs.current_east)
     momentum = momenta(still, still, still, u_c, v_c, coefficients, knobs)
-    return Ship(x, y, psi, still, still, still, still, still, -u_c, -v_c, momentum, (), rpm, azimuth)
+    remembered = np.array([-u_c, -v_c, still])
+    return Ship(x, y, psi, still, still, still, still, still, -u_c, -v_c, momentum, (), remembered, rpm, azimuth)
 
 
 def to_body(psi, north, east):
@@ -82,7 +84,7 @@ def velocities(momentum, u_c, v_c, coefficients, knobs):
 
 
 def hull_load(u_r, v_r, r, coefficients, knobs):
-    """Resistance, lift and cross flow, strip by strip, with any extra linear damping: (3 tuple)."""
+    """Resistance, lift and cross flow, strip by strip, with any linear damping: (3 tuple)."""
     speed = np.abs(u_r)
     drag = coefficients.drag * knobs.drag * speed ** (coefficients.drag_power - 1) * u_r
     lift = coefficients.lift * speed * v_r
@@ -90,7 +92,16 @@ def hull_load(u_r, v_r, r, coefficients, knobs):
     strips = coefficients.strips * np.abs(flow) * flow
     y = -knobs.crossflow * strips.sum(axis=0) - lift - knobs.damping * v_r
     n = -knobs.crossflow * (X * strips).sum(axis=0) - LIFT_X * lift
-    return -drag - knobs.damping * u_r, y, n
+    linear = coefficients.damping
+    return -drag - knobs.damping * u_r - linear[0] * u_r, y - linear[1] * v_r, n - linear[2] * r
+
+
+def memory_load(nu_r, remembered, coefficients, h):
+    """Load of the water's memory, (3, n), and what it remembers a step later: in slow motion an added mass, in quick a
+    damping."""
+    newer = nu_r - remembered
+    load = -coefficients.memory / coefficients.memory_time * newer
+    return load, remembered - np.expm1(-h / coefficients.memory_time) * newer
 
 
 def wind_load(psi, u, v, north, east, coefficients, knobs):
@@ -138,11 +149,12 @@ def step(ship, rpm_target, azimuth_target, wind, wave_slope, coefficients, knobs
     unit_x, unit_y, unit_n = unit_loads(u_r, v_r, r, ship.rpm, ship.azimuth, coefficients, knobs)
     tunnel = tunnel_load(u_r, ship.rpm[2], coefficients, knobs)
     hull_x, hull_y, hull_n = hull_load(u_r, v_r, r, coefficients, knobs)
+    memory, remembered = memory_load(np.array([u_r, v_r, r]), ship.remembered, coefficients, h)
     air_x, air_y, air_n = wind_load(ship.psi, u, v, *wind, coefficients, knobs)
     pull_x, pull_y = to_body(ship.psi, knobs.pull_north, knobs.pull_east)
-    load_x = unit_x + hull_x + air_x + pull_x + knobs.force_x
-    load_y = unit_y + tunnel + hull_y + air_y + pull_y + knobs.force_y
-    load_n = unit_n + coefficients.tunnel_x * tunnel + hull_n + air_n + TOW_X * pull_y + knobs.moment
+    load_x = unit_x + hull_x + air_x + pull_x + knobs.force_x + memory[0]
+    load_y = unit_y + tunnel + hull_y + air_y + pull_y + knobs.force_y + memory[1]
+    load_n = unit_n + coefficients.tunnel_x * tunnel + hull_n + air_n + TOW_X * pull_y + knobs.moment + memory[2]
     roll, roll_rate = roll_step(ship, air_y, hull_y, unit_y + tunnel, wave_slope, coefficients.rolls, h)
     load_y = load_y - coefficients.mass * SWAY_ARM * (roll_rate - ship.roll_rate) / h
 
@@ -172,6 +184,7 @@ def step(ship, rpm_target, azimuth_target, wind, wave_slope, coefficients, knobs
         v_r,
         (p_x, p_y, p_n),
         rates,
+        remembered,
         *turn_drives(ship.rpm, ship.azimuth, rpm_target, azimuth_target, coefficients, knobs, h),
     )
 

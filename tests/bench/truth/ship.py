@@ -4,9 +4,11 @@ Sources: nominal-model.md, parameters.md and the tables beside them in the proje
 standard deviation of nominal-model.md, section Tolerances.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+
+from truth.form import SPEEDS
 
 WATER_DENSITY = 1025.0
 GRAVITY = 9.81
@@ -21,6 +23,8 @@ TOW_X = -17.0
 BOLLARD_AHEAD, BOLLARD_ASTERN = 0.8208, 0.418
 TUNNEL_THRUST = 6.83e-3
 AZIMUTH_RPM_MAX, TUNNEL_RPM_MAX = 203.0, 1780.0
+
+DRAG_SPEED = 1.2  # at which resistance by another power is the same [m/s]
 
 N_STRIPS = 21
 STRIP_X = (np.arange(N_STRIPS) + 0.5) / N_STRIPS * LENGTH - LENGTH / 2
@@ -140,6 +144,9 @@ class Coefficients:
     rpm_error: np.ndarray  # (3, n) logged minus real [rpm]
     drive_time: np.ndarray  # (3, n) lag of the propeller speeds [s]
     rolls: np.ndarray  # 1 for a ship that rolls, 0 for one that does not [1]
+    damping: np.ndarray  # (3, n) linear, in surge, sway and yaw [N s/m, N s/m, N m s]
+    memory: np.ndarray  # (3, n) of the force that remembers, as added mass in slow motion [kg, kg, kg m2]
+    memory_time: np.ndarray  # (3, n) for how long it does [s]
 
     @classmethod
     def stack(cls, ships):
@@ -147,7 +154,7 @@ class Coefficients:
         return cls(**{f.name: np.stack([getattr(ship, f.name) for ship in ships], axis=-1) for f in fields(cls)})
 
 
-def draw_coefficients(rng, mismatch=1.0, rough=False):
+def draw_coefficients(rng, mismatch=1.0, rough=False, form=None):
     """One ship whose coefficients lie around the nominal ones as the tolerances say.
 
     Parameters
@@ -158,6 +165,8 @@ def draw_coefficients(rng, mismatch=1.0, rough=False):
     rough : bool
         A ship of other forms: it rolls, its wind load, cross-flow and resistance have other shapes, and its tunnel
         thruster loses thrust ahead.
+    form : Form, optional
+        A ship of this form, see `form.draw_form`; the coefficients are those of the same ship without.
 
     Returns
     -------
@@ -171,11 +180,11 @@ def draw_coefficients(rng, mismatch=1.0, rough=False):
         return mismatch * TOLERANCE[tolerance] * rng.standard_normal(shape)
 
     mass = near("mass")
-    return Coefficients(
+    ship = Coefficients(
         mass=531e3 * mass,
         inertia=43.0e6 * near("mass"),
         added=np.array([26_550.0, 212_400.0, -637_200.0, 19.12e6]) * near("added_mass", 4),
-        drag=1645.0 * near("drag") * (1.2**0.15 if rough else 1.0),
+        drag=1645.0 * near("drag") * (DRAG_SPEED**0.15 if rough else 1.0),
         drag_power=np.array(1.85 if rough else 2.0),
         strips=0.5 * WATER_DENSITY * DRAUGHT * LENGTH / N_STRIPS * strip_coefficients(rough) * near("crossflow"),
         lift=30e3 * near("lift"),
@@ -192,6 +201,28 @@ def draw_coefficients(rng, mismatch=1.0, rough=False):
         rpm_error=np.append(error("azimuth_rpm", 2), error("tunnel_rpm")),
         drive_time=rng.uniform(1.0, 2.0, 3),
         rolls=np.array(float(rough)),
+        damping=np.zeros(3),
+        memory=np.zeros(3),
+        memory_time=np.ones(3),
+    )
+    return formed(ship, form) if form else ship
+
+
+def formed(ship, form):
+    """A single ship with her form: drag along the hull and over speed, wind round her, linear damping, memory, roll."""
+    strips = ship.strips * form.strips(2 * STRIP_X / LENGTH)
+    quadratic = np.array([ship.drag, strips.sum(), (np.abs(STRIP_X) ** 3 * strips).sum()])
+    return replace(
+        ship,
+        drag=ship.drag * DRAG_SPEED ** (2.0 - form.drag_power),
+        drag_power=np.array(form.drag_power),
+        strips=strips,
+        tunnel_fading=np.array(form.tunnel_fading),
+        wind=ship.wind * form.wind,
+        rolls=np.array(form.rolls),
+        damping=form.damping * quadratic * SPEEDS,
+        memory=form.memory * ship.added[[0, 1, 3]],
+        memory_time=form.memory_time,
     )
 
 
