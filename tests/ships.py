@@ -11,6 +11,8 @@ from shipcosim.ssp import Ship, read_ship
 Kind = TypeVar("Kind")
 FOLDER = Path(__file__).resolve().parents[1] / "ssp" / "ships"
 SHIPS = sorted(file.parent.name for file in FOLDER.glob("*/ship.toml"))
+GUNNERUS = sorted({"gunnerus-28m9", "gunnerus-33m9", "thesis", "thesis-28m9"} & set(SHIPS))
+"""Those with DP and the thrusters of R/V Gunnerus; the others are craft of which measured logs are known."""
 COMPONENTS = {
     "HullParameters": "vessel",
     "WindParameters": "vessel",
@@ -18,6 +20,8 @@ COMPONENTS = {
     "AzimuthParameters": "port",
     "PropellerParameters": "port",
     "TunnelParameters": "tunnel",
+    "FixedParameters": "left",
+    "PropellerRudderParameters": "propeller",
     "SensorParameters": "sensors",
     "ReferenceParameters": "reference",
     "DpShip": "controller",
@@ -80,9 +84,12 @@ COMPONENT_OF = {
     "predictor": "predictor",
 }
 """FMU: the component of the DP ship that it is."""
+ELSEWHERE = {"fixed_thruster": ("otter", "left"), "propeller_rudder": ("kvlcc2", "propeller")}
+"""FMU that the DP ship has not: a ship and her component that it is."""
 
 
 def given_to(fmu: str) -> dict[str, Any]:
-    """What the lengthened ship says of an FMU's parameters, by name; nothing of an FMU that is no part of her."""
-    entries = ship().entries.get(COMPONENT_OF.get(fmu, ""), {})
+    """What the lengthened ship says of an FMU's parameters, or another that has one; nothing of one that is in none."""
+    name, component = ELSEWHERE.get(fmu, ("gunnerus-33m9", COMPONENT_OF.get(fmu, "")))
+    entries = ship(name).entries.get(component, {})
     return {name: entry.value for name, entry in entries.items()}

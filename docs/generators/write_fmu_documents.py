@@ -5,7 +5,8 @@ with this.
 
 A reference result is 60 s of one component of the four-corner run: at each row the inputs it had there, and the outputs
 that the FMU gives when it is started with the first row's inputs and stepped from row to row with the inputs held.
-Parameters are those of the lengthened R/V Gunnerus (ssp/ships/gunnerus-33m9), her azimuth thruster on the centreline.
+Parameters are those of the lengthened R/V Gunnerus (ssp/ships/gunnerus-33m9), her azimuth thruster on the centreline;
+those of other ships of what she has not.
 FMUs that do nothing with their defaults have others. An FMU that is no part of that run keeps times and inputs of its
 reference.csv.
 """
@@ -40,11 +41,14 @@ COMPONENTS = {
 }
 """FMU: the component of gunnerus_dp whose inputs it gets."""
 SHIP = "gunnerus-33m9"
+ELSEWHERE = {"fixed_thruster": ("otter", "left"), "propeller_rudder": ("kvlcc2", "propeller")}
+"""FMU that she has not: a ship and her component that it is."""
 PARAMETERS = {
     "azimuth_thruster": {"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0},
     "earth_force": {"north": 1000.0, "east": 2000.0, "onset_time": 10.0, "ramp_time": 20.0, "x": -17.0},
     "drift_force": {"north": 1500.0, "east": -1000.0, "onset_time": 5.0, "yaw_arm": -1.5},
     "varying_current": {"north_start": 0.3, "east_end": -0.2, "time_start": 10.0, "time_end": 50.0},
+    "fixed_thruster": {"speed_loss": 0.1, "direction": 0.2},
     "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
 }
 """FMU: its parameters in its reference result that are neither the ship's nor as by default."""
@@ -65,9 +69,10 @@ def fmu_class(name):
 def parameters_of(name):
     """Parameters of an FMU in its reference result, by name: the ship's where it is a component of hers."""
     kinds, found = [group.kind for group in fmu_class(name).groups], {}
-    if name in COMPONENTS and name != "environment":
-        quantities = read_ship(ROOT / "ssp" / "ships" / SHIP).parameter_set({COMPONENTS[name]: kinds})
-        found = {key: quantity.value for key, quantity in quantities[COMPONENTS[name]].items()}
+    ship, component = ELSEWHERE.get(name, (SHIP, COMPONENTS.get(name)))
+    if component and name != "environment":
+        quantities = read_ship(ROOT / "ssp" / "ships" / ship).parameter_set({component: kinds})
+        found = {key: quantity.value for key, quantity in quantities[component].items()}
     return found | PARAMETERS.get(name, {})
 
 

@@ -27,7 +27,7 @@ from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, 
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning, known, surroundings
-from shipcosim.models.propulsion import azimuth, drive, propeller, slipstream, tunnel
+from shipcosim.models.propulsion import azimuth, drive, fixed, propeller, rudder, slipstream, tunnel
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.ship import hull, instruments, mast, vessel
 from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
@@ -38,6 +38,9 @@ PORT = parameters(azimuth.AzimuthParameters, "gunnerus-33m9", "port")
 LOSSES = dict(thrust_loss=0.1, reverse_loss=0.2, azimuth_offset=0.1, rpm_offset=5.0, interaction_loss=0.3)
 LOSSY = replace(PORT, **LOSSES)
 TUNNEL = parameters(tunnel.TunnelParameters)
+TANKER = parameters(hull.HullParameters, "kvlcc2", "vessel")
+STERN = parameters(rudder.PropellerRudderParameters, "kvlcc2")
+SIDE = replace(parameters(fixed.FixedParameters, "otter"), speed_loss=0.2, direction=0.3)
 ERRORS = dict(heading_bias=0.05, lever_x=3.0, lever_y=-1.0, velocity_scale=1.1)
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
 DRIFT = wave_loads.drift_table(parameters(vessel.DriftParameters).drift_table)
@@ -221,7 +224,7 @@ CASES = [
     Case(kinematics.eta_dot, [(0.4, 1.0, -2.0, 0.1), (-2.0, 0.3, 0.1, 0.0)]),
     Case(kinematics.velocity_at, [(-14.0, 2.0, 1.0, 0.2, 0.1), (13.0, 0.0, 1.0, 0.2, -0.1)]),
     Case(kinematics.load_at, [(-14.0, 2.0, 1e3, 2e3), (13.0, 0.0, 1e3, -2e3)]),
-    *(Case(hull.hull_loads, WATER, constants=dict(hull=ship)) for ship in (LONG, SHORT)),
+    *(Case(hull.hull_loads, WATER, constants=dict(hull=ship)) for ship in (LONG, SHORT, TANKER)),
     *(Case(load, WATER, constants=dict(hull=SHORT)) for load, _ in hull.CONTRIBUTIONS.values()),
     Case(vessel.accelerations, [(*w, 1e3, -2e3, 3e4) for w in WATER], constants=dict(hull=LONG)),
     Case(vessel.through_water, [(0.4, 1.0, -0.2, 0.3, 0.1), (-3.0, 0.0, 0.2, -0.3, 0.1)]),
@@ -284,6 +287,22 @@ CASES = [
     ),
     Case(tunnel.tunnel_replay, [(9.0,), (-20.0,)], constants=dict(tunnel=TUNNEL)),
     Case(tunnel.tunnel_loads, [(9.0, 0.0, 0.0, 1.6, 0.0, 0.5)], of_thruster, dict(tunnel=TUNNEL)),
+    Case(
+        fixed.fixed_loads,
+        [(F, n, *w) for F, n in ((30.0, 0.0), (-20.0, 0.0), (0.0, 60.0), (0.0, -50.0)) for w in WATER],
+        constants=dict(thruster=SIDE),
+    ),
+    Case(rudder.propeller_in_wake, [(n, *w) for n in (9.0, -4.0, 0.0) for w in WATER], constants=dict(unit=STERN)),
+    Case(
+        rudder.rudder_normal_force,
+        [(0.4, T, u, 0.1, r) for T in (40.0, -10.0, 0.0) for u in (0.7, -0.2, 0.0) for r in (0.1, -0.1)],
+        constants=dict(unit=STERN),
+    ),
+    Case(
+        rudder.propeller_rudder_loads,
+        [(n, 0.3, *w) for n in (9.0, -4.0) for w in WATER],
+        constants=dict(unit=STERN),
+    ),
     Case(gusts.gust, [(8.0,), (12.0,)], lambda mean: (7.0, mean, 3)),
     Case(gusts.gust_std, [(8.0,), (12.0,)]),
     Case(waves.elevation, PAIRS, lambda x, y: (7.0, x, y, SEA)),

@@ -11,7 +11,7 @@ from shipcosim.models.core.tables import parse
 from shipcosim.models.ship.vessel import DriftParameters
 from shipcosim.ssp import check_file, write_ssv
 
-DP, THESIS = "gunnerus_dp", ("thesis", "thesis-28m9")
+THESIS = ("thesis", "thesis-28m9")
 
 
 @pytest.fixture(scope="session")
@@ -25,11 +25,10 @@ def writer(root):
 @pytest.fixture(scope="session")
 def sets(writer):
     """Function from a ship to all her quantities by component."""
-    return lambda name: ship(name).parameter_set(writer.components(DP, ship(name)))
+    return lambda name: ship(name).parameter_set(writer.components(ship(name).systems[0], ship(name)))
 
 
-@pytest.mark.parametrize("system", [DP, "gunnerus_open"])
-@pytest.mark.parametrize("name", SHIPS)
+@pytest.mark.parametrize(("name", "system"), [(name, system) for name in SHIPS for system in ship(name).systems])
 def test_parameter_file_holds_the_numbers_of_the_ship(system, name, writer, root, tmp_path):
     write_ssv(tmp_path / "again.ssv", name, writer.values(system, ship(name)))
     committed = root / "ssp" / system / "resources" / f"{name}.ssv"

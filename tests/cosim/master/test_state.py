@@ -18,8 +18,8 @@ from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import Component, read_fmu, read_system, with_values
 
 FMUS = (
-    "allocator azimuth_thruster dp_controller drift_force earth_force environment instruments predictor reference "
-    "sensors thruster_monitor tunnel_thruster varying_current vessel"
+    "allocator azimuth_thruster dp_controller drift_force earth_force environment fixed_thruster instruments predictor "
+    "propeller_rudder reference sensors thruster_monitor tunnel_thruster varying_current vessel"
 ).split()
 NOT_NEUTRAL = {
     "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0, "yaw_arm": -1.5},

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from ships import SHIPS, parameters
+from ships import GUNNERUS, parameters
 
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.power import PowerParameters, granted_power, thrust_shares
@@ -16,7 +16,7 @@ from shipcosim.models.propulsion.tunnel import TunnelParameters
 POWER, UNITS = parameters(PowerParameters), parameters(AllocationParameters)
 
 
-@pytest.mark.parametrize("ship", SHIPS)
+@pytest.mark.parametrize("ship", GUNNERUS)
 def test_full_power_is_that_of_the_thrusters_at_the_allocators_limits(ship):
     """Within 2 %."""
     power, units = parameters(PowerParameters, ship), parameters(AllocationParameters, ship)

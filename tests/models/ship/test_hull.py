@@ -131,3 +131,34 @@ def test_scales_as_an_array_are_as_many_hulls(name, hull):
     together = accelerations(*motion, hull=replace(hull, **{name: scales}))
     np.testing.assert_allclose(np.broadcast_arrays(*together), np.transpose(each), rtol=1e-12)
     np.testing.assert_array_equal(each[0], accelerations(*motion, hull=hull))
+
+
+TANKER = parameters(HullParameters, "kvlcc2", "vessel")
+SIZE = 0.5 * 1000.0 * 7.0 * 0.455
+
+
+@pytest.mark.parametrize("state", [(1.179, 0.0, 0.0), (0.9, -0.25, 0.05), (0.5, 0.2, -0.06)])
+def test_mmg_hull_is_the_published_sum_with_its_munk_moment_once(state):
+    """Resistance, derivatives, and of the added mass what MMG writes on the other side, m_y v r and -m_x u r."""
+    u, v, r = state
+    U = np.hypot(u, v)
+    a, b = v / U, 7.0 * r / U
+    X = -0.022 - 0.040 * a**2 + 0.002 * a * b + 0.011 * b**2 + 0.771 * a**4
+    Y = -0.315 * a + 0.083 * b - 1.607 * a**3 + 0.379 * a * a * b - 0.391 * a * b * b + 0.008 * b**3
+    N = -0.137 * a - 0.049 * b - 0.030 * a**3 - 0.294 * a * a * b + 0.055 * a * b * b - 0.013 * b**3
+    expected = SIZE * U**2 * np.array([X, Y, 7.0 * N]) + np.array([2486.0 * v * r, -245.0 * u * r, 0.0])
+    assert hull_loads(u, v, r, hull=TANKER) == pytest.approx(expected, rel=2e-3, abs=0.05)
+
+
+def test_mmg_loads_vanish_at_rest_and_stay_finite_where_she_turns_on_the_spot():
+    assert models.mmg(0.0, 0.0, 0.0, hull=TANKER) == (0.0, 0.0, 0.0)
+    slow, fast = (models.mmg(0.0, 0.0, r, hull=TANKER)[2] for r in (0.1, 0.2))
+    assert slow < 0.0 and fast == pytest.approx(4.0 * slow)
+
+
+def test_cross_flow_scale_multiplies_mmgs_third_order_alone():
+    scaled = replace(TANKER, cross_flow_scale=2.0)
+    first = replace(TANKER, **{f"mmg_{n}": 0.0 for n in "Y_vvv Y_vvr Y_vrr Y_rrr N_vvv N_vvr N_vrr N_rrr".split()})
+    state = (0.9, -0.25, 0.05)
+    one, two, linear = (np.array(models.mmg(*state, hull=hull)) for hull in (TANKER, scaled, first))
+    np.testing.assert_allclose(two - linear, [0.0, *(2.0 * (one - linear)[1:])], atol=1e-9)

@@ -7,7 +7,7 @@ for which it has coefficients; a new effect is one more function here, with coef
 from dataclasses import dataclass
 from functools import cached_property
 
-from shipcosim.models.core.maths import Arithmetic, maximum, minimum
+from shipcosim.models.core.maths import Arithmetic, hypot, maximum, minimum
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity, required
 
@@ -17,6 +17,11 @@ _TINY = 1e-30
 
 def _unused(unit, description):
     return quantity(0.0, unit, description, _UNUSED)
+
+
+def _mmg(product):
+    """A hydrodynamic derivative of the MMG standard method."""
+    return quantity(0.0, "1", f"MMG derivative, {product}, over rho/2 L d U^2, of N over rho/2 L^2 d U^2", _UNUSED)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +102,23 @@ class HullParameters:
     N_modrv: float = _unused("N.s2/rad", "v abs(r)")
     N_modvr: float = _unused("N.s2/rad", "r abs(v)")
 
+    mmg_X_vv: float = _mmg("v' v'")
+    mmg_X_vr: float = _mmg("v' r'")
+    mmg_X_rr: float = _mmg("r' r'")
+    mmg_X_vvvv: float = _mmg("v' v' v' v'")
+    mmg_Y_v: float = _mmg("v'")
+    mmg_Y_r: float = _mmg("r'")
+    mmg_Y_vvv: float = _mmg("v' v' v'")
+    mmg_Y_vvr: float = _mmg("v' v' r'")
+    mmg_Y_vrr: float = _mmg("v' r' r'")
+    mmg_Y_rrr: float = _mmg("r' r' r'")
+    mmg_N_v: float = _mmg("v'")
+    mmg_N_r: float = _mmg("r'")
+    mmg_N_vvv: float = _mmg("v' v' v'")
+    mmg_N_vvr: float = _mmg("v' v' r'")
+    mmg_N_vrr: float = _mmg("v' r' r'")
+    mmg_N_rrr: float = _mmg("r' r' r'")
+
     mass_scale: float = quantity(
         1.0, "1", "factor on mass and moment of inertia together; added mass stays", "neutral", minimum=0.01
     )
@@ -104,7 +126,8 @@ class HullParameters:
     cross_flow_scale: float = quantity(
         1.0,
         "1",
-        "factor on the cross-flow drag; without any, on linear and quadratic damping in sway and yaw",
+        "factor on the cross-flow drag and on MMG's third order; without drag, on linear and quadratic damping in sway "
+        "and yaw",
         "neutral",
         minimum=0.0,
     )
@@ -310,6 +333,39 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     return X, Y, N
 
 
+def mmg(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+    """Hull forces of the MMG standard method beside the resistance, with its published derivatives.
+
+    With v' = v/U, r' = r L/U and U² = u² + v²,
+
+        X = ρ/2 L d U² (X_vv v'² + X_vr v' r' + X_rr r'² + X_vvvv v'⁴),
+        Y = ρ/2 L d U² (Y_v v' + Y_r r' + Y_vvv v'³ + Y_vvr v'² r' + Y_vrr v' r'² + Y_rrr r'³),
+
+    and N as Y with L² d. The derivatives are of a ship under way: where she turns faster than abs(r') = 2, U is taken
+    as abs(r) L/2, so that the loads stay finite at rest (assumed). The cross-flow scale multiplies what is of third
+    order in sway and yaw. MMG writes the Munk moment into N_v, and so do the derivatives here: of a hull with the
+    Coriolis load of the added mass, the polynomial's ``N_uv`` has to take it out again.
+
+    Parameters and returns as `hull_loads`.
+
+    References
+    ----------
+    Yasukawa and Yoshimura, Introduction of MMG standard method for ship maneuvering predictions, J Mar Sci Technol 20,
+    2015, 37-52; the bound on r' is assumed.
+    """
+    p, length, scale = hull, hull.length, hull.cross_flow_scale
+    size = 0.5 * hull.water_density * length * hull.draught
+    w = length * r
+    U = maximum(hypot(u, v), 0.5 * abs(w)) + _TINY
+    vv, vw, ww = v * v, v * w, w * w
+    X = p.mmg_X_vv * vv + p.mmg_X_vr * vw + p.mmg_X_rr * ww + p.mmg_X_vvvv * (vv / U) * (vv / U)
+    Y = p.mmg_Y_vvv * vv * v + p.mmg_Y_vvr * vv * w + p.mmg_Y_vrr * v * ww + p.mmg_Y_rrr * ww * w
+    N = p.mmg_N_vvv * vv * v + p.mmg_N_vvr * vv * w + p.mmg_N_vrr * v * ww + p.mmg_N_rrr * ww * w
+    Y = U * (p.mmg_Y_v * v + p.mmg_Y_r * w) + scale * Y / U
+    N = U * (p.mmg_N_v * v + p.mmg_N_r * w) + scale * N / U
+    return size * X, size * Y, size * length * N
+
+
 CONTRIBUTIONS = {
     "added_mass_coriolis": (added_mass_coriolis, ("added_mass_coriolis",)),
     "linear_damping": (linear_damping, ("X_u", "Y_v", "Y_r", "N_v", "N_r")),
@@ -322,6 +378,13 @@ CONTRIBUTIONS = {
             "X_vv X_rr X_rv X_uvv X_rvu X_urr X_umodv "
             "Y_uv Y_ur Y_uur Y_uuv Y_vvv Y_rrr Y_rrv Y_vvr Y_modrv Y_modrr Y_modvr "
             "N_uv N_ur N_uur N_uuv N_vvv N_rrr N_rrv N_vvr N_modvv N_modrv N_modvr".split()
+        ),
+    ),
+    "mmg": (
+        mmg,
+        tuple(
+            f"mmg_{name}"
+            for name in "X_vv X_vr X_rr X_vvvv Y_v Y_r Y_vvv Y_vvr Y_vrr Y_rrr N_v N_r N_vvv N_vvr N_vrr N_rrr".split()
         ),
     ),
 }

@@ -1,0 +1,30 @@
+"""FMU of a plain fixed thruster."""
+
+from shipcosim.fmi import Fmu, Input, Output, Parameters
+from shipcosim.models.core.maths import pi
+from shipcosim.models.propulsion.fixed import FixedParameters, fixed_loads
+
+
+class FixedThruster(Fmu):
+    """Thruster that does not turn: a force as commanded, or quadratic in the speed of its shaft; no drive."""
+
+    thrust_in = Input("N", "commanded force, positive in the thruster's direction")
+    rpm_in = Input("rpm", "speed of the shaft")
+    u_r = Input("m/s", "ship's velocity forward through the water")
+    v_r = Input("m/s", "ship's velocity to starboard through the water")
+    r = Input("rad/s", "ship's yaw rate")
+
+    thrust = Output("N", "delivered thrust, positive in the thruster's direction")
+    tau_X = Output("N", "force on the ship, forward")
+    tau_Y = Output("N", "force on the ship, to starboard")
+    tau_N = Output("N.m", "yaw moment on the ship")
+
+    thruster = Parameters(FixedParameters)
+
+    def start(self):
+        speed = self.rpm_in * pi / 30.0
+        loads = fixed_loads(self.thrust_in, speed, self.u_r, self.v_r, self.r, thruster=self.thruster)
+        self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads
+
+    def step(self, t, h):
+        self.start()

@@ -1,0 +1,88 @@
+"""Plain fixed thrusters: a force as commanded, or quadratic in the speed of the shaft."""
+
+from dataclasses import dataclass
+
+from shipcosim.models.core.kinematics import load_at, velocity_at
+from shipcosim.models.core.maths import Arithmetic, cos, maximum, sin, where
+from shipcosim.models.core.parameters import quantity, required
+from shipcosim.models.propulsion.thruster import LOSS, Loads
+
+
+@dataclass(frozen=True, kw_only=True)
+class FixedParameters:
+    """A thruster that does not turn. It takes a force, a speed, or both; what nothing feeds is 0."""
+
+    x: float = required("m", "position forward", share=0.02)
+    y: float = required("m", "position to starboard", share=0.02)
+    direction: float = quantity(0.0, "rad", "direction of positive thrust, clockwise from the bow", "ahead")
+    gain_ahead: float = quantity(1.0, "1", "thrust over commanded force, ahead", "neutral", tolerance=0.02, minimum=0.0)
+    gain_astern: float = quantity(
+        1.0, "1", "thrust over commanded force, astern", "neutral", tolerance=0.02, minimum=0.0
+    )
+    coefficient_ahead: float = quantity(
+        0.0, "N.s2/rad2", "thrust over squared speed of the shaft, ahead", "not used", share=0.02, minimum=0.0
+    )
+    coefficient_astern: float = quantity(
+        0.0, "N.s2/rad2", "thrust over squared speed of the shaft, astern", "not used", share=0.02, minimum=0.0
+    )
+    speed_loss: float = quantity(
+        0.0, "s/m", "share of the thrust that each m/s of advance in its direction takes", "neutral", minimum=0.0
+    )
+    thrust_loss: float = quantity(0.0, "1", LOSS, "neutral; gains and coefficients have the tolerance", maximum=1.0)
+
+
+def fixed_loads(
+    force: Arithmetic,
+    speed: Arithmetic,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    *,
+    thruster: FixedParameters,
+) -> Loads:
+    """Thrust of a fixed thruster and its load on the ship.
+
+    With a commanded force F, a speed ω of the shaft, and the speed u_a of the water along the thruster,
+
+        T = (gain F + coefficient ω abs(ω)) max(0, 1 - speed_loss u_a sign(T)),
+
+    gain and coefficient ahead or astern by the sign of F and ω.
+
+    Parameters
+    ----------
+    force : float or (...) array or tensor
+        Commanded force, positive in the thruster's direction. [N]
+    speed : like force
+        Speed of the shaft. [rad/s]
+    u_r, v_r, r : like force
+        Velocity of the ship through the water, yaw rate. [m/s, m/s, rad/s]
+    thruster : FixedParameters
+        The thruster.
+
+    Returns
+    -------
+    Loads
+        Forces and load.
+
+    References
+    ----------
+    Quadratic law: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 9. The
+    loss with speed is a straight line, assumed.
+
+    Examples
+    --------
+    10 N on the starboard side turn the boat to port:
+
+    >>> boat = FixedParameters(x=-0.4, y=0.3)
+    >>> fixed_loads(10.0, 0.0, 0.0, 0.0, 0.0, thruster=boat)
+    Loads(thrust=10.0, side_force=0.0, tau_X=10.0, tau_Y=0.0, tau_N=-3.0)
+    """
+    p = thruster
+    thrust = force * where(force < 0.0, p.gain_astern, p.gain_ahead)
+    thrust = thrust + speed * abs(speed) * where(speed < 0.0, p.coefficient_astern, p.coefficient_ahead)
+    c, s = cos(p.direction), sin(p.direction)
+    u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
+    along = c * u_a + s * v_a
+    kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)
+    thrust = (1.0 - p.thrust_loss) * thrust * kept
+    return Loads(thrust, 0.0 * thrust, *load_at(p.x, p.y, c * thrust, s * thrust))
