@@ -143,3 +143,11 @@ def test_several_logs_are_driven_as_each_alone():
     inputs = replace(record, units=both).inputs(model, 0.5)
     alone = record.inputs(model, 0.5)
     np.testing.assert_allclose(inputs.units["port"][0], np.stack([alone.units["port"][0], 2 * alone.units["port"][0]]))
+
+
+def test_a_stiff_ship_gets_as_many_steps_as_her_damping_asks_for():
+    """Runge-Kutta of fourth order diverges beyond 2.8 of rate times step: at most 1 here, and never without bound."""
+    record, model = record_of(log(), twin.model()), twin.model()
+    assert record.substeps(model) == 1
+    assert replace(record, rate=3.5 / record.step).substeps(model) == 4
+    assert replace(record, rate=1e9).substeps(model) == 64

@@ -7,7 +7,7 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.ship.time_scales import response_times
+from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship.hull import HullParameters
 
@@ -65,3 +65,10 @@ def test_rows_without_a_velocity_do_not_count(ship):
     assert response_times(having(ship, LINEAR), motion).surge == pytest.approx(2.0)
     motion.u[:] = np.nan
     assert response_times(having(ship, LINEAR), motion).fastest == np.inf
+
+
+def test_the_fastest_rate_is_the_largest_but_for_a_few_rows(ship):
+    hull = having(ship, LINEAR)
+    one = fastest_rate(hull, moving())
+    assert one == pytest.approx(4.0)
+    assert one == pytest.approx(1.0 / min(response_times(hull, moving())))

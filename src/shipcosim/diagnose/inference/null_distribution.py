@@ -153,7 +153,7 @@ def _logged(motion, units, model, problem, rng):
         measured[k, :, :3] += slow
         slow = keep * slow + np.sqrt(1.0 - keep**2) * SLOW_STD * rng.standard_normal((count, 3))
     measured = np.where(np.isfinite(record.measured)[:, None, :], measured, np.nan)
-    return Record(record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known)
+    return Record(record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known, rate=record.rate)
 
 
 def _shown_waves(waves, psi):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.ship.time_scales import fastest_rate
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
@@ -22,6 +23,8 @@ __all__ = ["CHANNELS", "Inputs", "Record", "first_motion", "record_of"]
 
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s for 33.9 m
 _ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
+_RATE_OF_A_STEP = 1.0  # 1, of the fastest answer times the step: Runge-Kutta of fourth order diverges beyond 2.8
+_MOST_STEPS = 64  # from row to row; a model or a log that asks for more is wrong
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
@@ -61,6 +64,8 @@ class Record:
         Speed, and direction unwrapped. [m/s, rad]
     known : (n,) bool array
         Whether everything that drives the ship is known over the step that follows.
+    rate : float
+        Of the fastest answer that the ship gives in the log. [1/s]
     """
 
     time: np.ndarray
@@ -69,6 +74,7 @@ class Record:
     wind: tuple[np.ndarray, np.ndarray] | None
     known: np.ndarray
     remarks: tuple[str, ...] = field(default=())
+    rate: float = 0.0
 
     @property
     def step(self) -> float:
@@ -77,8 +83,8 @@ class Record:
 
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
-        rows = self.step / (_ONE_STEP * np.sqrt(model.parts["hull"].length))
-        return 2 ** int(np.ceil(np.log2(max(rows, 1.0)) - 1e-9))
+        rows = self.step * max(1.0 / (_ONE_STEP * np.sqrt(model.parts["hull"].length)), self.rate / _RATE_OF_A_STEP)
+        return 2 ** int(np.ceil(np.log2(min(max(rows, 1.0), _MOST_STEPS)) - 1e-9))
 
     def inputs(self, model: ShipModel, share: float = 0.0) -> Inputs:
         """Inputs of the ship model at each row but the last, or a share of a step after it.
@@ -141,7 +147,8 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     known[:-1] &= known[1:]
     record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
     slow = _SLOW_ENOUGH * np.sqrt(model.parts["hull"].length)
-    return _thinned(record, max(int(slow / record.step + 1e-6), 1))
+    record = _thinned(record, max(int(slow / record.step + 1e-6), 1))
+    return replace(record, rate=fastest_rate(model, first_motion(record, model)))
 
 
 def _thinned(record: Record, rows: int) -> Record:

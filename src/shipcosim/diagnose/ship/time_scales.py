@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from shipcosim.models.core.motion import Motion
     from shipcosim.models.ship.hull import HullParameters
 
-__all__ = ["Scales", "response_times"]
+__all__ = ["Scales", "fastest_rate", "response_times"]
 
 _SMALL = 1e-3  # m/s, and rad/s over half the length in m: differences for slopes
 
@@ -62,19 +62,39 @@ def response_times(ship: ShipModel, motion: Motion) -> Scales:
     Scales
         By the mean over the rows of the rate at which each velocity alone would decay.
     """
+    rates = [float(np.mean(rate)) if rate.size else 0.0 for rate in _rates(ship, motion)]
+    return Scales(*(1.0 / rate if rate > 0.0 else np.inf for rate in rates))
+
+
+def fastest_rate(ship: ShipModel, motion: Motion) -> float:
+    """Rate of the fastest answer that a ship gives in a log, which an integration has to follow.
+
+    Parameters
+    ----------
+    ship, motion
+        As of `response_times`.
+
+    Returns
+    -------
+    float
+        Of the three velocities the largest rate of decay, exceeded in 1 % of the rows: a few may be faulty. [1/s]
+    """
+    return max((float(np.percentile(rate, 99.0)) for rate in _rates(ship, motion) if rate.size), default=0.0)
+
+
+def _rates(ship: ShipModel, motion: Motion) -> list[np.ndarray]:
+    """Rate at which each velocity alone would decay, by row. [1/s]"""
     hull = ship.parts["hull"]
     speeds = np.stack([motion.u, motion.v, motion.r]).reshape(3, -1)
     speeds = speeds[:, np.isfinite(speeds).all(0)]
-    if not speeds.size:
-        return Scales(np.inf, np.inf, np.inf)
     here = _decelerations(speeds, hull)
     rates = []
     for axis, small in enumerate((_SMALL, _SMALL, 2.0 * _SMALL / hull.length)):
         moved = speeds.copy()
         moved[axis] += np.where(moved[axis] < 0.0, -small, small)
         slope = (_decelerations(moved, hull)[axis] - here[axis]) / (moved[axis] - speeds[axis])
-        rates.append(float(np.mean(-slope)))
-    return Scales(*(1.0 / rate if rate > 0.0 else np.inf for rate in rates))
+        rates.append(-slope)
+    return rates
 
 
 def _decelerations(speeds: np.ndarray, hull: HullParameters) -> np.ndarray:
