@@ -46,7 +46,7 @@ def _is_row(row):
 
 
 def _otter(path):
-    """Semicolons, the stamps without a name; damaged cells are missing. Speed and course over ground in the body frame."""
+    """Semicolons, stamps without a name; damaged cells are missing. Speed and course over ground in the body frame."""
     table = pandas.read_csv(path, sep=";", dtype=str)
     stamps = pandas.to_datetime(table.iloc[:, 0], format="%Y-%m-%d_%H:%M:%S:%f", errors="coerce")
     table = table.iloc[:, 1:].apply(pandas.to_numeric, errors="coerce")

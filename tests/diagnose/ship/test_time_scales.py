@@ -70,5 +70,5 @@ def test_rows_without_a_velocity_do_not_count(ship):
 def test_the_fastest_rate_is_the_largest_but_for_a_few_rows(ship):
     hull = having(ship, LINEAR)
     one = fastest_rate(hull, moving())
-    assert one == pytest.approx(4.0)
+    assert one == pytest.approx(400.0 / 200.0)
     assert one == pytest.approx(1.0 / min(response_times(hull, moving())))

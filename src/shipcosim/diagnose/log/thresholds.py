@@ -20,9 +20,9 @@ SPINNING = 15.0
 """Rate of turn that no ship reaches. [deg/s] Assumed."""
 LEAP = 5.0
 """Way between two rows over that by the logged velocity, from which on rows were lost. Assumed."""
-END_JUMP = 100.0
-"""Change to or from the first or last sample of a channel over its usual change, from which on that one is no
-measurement: it has one neighbour only. Start-up rows were off by millions. Assumed."""
+END_DISTANCE = 10.0
+"""Distance of the first or last sample of a channel from the middle of all others over their range, from which on it is
+no measurement: it has one neighbour only. Start-up rows were off by millions. Assumed."""
 FEWEST_LEAPS = 3
 """Rows in which the ship leaps: a single leap can be another reference."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log.thresholds import (
-    END_JUMP,
+    END_DISTANCE,
     FEWEST_GAP_ROWS,
     FEWEST_LEAPS,
     LEAP,
@@ -277,7 +277,7 @@ def outliers(log: dict) -> dict[str, np.ndarray]:
 
 
 def _far_off(values, is_angle):
-    """Samples that are far from both neighbours on the same side, while those agree; at an end, far from the only one."""
+    """Samples that are far from both neighbours on the same side, while those agree; at an end, far from all others."""
     if not np.isfinite(values).any():
         return np.zeros(len(values), bool)
     change = np.diff(values)
@@ -287,5 +287,9 @@ def _far_off(values, is_angle):
     before, after = change[:-1], change[1:]
     with np.errstate(invalid="ignore"):
         spike = (np.minimum(np.abs(before), np.abs(after)) > 12.0 * usual) & (np.abs(before + after) < 6.0 * usual)
-        first, last = np.abs(change[[0, -1]]) > END_JUMP * usual
-    return np.r_[first, spike & (before * after < 0.0), last]
+    far = np.r_[False, spike & (before * after < 0.0), False]
+    for end in () if is_angle or len(values) < 4 else (0, -1):
+        others = np.delete(values, end)
+        low, high = np.nanmin(others, initial=np.inf), np.nanmax(others, initial=-np.inf)
+        far[end] = high > low and abs(values[end] - 0.5 * (low + high)) > END_DISTANCE * (high - low)
+    return far
