@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.inference.innovations import _process, _uncertain
+from shipcosim.diagnose.inference.innovations import _process, _steady, _uncertain
 from shipcosim.diagnose.inference.linearisation import STATES
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.problem import identification_problem
@@ -195,12 +195,15 @@ def drawn(seed, linear, noise, record):
     random, n = np.random.default_rng(seed), record.time.size
     calm = replace(noise, wave=np.zeros(3))
     each, turns = np.linalg.eigh(_process(calm, record.step))
+    steady, moved = _steady(calm, record.step), linear.transition.shape[-1]
     root = turns * np.sqrt(np.maximum(each, 0.0))
     x, rows = np.sqrt(np.diag(_uncertain(calm))) * random.standard_normal(STATES), []
     for k in range(n):
         rows.append(linear.output[k] @ x + noise.white * random.standard_normal(6))
         if k < n - 1:
-            x = linear.transition[k] @ x + root @ random.standard_normal(STATES)
-    moved = waves_of(noise, record.step, (n, 1), random)[:, 0]
-    rows = np.stack(rows) + (linear.output[..., 12:] @ moved[..., None])[..., 0]
+            ahead = steady @ x
+            ahead[:moved] += linear.transition[k] @ x[:moved]
+            x = ahead + root @ random.standard_normal(STATES)
+    added = waves_of(noise, record.step, (n, 1), random)[:, 0]
+    rows = np.stack(rows) + (linear.output[..., 12:] @ added[..., None])[..., 0]
     return linear._replace(driven=np.zeros((n - 1, STATES, 1)), seen=rows[..., None])

@@ -96,7 +96,7 @@ def test_two_causes_that_do_the_same_share_the_blame():
 def test_products_are_those_of_all_channels_and_rows_and_add_up_by_parts():
     random = np.random.default_rng(6)
     white, determinants = random.standard_normal((50, 2, 6, 4)), random.standard_normal((50, 2))
-    found = gram(Innovations(white, determinants), parts=8)
+    found = gram([(0, Innovations(white, determinants))], 50, parts=8)
     for i in range(2):
         rows = white[:, i].reshape(-1, 4)
         np.testing.assert_allclose(found.products[i], rows.T @ rows)
@@ -104,3 +104,5 @@ def test_products_are_those_of_all_channels_and_rows_and_add_up_by_parts():
     np.testing.assert_allclose(found.blocks.sum(0), found.products)
     first = white[:6, 0].reshape(-1, 4)
     np.testing.assert_allclose(found.blocks[0, 0], first.T @ first)
+    stretches = [(a, Innovations(white[a : a + 17], determinants[a : a + 17])) for a in (0, 17, 34)]
+    np.testing.assert_allclose(gram(stretches, 50, parts=8).blocks, found.blocks)

@@ -15,8 +15,9 @@ def by_all_outputs_at_once(z, R, Q, P):
     A, H = np.broadcast_to(GROWING, (ROWS - 1, 1, 2, 2)).copy(), np.broadcast_to(MEASURED, (ROWS, 1, 1, 2)).copy()
     still, nothing = np.zeros((1, 2, 2)), np.zeros((ROWS - 1, 1, 2, 1))
     variance = np.full((ROWS, 1, 1), R)
-    gain, root, logdet, _ = kalman.weights(A, still, H, variance, Q[None], P[None], KNOWN, LOST, False)
-    white, _ = kalman.whitened(A, still, nothing, H, z[:, None, :, None], gain, root)
+    gain, root, logdet, _ = kalman.weights(A, still, H, variance, Q[None], P[None].copy(), KNOWN, LOST, False)
+    state = np.zeros((1, 2, 1))
+    white, _ = kalman.whitened(A, still, nothing, H, z[:, None, :, None], gain, root, state)
     return -0.5 * ((white**2).sum() + logdet.sum())
 
 

@@ -13,11 +13,12 @@ from shipcosim.diagnose.inference.innovations import (
     Noise,
     _lost,
     _process,
+    _steady,
     _uncertain,
-    _waves_ahead,
     innovations,
     log_likelihoods,
     oscillation,
+    smoothed,
 )
 from shipcosim.diagnose.inference.linearisation import STATES, Linear, Regressor, advanced, linearise, rows_first
 from shipcosim.diagnose.ship.dynamics import motion_rates
@@ -220,7 +221,7 @@ def tiny(n=5):
     record = type(record)(np.arange(float(n)), np.zeros((n, 6)), {}, None, known)
     whole = random.uniform(size=(n, 6)) > 0.2
     A = np.eye(STATES) + 0.2 * random.standard_normal((n - 1, STATES, STATES))
-    A -= A * (_waves_ahead(Noise(0.0, 0.0, 0.0), 1.0) != 0.0)  # those are a matter of the noise
+    A -= A * (_steady(Noise(0.0, 0.0, 0.0), 1.0) != 0.0)  # those are the same at all rows
     H = random.standard_normal((n, 6, STATES))
     B, Z = random.standard_normal((n - 1, STATES, 3)), random.standard_normal((n, 6, 3)) * whole[..., None]
     levels = random.uniform(0.3, 1.0, 6), random.uniform(0.1, 0.5, 3), random.uniform(0.01, 0.1, 3)
@@ -232,7 +233,7 @@ def tiny(n=5):
 def dense():
     """The same without a filter: the covariance of all measurements, their deviations, and that of states with them."""
     (A, B, H, Z, whole), noise, record = tiny()
-    n, A = len(Z), A + _waves_ahead(noise, record.step)
+    n, A = len(Z), A + _steady(noise, record.step)
     covariance = {(0, 0): _uncertain(noise)}
     mean = [np.zeros((STATES, Z.shape[-1]))]
     for k in range(n - 1):
@@ -276,10 +277,10 @@ def test_smoothed_motion_is_the_mean_given_all_measurements():
     linear, noise, record = tiny()
     n = record.time.size
     motion = Motion(*np.arange(6.0 * n).reshape(6, n))
-    found, (S, deviations, cross, means) = innovations(linear, noise, record, motion), dense()
+    (smooth, slow), (S, deviations, cross, means) = smoothed(linear, noise, record, motion), dense()
     expected = (means + cross @ np.linalg.solve(S, deviations))[:, 0].reshape(n, STATES)
-    np.testing.assert_allclose(np.stack(found.motion, axis=-1) - np.stack(motion, axis=-1), expected[:, :6], atol=1e-7)
-    np.testing.assert_allclose(found.slow, expected[:, 6:], atol=1e-7)
+    np.testing.assert_allclose(np.stack(smooth, axis=-1) - np.stack(motion, axis=-1), expected[:, :6], atol=1e-7)
+    np.testing.assert_allclose(slow, expected[:, 6:], atol=1e-7)
 
 
 def test_filtered_motion_is_the_mean_given_the_measurements_until_then():

@@ -9,7 +9,8 @@ from scipy.stats import chi2
 
 from shipcosim.diagnose.inference.innovations import Noise, innovations
 from shipcosim.diagnose.inference.linearisation import Regressor, linearise
-from shipcosim.diagnose.inference.noise import explained, first_noise, tuned
+from shipcosim.diagnose.inference.noise import first_noise, tuned
+from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 
 TRUTH = Noise(2.0 * twin.WHITE, np.array([0.02, 0.02, 2e-3]), np.array([1e-3, 1e-3, 5e-5]), 4.0 * twin.WHITE[3:], 1.2)
@@ -73,6 +74,6 @@ def test_what_is_explained_is_taken_out():
     motion = first_motion(record, twin.model())
     linear = linearise(motion, record, twin.model(), [Regressor({"vessel.mass_scale": 0.1})])
     doubled = linear._replace(driven=linear.driven[..., [1, 1]] * [2.0, 1.0], seen=linear.seen[..., [1, 1]])
-    left = explained(doubled, np.array([2.0]))
+    left = explained(doubled, np.array([2.0])).whole()
     assert left.driven.shape[-1] == left.seen.shape[-1] == 1
     assert np.abs(left.driven).max() == 0.0

@@ -49,10 +49,10 @@ def test_a_scale_of_the_yaw_rate_is_found_in_its_channel():
 
 def test_the_search_over_periods_is_paid_for(monkeypatch):
     """The same sinusoid sought four times scores ln 4 less than once."""
-    once = unmodelled._bases(problem("healthy"), fits("healthy")[0])["periodic"][:1]
-    scores = []
+    bases, scores = unmodelled._bases, []
     for times in (1, 4):
-        monkeypatch.setattr(unmodelled, "_bases", lambda *_, times=times: {"periodic": times * once})
+        few = lambda *of, times=times: {"periodic": times * bases(*of)["periodic"][:1]}  # noqa: E731
+        monkeypatch.setattr(unmodelled, "_bases", few)
         scores.append(unmodelled_gains(problem("healthy"), fits("healthy")[0])["periodic"])
     assert scores[0] - scores[1] == pytest.approx(np.log(4.0))
 

@@ -11,6 +11,7 @@ from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogu
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
+from shipcosim.diagnose.inference.parts import in_parts
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
@@ -178,8 +179,9 @@ def test_held_out_rows_have_no_say_in_the_parameters(diagnosed):
     train = first_rows(case.record)
     lied = case.record.measured.copy()
     lied[~train] += 1000.0
-    base = case.base._replace(seen=np.where(train[:, None, None], case.base.seen, 1000.0))
-    other = replace(case, record=replace(case.record, measured=lied), base=base)
+    base = case.base.whole()
+    base = base._replace(seen=np.where(train[:, None, None], base.seen, 1000.0))
+    other = replace(case, record=replace(case.record, measured=lied), base=in_parts(base))
     honest, untouched = (fitted(trained(one, train), fit.hypotheses, fit.values, rounds=1) for one in (case, other))
     assert honest.score == untouched.score and np.array_equal(honest.theta, untouched.theta)
     assert honest.std != fit.std

@@ -23,7 +23,8 @@ from shipcosim.diagnose.experiment.manoeuvres import (
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import beside, linearise, rows_first
+from shipcosim.diagnose.inference.linearisation import linearise, rows_first
+from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.result import ExperimentDesign
 from shipcosim.diagnose.ship.dynamics import with_steady_current
@@ -193,8 +194,7 @@ def _beside(fit, model, motion, record, right, tolerated, known):
     mine.seen[..., 0] -= right.seen[..., 0]
     both = beside(mine, tolerated)  # missed, own, all known
     order = {key: i for i, key in enumerate([*map(_key, own), *shared], start=1)}
-    wanted = [0, *(order[_key(column)] for column in fit.columns)]
-    return both._replace(driven=both.driven[..., wanted], seen=both.seen[..., wanted])
+    return both.chosen([order[_key(column)] for column in fit.columns])
 
 
 def _missed(white, covariance):

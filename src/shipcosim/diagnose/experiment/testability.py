@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
-from shipcosim.diagnose.inference.evidence import evidence, gram
+from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor
-from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.thresholds import TESTABLE
@@ -27,7 +27,7 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
         for group in screening_regressors(hypothesis):
             groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
             columns.extend(group)
-    products = gram(innovations(problem.base_of(columns), problem.noise, problem.record)).products
+    products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
     weak = not_testable(products, columns, groups)
     clock = () if is_testable(problem) else ("clock",)
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.diagnose.inference.evidence import evidence, gram
+from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
-from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import beside
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.inference.search import at_first_sight, explain, without_causes
@@ -69,11 +69,11 @@ def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> floa
     groups = [group for hypothesis in hypotheses for group in screening_regressors(hypothesis)]
     linear = beside(nothing.linear, problem.base_of([column for group in groups for column in group]))
     parts = max(int(problem.record.time.size * problem.record.step / CHANGE_POINT_BLOCK), 8)
-    blocks = gram(innovations(linear, problem.noise, problem.record), parts).blocks
+    blocks = inner_products(linear, problem.noise, problem.record, parts).blocks
     known, place, gains = len(nothing.columns), len(nothing.columns), []
     priors = []
     for group in groups:
-        prior = np.zeros(linear.driven.shape[-1] - 1)
+        prior = np.zeros(linear.columns)
         prior[:known] = prior[place : place + len(group)] = 1.0
         place += len(group)
         priors.append(prior)

@@ -7,6 +7,7 @@ cause.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -40,12 +41,15 @@ class Gram:
         return -0.5 * (self.products[..., 0, 0] + self.log_determinant)
 
 
-def gram(found: Innovations, parts: int = 8) -> Gram:
+def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) -> Gram:
     """Inner products of innovations.
 
     Parameters
     ----------
-    found : Innovations
+    found : iterable of tuple of int and Innovations
+        First row and innovations of consecutive stretches of a log.
+    rows : int
+        Of the log.
     parts : int
         Number of blocks.
 
@@ -53,14 +57,18 @@ def gram(found: Innovations, parts: int = 8) -> Gram:
     -------
     Gram
     """
-    edges = np.linspace(0, len(found.white), parts + 1).astype(int)
-    blocks = []
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
-        white = np.moveaxis(found.white[a:b], 0, -3)
-        rows = white.reshape(*white.shape[:-3], -1, white.shape[-1])
-        blocks.append(np.swapaxes(rows, -1, -2) @ rows)
-    blocks = np.stack(blocks)
-    return Gram(blocks.sum(0), blocks, found.log_determinant.sum(0))
+    edges = np.linspace(0, rows, parts + 1).astype(int)
+    blocks, log_determinant = [0.0] * parts, 0.0
+    for first, stretch in found:
+        log_determinant = log_determinant + stretch.log_determinant.sum(0)
+        places = np.clip(edges - first, 0, len(stretch.white))
+        for i, (a, b) in enumerate(zip(places[:-1], places[1:], strict=True)):
+            if b > a:
+                white = np.moveaxis(stretch.white[a:b], 0, -3)
+                flat = white.reshape(*white.shape[:-3], -1, white.shape[-1])
+                blocks[i] = blocks[i] + np.swapaxes(flat, -1, -2) @ flat
+    stacked = np.stack(np.broadcast_arrays(*blocks))
+    return Gram(stacked.sum(0), stacked, np.asarray(log_determinant))
 
 
 def evidence(

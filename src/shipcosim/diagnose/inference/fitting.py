@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.innovations import innovations, smoothed
-from shipcosim.diagnose.inference.linearisation import Regressor, linearise
-from shipcosim.diagnose.inference.noise import explained
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.innovations import inner_products, smoothed
+from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
 from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.ship.instruments import NONLINEAR
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
     from shipcosim.diagnose.inference.evidence import Gram
     from shipcosim.diagnose.inference.innovations import Noise
-    from shipcosim.diagnose.inference.linearisation import Linear
+    from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
@@ -40,7 +40,7 @@ class IdentificationProblem:
     hypotheses : tuple of Hypothesis
     noise : Noise
     motion : Motion
-    base : Linear, optional
+    base : InParts, optional
         About the ship without a cause, with the columns of `basis`.
     known_of : tuple of Hypothesis, optional
         Hypotheses whose numbers are known within a tolerance, where those are more than `hypotheses`.
@@ -51,7 +51,7 @@ class IdentificationProblem:
     hypotheses: tuple[Hypothesis, ...]
     noise: Noise
     motion: Motion
-    base: Linear | None = None
+    base: InParts | None = None
     known_of: tuple[Hypothesis, ...] = ()
 
     @property
@@ -62,18 +62,16 @@ class IdentificationProblem:
         ]
 
     @property
-    def linear(self) -> Linear:
+    def linear(self) -> InParts:
         """The linear problem about the ship without a cause; only `prepared` problems have it."""
         if self.base is None:
             raise ValueError("the problem is not prepared")
         return self.base
 
-    def base_of(self, columns: Iterable[Regressor]) -> Linear:
+    def base_of(self, columns: Iterable[Regressor]) -> InParts:
         """The problem about the ship without a cause, with these columns of the basis."""
         places = {_key(column): i for i, column in enumerate(self.basis, start=1)}
-        wanted = [0, *(places[_key(column)] for column in columns)]
-        linear = self.linear
-        return linear._replace(driven=linear.driven[..., wanted], seen=linear.seen[..., wanted])
+        return self.linear.chosen([places[_key(column)] for column in columns])
 
     def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
@@ -105,14 +103,16 @@ class Fit:
         Log-evidence of the log with these causes, up to a constant of the log.
     columns : list of Regressor
         Of known numbers, then of the causes.
-    linear : Linear
     products : Gram
     theta, covariance : array
         Posterior of the columns, causes about neutral.
     centre : array
         θ that they were linearised about.
     model : ShipModel
+    about : Motion
+        That they were linearised about.
     motion : Motion
+    record : Record
     """
 
     hypotheses: tuple[Hypothesis, ...]
@@ -120,13 +120,19 @@ class Fit:
     std: dict[str, float]
     score: float
     columns: list[Regressor]
-    linear: Linear
     products: Gram
     theta: np.ndarray
     covariance: np.ndarray
     centre: np.ndarray
     model: ShipModel
+    about: Motion
     motion: Motion
+    record: Record
+
+    @property
+    def linear(self) -> InParts:
+        """The linear problem that was fitted; it is made anew, as all of many fits would fill the memory."""
+        return linearised_by_parts(self.about, self.record, self.model, self.columns, kept=False)
 
     @property
     def label(self) -> str:
@@ -142,19 +148,21 @@ def prepared(problem: IdentificationProblem, rounds: int = 3) -> IdentificationP
     """The problem with its base: every column of the basis, about the motion smoothed without a cause."""
     motion = problem.motion
     for _ in range(rounds):
-        alone = linearise(motion, problem.record, problem.model, [])
-        motion = _smoothed(alone, innovations(alone, problem.noise, problem.record).white[..., 0], problem, motion)
-    base = linearise(motion, problem.record, problem.model, problem.basis)
+        alone = linearised_by_parts(motion, problem.record, problem.model, [])
+        products = inner_products(alone, problem.noise, problem.record).products
+        motion = _smoothed(alone, products[..., 0, 0], problem, motion)
+    base = linearised_by_parts(motion, problem.record, problem.model, problem.basis)
     return replace(problem, motion=motion, base=base)
 
 
-def _smoothed(linear: Linear, white: np.ndarray, problem: IdentificationProblem, motion: Motion) -> Motion:
+def _smoothed(linear: InParts, squares: np.ndarray, problem: IdentificationProblem, motion: Motion) -> Motion:
     """The motion to linearise about next: that of the ship as the problem has her, as far as she can follow the log.
 
-    Where she cannot, the measurements rule: jolts are as much larger as the innovations' mean square is. Otherwise a
-    boat whose propeller has lost a third of its thrust is smoothed far off her track, and nothing is found about that.
+    `squares` is the sum of the innovations' squares. Where she cannot, the measurements rule: jolts are as much larger
+    as the innovations' mean square is. Otherwise a boat whose propeller has lost a third of its thrust is smoothed far
+    off her track, and nothing is found about that.
     """
-    misfit = (white**2).sum((0, -1)) / linear.whole.sum((0, -1))
+    misfit = squares / np.isfinite(problem.record.measured).sum((-2, -1))
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
     noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
     return smoothed(linear, noise, problem.record, motion)[0]
@@ -230,10 +238,9 @@ class Linearised:
     Attributes
     ----------
     columns : list of Regressor
-    linear : Linear
-    white : (n, 6, 1 + p) array
-        Whitened innovations.
+    linear : InParts
     products : Gram
+        Of its innovations.
     centre : (p,) array
         θ of the columns that they were linearised about.
     model : ShipModel
@@ -241,8 +248,7 @@ class Linearised:
     """
 
     columns: list[Regressor]
-    linear: Linear
-    white: np.ndarray
+    linear: InParts
     products: Gram
     centre: np.ndarray
     model: ShipModel
@@ -259,9 +265,11 @@ class Linearised:
     ) -> Fit:
         """The fit with a posterior of the columns; its motion is smoothed with that."""
         left = theta - self.centre
-        white = self.white[..., 0] - self.white[..., 1:] @ left
-        motion = _smoothed(explained(self.linear, left), white, problem, self.motion)
-        rest = (self.columns, self.linear, self.products, theta, covariance, self.centre, self.model, motion)
+        shares = np.concatenate([[1.0], -left])
+        squares = shares @ self.products.products @ shares
+        motion = _smoothed(explained(self.linear, left), squares, problem, self.motion)
+        about = self.centre, self.model, self.motion
+        rest = (self.columns, self.products, theta, covariance, *about, motion, problem.record)
         return Fit(tuple(hypotheses), dict(values), deviations(hypotheses, covariance), score, *rest)
 
 
@@ -270,10 +278,9 @@ def linearised(
 ) -> Linearised:
     """A problem about some values of the ship's numbers and a motion, with these columns."""
     model = problem.model.with_values(values)
-    linear = linearise(motion, problem.record, model, columns)
-    filtered = innovations(linear, problem.noise, problem.record)
-    centre = _centre(columns, model, problem.model)
-    return Linearised(columns, linear, filtered.white, gram(filtered), centre, model, motion)
+    linear = linearised_by_parts(motion, problem.record, model, columns)
+    products, centre = inner_products(linear, problem.noise, problem.record), _centre(columns, model, problem.model)
+    return Linearised(columns, linear, products, centre, model, motion)
 
 
 def deviations(hypotheses: Sequence[Hypothesis], covariance: np.ndarray) -> dict[str, float]:

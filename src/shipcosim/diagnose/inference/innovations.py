@@ -8,15 +8,28 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.inference import kalman
+from shipcosim.diagnose.inference.evidence import gram
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
+from shipcosim.diagnose.inference.parts import in_parts
 from shipcosim.models.control.wave_filter import wave_transition
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.evidence import Gram
     from shipcosim.diagnose.inference.linearisation import Linear
+    from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = ["WAVE_DAMPING", "Innovations", "Noise", "innovations", "log_likelihoods", "oscillation", "smoothed"]
+__all__ = [
+    "WAVE_DAMPING",
+    "Innovations",
+    "Noise",
+    "inner_products",
+    "innovations",
+    "log_likelihoods",
+    "oscillation",
+    "smoothed",
+]
 
 WAVE_DAMPING = 0.1
 """Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""
@@ -58,61 +71,63 @@ class Innovations(NamedTuple):
         Of their covariance, per row.
     filtered : (n, ..., 18) array
         Deviations of the first column at each row by what was known until then.
-    motion : Motion or None
-        The smoothed motion, (..., n) arrays.
-    slow : (..., n, 12) array or None
-        Smoothed unexplained acceleration, slow errors and waves.
     """
 
     white: np.ndarray
     log_determinant: np.ndarray
     filtered: np.ndarray = np.empty(0)
-    motion: Motion | None = None
-    slow: np.ndarray | None = None
 
 
-def innovations(linear: Linear, noise: Noise, record: Record, motion: Motion | None = None) -> Innovations:
-    """Filter every column, and smooth the first if `motion` is given.
+def innovations(linear: Linear | InParts, noise: Noise, record: Record) -> Innovations:
+    """Filter every column.
 
     Parameters
     ----------
-    linear : Linear
+    linear : Linear or InParts
     noise : Noise
     record : Record
-    motion : Motion, optional
-        That the problem was linearised about.
 
     Returns
     -------
     Innovations
     """
-    lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
-    A, B, H, Z = (_by_log(values, lead, 2) for values in linear[:4])
-    of_noise = _waves_ahead(noise, record.step), _process(noise, record.step), _uncertain(noise)
-    W, Q, P = (_of_logs(values, lead) for values in of_noise)
-    white = np.asarray(noise.white).reshape(1, -1, 6)
-    R = np.where(_by_log(linear.whole, lead, 1), white**2, np.inf)
-    R = np.require(np.broadcast_to(R, (len(R), len(W), 6)), requirements=["C", "W"])
-    known, wanted = np.asarray(record.known), motion is not None
-    gain, root, log_determinant, covariances = kalman.weights(A, W, H, R, Q, P, known, _lost(), wanted)
-    white, states = kalman.whitened(A, W, B, H, Z, gain, root)
-    white_of_logs, log_determinant, filtered = (
-        values.reshape(-1, *lead, *values.shape[2:]) for values in (white, log_determinant, states)
-    )
-    if motion is None:
-        return Innovations(white_of_logs, log_determinant, filtered)
-    found = kalman.smoothed(A, W, H, white[..., 0].copy(), gain, root, states, covariances)
-    found = np.moveaxis(found.reshape(-1, *lead, STATES), 0, -2)
-    smooth = Motion(*(value + found[..., i] for i, value in enumerate(motion)))
-    return Innovations(white_of_logs, log_determinant, filtered, smooth, found[..., 6:])
+    parts = [found for _, found in _by_parts(linear, noise, record)]
+    return Innovations(*(np.concatenate(fields) for fields in zip(*parts, strict=True)))
 
 
-def smoothed(linear: Linear, noise: Noise, record: Record, motion: Motion) -> tuple[Motion, np.ndarray]:
-    """Motion by all rows of a log, and the unexplained acceleration, slow errors and waves, as in `Innovations`.
+def inner_products(linear: Linear | InParts, noise: Noise, record: Record, parts: int = 8) -> Gram:
+    """Inner products of the innovations of every column, which are never all in memory.
 
     Parameters
     ----------
-    linear : Linear
+    linear : Linear or InParts
+    noise : Noise
+    record : Record
+    parts : int
+        Number of blocks.
+
+    Returns
+    -------
+    Gram
+    """
+    return gram(_by_parts(linear, noise, record), record.time.size, parts)
+
+
+def _by_parts(linear, noise, record):
+    """First row and innovations of each part of a log, in order."""
+    passing = _Filter(in_parts(linear), noise, record)
+    for rows in passing.linear.slices():
+        found = passing.over(rows)
+        yield rows.start, Innovations(*map(passing.by_log, (found.white, found.log_determinant, found.states)))
+
+
+def smoothed(linear: Linear | InParts, noise: Noise, record: Record, motion: Motion) -> tuple[Motion, np.ndarray]:
+    """Motion by all rows of a log, and what else is smoothed.
+
+    Parameters
+    ----------
+    linear : Linear or InParts
+        Of which the first column counts.
     noise : Noise
     record : Record
     motion : Motion
@@ -121,11 +136,82 @@ def smoothed(linear: Linear, noise: Noise, record: Record, motion: Motion) -> tu
     Returns
     -------
     tuple of Motion, (..., n, 12) array
+        (..., n) arrays; unexplained acceleration, slow errors and waves.
     """
-    found = innovations(linear, noise, record, motion)
-    if found.motion is None or found.slow is None:
-        raise ValueError("the filter has smoothed no motion")
-    return found.motion, found.slow
+    passing, begun = _Filter(in_parts(linear).chosen([]), noise, record), []
+    slices = list(passing.linear.slices())
+    for rows in slices:
+        begun.append(passing.state)
+        if rows is not slices[-1]:
+            passing.over(rows)
+    found, pull = [], None
+    for rows, state in zip(reversed(slices), reversed(begun), strict=True):
+        passing.state = state
+        one = passing.over(rows, keep=True)
+        pull = np.zeros(one.states.shape[1:]) if pull is None else pull
+        of_filter = one.gain, one.root, one.states, one.covariances
+        found.append(kalman.smoothed(one.A, passing.steady, one.H, one.white[..., 0].copy(), *of_filter, pull))
+    states = np.moveaxis(passing.by_log(np.concatenate(found[::-1])), 0, -2)
+    return Motion(*(value + states[..., i] for i, value in enumerate(motion))), states[..., 6:]
+
+
+class _Passed(NamedTuple):
+    """What the filter finds over some rows, of (k, m, ...) arrays for m logs; A and H as it takes them."""
+
+    A: np.ndarray
+    H: np.ndarray
+    gain: np.ndarray
+    root: np.ndarray
+    log_determinant: np.ndarray
+    covariances: np.ndarray
+    white: np.ndarray
+    states: np.ndarray
+
+
+class _Filter:
+    """The filter of a problem, over one part of its rows after the other.
+
+    Attributes
+    ----------
+    linear : InParts
+    state : tuple of (m, 18, 18) array and (m, 18, c) array, or None
+        Covariance and state of each column at the row after the last part; None before the first.
+    steady : (m, 18, 18) array
+        What of the transition does not change from row to row.
+    """
+
+    def __init__(self, linear: InParts, noise: Noise, record: Record):
+        self.linear, self.noise, self.record = linear, noise, record
+        self.state = None
+
+    def over(self, rows: slice, keep: bool = False) -> _Passed:
+        """Go over a part of the rows, the covariances kept or not."""
+        linear, noise, record = self.linear.part(rows), self.noise, self.record
+        if self.state is None:
+            self._begin(linear)
+        A, B, H, Z = (_by_log(values, self.lead, 2) for values in linear[:4])
+        C, x = (value.copy() for value in self.state)
+        white = np.asarray(noise.white).reshape(1, -1, 6)
+        R = np.where(_by_log(linear.whole, self.lead, 1), white**2, np.inf)
+        R = np.require(np.broadcast_to(R, (len(R), len(C), 6)), requirements=["C", "W"])
+        known = np.asarray(record.known)[rows]
+        weights = kalman.weights(A, self.steady, H, R, self.process, C, known, _lost(), keep)
+        gain, root, log_determinant, covariances = weights
+        found = kalman.whitened(A, self.steady, B, H, Z, gain, root, x)
+        self.state = C, x
+        return _Passed(A, H, gain, root, log_determinant, covariances, *found)
+
+    def _begin(self, linear):
+        """Shape of the logs, and the state before the first row."""
+        noise, step = self.noise, self.record.step
+        self.lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
+        of_noise = _steady(noise, step), _process(noise, step), _uncertain(noise)
+        self.steady, self.process, uncertain = (_of_logs(values, self.lead) for values in of_noise)
+        self.state = uncertain, np.zeros((len(uncertain), STATES, linear.seen.shape[-1]))
+
+    def by_log(self, values: np.ndarray) -> np.ndarray:
+        """(k, m, ...) array with the axes of the logs."""
+        return values.reshape(len(values), *self.lead, *values.shape[2:])
 
 
 def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray:
@@ -142,7 +228,7 @@ def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray
     -------
     (m,) array
     """
-    of_noise = _waves_ahead(noises, record.step), _process(noises, record.step), _uncertain(noises)
+    of_noise = _steady(noises, record.step), _process(noises, record.step), _uncertain(noises)
     W, Q, P = (np.ascontiguousarray(np.moveaxis(values, 0, -1)) for values in of_noise)
     R = np.ascontiguousarray(noises.white.T) ** 2
     b, z = (np.ascontiguousarray(values[..., 0]) for values in (linear.driven, linear.seen))
@@ -158,7 +244,8 @@ def _by_log(values: np.ndarray, lead: tuple[int, ...], tail: int) -> np.ndarray:
         values = values.reshape(len(values), *(1,) * (len(lead) - len(own)), *own, *shape)
         values = np.broadcast_to(values, (len(values), *lead, *shape))
     # one kind of array only: for each other kind the filter would be compiled anew
-    return np.require(values, requirements=["C", "W"]).reshape(len(values), -1, *shape)
+    logs = int(np.prod(values.shape[1 : values.ndim - tail]))
+    return np.require(values, requirements=["C", "W"]).reshape(len(values), logs, *shape)
 
 
 def _of_logs(values: np.ndarray, lead: tuple[int, ...]) -> np.ndarray:
@@ -182,10 +269,11 @@ def oscillation(noise: Noise, h: float) -> tuple[tuple[Any, Any, Any, Any], tupl
     return (a, b, c, d), added
 
 
-def _waves_ahead(noise: Noise, h: float) -> np.ndarray:
-    """What the waves have of a transition, (..., 18, 18)."""
+def _steady(noise: Noise, h: float) -> np.ndarray:
+    """What of a transition is the same at all rows: slow errors fade, waves swing; (..., 18, 18)."""
     a, b, c, d = oscillation(noise, h)[0]
     W = np.zeros((*a.shape[:-1], STATES, STATES))
+    W[..., range(9, 12), range(9, 12)] = np.exp(-h / SLOW_TIME)
     W[..., range(12, 15), range(12, 15)], W[..., range(12, 15), range(15, 18)] = a, b
     W[..., range(15, 18), range(12, 15)], W[..., range(15, 18), range(15, 18)] = c, d
     return W

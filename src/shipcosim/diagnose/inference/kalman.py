@@ -10,7 +10,7 @@ from numba import njit
 
 __all__ = ["log_likelihoods", "smoothed", "weights", "whitened"]
 
-_compiled = njit(cache=True, error_model="numpy")
+_compiled = njit(cache=True, nogil=True, error_model="numpy")
 
 
 @_compiled
@@ -20,25 +20,27 @@ def weights(
     H: np.ndarray,
     R: np.ndarray,
     Q: np.ndarray,
-    P: np.ndarray,
+    C: np.ndarray,
     known: np.ndarray,
     lost: np.ndarray,
     keep: bool,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Gains of the filter.
+    """Gains of the filter over some rows.
 
     Parameters
     ----------
-    A : (n-1, m or 1, s, s) array
-        Transition of m logs.
+    A : (k, m or 1, a, a) array
+        Transition of the first a states of m logs, to the row after each of the first k; k is n, or n - 1 at the end.
     W : (m, s, s) array
         What of it does not change from row to row, added to A.
     H : (n, m or 1, o, s) array
     R : (n, m, o) array
         Variance of the outputs; infinite where there is none.
-    Q, P : (m, s, s) array
-        Covariance that a step adds, and that of the first state.
-    known : (n,) bool array
+    Q : (m, s, s) array
+        Covariance that a step adds.
+    C : (m, s, s) array
+        Covariance of the first state before its measurement. Changed: into that of the row after the last one.
+    known : (k,) bool array
         Whether what drives the ship over the step that follows is known; where not, `lost` is added too.
     lost : (s, s) array
     keep : bool
@@ -47,60 +49,66 @@ def weights(
     Returns
     -------
     tuple of arrays
-        What a white innovation adds to the state (n, m, s, o), what turns an innovation into a white one (n, m, o, o),
+        What a white innovation adds to the state (n, m, o, s), what turns an innovation into a white one (n, m, o, o),
         logarithms of the determinants of their covariance (n, m), covariances of the state after each row's measurement
         (n, m, s, s), empty unless wanted.
     """
     n, m, o = R.shape
-    s = A.shape[-1]
-    gain, root, logdet = np.empty((n, m, s, o)), np.zeros((n, m, o, o)), np.empty((n, m))
+    s = W.shape[-1]
+    gain, root, logdet = np.zeros((n, m, o, s)), np.zeros((n, m, o, o)), np.empty((n, m))
     covariances = np.empty((n if keep else 0, m, s, s))
-    HC, S, Gt, F, T = np.empty((o, s)), np.empty((o, o)), np.empty((o, s)), np.empty((s, s)), np.empty((s, s))
+    HC, S, T, Tt = np.empty((o, s)), np.empty((o, o)), np.empty((s, s)), np.empty((s, s))
     for log in range(m):
-        C = P[log].copy()
+        V = C[log]
         for k in range(n):
             h = H[k, log % H.shape[1]]
             HC[:] = 0.0
-            _add(HC, h, C, 1.0)
-            S[:] = 0.0
-            _add(S, h, HC.T, 1.0)
+            _add(HC, h, V, 1.0)
+            _seen_covariance(S, h, HC)
             logdet[k, log] = _inverse_root(S, R[k, log], root[k, log])
-            Gt[:] = 0.0
-            _add(Gt, root[k, log], HC, 1.0)
-            gain[k, log] = Gt.T
-            _add(C, gain[k, log], Gt, -1.0)
+            _add(gain[k, log], root[k, log], HC, 1.0)
+            _take_out(V, gain[k, log])
             if keep:
-                covariances[k, log] = C
-            if k < n - 1:
-                F[:] = A[k, log % A.shape[1]]
-                F += W[log]
+                covariances[k, log] = V
+            if k < len(A):
                 T[:] = 0.0
-                _add(T, F, C, 1.0)
-                _transpose(T, C)
+                _add(T, A[k, log % A.shape[1]], V, 1.0)
+                _add(T, W[log], V, 1.0)
+                _transpose(T, Tt)
                 T[:] = Q[log]
                 if not known[k]:
                     T += lost
-                _add(T, F, C, 1.0)
-                _symmetric(T, C)
+                _add(T, A[k, log % A.shape[1]], Tt, 1.0)
+                _add(T, W[log], Tt, 1.0)
+                _symmetric(T, V)
     return gain, root, logdet, covariances
 
 
 @_compiled
 def whitened(
-    A: np.ndarray, W: np.ndarray, B: np.ndarray, H: np.ndarray, Z: np.ndarray, gain: np.ndarray, root: np.ndarray
+    A: np.ndarray,
+    W: np.ndarray,
+    B: np.ndarray,
+    H: np.ndarray,
+    Z: np.ndarray,
+    gain: np.ndarray,
+    root: np.ndarray,
+    x: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Whitened innovations of every column, and the state of the first.
+    """Whitened innovations of every column over some rows, and the state of the first.
 
     Parameters
     ----------
     A, W, H
         As for `weights`.
-    B : (n-1, m or 1, b, c) array
+    B : (k, m or 1, b, c) array
         What moves the first b states besides, of c columns.
     Z : (n, m or 1, o, c) array
         Outputs.
     gain, root
         As `weights` gives them.
+    x : (m, s, c) array
+        State at the first row before its measurement. Changed: into that of the row after the last one.
 
     Returns
     -------
@@ -108,24 +116,23 @@ def whitened(
         White innovations; state of the first column after each row's measurement.
     """
     n, _, o, c = Z.shape
-    m, s = gain.shape[1], A.shape[-1]
+    m, s = gain.shape[1], W.shape[-1]
     white, states = np.zeros((n, m, o, c)), np.empty((n, m, s))
-    missed, ahead, F = np.empty((o, c)), np.empty((s, c)), np.empty((s, s))
+    missed, ahead = np.empty((o, c)), np.empty((s, c))
     for log in range(m):
-        x = np.zeros((s, c))
+        y = x[log]
         for k in range(n):
             missed[:] = Z[k, log % Z.shape[1]]
-            _add(missed, H[k, log % H.shape[1]], x, -1.0)
+            _add(missed, H[k, log % H.shape[1]], y, -1.0)
             _add(white[k, log], root[k, log], missed, 1.0)
-            _add(x, gain[k, log], white[k, log], 1.0)
-            states[k, log] = x[:, 0]
-            if k < n - 1:
-                F[:] = A[k, log % A.shape[1]]
-                F += W[log]
+            _add_transposed(y, gain[k, log], white[k, log])
+            states[k, log] = y[:, 0]
+            if k < len(A):
                 ahead[:] = 0.0
                 ahead[: B.shape[2]] = B[k, log % B.shape[1]]
-                _add(ahead, F, x, 1.0)
-                x, ahead = ahead, x
+                _add(ahead, A[k, log % A.shape[1]], y, 1.0)
+                _add(ahead, W[log], y, 1.0)
+                y[:] = ahead
     return white, states
 
 
@@ -139,8 +146,11 @@ def smoothed(
     root: np.ndarray,
     states: np.ndarray,
     covariances: np.ndarray,
+    pull: np.ndarray,
 ) -> np.ndarray:
-    """Smoothed state of one column, by the adjoint form of Bryson and Frazier (1963): no matrix is inverted.
+    """Smoothed state of one column over some rows, by the adjoint form of Bryson and Frazier (1963).
+
+    No matrix is inverted.
 
     Parameters
     ----------
@@ -149,21 +159,33 @@ def smoothed(
     white : (n, m, o) array
     gain, root, states, covariances
         As `weights` and `whitened` give them.
+    pull : (m, s) array
+        Of what is measured after these rows on the state of the row after the last; 0 at the end of a log. Changed:
+        into that on the state of the first row.
 
     Returns
     -------
     (n, m, s) array
     """
     n, m, s = states.shape
-    found = np.empty((n, m, s))
+    found, o, moved = np.empty((n, m, s)), white.shape[2], np.empty(s)
     for log in range(m):
-        pull = np.zeros(s)  # of what is measured later, on the state
+        p = pull[log]
         for k in range(n - 1, -1, -1):
-            found[k, log] = states[k, log] + covariances[k, log] @ pull
-            left = white[k, log] - gain[k, log].T @ pull
-            pull = pull + H[k, log % H.shape[1]].T @ (root[k, log].T @ left)
-            if k > 0:
-                pull = (A[k - 1, log % A.shape[1]] + W[log]).T @ pull
+            if k < len(A):
+                moved[:] = 0.0
+                _add_product(moved, A[k, log % A.shape[1]], p)
+                _add_product(moved, W[log], p)
+                p[:] = moved
+            found[k, log] = states[k, log] + covariances[k, log] @ p
+            left = white[k, log] - gain[k, log] @ p
+            h, r = H[k, log % H.shape[1]], root[k, log]
+            for i in range(o):
+                share = 0.0
+                for j in range(i, o):
+                    share += r[j, i] * left[j]
+                for j in range(s):
+                    p[j] += h[i, j] * share
     return found
 
 
@@ -187,9 +209,10 @@ def log_likelihoods(
 
     Parameters
     ----------
-    A : (n-1, s, s) array
+    A : (n-1, a, a) array
+        Transition of the first a states.
     W : (s, s, m) array
-        What of the transition is a matter of the noise, added to A.
+        What of it does not change from row to row, added to A.
     b : (n-1, r) array
         What moves the first states besides.
     H : (n, o, s) array
@@ -218,16 +241,19 @@ def log_likelihoods(
             ahead[:] = 0.0
             for i in range(b.shape[1]):
                 ahead[i] += b[k, i]
-            _add_each(ahead, A[k], W, x)
+            _add(ahead, A[k], x, 1.0)
+            _add_each(ahead, W, x)
             x[:] = ahead
             T[:] = 0.0
-            _add_each(rows_ahead, A[k], W, rows)
+            _add(rows_ahead, A[k], rows, 1.0)
+            _add_each(rows_ahead, W, rows)
             _transpose(T, C)
             T[:] = Q
             if not known[k]:
                 for i in range(s):
                     T[i, i] += lost[i, i]  # and nothing beside the diagonal
-            _add_each(rows_ahead, A[k], W, rows)
+            _add(rows_ahead, A[k], rows, 1.0)
+            _add_each(rows_ahead, W, rows)
             _symmetric(T, C)  # else what rounding makes of it grows over a long log
     return found
 
@@ -263,14 +289,11 @@ def _take_in(x, C, rows, h, z, R, found):
 
 
 @_compiled
-def _add_each(out, A, W, X):
-    """Add (A + W) X to `out`, both (s, c m) arrays with the logs in each column, of which A is the same for all."""
+def _add_each(out, W, X):
+    """Add W X to `out`, with W of each log and X a (s, c m) array with the logs in each column."""
     s, m = len(X), W.shape[2]
     for i in range(s):
         for j in range(s):
-            if A[i, j] != 0.0:
-                for place in range(X.shape[1]):
-                    out[i, place] += A[i, j] * X[j, place]
             if W[i, j, 0] != 0.0:
                 for first in range(0, X.shape[1], m):
                     for log in range(m):
@@ -279,13 +302,54 @@ def _add_each(out, A, W, X):
 
 @_compiled
 def _add(out, M, X, sign):
-    """Add M X to `out`, or take it off; entries of M that are 0 cost nothing, and most are."""
+    """Add M X to the first rows of `out`, or take it off; entries of M that are 0 cost nothing, and most are."""
     for i in range(M.shape[0]):
         for j in range(M.shape[1]):
             factor = sign * M[i, j]
             if factor != 0.0:
                 for column in range(X.shape[1]):
                     out[i, column] += factor * X[j, column]
+
+
+@_compiled
+def _add_transposed(out, M, X):
+    """Add M' X to `out`."""
+    for j in range(M.shape[0]):
+        for i in range(M.shape[1]):
+            factor = M[j, i]
+            for column in range(X.shape[1]):
+                out[i, column] += factor * X[j, column]
+
+
+@_compiled
+def _add_product(out, M, v):
+    """Add M' v to the first entries of `out`."""
+    for i in range(M.shape[0]):
+        factor = v[i]
+        for j in range(M.shape[1]):
+            out[j] += factor * M[i, j]
+
+
+@_compiled
+def _seen_covariance(S, h, HC):
+    """Covariance of the outputs, into the lower half of S."""
+    for i in range(h.shape[0]):
+        for j in range(i + 1):
+            S[i, j] = 0.0
+        for k in range(h.shape[1]):
+            if h[i, k] != 0.0:
+                for j in range(i + 1):
+                    S[i, j] += h[i, k] * HC[j, k]
+
+
+@_compiled
+def _take_out(C, gain):
+    """Take from a covariance what the outputs with these gains tell."""
+    for k in range(gain.shape[0]):
+        for i in range(gain.shape[1]):
+            factor = gain[k, i]
+            for j in range(gain.shape[1]):
+                C[i, j] -= factor * gain[k, j]
 
 
 @_compiled

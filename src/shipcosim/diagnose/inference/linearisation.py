@@ -22,22 +22,23 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = [
+    "MOVED",
     "SLOW_STD",
     "SLOW_TIME",
     "STATES",
     "Linear",
     "Regressor",
     "advanced",
-    "beside",
     "linearise",
     "rows_first",
     "runge_kutta",
-    "with_columns",
 ]
 
 STATES = 18
 """x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3), what waves add
 to position and heading (3) and to velocity (3), in the ship's axes."""
+MOVED = 9
+"""The first of them: those whose transition differs from row to row."""
 _SHARE = 0.2  # of a regressor's size, for differences
 SLOW_STD = np.array([0.1, 0.1, np.radians(0.1)])
 SLOW_TIME = np.array([240.0, 240.0, 60.0])
@@ -76,8 +77,8 @@ class Linear(NamedTuple):
 
     Attributes
     ----------
-    transition : (n-1, ..., 18, 18) array
-        All but that of the waves, which is a matter of the noise.
+    transition : (n-1, ..., 9, 9) array
+        Of motion and unexplained acceleration. That of slow errors and waves is the same at all rows.
     driven : (n-1, ..., 6, 1 + p) array
         Of the motion alone. First column: by how much the model misses the next row of the motion.
     output : (n, ..., 6, 18) array
@@ -94,30 +95,20 @@ class Linear(NamedTuple):
     whole: np.ndarray
 
 
-def with_columns(linear: Linear, driven: np.ndarray, seen: np.ndarray) -> Linear:
-    """The problem with further columns behind its own, (n-1, ..., 6, p) and (n, ..., 6, p) arrays."""
-    return linear._replace(
-        driven=np.concatenate([linear.driven, driven], axis=-1), seen=np.concatenate([linear.seen, seen], axis=-1)
-    )
-
-
-def beside(linear: Linear, extra: Linear) -> Linear:
-    """A problem with the columns of another behind its own."""
-    return with_columns(linear, extra.driven[..., 1:], extra.seen[..., 1:])
-
-
 _FASTEST = {"u": 100.0, "v": 100.0, "r": 10.0}  # m/s, rad/s: what runs away under a wrong label stays a number
 
 
-def advanced(motion: Motion, record: Record, model: ShipModel) -> Motion:
+def advanced(motion: Motion, record: Record, model: ShipModel, steps: slice = slice(None)) -> Motion:
     """The motion one row later, from each row but the last, by a Runge-Kutta step or, for a small ship, several.
 
     Parameters
     ----------
     motion : Motion
-        (..., n-1) arrays.
+        (..., k) arrays, where the steps begin.
     record : Record
     model : ShipModel
+    steps : slice
+        Which of the record's n-1 steps.
 
     Returns
     -------
@@ -125,7 +116,7 @@ def advanced(motion: Motion, record: Record, model: ShipModel) -> Motion:
     """
     parts = record.substeps(model)
     for i in range(parts):
-        inputs = [record.inputs(model, (i + share) / parts) for share in (0.0, 0.5, 1.0)]
+        inputs = [record.inputs(model, (i + share) / parts, steps) for share in (0.0, 0.5, 1.0)]
         motion = runge_kutta(motion, record.step / parts, inputs, model)
         fast = {name: np.clip(getattr(motion, name), -most, most) for name, most in _FASTEST.items()}
         motion = motion._replace(**fast)
@@ -160,7 +151,9 @@ def runge_kutta(
     return Motion(*rk4(rates, motion, h, ((0,), (1,), (2,))))
 
 
-def linearise(motion: Motion, record: Record, model: ShipModel, regressors: Sequence[Regressor]) -> Linear:
+def linearise(
+    motion: Motion, record: Record, model: ShipModel, regressors: Sequence[Regressor], rows: slice | None = None
+) -> Linear:
     """The linear problem about a motion.
 
     Parameters
@@ -170,43 +163,60 @@ def linearise(motion: Motion, record: Record, model: ShipModel, regressors: Sequ
     record : Record
     model : ShipModel
     regressors : sequence of Regressor
+    rows : slice, optional
+        Only these rows, and the steps from each of them to the next.
 
     Returns
     -------
     Linear
     """
-    lead = record.measured.shape[:-2]
-    n, p = record.time.size, len(regressors)
-    start = Motion(*(value[..., :-1] for value in motion))
-    base, seen = advanced(start, record, model), readings(motion, model)
-    driven, out = np.empty((n - 1, *lead, 6, 1 + p)), np.zeros((n, *lead, 6, 1 + p))
-    driven[..., 0] = rows_first(base) - rows_first(Motion(*(value[..., 1:] for value in motion)))
-    missed = np.moveaxis(record.measured, -2, 0) - rows_first(seen)
+    lead, p, last = record.measured.shape[:-2], len(regressors), record.time.size - 1
+    rows = slice(0, last + 1) if rows is None else rows
+    steps = slice(rows.start, min(rows.stop, last))
+    start, after = _at(motion, steps), _at(motion, slice(steps.start + 1, steps.stop + 1))
+    base, seen = advanced(start, record, model, steps), readings(_at(motion, rows), model)
+    driven = np.empty((steps.stop - steps.start, *lead, 6, 1 + p))
+    out = np.zeros((rows.stop - rows.start, *lead, 6, 1 + p))
+    driven[..., 0] = rows_first(base) - rows_first(after)
+    missed = np.moveaxis(record.measured[..., rows, :], -2, 0) - rows_first(seen)
     whole = np.isfinite(missed)
     out[..., 0] = np.where(whole, missed, 0.0)
-    middle = Motion(*(0.5 * (value[..., :-1] + value[..., 1:]) for value in motion))
-    inputs = record.inputs(model, 0.5)
+    middle = Motion(*(0.5 * (a + b) for a, b in zip(start, after, strict=True)))
+    inputs = record.inputs(model, 0.5, steps)
     like = model, loads(middle, inputs, model)
     transition = _transition(middle, inputs, like, record)
-    slopes = np.zeros((p, 3, *lead, n - 1))
     shares = np.array([_step_share(regressor, model) for regressor in regressors]).reshape(p)
+    slopes = np.zeros((p, 3, *lead, len(driven)))
     for j, changes in enumerate(regressor.changes for regressor in regressors):
-        up, down = (
+        pair = [
             model.with_values({path: model.get(path) + share * size for path, size in changes.items()})
             for share in (shares[j], -shares[j])
-        )
-        if any(path.endswith("_lag") for path in changes):
-            late = (motion_rates(middle, record.inputs(ship, 0.5), ship) for ship in (down, up))
-            slopes[j] = _apart(*late)[3:]
-        elif any(not path.startswith("instruments.") for path in changes):
-            for slope, apart in zip(slopes[j], rate_difference(down, up, middle, inputs, like), strict=True):
+        ]
+        if any(not path.startswith("instruments.") or path.endswith("_lag") for path in changes):
+            for slope, apart in zip(slopes[j], _slopes(pair, middle, (record, steps), inputs, like), strict=True):
                 slope[...] = apart
         else:
-            out[..., 1 + j] = rows_first(_apart(readings(motion, up), readings(motion, down))) / (2.0 * shares[j])
+            up, down = (readings(_at(motion, rows), ship) for ship in pair)
+            out[..., 1 + j] = rows_first(_apart(up, down)) / (2.0 * shares[j])
     driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
-    driven[~record.known[:-1]] = 0.0
+    driven[~record.known[steps]] = 0.0
     out *= whole[..., None]
-    return Linear(transition, driven, _output(motion, seen, model), out, whole)
+    return Linear(transition, driven, _output(_at(motion, rows), seen, model), out, whole)
+
+
+def _at(motion: Motion, rows: slice) -> Motion:
+    """Some rows of a motion."""
+    return Motion(*(value[..., rows] for value in motion))
+
+
+def _slopes(pair, middle, where, inputs, like):
+    """Accelerations of the first ship of a pair minus those of the second; one with another lag has other inputs."""
+    up, down = pair
+    if up.parts["instruments"] is down.parts["instruments"]:
+        return rate_difference(down, up, middle, inputs, like)
+    record, steps = where
+    late = (motion_rates(middle, record.inputs(ship, 0.5, steps), ship) for ship in (down, up))
+    return _apart(*late)[3:]
 
 
 def _step_share(regressor: Regressor, model: ShipModel) -> float:
@@ -250,10 +260,9 @@ def _transition(middle: Motion, inputs: Inputs, like: tuple[ShipModel, Any], rec
     pushed = 0.5 * h * (moves + np.eye(6))
     for _ in range(round(np.log2(parts))):
         moves, pushed = moves @ moves, pushed + moves @ pushed
-    A = np.zeros((*here.shape[:-1], STATES, STATES))
+    A = np.zeros((*here.shape[:-1], MOVED, MOVED))
     A[..., :6, :6], A[..., :6, 6:9] = moves, pushed[..., 3:]
     A[..., range(6, 9), range(6, 9)] = 1.0
-    A[..., range(9, 12), range(9, 12)] = np.exp(-record.step / SLOW_TIME)
     return A
 
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.inference.innovations import Noise, log_likelihoods, oscillation
-from shipcosim.diagnose.inference.linearisation import Linear
+from shipcosim.diagnose.inference.parts import explained
 
 if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.linearisation import Linear
+    from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = ["explained", "first_noise", "tuned", "waves_of"]
+__all__ = ["first_noise", "tuned", "waves_of"]
 
 _GROUPS = (
     ("white", (0, 1)),
@@ -60,7 +62,7 @@ def first_noise(record: Record, length: float) -> Noise:
 
 
 def tuned(
-    noise: Noise, linear: Linear, record: Record, theta: np.ndarray, *, most_walk: np.ndarray, rounds: int = 4
+    noise: Noise, linear: Linear | InParts, record: Record, theta: np.ndarray, *, most_walk: np.ndarray, rounds: int = 4
 ) -> Noise:
     """The noise under which what is left of a log is likeliest.
 
@@ -68,7 +70,7 @@ def tuned(
     ----------
     noise : Noise
         To start from.
-    linear : Linear
+    linear : Linear or InParts
     record : Record
     theta : (p,) array
         What explains the log, in units of its columns; taken out first.
@@ -80,7 +82,7 @@ def tuned(
     -------
     Noise
     """
-    left = explained(linear, theta)
+    left = explained(linear, theta).whole()
     noise = _begun(noise, left, record)
     for _ in range(rounds):
         steps = np.zeros((2 * len(_GROUPS) + 1, len(_GROUPS)))
@@ -146,14 +148,6 @@ def waves_of(noise: Noise, h: float, shape: tuple[int, int], rng: np.random.Gene
         first, second = kicks[:, k]
         where, velocity = a * where + b * velocity + first, c * where + d * velocity + along * first + second
     return found
-
-
-def explained(linear: Linear, theta: np.ndarray) -> Linear:
-    """The problem with only its first column, from which the effect of θ is taken out."""
-    weights = np.concatenate([[1.0], -np.asarray(theta)])
-    return Linear(
-        linear.transition, linear.driven @ weights[:, None], linear.output, linear.seen @ weights[:, None], linear.whole
-    )
 
 
 def _scaled(noise: Noise, steps: np.ndarray) -> Noise:

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.evidence import gram
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
-from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.screening import gains
@@ -90,7 +89,7 @@ def healthy_products(
     for first in range(0, count, batch):
         record = _some(records, slice(first, first + batch))
         here = prepared(replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1)
-        found.append(gram(innovations(here.linear, problem.noise, record)).products)
+        found.append(inner_products(here.linear, problem.noise, record).products)
     return problem.known(()), np.concatenate(found)
 
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import Regressor, beside
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.parts import beside
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
@@ -41,7 +42,7 @@ def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
     added = [column for hypothesis in wanted for group in screening_regressors(hypothesis) for column in group]
     linear = beside(fit.linear, problem.base_of(added))
-    products = gram(innovations(linear, problem.noise, problem.record)).products
+    products = inner_products(linear, problem.noise, problem.record).products
     return gains(products, fit.columns, fit.centre, wanted, fit.model.get)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.noise import explained
+from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.verdict import gained
 
@@ -137,7 +137,7 @@ def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) 
     """
     theta = 0.0 * fit.left if as_it_is else fit.left
     white = innovations(explained(fit.linear, theta), problem.noise, problem.record).white[..., 0]
-    white = np.where(fit.linear.whole, white, np.nan)
+    white = np.where(np.isfinite(problem.record.measured), white, np.nan)
     found = np.full((LAGS, white.shape[1]), np.nan)
     for channel, values in enumerate(white.T):
         if np.isfinite(values).sum() > 10 * LAGS:

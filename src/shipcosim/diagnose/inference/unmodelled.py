@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import chi2
 
-from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import with_columns
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.parts import with_columns
 from shipcosim.diagnose.inference.thresholds import (
     BASIS_FUNCTIONS,
     CHANNEL_SIZES,
@@ -31,6 +31,8 @@ __all__ = ["FORCES", "is_healthy", "unmodelled_gains"]
 
 FORCES = ("slow", "with the heading", "periodic")
 """Kinds of unmodelled errors that push the ship."""
+_SHAPES = 3
+"""In which a channel can be off."""
 
 
 def is_healthy(problem: IdentificationProblem, fit: Fit) -> bool:
@@ -56,23 +58,22 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
     dict of str to float
         By kind. [nats]
     """
-    forces, channels = _bases(problem, fit), _channels(problem, fit)
-    linear = _with(
-        fit.linear, np.concatenate([b for group in forces.values() for b in group], axis=-1), channels, problem
-    )
-    kinds = forces | {"in a channel": [channels[..., i] for i in np.split(np.arange(channels.shape[-1]), 6)]}
-    products = gram(innovations(linear, problem.noise, problem.record)).products
+    kinds = {kind: [basis.shape[-1] for basis in group] for kind, group in _bases(problem, fit, slice(0, 1)).items()}
+    kinds |= {"in a channel": [_SHAPES] * 6}
+    shown = np.stack(readings(fit.motion, fit.model), axis=-1)
+    linear = with_columns(fit.linear, sum(map(sum, kinds.values())), lambda rows: _columns(problem, fit, shown, rows))
+    products = inner_products(linear, problem.noise, problem.record).products
     base = len(fit.columns)
-    prior = np.concatenate([[column.prior for column in fit.columns], np.zeros(linear.driven.shape[-1] - 1 - base)])
+    prior = np.concatenate([[column.prior for column in fit.columns], np.zeros(linear.columns - base)])
     centre = np.zeros(prior.size)
     centre[:base] = fit.theta - fit.left
     nothing, found, place = evidence(products, prior, centre)[0], {}, base
     for kind, group in kinds.items():
         scores = []
-        for basis in group:
+        for size in group:
             here = prior.copy()
-            here[place : place + basis.shape[-1]] = 1.0
-            place += basis.shape[-1]
+            here[place : place + size] = 1.0
+            place += size
             scores.append(evidence(products, here, centre)[0] - nothing)
         found[kind] = float(max(scores) - np.log(len(scores)))
     return found | {"from part to part": _differs_by_part(fit), "beyond tolerances": _beyond_tolerances(fit)}
@@ -115,15 +116,14 @@ def _most_evidence(log_p):
     return float(-1.0 - log_p - np.log(-log_p)) if log_p < -1.0 else 0.0
 
 
-def _bases(problem, fit):
-    """Accelerations in the body frame over the rows: by kind a list of (n, 3, p) arrays."""
-    time, psi = problem.record.time, fit.motion.psi
-    n = time.size
-    slow = piecewise_linear_basis(np.linspace(0.0, 1.0, n), BASIS_FUNCTIONS).T
+def _bases(problem, fit, rows):
+    """Accelerations in the body frame over some rows: by kind a list of (k, 3, p) arrays."""
+    every = problem.record.time
+    time, psi = every[rows], fit.motion.psi[rows]
+    slow = piecewise_linear_basis(np.linspace(0.0, 1.0, every.size)[rows], BASIS_FUNCTIONS).T
     c, s = np.cos(psi), np.sin(psi)
     heading = np.stack([c, s, np.cos(2 * psi), np.sin(2 * psi), c**3, s**3], axis=-1)
-    span = time[-1] - time[0]
-    periods = np.geomspace(SHORTEST_PERIOD, span, PERIODS)
+    periods = np.geomspace(SHORTEST_PERIOD, every[-1] - every[0], PERIODS)
     waves = [np.stack([np.sin(2 * np.pi * time / p), np.cos(2 * np.pi * time / p)], axis=-1) for p in periods]
     return {
         "slow": [_each_axis(slow)],
@@ -141,26 +141,31 @@ def _each_axis(shapes):
     return found
 
 
-def _channels(problem, fit):
-    """What a channel shows too much: (n, 6, p), as many columns for each channel in turn."""
-    time, motion = problem.record.time, np.stack(readings(fit.motion, fit.model), axis=-1)
-    share = (time - time[0]) / (time[-1] - time[0])
-    found = np.zeros((time.size, 6, 6, 3))
+def _channels(problem, shown, rows):
+    """What a channel shows too much in some rows: (k, 6, p), as many columns for each channel in turn.
+
+    `shown` is what the instruments show at all rows, (n, 6).
+    """
+    every = problem.record.time
+    share = (every[rows] - every[0]) / (every[-1] - every[0])
+    found = np.zeros((share.size, 6, 6, _SHAPES))
     for i, size in enumerate(CHANNEL_SIZES):
-        moved = motion[:, i] - motion[:, i].mean()
+        moved = shown[rows, i] - shown[:, i].mean()
         shapes = [np.sin(np.pi * share), np.cos(np.pi * share), np.cos(2 * np.pi * share)]
         if i > 2:
             shapes = [np.ones_like(share), share - 0.5, 0.1 * moved / size]
         found[:, i, i] = size * np.stack(shapes, axis=-1)
-    return found.reshape(time.size, 6, 18) * fit.linear.whole[..., None]
+    return found.reshape(share.size, 6, 6 * _SHAPES) * np.isfinite(problem.record.measured[rows])[..., None]
 
 
-def _with(linear, accelerations, channels, problem):
-    """The problem with a column for each acceleration, and for each error of a channel."""
+def _columns(problem, fit, shown, rows):
+    """A column for each acceleration and for each error of a channel, `driven` and `seen` of some rows."""
     h, n = problem.record.step, problem.record.time.size
     size = FORCE_SIZE * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
-    driven = np.zeros((n - 1, 6, accelerations.shape[-1]))
-    driven[:, 3:6] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
-    driven = np.concatenate([driven, np.zeros((n - 1, 6, channels.shape[-1]))], axis=-1)
-    seen = np.concatenate([np.zeros((n, 6, accelerations.shape[-1])), channels], axis=-1)
-    return with_columns(linear, driven, seen)
+    groups = _bases(problem, fit, slice(rows.start, min(rows.stop + 1, n))).values()
+    accelerations = np.concatenate([basis for group in groups for basis in group], axis=-1)
+    channels = _channels(problem, shown, rows)
+    steps, forces = len(accelerations) - 1, accelerations.shape[-1]
+    driven = np.zeros((steps, 6, forces + channels.shape[-1]))
+    driven[:, 3:6, :forces] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
+    return driven, np.concatenate([np.zeros((len(channels), 6, forces)), channels], axis=-1)

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from shipcosim.diagnose.inference.evidence import gram
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
-from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import rows_first, with_columns
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.linearisation import rows_first
+from shipcosim.diagnose.inference.parts import with_columns
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults.thresholds import (
@@ -96,10 +96,10 @@ def _all_aspects_agree(problem, finding, known):
     is a matter of the clock.
     """
     here = inside(0.5 * (problem.record.time[:-1] + problem.record.time[1:]), finding.segments)
-    moved, driven = _moved(problem), np.zeros((len(here), 6, len(ASPECTS)))
+    moved, aspects = _moved(problem) * here[:, None], np.zeros((6, len(ASPECTS)))
     for aspect, states in enumerate(ASPECTS):
-        driven[:, states, aspect] = -moved[:, states] * here[:, None]
-    match, inner = _left(problem, known, driven)
+        aspects[states, aspect] = 1.0
+    match, inner = _left(problem, known, len(ASPECTS), lambda steps: -moved[steps, :, None] * aspects)
     covariance = np.linalg.pinv(inner)
     rates, apart = covariance @ match, ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
@@ -183,9 +183,11 @@ def _blocks(problem, edges, columns: list[Regressor]):
     """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
     count, moved = len(edges) - 1, _moved(problem)
     place = np.clip(np.searchsorted(edges, problem.record.time[:-1], side="right") - 1, 0, count - 1)
-    driven = np.zeros((len(moved), 6, count))
-    driven[np.arange(len(moved)), :, place] = -moved
-    return _Blocks(edges, *_left(problem, columns, driven))
+    blocks = np.arange(count)
+    return _Blocks(
+        edges,
+        *_left(problem, columns, count, lambda steps: -moved[steps, :, None] * (place[steps, None, None] == blocks)),
+    )
 
 
 def _moved(problem):
@@ -195,11 +197,16 @@ def _moved(problem):
     return np.where(record.known[:-1, None], moved, 0.0)
 
 
-def _left(problem, columns, driven):
-    """Match with the log of further columns, (n-1, 6, k), and their Gram matrix, less what other columns explain."""
-    base, others = problem.base_of(columns), len(columns)
-    linear = with_columns(base, driven, np.zeros((*base.seen.shape[:2], driven.shape[-1])))
-    products = gram(innovations(linear, problem.noise, problem.record)).products
+def _left(problem, columns, count, driven):
+    """Match with the log of further columns and their Gram matrix, less what other columns explain.
+
+    `driven` gives what they do in the steps from some rows on, a (k, 6, count) array.
+    """
+    others = len(columns)
+    linear = with_columns(
+        problem.base_of(columns), count, lambda rows: (driven(rows), np.zeros((rows.stop - rows.start, 6, count)))
+    )
+    products = inner_products(linear, problem.noise, problem.record).products
     theirs, own = slice(1, 1 + others), slice(1 + others, None)
     inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
     left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])

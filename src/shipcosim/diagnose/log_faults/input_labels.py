@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import linearise
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.innovations import inner_products, innovations
+from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, Mislabel, finding_of, negative, possible, undone
 from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.log_faults.thresholds import (
@@ -125,8 +125,8 @@ def _moved(ends, i, place):
 
 def likelihood(problem: IdentificationProblem, record: Record) -> float:
     """Log-likelihood of a record about the motion of a problem, up to a constant. [nats]"""
-    found = innovations(linearise(problem.motion, record, problem.model, []), problem.noise, record)
-    return float(gram(found).free)
+    linear = linearised_by_parts(problem.motion, record, problem.model, [])
+    return float(inner_products(linear, problem.noise, record).free)
 
 
 def _mislabels(log, model):
@@ -170,11 +170,10 @@ def with_label(log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[tuple
 def _by_row(problem, record):
     """Log-likelihood of each row, known numbers fitted within their tolerances; what that costs is shared by all."""
     columns = problem.known(())
-    linear = linearise(problem.motion, record, problem.model, columns)
-    found = innovations(linear, problem.noise, record)
-    theta = evidence(gram(found).products, np.ones(len(columns)))[1]
-    left = found.white[..., 0] - found.white[..., 1:] @ theta
-    return -0.5 * ((left**2).sum(-1) + found.log_determinant + (theta**2).sum() / len(left))
+    linear = linearised_by_parts(problem.motion, record, problem.model, columns)
+    theta = evidence(inner_products(linear, problem.noise, record).products, np.ones(len(columns)))[1]
+    left = innovations(explained(linear, theta), problem.noise, record)
+    return -0.5 * ((left.white[..., 0] ** 2).sum(-1) + left.log_determinant + (theta**2).sum() / linear.rows)
 
 
 def where_best(

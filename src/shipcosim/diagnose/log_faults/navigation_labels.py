@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.inference.innovations import innovations, smoothed
-from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
+from shipcosim.diagnose.inference.parts import linearised_by_parts
 from shipcosim.diagnose.log.checks.kinematics import filter_for, is_clear, position_motion
 from shipcosim.diagnose.log.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_in, mislabel_of, possible
 from shipcosim.diagnose.log.repair import repaired
@@ -139,8 +139,8 @@ def _by_row(problem, record):
     """Log-likelihood of each row, about the motion that the record itself describes."""
     motion = first_motion(record, problem.model)
     for _ in range(2):
-        motion, _ = smoothed(linearise(motion, record, problem.model, []), problem.noise, record, motion)
-    found = innovations(linearise(motion, record, problem.model, []), problem.noise, record)
+        motion, _ = smoothed(linearised_by_parts(motion, record, problem.model, []), problem.noise, record, motion)
+    found = innovations(linearised_by_parts(motion, record, problem.model, []), problem.noise, record)
     return -0.5 * ((found.white[..., 0] ** 2).sum(-1) + found.log_determinant)
 
 

@@ -86,27 +86,29 @@ class Record:
         rows = self.step * max(1.0 / (_ONE_STEP * np.sqrt(model.parts["hull"].length)), self.rate / _RATE_OF_A_STEP)
         return 2 ** int(np.ceil(np.log2(min(max(rows, 1.0), _MOST_STEPS)) - 1e-9))
 
-    def inputs(self, model: ShipModel, share: float = 0.0) -> Inputs:
-        """Inputs of the ship model at each row but the last, or a share of a step after it.
+    def inputs(self, model: ShipModel, share: float = 0.0, steps: slice = slice(None)) -> Inputs:
+        """Inputs of the ship model at each row but the last, or a share of a step after it; or in some of these steps.
 
         Late channels are taken that much later; where the navigation is late, all others are taken earlier.
         """
         lags = model.parts["instruments"]
         late = share * self.step - lags.navigation_lag
-        units = {
-            name: (self._shifted(pair[0], late + lags.thruster_lag), self._shifted(pair[1], late + lags.thruster_lag))
-            for name, pair in self.units.items()
-        }
-        wind = (None, None) if self.wind is None else (self._shifted(s, late + lags.wind_lag) for s in self.wind)
-        return Inputs(self.time[:-1] + share * self.step, units, *wind)
+        behind, late_wind = self._places(late + lags.thruster_lag, steps), self._places(late + lags.wind_lag, steps)
+        units = {name: (_between(pair[0], *behind), _between(pair[1], *behind)) for name, pair in self.units.items()}
+        wind = (None, None) if self.wind is None else (_between(series, *late_wind) for series in self.wind)
+        return Inputs(self.time[:-1][steps] + share * self.step, units, *wind)
 
-    def _shifted(self, series: np.ndarray, seconds: float) -> np.ndarray:
-        """A series that much later, linear between rows."""
+    def _places(self, seconds: float, steps: slice) -> tuple[np.ndarray, np.ndarray]:
+        """Rows that much later: the row before, and the share of the step after it."""
         rows = self.time.size
-        at = np.clip(np.arange(rows - 1) + seconds / self.step, 0.0, rows - 1.0)
+        at = np.clip(np.arange(rows - 1)[steps] + seconds / self.step, 0.0, rows - 1.0)
         low = np.minimum(at.astype(int), rows - 2)
-        share = at - low
-        return series[..., low] * (1.0 - share) + series[..., low + 1] * share
+        return low, at - low
+
+
+def _between(series: np.ndarray, low: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """A series linear between rows."""
+    return series[..., low] * (1.0 - share) + series[..., low + 1] * share
 
 
 def record_of(log: xarray.Dataset, model: ShipModel) -> Record:

@@ -196,7 +196,7 @@ def _observed(problem, about_fit, motion, seen, ship_models):
     record = problem.record
     about = {name: problem.motion if name == "plain" else motion for name in ship_models}
     linear = {name: restarted(about_fit, motion, record, model) for name, model in ship_models.items()}
-    linear["plain"] = problem.base_of([])
+    linear["plain"] = problem.base_of([]).whole()
     choices = {"plain": _BOTH, "extended": _BOTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
     each = [(name, frame, time) for name in ship_models for frame, time in choices[name]]
     problems = [

@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from shipcosim.diagnose.inference.innovations import smoothed
-from shipcosim.diagnose.inference.linearisation import linearise
+from shipcosim.diagnose.inference.parts import linearised_by_parts
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.validation.predictions import mass_matrix
 from shipcosim.diagnose.validation.thresholds import FEWEST_SECTOR_ROWS, FORCE_TIME, SECTORS
@@ -108,7 +108,7 @@ def missing_force(
     """
     record = problem.record
     noise = replace(problem.noise, walk=problem.noise.jolt / learning)
-    motion, slow = smoothed(linearise(motion, record, model, []), noise, record, motion)
+    motion, slow = smoothed(linearised_by_parts(motion, record, model, []), noise, record, motion)
     force = np.where(record.known[:, None], slow[:, :3] @ mass_matrix(model).T, np.nan)
     return _in_frames(force.T, motion, record, model)
 

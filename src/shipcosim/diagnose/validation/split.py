@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.linearisation import Linear
+from shipcosim.diagnose.inference.parts import InParts
 from shipcosim.diagnose.validation.thresholds import (
     IDLE,
     MEASURED_WITHIN,
@@ -126,14 +126,14 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
         wind=None if record.wind is None else tuple(series[:n] for series in record.wind),
         known=record.known[:n] & np.append(steps, True),
     )
-    whole = base.whole[:n] & train[:, None]
-    linear = Linear(
-        base.transition[: n - 1],
-        base.driven[: n - 1] * steps[:, None, None],
-        base.output[:n],
-        base.seen[:n] * whole[..., None],
-        whole,
-    )
+
+    def part(rows):
+        linear, used = base.part(rows), train[rows, None]
+        driven = linear.driven[: len(steps[rows])] * steps[rows, None, None]
+        seen, transition = linear.seen * used[..., None], linear.transition[: len(driven)]
+        return linear._replace(transition=transition, driven=driven, seen=seen, whole=linear.whole & used)
+
+    linear = InParts(n, base.columns, part)
     return replace(problem, record=cut, motion=Motion(*(value[:n] for value in problem.motion)), base=linear)
 
 

@@ -1,0 +1,148 @@
+"""A linear problem by parts of its rows: of a long log only one part at a time is in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.inference.linearisation import Linear, linearise
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.linearisation import Regressor
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.models.core.motion import Motion
+
+__all__ = ["PART", "InParts", "beside", "explained", "in_parts", "linearised_by_parts", "with_columns"]
+
+PART = 4096
+"""Most rows of a part: as many as a processor's cache holds series of. A log of an hour at 1 Hz is one part."""
+_ENTRIES = 4096 * 64
+_LEAST = 512
+"""Rows times columns of a part, some 50 MB in all that the filter makes of them; rows that it has at least."""
+
+Columns = Callable[[slice], tuple[np.ndarray, np.ndarray]]
+"""Further columns of some rows, `driven` and `seen` as in `Linear`."""
+
+
+@dataclass(frozen=True)
+class InParts:
+    """A linear problem whose rows are made when they are asked for.
+
+    Attributes
+    ----------
+    rows : int
+    columns : int
+        Without the first.
+    part : callable
+        From a slice of rows, of which start and stop are given, to their `Linear`: with the step to the row after the
+        last one, where there is one.
+    """
+
+    rows: int
+    columns: int
+    part: Callable[[slice], Linear]
+
+    def slices(self) -> Iterator[slice]:
+        """Rows of each part, in order."""
+        size = min(max(_ENTRIES // (1 + self.columns), _LEAST), PART)
+        for first in range(0, self.rows, size):
+            yield slice(first, min(first + size, self.rows))
+
+    def whole(self) -> Linear:
+        """All rows in one, for problems of few columns."""
+        return Linear(*(np.concatenate(fields) for fields in zip(*map(self.part, self.slices()), strict=True)))
+
+    def chosen(self, columns: Sequence[int]) -> InParts:
+        """The problem with only some of its columns, by number from 1 on, besides the first."""
+        wanted = [0, *columns]
+
+        def part(rows):
+            linear = self.part(rows)
+            return linear._replace(driven=linear.driven[..., wanted], seen=linear.seen[..., wanted])
+
+        return InParts(self.rows, len(columns), part)
+
+
+def in_parts(linear: Linear | InParts) -> InParts:
+    """A problem by parts of its rows, however it is given."""
+    if isinstance(linear, InParts):
+        return linear
+    steps = len(linear.seen) - 1
+
+    def part(rows):
+        until = slice(rows.start, min(rows.stop, steps))
+        return Linear(
+            linear.transition[until], linear.driven[until], linear.output[rows], linear.seen[rows], linear.whole[rows]
+        )
+
+    return InParts(len(linear.seen), linear.seen.shape[-1] - 1, part)
+
+
+def linearised_by_parts(
+    motion: Motion, record: Record, model: ShipModel, regressors: Sequence[Regressor], *, kept: bool = True
+) -> InParts:
+    """The linear problem about a motion, by parts.
+
+    Parameters
+    ----------
+    motion : Motion
+        (..., n) arrays near what was measured.
+    record : Record
+    model : ShipModel
+    regressors : sequence of Regressor
+    kept : bool
+        Whether a log of one part is linearised once for all.
+
+    Returns
+    -------
+    InParts
+    """
+    rows, done = record.time.size, []
+
+    def part(which):
+        if not kept or rows > PART:
+            return linearise(motion, record, model, regressors, which)
+        if not done:
+            done.append(in_parts(linearise(motion, record, model, regressors)))
+        return done[0].part(which)
+
+    return InParts(rows, len(regressors), part)
+
+
+def with_columns(linear: Linear | InParts, count: int, more: Columns) -> InParts:
+    """The problem with further columns behind its own."""
+    first = in_parts(linear)
+
+    def part(rows):
+        mine, (driven, seen) = first.part(rows), more(rows)
+        return mine._replace(
+            driven=np.concatenate([mine.driven, driven], axis=-1), seen=np.concatenate([mine.seen, seen], axis=-1)
+        )
+
+    return InParts(first.rows, first.columns + count, part)
+
+
+def beside(linear: Linear | InParts, extra: Linear | InParts) -> InParts:
+    """A problem with the columns of another behind its own."""
+    other = in_parts(extra)
+
+    def columns(rows):
+        theirs = other.part(rows)
+        return theirs.driven[..., 1:], theirs.seen[..., 1:]
+
+    return with_columns(linear, other.columns, columns)
+
+
+def explained(linear: Linear | InParts, theta: np.ndarray) -> InParts:
+    """The problem with only its first column, from which the effect of θ is taken out."""
+    weights, whole = np.concatenate([[1.0], -np.asarray(theta)])[:, None], in_parts(linear)
+
+    def part(rows):
+        own = whole.part(rows)
+        return own._replace(driven=own.driven @ weights, seen=own.seen @ weights)
+
+    return InParts(whole.rows, 0, part)
