@@ -58,7 +58,7 @@ def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) ->
     Gram
     """
     edges = np.linspace(0, rows, parts + 1).astype(int)
-    blocks, log_determinant = [0.0] * parts, 0.0
+    blocks, log_determinant = [np.zeros(())] * parts, np.zeros(())
     for first, stretch in found:
         log_determinant = log_determinant + stretch.log_determinant.sum(0)
         places = np.clip(edges - first, 0, len(stretch.white))
@@ -68,7 +68,7 @@ def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) ->
                 flat = white.reshape(*white.shape[:-3], -1, white.shape[-1])
                 blocks[i] = blocks[i] + np.swapaxes(flat, -1, -2) @ flat
     stacked = np.stack(np.broadcast_arrays(*blocks))
-    return Gram(stacked.sum(0), stacked, np.asarray(log_determinant))
+    return Gram(stacked.sum(0), stacked, log_determinant)
 
 
 def evidence(

@@ -187,10 +187,9 @@ class _Filter:
     def over(self, rows: slice, keep: bool = False) -> _Passed:
         """Go over a part of the rows, the covariances kept or not."""
         linear, noise, record = self.linear.part(rows), self.noise, self.record
-        if self.state is None:
-            self._begin(linear)
+        begun = self._begun(linear) if self.state is None else self.state
         A, B, H, Z = (_by_log(values, self.lead, 2) for values in linear[:4])
-        C, x = (value.copy() for value in self.state)
+        C, x = (value.copy() for value in begun)
         white = np.asarray(noise.white).reshape(1, -1, 6)
         R = np.where(_by_log(linear.whole, self.lead, 1), white**2, np.inf)
         R = np.require(np.broadcast_to(R, (len(R), len(C), 6)), requirements=["C", "W"])
@@ -201,13 +200,13 @@ class _Filter:
         self.state = C, x
         return _Passed(A, H, gain, root, log_determinant, covariances, *found)
 
-    def _begin(self, linear):
+    def _begun(self, linear):
         """Shape of the logs, and the state before the first row."""
         noise, step = self.noise, self.record.step
         self.lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
         of_noise = _steady(noise, step), _process(noise, step), _uncertain(noise)
         self.steady, self.process, uncertain = (_of_logs(values, self.lead) for values in of_noise)
-        self.state = uncertain, np.zeros((len(uncertain), STATES, linear.seen.shape[-1]))
+        return uncertain, np.zeros((len(uncertain), STATES, linear.seen.shape[-1]))
 
     def by_log(self, values: np.ndarray) -> np.ndarray:
         """(k, m, ...) array with the axes of the logs."""
