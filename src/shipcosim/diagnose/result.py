@@ -61,6 +61,9 @@ class Finding:
         From when on a cause of the physics acts; None from the start. [s]
     note : str
         What else there is to say, one sentence.
+    alternatives : tuple of str
+        Other readings that explain the log alike, one sentence each. Where there are any, `note` is only the likeliest
+        of them, and nothing was put right.
     """
 
     cause: str
@@ -72,6 +75,7 @@ class Finding:
     channels: tuple[str, ...] = ()
     onset: float | None = None
     note: str = ""
+    alternatives: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -89,6 +93,8 @@ class Finding:
             entry["onset"] = self.onset
         if self.note:
             entry["note"] = self.note
+        if self.alternatives:
+            entry["alternatives"] = list(self.alternatives)
         return entry
 
 

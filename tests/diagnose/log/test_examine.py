@@ -259,11 +259,13 @@ def test_other_units_in_the_file_change_nothing(faulty, tmp_path):
 def still(seed):
     """A log of a ship that hardly moves: a tenth of a degree to and fro, and a few centimetres."""
     log, calm = measured(seed=seed), measured(seed=seed, noise=0.0)
-    turned = np.mod(calm["heading"] + 180.0, 360.0) - 180.0
+    turned = 0.01 * (np.mod(calm["heading"] + 180.0, 360.0) - 180.0)
+    velocity = 0.01 * (calm["surge"] + 1j * calm["sway"]) * np.exp(1j * np.radians(120.0 + turned))
+    position = np.cumsum(velocity)
     return log | {
-        "north": log["north"] - 0.99 * calm["north"],
-        "east": log["east"] - 0.99 * calm["east"],
-        "heading": np.mod(120.0 + log["heading"] - calm["heading"] + 0.01 * turned, 360.0),
+        "north": log["north"] - calm["north"] + position.real,
+        "east": log["east"] - calm["east"] + position.imag,
+        "heading": np.mod(120.0 + log["heading"] - calm["heading"] + turned, 360.0),
         "surge": log["surge"] - 0.99 * calm["surge"],
         "sway": log["sway"] - 0.99 * calm["sway"],
         "yaw_rate": log["yaw_rate"] - 0.99 * calm["yaw_rate"],
@@ -307,3 +309,18 @@ def test_a_rate_that_is_rounded_away_is_told_by_the_signs_of_its_zeros():
     assert (finding.cause, finding.channels, finding.segments) == ("frame", ("yaw_rate",), ())
     assert np.isnan(repaired(table(log), [finding])["yaw_rate"].values).all()
     assert "frame" not in [f.cause for f in examine(table(log | {"yaw_rate": np.abs(rate)}))]
+
+
+@pytest.mark.parametrize("step", [0.5, 1.0, 2.0])
+def test_a_craft_that_spins_goes_the_long_way_round_and_that_is_no_heading_wrap(step):
+    time, random = np.arange(0.0, 300.0, step), np.random.default_rng(3)
+    heading = np.mod(np.degrees(1.0) * time + 0.5 * random.normal(size=len(time)), 360.0)
+    position = 0.3 * np.exp(1j * time) + 0.02 * (random.normal(size=len(time)) + 1j * random.normal(size=len(time)))
+    log = {"time": time, "north": position.real, "east": position.imag, "heading": heading}
+    assert examine(table(log)) == []
+
+
+def test_a_small_craft_that_swings_across_north_is_no_heading_wrap():
+    time, random = np.arange(300.0), np.random.default_rng(4)
+    heading = np.where(time % 40 < 3, 50.0, -20.0) + random.normal(size=len(time))
+    assert examine(table({"time": time, "heading": np.mod(heading, 360.0)})) == []

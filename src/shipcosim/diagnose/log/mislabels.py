@@ -7,25 +7,43 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.checks.samples import quantum
+from shipcosim.diagnose.log.earth import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.result import Finding
 
 __all__ = [
+    "CHANNEL_UNITS",
+    "HEADING_FROM_EAST",
     "HEADING_LABELS",
     "MISLABELS",
+    "POSITION",
+    "POSITION_IN_DEGREES",
     "POSITION_LABELS",
+    "VELOCITY",
     "WIND_LABELS",
     "Mislabel",
     "finding_of",
     "mislabel_in",
     "mislabel_of",
+    "mislabel_of_unit",
     "negative",
     "possible",
+    "swap_of",
     "undone",
+    "velocity_frame",
 ]
 
 KNOT = 1852.0 / 3600.0  # m/s
+POSITION, VELOCITY, WIND = ("north", "east"), ("surge", "sway"), ("wind_speed", "wind_from")
+CHANNEL_UNITS = {
+    VELOCITY: {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6, "ft/s": 0.3048, "mph": 0.44704, "cm/s": 0.01, "mm/s": 1e-3},
+    POSITION: {"m": 1.0, "km": 1e3, "ft": 0.3048, "nmi": 1852.0, "cm": 0.01, "mm": 1e-3},
+    ("heading",): {"deg": 1.0, "rad": float(np.degrees(1.0))},
+    ("yaw_rate",): {"deg/s": 1.0, "rad/s": float(np.degrees(1.0)), "deg/min": 1.0 / 60.0, "rpm": 6.0},
+}
+"""Units in which channels can be, and their size in the role's unit, which comes first."""
 
 
 @dataclass(frozen=True)
@@ -58,11 +76,20 @@ def negative(role: str) -> Mislabel:
     return Mislabel("sign", (role,), f"{role} has the other sign", lambda log: {role: -log[role]})
 
 
-def _swapped(one, other):
+def swap_of(one: str, other: str) -> Mislabel:
+    """Two channels exchanged."""
+
     def undo(log):
         return {one: log[other], other: log[one]}
 
     return Mislabel("channel_swap", (one, other), f"{one} and {other} are swapped", undo)
+
+
+def mislabel_of_unit(channels: tuple[str, ...], unit: str, stated: str) -> Mislabel:
+    """Channels of CHANNEL_UNITS in a unit other than the one that they were read in."""
+    units = CHANNEL_UNITS[channels]
+    verb = "are" if len(channels) > 1 else "is"
+    return _in_unit(channels, units[unit] / units[stated], f"{' and '.join(channels)} {verb} in {unit}, not {stated}")
 
 
 def _in_unit(roles, scale, sentence):
@@ -74,8 +101,23 @@ def _turned_to_body(north, east, heading):
     return cosine * north + sine * east, cosine * east - sine * north
 
 
-def _body_velocity(log):
-    return dict(zip(("surge", "sway"), _turned_to_body(log["surge"], log["sway"], log["heading"]), strict=True))
+def velocity_frame(first: str, second: str) -> Mislabel:
+    """Velocities over the earth in the columns of the ship's: the first is towards north, or towards east."""
+
+    def undo(log):
+        towards = {first: log["surge"], second: log["sway"]}
+        return dict(zip(VELOCITY, _turned_to_body(towards["north"], towards["east"], log["heading"]), strict=True))
+
+    return Mislabel("frame", VELOCITY, f"surge and sway are the velocity towards {first} and {second}", undo)
+
+
+def _from_degrees(log):
+    """Positions in m about the first fix, from degrees of latitude and longitude; WGS 84."""
+    known = np.flatnonzero(np.isfinite(log["north"]) & np.isfinite(log["east"]))
+    first = known[0] if len(known) else 0
+    meridian, parallel = metres_per_degree(log["north"][first])
+    east = wrap_series(log["east"] - log["east"][first])
+    return {"north": meridian * (log["north"] - log["north"][first]), "east": parallel * east}
 
 
 def _from_bow(log):
@@ -94,21 +136,26 @@ def _apparent_from_north(log):
     return _apparent(log | _from_bow(log))
 
 
-VELOCITY, WIND = ("surge", "sway"), ("wind_speed", "wind_from")
-
+HEADING_FROM_EAST = Mislabel(
+    "frame",
+    ("heading",),
+    "heading is counted counter-clockwise from east",
+    lambda log: {"heading": np.mod(90.0 - log["heading"], 360.0)},
+)
+POSITION_IN_DEGREES = Mislabel("frame", POSITION, "north and east are degrees of latitude and longitude", _from_degrees)
 HEADING_LABELS = (
     negative("yaw_rate"),
-    _in_unit(("yaw_rate",), float(np.degrees(1.0)), "yaw_rate is in rad/s, not deg/s"),
-    _in_unit(("yaw_rate",), float(np.radians(1.0)), "yaw_rate is in deg/s, not rad/s"),
-    _in_unit(("yaw_rate",), 1.0 / 60.0, "yaw_rate is in deg/min, not deg/s"),
+    mislabel_of_unit(("yaw_rate",), "rad/s", "deg/s"),
+    mislabel_of_unit(("yaw_rate",), "deg/s", "rad/s"),
+    mislabel_of_unit(("yaw_rate",), "deg/min", "deg/s"),
 )
 POSITION_LABELS = (
-    _swapped("north", "east"),
-    _swapped("surge", "sway"),
+    swap_of("north", "east"),
+    swap_of("surge", "sway"),
     *(negative(role) for role in ("north", "east", "surge", "sway")),
-    Mislabel("frame", VELOCITY, "surge and sway are the velocity towards north and east", _body_velocity),
-    _in_unit(VELOCITY, KNOT, "surge and sway are in kn, not m/s"),
-    _in_unit(VELOCITY, 1.0 / KNOT, "surge and sway are in m/s, not kn"),
+    velocity_frame("north", "east"),
+    mislabel_of_unit(VELOCITY, "kn", "m/s"),
+    mislabel_of_unit(VELOCITY, "m/s", "kn"),
 )
 WIND_LABELS = (
     negative("wind_from"),
@@ -120,7 +167,22 @@ WIND_LABELS = (
     _in_unit(("wind_speed",), KNOT, "wind_speed is in kn, not m/s"),
     _in_unit(("wind_speed",), 1.0 / KNOT, "wind_speed is in m/s, not kn"),
 )
-MISLABELS = (*HEADING_LABELS, *POSITION_LABELS, *WIND_LABELS)
+MISLABELS = (
+    *HEADING_LABELS,
+    *POSITION_LABELS,
+    *WIND_LABELS,
+    negative("heading"),
+    HEADING_FROM_EAST,
+    POSITION_IN_DEGREES,
+    velocity_frame("east", "north"),
+    *(
+        mislabel_of_unit(channels, unit, stated)
+        for channels, units in CHANNEL_UNITS.items()
+        for unit in units
+        for stated in units
+        if unit != stated
+    ),
+)
 
 
 def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
@@ -135,7 +197,9 @@ def finding_of(mislabel: Mislabel, probability: float, segment: tuple[float, flo
 
 
 def mislabel_of(finding: Finding) -> Mislabel | None:
-    """The mislabel that a finding names by its note; None where the finding is another fault."""
+    """The mislabel that a finding names by its note; None where the finding is another fault, or leaves it open."""
+    if finding.alternatives:
+        return None
     return next((m for m in MISLABELS if (m.cause, m.sentence) == (finding.cause, finding.note)), None)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
 from shipcosim.diagnose.log.channels import Channel, read_channels
+from shipcosim.diagnose.log.earth import metres_per_degree
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.thresholds import LATEST
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     import xarray
 
 __all__ = ["read_log"]
-
-EQUATORIAL_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 6.69437999014e-3  # [m, 1] WGS 84
 
 
 def read_log(log: str | os.PathLike | xarray.Dataset, channels: str | os.PathLike | None = None) -> xarray.Dataset:
@@ -58,6 +57,10 @@ def read_log(log: str | os.PathLike | xarray.Dataset, channels: str | os.PathLik
     _check_time(source, time)
     table = make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
     table.encoding |= file
+    for name, channel in mapping.items():
+        stated = channel.unit or columns[channel.column][1]
+        if stated and name in table.variables:
+            table[name].attrs["stated_unit"] = stated
     return table
 
 
@@ -146,10 +149,8 @@ def _local_position(signals):
     latitude, longitude = (np.radians(signals.pop(name)[0]) for name in ("latitude", "longitude"))
     fixed = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude))
     first = fixed[0] if len(fixed) else 0
-    curvature = 1.0 - ECCENTRICITY_SQUARED * np.sin(latitude[first]) ** 2
-    meridian = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / curvature**1.5
-    parallel = EQUATORIAL_RADIUS / np.sqrt(curvature) * np.cos(latitude[first])
-    signals["north"] = meridian * (latitude - latitude[first]), "m"
-    signals["east"] = parallel * wrap_series(longitude - longitude[first], TURN), "m"
+    meridian, parallel = metres_per_degree(np.degrees(latitude[first]))
+    signals["north"] = meridian * np.degrees(latitude - latitude[first]), "m"
+    signals["east"] = parallel * np.degrees(wrap_series(longitude - longitude[first], TURN)), "m"
     origin = np.degrees([latitude[first], longitude[first]])
     return {"latitude_origin": float(origin[0]), "longitude_origin": float(origin[1])}

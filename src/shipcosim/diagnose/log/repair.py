@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.result import Finding
 
-__all__ = ["repaired"]
+__all__ = ["rate_of", "read_anew", "repaired"]
 
 CUT_OUT = ("gap", "heading_wrap")
 
@@ -54,13 +54,14 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
     attributes = log.attrs | {key: log.encoding[key] for key in ("source",) if key in log.encoding}
     log = log.isel(time=usable_rows(log["time"].values))
     logged = log["time"].values
-    step = usual_step(logged)
-    time = _true_time(logged, findings, step)
+    base = read_anew({"time": logged}, findings)["time"]
+    step = usual_step(base)
+    time = _true_time(logged, base, findings, step)
     channels = {str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()}
     channels = _put_right(logged, channels, findings)
     _check_span(time, step)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
-    place = _Place(time, grid, np.diff(logged) > HOLE * step)
+    place = _Place(time, grid, np.diff(base) > HOLE * step)
     columns = [
         (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"]) for n, v in channels.items()
     ]
@@ -78,29 +79,51 @@ def _check_span(time, step):
         raise ShipcosimError(Problem("time", found, "Leave out the rows whose times are wrong, or cut the log there."))
 
 
-def _true_time(logged, findings, step):
-    """Times of the rows by a clock that runs right, from the same start.
+def rate_of(findings: Sequence[Finding]) -> float:
+    """True seconds per logged second throughout a log, by findings on its clock."""
+    rates = [f.parameters["rate"].estimate for f in findings if f.cause == "clock" and f.parameters and not f.segments]
+    return float(np.prod(rates))
+
+
+def read_anew(log: dict, findings: Sequence[Finding]) -> dict:
+    """A log, a dict of arrays with `time`, with what findings say of all of it put right: time base, then labels."""
+    time = log["time"]
+    log = log | {"time": time[0] + rate_of(findings) * (time - time[0])}
+    for mislabel in _labels_throughout(findings):
+        if set(mislabel.channels) <= set(log):
+            log = undone(log, mislabel, ())
+    return log
+
+
+def _labels_throughout(findings):
+    """The heading first: velocities are turned by it."""
+    found = [(mislabel_of(f), f) for f in findings if not f.segments]
+    return sorted((m for m, _ in found if m is not None), key=lambda mislabel: mislabel.channels != ("heading",))
+
+
+def _true_time(logged, base, findings, step):
+    """Times of the rows by a clock that runs right, from the same start; `base`: as the time base is, in true seconds.
 
     A segment of wrong clock lasts a whole number of steps, less than its rate is sure to; so the rows after it need no
     interpolation, which would smooth their noise.
     """
-    rates = np.ones(len(logged) - 1)
+    rates = np.ones(len(base) - 1)
     for finding in findings:
-        for segment in finding.segments or [(-np.inf, np.inf)] if finding.cause == "clock" else ():
+        for segment in finding.segments if finding.cause == "clock" else ():
             here = inside(logged[1:], [segment]) & inside(logged[:-1], [segment])
-            lasts = finding.parameters["rate"].estimate * np.diff(logged)[here].sum()
+            lasts = finding.parameters["rate"].estimate * np.diff(base)[here].sum()
             rates[here] *= finding.parameters["rate"].estimate * max(round(lasts / step), 1) * step / max(lasts, step)
-    return logged[0] + np.r_[0.0, np.cumsum(rates * np.diff(logged))]
+    return base[0] + np.r_[0.0, np.cumsum(rates * np.diff(base))]
 
 
 def _put_right(time, channels, findings):
     """Channels with labels put right, then with outliers and all that is no measurement cut out."""
-    channels = dict(channels)
+    channels = read_anew({"time": time, **channels}, findings) | {"time": time}
     for finding in findings:
         mislabel = mislabel_of(finding)
-        if mislabel is not None:
-            channels = undone({"time": time, **channels}, mislabel, finding.segments)
-            channels.pop("time")
+        if mislabel is not None and finding.segments:
+            channels = undone(channels, mislabel, finding.segments)
+    channels.pop("time")
     for role, bad in outliers(channels).items():
         channels[role] = np.where(bad, np.nan, channels[role])
     for finding in findings:

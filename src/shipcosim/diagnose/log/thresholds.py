@@ -16,8 +16,10 @@ LONGEST_WRAP = 6
 """Most samples of the heading that are interpolated across north. Assumed."""
 NEAR_NORTH = 45.0
 """Headings that are near north. [deg]"""
-SPINNING = 15.0
-"""Rate of turn that no ship reaches. [deg/s] Assumed."""
+NO_TURN = 15.0
+"""Change of heading from row to row that can be one interpolated across north. [deg] Assumed."""
+FASTER = 5.0
+"""Over what nine in ten changes of a log stay below, from which on it is no turn of the craft. Assumed."""
 LEAP = 5.0
 """Way between two rows over that by the logged velocity, from which on rows were lost. Assumed."""
 END_DISTANCE = 10.0
@@ -25,6 +27,61 @@ END_DISTANCE = 10.0
 no measurement: it has one neighbour only. Start-up rows were off by millions. Assumed."""
 FEWEST_LEAPS = 3
 """Rows in which the ship leaps: a single leap can be another reference."""
+
+# Readings of the channels of a whole log
+
+FEWEST_INCREMENTS = 6
+"""Independent increments of a log that a relation needs. Assumed."""
+MOST_INCREMENTS = 40
+"""That count as evidence: what a form leaves unexplained is not white. Assumed."""
+LARGEST_TURN = 75.0
+"""From row to row, beyond which rows are too far apart to follow the motion. [deg] Assumed."""
+TURNED_TOO_FAR = 0.05
+"""Share of the rows that may turn further."""
+ALONGSIDE = 45.0
+"""By how much the heading may be off the way that the yaw rate tells from row to row, to count turns by it. [deg]
+Assumed."""
+CLEARLY_APART = 20.0
+"""Evidence between two forms that is enough. [nats]"""
+RELATION_WINDOWS = 16
+"""Windows of a log that are compared with each other."""
+ROBUST_SHARE = 0.8
+"""Share of them that a relation is found in, those that agree best: data may be lost in the others."""
+ROBUST_ROUNDS = 3
+"""Rounds of choosing them."""
+SCALE_TOLERANCE = (0.007, 0.08)
+"""By how much velocity and position of a right log differ in scale, as standard deviations: of most, and of a few.
+Assumed."""
+RATE_TOLERANCE = (0.012, 0.08)
+"""The same of yaw rate and heading. Assumed."""
+ANGLE_TOLERANCE = (0.02, 0.1)
+"""The same of the angle between velocity and change of position. [rad] Assumed."""
+FAR_SHARE = 0.03
+"""Share of those few. Assumed."""
+USUAL_SPEED = (1.0, 6.0)
+"""Speed of craft, and the factor by which most are slower or faster: [m/s, 1]. Assumed."""
+USUAL_STEP = (0.5, 8.0)
+"""Time from row to row of logs, and such a factor. [s, 1] Assumed."""
+UNEXPLAINED_COST = 14.0
+"""Cost of something that no combination of two changes explains. [nats] Assumed."""
+STEADINESS_COUNT = 10.0
+"""Most quarter turns of a ship that count in the steadiness of the wind. Assumed."""
+STEADINESS_FLOOR = 0.1
+"""What gusts take from the steadiness of a wind. Assumed."""
+EXPLAINED = 0.3
+"""What a relation may leave unexplained, to be asked whether it holds throughout. Assumed."""
+THROUGHOUT = 0.85
+"""Share of a log in which a reading holds that is one of all of it. Assumed."""
+READING_SURE = 0.95
+"""Probability from which on a change is named."""
+MOST_SURE = 0.998
+"""Largest probability of a reading: what is not thought of remains."""
+LEFT_OPEN = 0.5
+"""Probability of something that no reading explains, from which on nothing is said."""
+UNLIKELY_READING = 0.02
+"""Probability below which a reading is not said beside others."""
+MOST_ALTERNATIVES = 4
+"""Readings that are said beside another."""
 
 # Position against velocity, heading against rate
 

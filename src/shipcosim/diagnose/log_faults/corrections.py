@@ -67,7 +67,7 @@ def with_right_navigation(found: Identification) -> Identification:
 
 def with_right_clock(found: Identification) -> Identification:
     """The log with the segments of a wrong clock that the ship's response shows."""
-    others = tuple(fault for fault in found.faults if fault.cause != "clock")
+    others = tuple(fault for fault in found.faults if fault.cause != "clock" or not fault.segments)
     as_logged = found if len(others) == len(found.faults) else _repaired(found, others)
     clock = clock_by_response(as_logged.problem)
     if clock is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,8 @@ from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_in, undone
-from shipcosim.diagnose.log.repair import repaired
+from shipcosim.diagnose.log.readings.reading import misread
+from shipcosim.diagnose.log.repair import rate_of, read_anew, repaired
 from shipcosim.diagnose.log.rows import inside, usable_rows
 from shipcosim.diagnose.stages import CheckedLog, ReadLog
 
@@ -35,14 +37,30 @@ def checked(read: ReadLog) -> CheckedLog:
 def examine(log: xarray.Dataset) -> list[Finding]:
     """Faults of the data, of kind ``"data"``, most certain first; none in a log that is right.
 
+    What holds throughout the log is judged first and jointly, by all relations between its channels. Where that leaves
+    something open, only rows that are no measurement are looked for besides.
+
     Parameters
     ----------
     log : xarray.Dataset
         As from `read_log`.
     """
-    table = _arrays(log)
-    found = [*gaps(table), *wraps(table)]
-    table = _without(table, found)
+    logged = _arrays(log)
+    turned = wraps(logged)
+    logged = _without(logged, turned)
+    throughout = misread(logged, _stated_units(log))
+    table, start = read_anew(logged, throughout), logged["time"][0]
+    rounded_away = {role: logged[role] for role, values in table.items() if np.isnan(values).all()}
+    found = gaps(table | rounded_away)
+    if not any(finding.alternatives for finding in throughout):
+        found += _in_parts(_with_even_heading(_without(table, found)))
+    rate = rate_of(throughout)
+    found = [replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found]
+    return sorted([*turned, *throughout, *found], key=lambda finding: -finding.probability)
+
+
+def _in_parts(table):
+    """Mistakes of parts of a log, and those of the wind."""
     quiet = silent_rate(table)
     table = undone(table, mislabel_in(quiet[0]), quiet[0].segments) if quiet else table
     labels, right = mislabelled(table)
@@ -53,8 +71,17 @@ def examine(log: xarray.Dataset) -> list[Finding]:
         for label in kept:
             right = undone(right, mislabel_in(label), label.segments)
         clock = wrong_clock(right)
-    found += [*quiet, *kept, *(mislabelled_wind(right) or jumping_wind(right)), *clock]
-    return sorted(found, key=lambda finding: -finding.probability)
+    return [*quiet, *kept, *(mislabelled_wind(right) or jumping_wind(right)), *clock]
+
+
+def _as_logged(segment, start, rate):
+    """A segment of a time base put right, in the times of the log."""
+    first, last = (float(start + (end - start) / rate) for end in segment)
+    return first, last
+
+
+def _stated_units(log):
+    return {str(n): v.attrs["stated_unit"] for n, v in log.variables.items() if v.attrs.get("stated_unit")}
 
 
 def _is_the_clock(label, clock, time):
@@ -73,13 +100,16 @@ def _arrays(log):
 
 
 def _without(table, found):
-    """The table with what is no measurement left out, and the heading without jumps."""
-    table = dict(table)
-    for role, bad in outliers(table).items():
-        table[role] = np.where(bad, np.nan, table[role])
+    """The table with what is no measurement left out."""
+    table = table | {role: np.where(bad, np.nan, table[role]) for role, bad in outliers(table).items()}
     for finding in found:
         bad = inside(table["time"], finding.segments)
         table |= {role: np.where(bad, np.nan, table[role]) for role in finding.channels if role in table}
-    if "heading" in table:
-        table["heading"][:] = np.degrees(unwrap_series(np.radians(table["heading"])))
     return table
+
+
+def _with_even_heading(table):
+    """The table with a heading that does not jump."""
+    if "heading" not in table:
+        return table
+    return table | {"heading": np.degrees(unwrap_series(np.radians(table["heading"])))}

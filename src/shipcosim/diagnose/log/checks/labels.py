@@ -57,7 +57,7 @@ class _LabelHypothesis:
 
 
 def mislabelled(log: dict) -> tuple[list[Finding], dict]:
-    """Mislabelled navigation channels, and the log with them put right.
+    """Navigation channels that are mislabelled in a part of a log, and the log with them put right.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def mislabelled(log: dict) -> tuple[list[Finding], dict]:
     for motion_of, labels in ((heading_motion, HEADING_LABELS), (position_motion, POSITION_LABELS)):
         for _ in range(2):
             finding = _best(log, motion_of, labels)
-            if finding is None:
+            if finding is None or not finding.segments:
                 break
             log = undone(log, mislabel_in(finding), finding.segments)
             found.append(finding)

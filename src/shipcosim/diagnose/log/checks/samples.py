@@ -10,14 +10,15 @@ from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log.thresholds import (
     END_DISTANCE,
+    FASTER,
     FEWEST_GAP_ROWS,
     FEWEST_LEAPS,
     LEAP,
     LONGEST_WRAP,
     NEAR_NORTH,
+    NO_TURN,
     RUN_CHANCE,
     SHORTEST_GAP,
-    SPINNING,
 )
 from shipcosim.diagnose.result import Finding
 
@@ -221,26 +222,33 @@ def wraps(log: dict) -> list[Finding]:
         return []
     time, heading = log["time"], log["heading"]
     bad, fine = np.zeros(len(heading), bool), quantum(heading)
+    faster = _no_turn(heading)
     full = np.where(np.abs(heading) <= fine, heading + 360.0, heading)  # 359.98 rounded is written as 0.0
     for between in range(1, min(LONGEST_WRAP, len(heading) - 2) + 1):
         crossing = np.zeros(len(heading) - between - 1, bool)
         for a, b in ((heading, heading), (full, heading), (heading, full)):
-            crossing |= _long_way(time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine)
+            crossing |= _long_way(time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine, faster)
         for row in np.flatnonzero(crossing):
             bad[row + 1 : row + 1 + between] = True
-    bad |= _round_south(log)
+    bad |= _round_south(log, faster)
     segments = tuple((float(time[first]), float(time[last - 1])) for first, last in runs(bad))
     note = "samples lie on the long way round between both sides of north"
     return [Finding("heading_wrap", None, "data", 1.0, {}, segments, ("heading",), note=note)] if segments else []
 
 
-def _long_way(time, heading, a, b, tolerance):
+def _no_turn(heading):
+    """Change from row to row that is no turn of this craft, however agile she is. [deg]"""
+    change = np.abs(wrap_series(np.diff(heading[np.isfinite(heading)])))
+    return max(NO_TURN, FASTER * float(np.quantile(change, 0.9))) if len(change) else NO_TURN
+
+
+def _long_way(time, heading, a, b, tolerance, faster):
     """Where the samples between a and b, both near north and on its two sides, lie on the line through south.
 
     Some of them may be missing.
     """
     n, between = len(a), len(heading) - len(a) - 1
-    crossing = (np.abs(b - a) > 180.0) & (np.abs(wrap_series(b - a)) < 45.0)
+    crossing = (np.abs(b - a) > 180.0) & (np.abs(wrap_series(b - a)) < 45.0) & (np.abs(b - a) > faster * (between + 1))
     some = np.zeros(n, bool)
     for k in range(1, between + 1):
         share = (time[k : n + k] - time[:n]) / (time[between + 1 :] - time[:n])
@@ -250,23 +258,21 @@ def _long_way(time, heading, a, b, tolerance):
     return crossing & some
 
 
-def _round_south(log):
-    """Samples of the same kind where those at the ends are missing: far from north between some that are near it.
+def _round_south(log, faster):
+    """Samples of the same kind where those at the ends are missing: far from north between some on both sides of it.
 
     They come and go within a few rows, much faster than the ship turns.
     """
     bad, known = np.zeros(len(log["heading"]), bool), np.flatnonzero(np.isfinite(log["heading"]))
     time, heading = log["time"][known], wrap_series(log["heading"][known])
-    change = np.abs(wrap_series(np.diff(heading))) / np.diff(time)
-    turning = np.nan_to_num(np.abs(log["yaw_rate"][known])) if "yaw_rate" in log else np.zeros(len(known))
+    change = np.abs(wrap_series(np.diff(heading)))
     longest = (2 * LONGEST_WRAP + 1.5) * np.median(np.diff(log["time"]))
     for first, last in runs(np.abs(heading) > NEAR_NORTH):
         if first == 0 or last == len(known) or time[last] - time[first - 1] > longest:
             continue
-        limit = max(SPINNING, 3.0 * turning[first - 1 : last + 1].max())
-        if max(change[first - 1], change[last - 1]) > limit:
-            first -= first > 1 and change[first - 2] > limit  # samples near north may lie on the line too
-            last += last < len(change) and change[last] > limit
+        if heading[first - 1] * heading[last] < 0.0 and max(change[first - 1], change[last - 1]) > faster:
+            first -= first > 1 and change[first - 2] > faster  # samples near north may lie on the line too
+            last += last < len(change) and change[last] > faster
             bad[known[first:last]] = True
     return bad
 

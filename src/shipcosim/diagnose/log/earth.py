@@ -1,0 +1,23 @@
+"""Size of a degree on the earth."""
+
+from __future__ import annotations
+
+import numpy as np
+
+__all__ = ["metres_per_degree"]
+
+EQUATORIAL_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 6.69437999014e-3  # [m, 1] WGS 84
+
+
+def metres_per_degree(latitude: float) -> tuple[float, float]:
+    """Length of a degree of latitude and of one of longitude. [m]
+
+    Parameters
+    ----------
+    latitude : float
+        [deg]
+    """
+    sine, cosine = np.sin(np.radians(latitude)), np.cos(np.radians(latitude))
+    curvature = 1.0 - ECCENTRICITY_SQUARED * sine**2
+    meridian = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / curvature**1.5
+    return float(np.radians(meridian)), float(np.radians(EQUATORIAL_RADIUS / np.sqrt(curvature) * cosine))

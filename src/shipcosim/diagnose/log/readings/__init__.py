@@ -1,0 +1,1 @@
+"""How the channels of a log are to be read, judged jointly by all kinematic relations between them."""

@@ -1,0 +1,194 @@
+"""The likeliest readings of a log: combinations of changes, weighed by all relations at once and by their costs.
+
+For each combination the relations say how likely it is: by what its form leaves unexplained, by how near the factor
+found is to the one that it predicts, and by the sign of the yaw rate. A factor that is free
+costs the width of its prior.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from shipcosim.diagnose.log.readings.changes import Change, Reading
+from shipcosim.diagnose.log.readings.relations import Relation
+from shipcosim.diagnose.log.thresholds import (
+    ANGLE_TOLERANCE,
+    FAR_SHARE,
+    RATE_TOLERANCE,
+    SCALE_TOLERANCE,
+    UNEXPLAINED_COST,
+    USUAL_SPEED,
+    USUAL_STEP,
+)
+
+__all__ = ["Evidence", "Judged", "judged", "reading_of"]
+
+GRID = np.linspace(-5.0, 5.0, 101)
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the relations of a log say.
+
+    Attributes
+    ----------
+    position : dict of (float, bool) to dict of str to Relation
+        By the heading's unit as a factor and whether positions are degrees: each form's relation. Empty without any.
+    rate : dict of float to Relation
+        By the heading's unit: heading against yaw rate.
+    turning : dict of bool to float
+        How likely the wind is, with the heading as it is and mirrored. [nats]
+    speed, step : float or None
+        As logged, of the craft and from row to row. [m/s, s]
+    """
+
+    position: dict[tuple[float, bool], dict[tuple[str, str], Relation]]
+    rate: dict[float, Relation]
+    turning: dict[bool, float]
+    speed: float | None = None
+    step: float | None = None
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A combination of changes with its probability; `rate`: true seconds per logged second, with standard deviation.
+
+    None of the changes, and of no probability in itself: something is wrong that no combination explains.
+    """
+
+    changes: tuple[Change, ...]
+    probability: float
+    rate: tuple[float, float] = (1.0, 0.0)
+
+
+def judged(evidence: Evidence, changes: Sequence[Change]) -> tuple[list[Judged], float]:
+    """Combinations of up to two changes, likeliest first; and the probability that none of them explains the log.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    changes : sequence of Change
+    """
+    best = _best_forms(evidence)
+    tried = list(_combinations(changes))
+    scored = [_score(combination, evidence) for combination in tried]
+    likely = np.array([*(score for score, _ in scored), best - UNEXPLAINED_COST])
+    shares = np.exp(likely - likely.max())
+    shares = shares / shares.sum()
+    found = [Judged(c, float(p), rate) for c, p, (_, rate) in zip(tried, shares[:-1], scored, strict=True)]
+    return sorted(found, key=lambda one: -one.probability), float(shares[-1])
+
+
+def reading_of(combination: Sequence[Change]) -> Reading:
+    """The reading of a log with some changes."""
+    reading = Reading()
+    for change in combination:
+        reading = change.apply(reading)
+    return reading
+
+
+def _combinations(changes) -> Iterator[tuple[Change, ...]]:
+    yield ()
+    for change in changes:
+        yield (change,)
+    for one, other in combinations(changes, 2):
+        if one.slot != other.slot:
+            yield one, other
+
+
+def _best_forms(evidence):
+    """What the likeliest forms say, whatever their factors."""
+    position = max((r.evidence for forms in evidence.position.values() for r in forms.values()), default=0.0)
+    rate = max((0.5 * r.evidence for r in evidence.rate.values()), default=0.0)
+    usual = _usual(evidence.speed, 1.0, USUAL_SPEED) + _usual(evidence.step, 1.0, USUAL_STEP)
+    return position + rate + max(evidence.turning.values(), default=0.0) + usual
+
+
+def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
+    """Log of the probability of a combination, but for a constant, and the rate of the clock with its deviation."""
+    reading, cost = reading_of(combination), sum(change.cost for change in combination)
+    forms = evidence.position.get((reading.heading_unit, reading.degrees), {})
+    relation, rate = forms.get(reading.form), evidence.rate.get(reading.heading_unit)
+    if (evidence.position and relation is None) or (evidence.rate and rate is None):
+        return -np.inf, (1.0, 0.0)
+    said = evidence.turning.get("heading" in reading.mirrored, 0.0)
+    slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
+    off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
+    if relation is not None:
+        said += relation.evidence + _angle(relation, reading)
+    if rate is not None:
+        said += _direction(rate, reading)
+    said += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(evidence.step, reading.time, USUAL_STEP)
+    factors, clock = _factors([one for one in off if one], slabs.get("time"))
+    return said + factors - cost, (reading.time * math.exp(clock[0]), reading.time * clock[1])
+
+
+def _usual(logged, factor, usual):
+    """Log-density of a speed or a step, against what is usual."""
+    if not logged or not np.isfinite(logged):
+        return 0.0
+    middle, spread = usual
+    return -0.5 * (math.log(logged * factor / middle) / math.log(spread)) ** 2
+
+
+def _angle(relation, reading):
+    """Log-density of the angle of a factor that was found."""
+    if "angle" in reading.free:
+        return -math.log(2.0 * math.pi)
+    off = math.remainder(relation.factor.imag - reading.factor.imag, 2.0 * math.pi)
+    return _log_density(np.array([off]), relation.std[1], ANGLE_TOLERANCE)[0]
+
+
+def _direction(rate, reading):
+    """Whether heading and yaw rate go the same way, as evidence."""
+    agrees = (math.cos(rate.factor.imag) > 0.0) == (reading.rate_factor > 0.0)
+    return 0.5 * rate.evidence if agrees else 0.0
+
+
+def _off_position(relation, reading, slabs):
+    """How far the size of the factor is from what a reading predicts: (value, density of the rest)."""
+    if relation is None:
+        return None
+    return relation.factor.real - reading.factor.real, relation.std[0], SCALE_TOLERANCE, slabs.get("scale")
+
+
+def _off_rate(rate, reading, slabs):
+    if rate is None:
+        return None
+    return rate.factor.real - math.log(abs(reading.rate_factor)), rate.std[0], RATE_TOLERANCE, slabs.get("rate")
+
+
+def _factors(offs, slab):
+    """Log-density of the factors found, and the logarithm of the clock's rate with its deviation where it is free."""
+    if slab is None or not offs:
+        return sum(_one_factor(*off)[0] for off in offs), (0.0, 0.0)
+    stds = np.array([np.hypot(std, tolerance[0]) for _, std, tolerance, _ in offs])
+    weights = stds**-2 / np.sum(stds**-2)
+    centre, spread = float(weights @ [off[0] for off in offs]), float(np.sum(stds**-2) ** -0.5)
+    at = centre + 2.0 * max(stds) * GRID
+    log = sum(_one_factor(value - at, std, tolerance, free) for value, std, tolerance, free in offs)
+    log = log - 0.5 * (at / slab) ** 2 - math.log(slab * math.sqrt(2.0 * math.pi))
+    top = float(log.max())
+    return top + math.log(float(np.sum(np.exp(log - top))) * (at[1] - at[0])), (centre, spread)
+
+
+def _one_factor(value, std, tolerance, free):
+    value = np.atleast_1d(value)
+    if free is not None:
+        return -0.5 * (value / free) ** 2 - math.log(free * math.sqrt(2.0 * math.pi))
+    return _log_density(value, std, tolerance)
+
+
+def _log_density(value, std, tolerance):
+    """Of a deviation as measured, and as instruments differ: mostly by the first tolerance, a few by the second."""
+    near, far = math.hypot(std, tolerance[0]), math.hypot(std, tolerance[1])
+    densities = [
+        share * np.exp(-0.5 * (value / width) ** 2) / (width * math.sqrt(2.0 * math.pi))
+        for share, width in ((1.0 - FAR_SHARE, near), (FAR_SHARE, far))
+    ]
+    return np.log(sum(densities) + 1e-300)

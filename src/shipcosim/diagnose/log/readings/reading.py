@@ -1,0 +1,152 @@
+"""The joint judgement of a log: which of its channels are not what they are labelled, or what is left open."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from shipcosim.angles import wrap_series
+from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of
+from shipcosim.diagnose.log.readings.changes import Change, changes
+from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, reading_of
+from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations, steadiness
+from shipcosim.diagnose.log.thresholds import (
+    EXPLAINED,
+    LEFT_OPEN,
+    MOST_ALTERNATIVES,
+    MOST_SURE,
+    READING_SURE,
+    STEADINESS_COUNT,
+    STEADINESS_FLOOR,
+    THROUGHOUT,
+    UNLIKELY_READING,
+)
+from shipcosim.diagnose.result import Estimate, Finding
+
+__all__ = ["misread"]
+
+DEGREE = float(np.degrees(1.0))
+
+
+def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
+    """Mistakes of units, frames, signs and of the time base that hold throughout a log.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time`, increasing, and roles in their units as logged.
+    stated : dict of str to str
+        Units that headers or a channel file state, by role.
+
+    Returns
+    -------
+    list of Finding
+        What is sure; and what is left open, as one finding with `alternatives`.
+    """
+    evidence = evidence_of(log)
+    readings, unexplained = judged(evidence, changes(stated))
+    return _findings(readings, unexplained) if _holds_throughout(readings[0], evidence) else []
+
+
+def evidence_of(log: dict) -> Evidence:
+    """What the relations of a log say, for each way to read heading and position.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        As in `misread`.
+    """
+    if "heading" not in log:
+        return Evidence({}, {}, {})
+    headings = {unit: unit * log["heading"] for unit in (1.0, DEGREE, 1.0 / DEGREE)}
+    rate = rate_relations(log["time"], headings, log["yaw_rate"]) if "yaw_rate" in log else {}
+    position, speed = {}, None
+    if {"north", "east", "surge", "sway"} <= set(log):
+        positions = {False: log["north"] + 1j * log["east"]}
+        if _can_be_degrees(log):
+            metres = POSITION_IN_DEGREES.undo(log)
+            positions[True] = metres["north"] + 1j * metres["east"]
+        position = position_relations(log, headings, positions)
+        speed = float(np.sqrt(np.nanmean(log["surge"] ** 2 + log["sway"] ** 2)))
+    return Evidence(position, rate, _turning(log), speed, float(np.median(np.diff(log["time"]))))
+
+
+def _can_be_degrees(log):
+    north, east = (log[role][np.isfinite(log[role])] for role in ("north", "east"))
+    if not len(north) or not len(east):
+        return False
+    return bool(np.abs(north).max() <= 90.0 and np.abs(east).max() <= 180.0 and max(np.ptp(north), np.ptp(east)) < 5.0)
+
+
+def _turning(log):
+    """How likely the wind over ground is with the heading as it is, and mirrored: it does not turn with the ship."""
+    if not {"wind_speed", "wind_from", "heading"} <= set(log):
+        return {}
+    wind = log["wind_speed"] * np.exp(1j * np.radians(log["wind_from"]))
+    turn = np.exp(1j * np.radians(log["heading"]))
+    known = np.isfinite(wind) & np.isfinite(turn)
+    if known.sum() < 100:
+        return {}
+    count = min(STEADINESS_COUNT, np.nansum(np.abs(wrap_series(np.diff(log["heading"])))) / 90.0)
+    plain, mirrored = (steadiness(wind[known] * t[known]) for t in (turn, np.conj(turn)))
+    likely = [-count * np.log(1.0 - s + STEADINESS_FLOOR) for s in (plain, mirrored)]
+    return {False: float(likely[0]), True: float(likely[1])}
+
+
+def _holds_throughout(best, evidence):
+    """Whether a reading explains the whole log, not the larger part of it."""
+    reading = reading_of(best.changes)
+    forms = evidence.position.get((reading.heading_unit, reading.degrees), {})
+    relations = [forms.get(reading.form), evidence.rate.get(reading.heading_unit)]
+    shares = [r.throughout for r in relations if r is not None and r.unexplained < EXPLAINED]
+    return all(share > THROUGHOUT for share in shares)
+
+
+def _findings(readings: list[Judged], unexplained: float) -> list[Finding]:
+    """Findings of the changes that are sure, and one of what is left open."""
+    shares: dict[str, float] = {}
+    for one in readings:
+        for said in {change.sentence for change in one.changes}:
+            shares[said] = shares.get(said, 0.0) + one.probability
+    first = {change.sentence: change for one in reversed(readings) for change in one.changes}  # likeliest last
+    sure = [said for said, share in shares.items() if share > READING_SURE and not first[said].or_else]
+    found = [_named(first[said], shares[said], readings) for said in sure]
+    rests: dict[tuple[Change, ...], float] = {}
+    for one in readings:
+        if set(sure) <= {change.sentence for change in one.changes}:
+            rest = tuple(first[change.sentence] for change in one.changes if change.sentence not in sure)
+            rests[rest] = rests.get(rest, 0.0) + one.probability
+    if unexplained + rests.get((), 0.0) > 1.0 - READING_SURE:
+        return found if unexplained < LEFT_OPEN else []
+    return [*found, _left_open(rests)]
+
+
+def _named(change, probability, readings):
+    """The finding of one change."""
+    probability = min(probability, MOST_SURE)
+    if change.mislabel is not None:
+        return finding_of(change.mislabel, probability)
+    return replace(_clock(change, readings), probability=probability)
+
+
+def _clock(change, readings):
+    rate, std = next(one.rate for one in readings if change in one.changes)
+    rates = {"rate": Estimate(float(rate), float(std), "1")}
+    return Finding("clock", None, "data", 1.0, rates, (), ("time",), note=change.sentence)
+
+
+def _left_open(rests):
+    """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
+    likely = sorted(rests.items(), key=lambda entry: -entry[1])
+    (first, share), others = likely[0], [rest for rest, p in likely[1:] if p > UNLIKELY_READING]
+    beside = [said for change in first for said in change.or_else]
+    beside += [_words(rest) for rest in others if _words(rest) != _words(first)]
+    channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
+    share = share / (1 + len(first[0].or_else))
+    alternatives = tuple(dict.fromkeys(beside))[:MOST_ALTERNATIVES]
+    return Finding(first[0].cause, None, "data", share, {}, (), channels, note=_words(first), alternatives=alternatives)
+
+
+def _words(rest):
+    return " and ".join(change.sentence for change in rest)

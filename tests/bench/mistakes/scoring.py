@@ -1,0 +1,86 @@
+"""What was said of a log with mistakes in it, held against what is in it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray
+
+from mistakes.mistakes import MISTAKES, with_mistakes
+from shipcosim.diagnose.log.checks.examine import examine
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.log.roles import role_of
+
+RATE_NEAR = 0.015  # of a clock: largest error of the logarithm of its rate
+
+
+@dataclass(frozen=True)
+class Answer:
+    """How one log was answered.
+
+    Attributes
+    ----------
+    source, seed, mistakes, declared
+        The log.
+    outcome : str
+        "right": all mistakes are named and nothing else; "wrong": something else is named; "open": nothing wrong is
+        named, and readings are left open among which the right one is; "silent": nothing is said; "part": one of two.
+    said : tuple of (str, float, bool)
+        Each finding in words, its probability, whether it is right; those left open are not among them.
+    open : tuple of str
+        What was left open, in words.
+    """
+
+    source: str
+    seed: int
+    mistakes: tuple[str, ...]
+    declared: bool
+    outcome: str
+    said: tuple
+    open: tuple[str, ...]
+
+
+def as_table(log, declared):
+    """The log as a file would be read: with its units in the headers or without."""
+    units = {role: role_of(role).unit if declared else "" for role in log}
+    columns = {role: ("time", values, {"units": units[role]}) for role, values in log.items() if role != "time"}
+    return read_log(xarray.Dataset(columns, {"time": ("time", log["time"], {"units": units["time"]})}))
+
+
+def answered(log, source, seed, names, declared):
+    """The answer to a log with some mistakes."""
+    with np.errstate(all="ignore"):
+        found = examine(as_table(with_mistakes(log, names), declared))
+    expected = [MISTAKES[name] for name in names]
+    sure = [finding for finding in found if not getattr(finding, "alternatives", ())]
+    left_open = [finding for finding in found if getattr(finding, "alternatives", ())]
+    hits = [next((m for m in expected if _is(finding, m)), None) for finding in sure]
+    said = tuple(
+        (_words(finding), finding.probability, hit is not None) for finding, hit in zip(sure, hits, strict=True)
+    )
+    open_words = tuple(f"{_words(finding)} / {' / '.join(finding.alternatives)}" for finding in left_open)
+    return Answer(source, seed, tuple(names), declared, _outcome(expected, hits, left_open), said, open_words)
+
+
+def _outcome(expected, hits, left_open):
+    if any(hit is None for hit in hits):
+        return "wrong"
+    if left_open:
+        return "open"
+    if len({id(hit) for hit in hits}) == len(expected):
+        return "right"
+    return "part" if hits else "silent"
+
+
+def _is(finding, mistake):
+    if finding.cause != mistake.cause or set(finding.channels) != set(mistake.channels) or finding.segments:
+        return False
+    if mistake.rate is None:
+        return True
+    return abs(np.log(finding.parameters["rate"].estimate / mistake.rate)) < RATE_NEAR
+
+
+def _words(finding):
+    rate = finding.parameters.get("rate")
+    size = f" {rate.estimate:.4g}" if rate else ""
+    where = f" in {len(finding.segments)} parts" if finding.segments else ""
+    return f"{finding.cause} {','.join(finding.channels)}{size}{where}: {finding.note}"
