@@ -6,6 +6,7 @@ From a log to its verdict, `verdict_on`:
     checked            CheckedLog      faults of the log that its own channels show, repaired
     identified         Identification  the identification problem: noise, linearisation about the ship without a cause
     corrected          Identification  faults of the log and of connections that only the ship's response shows
+    with_learnt_form   Identification  how far the form of the ship's loads differs from the model's
     with_causes        ExplainedLog    sets of causes fitted to the log
     with_right_inputs  ExplainedLog    mislabelled channels of thrusters and wind, which look like causes
     with_change_point  ExplainedLog    causes that began during the log
@@ -36,6 +37,7 @@ from shipcosim.diagnose.experiment.testability import log_facts, untestable_caus
 from shipcosim.diagnose.extension.extended_system import with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.change_point import with_change_point
+from shipcosim.diagnose.inference.form import with_learnt_form
 from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.inference.search import with_causes
 from shipcosim.diagnose.inference.summary import evidence_of
@@ -176,7 +178,7 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
     """The way of a log to its verdict, stage by stage."""
     log = checked(read)
     progress("which causes explain it?")
-    identification = corrected(identified(log))
+    identification = with_learnt_form(corrected(identified(log)))
     explained = with_change_point(with_right_inputs(with_causes(identification)))
     progress("what do healthy ships look like?")
     return judged(explained)

@@ -81,10 +81,11 @@ class IdentificationProblem:
         taken |= {path for hypothesis in everyone for path in hypothesis.definition.companions}
         found = [Regressor(direction, beside=True) for direction in self.model.directions]
         taken |= self.model.referenced
-        found += [Regressor({path: size}) for path, size in self.model.tolerances.items() if path not in taken]
+        sizes = self.model.uncertainties
+        found += [Regressor({path: size}) for path, size in sizes.items() if path not in taken]
         for hypothesis in everyone:
             for parameter in hypothesis.parameters if hypothesis.definition.law == "linear" else ():
-                listed = all(path in self.model.tolerances for path in parameter.paths)
+                listed = all(path in sizes for path in parameter.paths)
                 if parameter.tolerance > 0.0 and not listed and not taken & set(parameter.paths):
                     found.append(Regressor(dict.fromkeys(parameter.paths, parameter.tolerance)))
         return found

@@ -130,7 +130,7 @@ def healthy_records(problem: IdentificationProblem, motion: Motion, count: int, 
 
 def _drawn(model, count, rng):
     """Ships within what is known of a ship model."""
-    own = {path: size for path, size in model.tolerances.items() if path not in model.referenced}
+    own = {path: size for path, size in model.uncertainties.items() if path not in model.referenced}
     directions = [*model.directions, *({path: size} for path, size in own.items() if not model.is_of_day(path))]
     values = {}
     for direction in directions:

@@ -6,13 +6,10 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared
-from shipcosim.diagnose.inference.noise import first_noise, tuned
-from shipcosim.diagnose.inference.screening import screened
-from shipcosim.diagnose.inference.thresholds import GUST_FACTOR, LENGTHS_PER_GYRADIUS, MOST_WALK, TUNED_BESIDE
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
+from shipcosim.diagnose.inference.form import tuned_noise
+from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.surrogate import with_surrogates
 from shipcosim.diagnose.stages import CheckedLog, Identification
@@ -63,7 +60,7 @@ def identification_problem(
     wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)
     start = first_noise(record, ship.parts["hull"].length) if noise is None else noise
     problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
-    return problem if noise is not None else prepared(replace(problem, noise=_tuned_noise(problem)))
+    return problem if noise is not None else prepared(replace(problem, noise=tuned_noise(problem)))
 
 
 def _as_logged(ship, repaired):
@@ -74,17 +71,6 @@ def _as_logged(ship, repaired):
         wind_is_true="wind_speed" not in repaired and "true_wind_speed" in repaired,
         fixed={name: angle for name, angle in ship.fixed.items() if f"{name}_azimuth" not in repaired},
     )
-
-
-def _tuned_noise(problem):
-    """Noise of maximum likelihood beside the cause that explains most at first sight."""
-    fit = fitted(problem)
-    gain, hypothesis, values = screened(problem, fit)[0]
-    if gain > TUNED_BESIDE:
-        fit = fitted(problem, (hypothesis,), values)
-    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
-    most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
-    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most)
 
 
 def unidentifiable(

@@ -33,6 +33,14 @@ STEADY_SET_LOSS = 12.0
 """Log-evidence that a set whose causes are equally large in all parts of the log may be below the best. [nats] What a
 few wrong rows gave a cause on developing logs."""
 
+# The form of the ship's loads
+
+FORM_SCALES = (0.5, 1.0, 2.0)
+"""How far the form may differ, over what is usual, among which the log chooses; and 0, the model's own. [1]"""
+FORM_COST = 10.0
+"""Log-evidence that another form must gain over the model's. [nats] Of 19 healthy developing logs of the model's form
+one gained 24, the next 15; ten of another form gained 25 to 240 where the ship moved."""
+
 # Gain on simulated healthy logs
 
 NULL_GAIN_WITHOUT_WIND = 40.0

@@ -9,6 +9,7 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.diagnose.ship.environment import share_of, swell_of
+from shipcosim.diagnose.ship.form import cross_flow_form, wind_factors
 from shipcosim.diagnose.ship.third_party_fmu import drives_of
 from shipcosim.diagnose.ship.thrusters import thruster_loads
 from shipcosim.models.core.kinematics import to_body, to_ned
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["current_at", "loads", "motion_rates", "rate_difference", "with_steady_current"]
 
 Alike = tuple["ShipModel", dict[str, Load]]
+_MADE_OF = {"wind": ("wind", "wind_form"), "hull_form": ("hull", "hull_form")}  # parts that a load is made of
 _CURRENT = tuple(f"{of}_{to}" for of in ("current", "trend") for to in ("north", "east"))
 _CURRENT += tuple(f"{to}_{at}" for to in ("north", "east") for at in ("start", "end"))
 
@@ -88,6 +90,8 @@ def loads(motion: Motion, inputs: Inputs, model: ShipModel, like: Alike | None =
         found[name] = same.get(name) or _third_party_loads(name, motion, inputs, (u_r, v_r), model)
     if inputs.wind_speed is not None:
         found["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
+    if parts["hull_form"].acts:
+        found["hull_form"] = same.get("hull_form") or cross_flow_form(v_r, r, parts["hull"], parts["hull_form"])
     water = parts["water"]
     if np.any(water.drift_north) or np.any(water.drift_east):
         shape = {name: getattr(water, f"drift_{name}") for name in ("surge_share", "sway_power", "yaw_arm")}
@@ -100,9 +104,12 @@ def loads(motion: Motion, inputs: Inputs, model: ShipModel, like: Alike | None =
 
 def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[str, Load]:
     """Those of another ship's loads that this one has too."""
-    if not _same_current(model, other):
-        return {"wind": found["wind"]} if "wind" in found and model.parts["wind"] is other.parts["wind"] else {}
-    return {name: load for name, load in found.items() if model.parts.get(name) is other.parts.get(name, 0)}
+
+    def alike(name):
+        return all(model.parts.get(part) is other.parts.get(part, 0) for part in _MADE_OF.get(name, (name,)))
+
+    names = found if _same_current(model, other) else {"wind"} & set(found)
+    return {name: found[name] for name in names if alike(name)}
 
 
 def _same_current(model: ShipModel, other: ShipModel) -> bool:
@@ -127,9 +134,12 @@ def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:
     if model.wind_is_true:
         north, east = -speed * cos(direction), -speed * sin(direction)
         speed, direction = wind.apparent_wind(motion.psi, motion.u, motion.v, north, east)
-    return wind.wind_loads(
-        speed, wrap(direction - parameters.apparent_wind_offset), wind=replace(parameters, apparent_wind_offset=0.0)
-    )
+    angle = wrap(direction - parameters.apparent_wind_offset)
+    found = wind.wind_loads(speed, angle, wind=replace(parameters, apparent_wind_offset=0.0))
+    form = model.parts["wind_form"]
+    if not form.acts:
+        return found
+    return tuple(load * factor for load, factor in zip(found, wind_factors(angle, form), strict=True))
 
 
 def motion_rates(

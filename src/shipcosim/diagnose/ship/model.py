@@ -11,7 +11,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from shipcosim.diagnose.ship.environment import water_of
+from shipcosim.diagnose.ship.form import HullForm, WindForm, form_sizes
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu, part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed
@@ -40,11 +43,13 @@ class ShipModel:
     ----------
     parts : dict of str to dataclass
         Parameter sets by place: ``vessel``'s hull and wind under ``hull`` and ``wind``, thrusters by component,
-        ``water``, ``instruments``.
+        ``water``, ``instruments``, and ``hull_form`` and ``wind_form``, how the loads differ from the model's form.
     vessel : str
         Name of the ship's component.
     tolerances : dict of str to float
         By ``place.name`` as the system names it, in its unit.
+    form_scale : float
+        How far the form of her loads may differ from the model's, over what is usual; 0 where it is the model's. [1]
     directions : tuple of dict of str to float
         What a reference leaves uncertain of her numbers, instead of their tolerances: changes of several numbers at
         once, independent of each other, each of one standard deviation.
@@ -65,6 +70,7 @@ class ShipModel:
     parts: dict[str, Any]
     vessel: str = "vessel"
     tolerances: dict[str, float] = field(default_factory=dict)
+    form_scale: float = 0.0
     directions: tuple[dict[str, float], ...] = ()
     span: tuple[float, float] = (0.0, 1.0)
     wind_is_true: bool = False
@@ -78,6 +84,14 @@ class ShipModel:
         """Every number that a cause can change, ``place.name``."""
         places = {part: self.vessel if part in ("hull", "wind") else part for part in self.parts}
         return [f"{places[part]}.{item.name}" for part, values in self.parts.items() for item in fields(values)]
+
+    @property
+    def uncertainties(self) -> dict[str, float]:
+        """Standard deviation of every number that is not known for sure: by its tolerance, and by the form's."""
+        found = dict(self.tolerances)
+        for path, size in form_sizes(self).items() if self.form_scale else ():
+            found[path] = float(np.hypot(found.get(path, 0.0), self.form_scale * size))
+        return found
 
     @property
     def referenced(self) -> set[str]:
@@ -184,6 +198,7 @@ def ship_model_of(system: System) -> ShipModel:
     ours, water = [name for name in parts if isinstance(parts[name], _OURS)], water_of(parts["hull"].length)
     neighbours = neighbours_of(system, parts)
     parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
+    parts |= {"hull_form": HullForm(), "wind_form": WindForm()}
     found = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
     found |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
     return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **found)

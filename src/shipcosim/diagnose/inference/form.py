@@ -1,0 +1,117 @@
+"""How far the form of a ship's loads differs from her model's, learnt from the log by evidence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.inference.evidence import evidence, gram
+from shipcosim.diagnose.inference.fitting import fitted, prepared
+from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.linearisation import Regressor, beside, linearise
+from shipcosim.diagnose.inference.noise import tuned
+from shipcosim.diagnose.inference.screening import gains, screened, screening_regressors
+from shipcosim.diagnose.inference.thresholds import (
+    FORM_COST,
+    FORM_SCALES,
+    GUST_FACTOR,
+    LENGTHS_PER_GYRADIUS,
+    MOST_WALK,
+    TUNED_BESIDE,
+)
+from shipcosim.diagnose.ship.form import form_sizes
+from shipcosim.diagnose.stages import Identification
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.inference.innovations import Noise
+
+__all__ = ["learnt", "of_scale", "scores_by_scale", "tuned_noise", "with_learnt_form"]
+
+
+def with_learnt_form(found: Identification) -> Identification:
+    """An identified log whose ship may differ from the model's form as far as the log says."""
+    problem = learnt(found.problem)
+    return replace(found, ship=replace(found.ship, form_scale=problem.model.form_scale), problem=problem)
+
+
+def learnt(problem: IdentificationProblem) -> IdentificationProblem:
+    """The problem of a ship that may differ from the model's form as far as the log says.
+
+    The model's form is preferred by `FORM_COST`. The scale is that of largest evidence at first sight, and is kept if
+    the log is likelier too once its likeliest cause is fitted beside each. What a reference says of a ship is kept.
+
+    Parameters
+    ----------
+    problem : IdentificationProblem
+        With a ship of the model's form.
+
+    Returns
+    -------
+    IdentificationProblem
+    """
+    if problem.model.form_scale or problem.model.directions:
+        return problem
+    scores = scores_by_scale(problem, fitted(problem))
+    scale = max(scores, key=lambda scale: scores[scale] - FORM_COST * (scale > 0.0))
+    if not scale:
+        return problem
+    formed = of_scale(problem, scale)
+    is_likelier = _beside_likeliest(formed).score - FORM_COST > _beside_likeliest(problem).score
+    return formed if is_likelier else problem
+
+
+def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, float]:
+    """Evidence of a log by the scale of the form, each with its likeliest cause at first sight.
+
+    Parameters
+    ----------
+    problem : IdentificationProblem
+        With a ship of the model's form.
+    fit : Fit
+        To it, beside which further causes are looked at.
+
+    Returns
+    -------
+    dict of float to float
+        Of scale 0 and `FORM_SCALES`. [nats, up to a constant of the log]
+    """
+    wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
+    sizes = {path: size for path, size in form_sizes(problem.model).items() if path not in fit.values}
+    added = [column for hypothesis in wanted for group in screening_regressors(hypothesis) for column in group]
+    form = linearise(fit.motion, problem.record, fit.model, [Regressor({path: size}) for path, size in sizes.items()])
+    linear = beside(beside(fit.linear, form), problem.base_of(added))
+    products = gram(innovations(linear, problem.noise, problem.record)).products
+    found = {}
+    for scale in (0.0, *FORM_SCALES):
+        columns = [*fit.columns, *(Regressor({path: size}, prior=scale) for path, size in sizes.items())]
+        centre = np.concatenate([fit.centre, np.zeros(len(sizes))])
+        prior = np.zeros(len(products) - 1)
+        prior[: len(columns)] = [column.prior for column in columns]
+        alone = evidence(products, prior, np.concatenate([centre, np.zeros(prior.size - centre.size)]))[0]
+        more = gains(products, columns, centre, wanted, fit.model.get)
+        found[scale] = alone + max(more[0][0] if more else 0.0, 0.0)
+    return found
+
+
+def of_scale(problem: IdentificationProblem, scale: float) -> IdentificationProblem:
+    """The problem of a ship whose form may differ by some scale, its noise tuned anew."""
+    formed = prepared(replace(problem, model=replace(problem.model, form_scale=scale)))
+    return prepared(replace(formed, noise=tuned_noise(formed)))
+
+
+def tuned_noise(problem: IdentificationProblem) -> Noise:
+    """Noise of maximum likelihood beside the cause that explains most at first sight."""
+    fit = _beside_likeliest(problem)
+    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
+    most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
+    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most)
+
+
+def _beside_likeliest(problem: IdentificationProblem) -> Fit:
+    """The fit with the cause that explains most at first sight, if it does so beyond chance."""
+    fit = fitted(problem)
+    gain, hypothesis, values = screened(problem, fit)[0]
+    return fitted(problem, (hypothesis,), values) if gain > TUNED_BESIDE else fit

@@ -1,0 +1,177 @@
+"""How the form of a ship's loads may differ from her model's: functions around it, each a handful of numbers.
+
+Drag along the hull and the wind load over the angle are the model's times one plus a few smooth functions, with numbers
+of their own here. Damping over speed, added mass and thrust under way are numbers that the model has, less well known
+than their tolerances say. The sizes here are those of scale 1; how far the form of one ship differs is learnt.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, make_dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.models.core.maths import Arithmetic, cos, sin
+from shipcosim.models.core.motion import Load
+from shipcosim.models.core.parameters import quantity
+from shipcosim.models.propulsion.tunnel import TunnelParameters
+from shipcosim.models.ship.hull import HullParameters
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["HullForm", "WindForm", "cross_flow_form", "form_sizes", "wind_factors"]
+
+_NEUTRAL = "neutral"
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(12)  # along the hull, over half its length
+_DEGREES = (1, 2, 3)
+_SHAPES = np.polynomial.legendre.legvander(_PLACES, max(_DEGREES))
+_HARMONICS = (0, 1, 2)
+
+
+def _along(degree: int) -> float:
+    means = f"cross-flow drag along the hull: share of the Legendre polynomial of degree {degree}, 1 at the bow"
+    return quantity(0.0, "1", means, _NEUTRAL)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Form:
+    @property
+    def acts(self) -> bool:
+        """Whether any of it is not neutral."""
+        return any(np.any(getattr(self, item.name)) for item in fields(self))
+
+
+@dataclass(frozen=True, kw_only=True)
+class HullForm(_Form):
+    """Drag along the hull, over the model's."""
+
+    cross_flow_1: float = _along(1)
+    cross_flow_2: float = _along(2)
+    cross_flow_3: float = _along(3)
+
+
+def _harmonics() -> list[tuple[str, int, str]]:
+    """Name, order and function of each harmonic of the wind's angle."""
+    return [(f"{f}_{k}" if k else "mean", k, f) for k in _HARMONICS for f in ("cos", "sin") if k or f == "cos"]
+
+
+def _round(axis: str, name: str) -> tuple[str, type, float]:
+    means = f"wind load {axis} over the angle that it comes from: share of the harmonic {name}"
+    return f"{axis}_{name}", float, quantity(0.0, "1", means, _NEUTRAL)
+
+
+WindForm = make_dataclass(
+    "WindForm",
+    [_round(axis, name) for axis in "XYN" for name, *_ in _harmonics()],
+    bases=(_Form,),
+    frozen=True,
+    kw_only=True,
+)
+"""Wind load over the angle, over the model's, for each of X, Y and N."""
+
+ALONG = {1: 0.15, 2: 0.15, 3: 0.10}  # of the drag coefficient, by degree; assumed: sections of ships differ by +-30 %
+LEVEL = 0.12  # of cross flow and of resistance as a whole; assumed
+ROUND = {0: 0.05, 1: 0.05, 2: 0.045}  # of the wind load, by order; Blendermann 1994: +-15 % between similar ships
+WIND_LEVEL = 0.05  # of X, Y and N alike
+ADDED_MASS = 0.15  # water that remembers is, in slow motion, an added mass; assumed
+LIFT = 0.2  # of its size and of its arm; assumed
+LINEAR = 0.2  # linear damping over the quadratic one at these speeds; assumed
+FROUDE_AHEAD, FROUDE_ACROSS = 0.06, 0.018
+SPEED_LOSS = 0.1  # s2/m2 on a ship of 33.9 m, of a tunnel's thrust; half of (1/2.2)^2
+_OF_LENGTH, _GRAVITY = 33.9, 9.81
+
+
+def form_sizes(model: ShipModel) -> dict[str, float]:
+    """How far each number of a ship's form may be off, of scale 1.
+
+    Parameters
+    ----------
+    model : ShipModel
+
+    Returns
+    -------
+    dict of str to float
+        Standard deviation by ``place.name``, in the number's unit.
+    """
+    hull, vessel = model.parts["hull"], model.vessel
+    found = {f"hull_form.cross_flow_{degree}": size for degree, size in ALONG.items()}
+    found |= {f"wind_form.{axis}_{name}": ROUND[order] for axis in "XYN" for name, order, _ in _harmonics()}
+    found |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
+    found[f"{vessel}.wind_load_scale"] = WIND_LEVEL
+    tunnels = [name for name, part in model.parts.items() if isinstance(part, TunnelParameters)]
+    return found | {f"{name}.speed_loss": SPEED_LOSS * _OF_LENGTH / hull.length for name in tunnels}
+
+
+def _hull_sizes(hull: HullParameters) -> dict[str, float]:
+    """Of the numbers that the hull has: coefficients by a share of their size, linear damping by the quadratic one."""
+    found = {name: ADDED_MASS * abs(getattr(hull, name)) for name in ("A11", "A22", "A26", "A62", "A66")}
+    found |= {name: LIFT * abs(getattr(hull, name)) for name in ("lift", "lift_x")}
+    coefficients = [item.name for item in fields(hull) if item.name[:2] in ("X_", "Y_", "N_")]
+    found |= {name: LEVEL * abs(getattr(hull, name)) for name in ("cross_flow_drag", *coefficients)}
+    speed, side = (froude * np.sqrt(_GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS))
+    half, strength = 0.5 * hull.length, _strength(hull)
+    found["X_u"] += LINEAR * speed * abs(hull.X_uu)
+    found["Y_v"] += LINEAR * side * strength * hull.length
+    found["N_r"] += LINEAR * side / half * strength * half**4 / 2.0
+    return {name: float(size) for name, size in found.items()}
+
+
+def _strength(hull: HullParameters) -> Arithmetic:
+    """Half of density, draught and drag coefficient of the sections; of 1, where the hull has no such drag. [kg/m2]"""
+    if "cross_flow" in hull.contributions:
+        half, k = hull.strips
+        return k / half
+    of_sway = abs(hull.quadratic[1])
+    return of_sway / hull.length if np.any(of_sway) else 0.5 * hull.water_density * hull.draught
+
+
+def cross_flow_form(v_r: Arithmetic, r: Arithmetic, hull: HullParameters, form: HullForm) -> Load:
+    """What cross flow loads more than the model has, by Gauss' quadrature over the hull.
+
+    Parameters
+    ----------
+    v_r, r : (...) array
+        Sway velocity through the water and yaw rate. [m/s, rad/s]
+    hull : HullParameters
+    form : HullForm
+
+    Returns
+    -------
+    tuple of three, like v_r
+        X, Y, N. [N, N, N.m]
+    """
+    half, Y, N = 0.5 * hull.length, 0.0 * v_r, 0.0 * v_r
+    strength = _strength(hull) * half
+    for place, weight, shapes in zip(_PLACES, _WEIGHTS, _SHAPES, strict=True):
+        share = sum(getattr(form, f"cross_flow_{k}") * shapes[k] for k in _DEGREES)
+        flow = v_r + place * half * r
+        load = -strength * weight * share * abs(flow) * flow
+        Y, N = Y + load, N + place * half * load
+    return 0.0 * v_r, Y, N
+
+
+def wind_factors(wind_from: Arithmetic, form: object) -> Load:
+    """Factors on the model's wind load, by the angle that the wind comes from.
+
+    Parameters
+    ----------
+    wind_from : (...) array
+        From the bow. [rad]
+    form : WindForm
+
+    Returns
+    -------
+    tuple of three, like wind_from
+        On X, Y and N. [1]
+    """
+    factors = []
+    for axis in "XYN":
+        factor = 1.0 + 0.0 * wind_from
+        for name, order, function in _harmonics():
+            share = getattr(form, f"{axis}_{name}")
+            if np.any(share):
+                factor = factor + share * (cos if function == "cos" else sin)(order * wind_from)
+        factors.append(factor)
+    return tuple(factors)
