@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.evidence import evidence, gram
+from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import fitted, prepared
-from shipcosim.diagnose.inference.innovations import innovations
-from shipcosim.diagnose.inference.linearisation import Regressor, beside, linearise
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.noise import tuned
+from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
 from shipcosim.diagnose.inference.screening import gains, screened, screening_regressors
 from shipcosim.diagnose.inference.thresholds import (
     FORM_COST,
@@ -81,9 +82,10 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
     sizes = {path: size for path, size in form_sizes(problem.model).items() if path not in fit.values}
     added = [column for hypothesis in wanted for group in screening_regressors(hypothesis) for column in group]
-    form = linearise(fit.motion, problem.record, fit.model, [Regressor({path: size}) for path, size in sizes.items()])
+    of_form = [Regressor({path: size}) for path, size in sizes.items()]
+    form = linearised_by_parts(fit.about, problem.record, fit.model, of_form, kept=False)
     linear = beside(beside(fit.linear, form), problem.base_of(added))
-    products = gram(innovations(linear, problem.noise, problem.record)).products
+    products = inner_products(linear, problem.noise, problem.record).products
     found = {}
     for scale in (0.0, *FORM_SCALES):
         columns = [*fit.columns, *(Regressor({path: size}, prior=scale) for path, size in sizes.items())]
