@@ -314,3 +314,26 @@ def test_check_of_a_table_remarks_gaps_and_missing_values(call, project):
 def test_check_of_a_file_that_is_not_there_ends_with_2(call, project):
     failed = call("check", "nothing.ssp")
     assert failed.code == 2 and "nothing.ssp" in failed.err
+
+
+SSV = """<?xml version="1.0"?><ssv:ParameterSet version="1.0" name="extended"
+xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">
+<ssv:Parameters>{}</ssv:Parameters></ssv:ParameterSet>"""
+REAL = '<ssv:Parameter name="{}"><ssv:Real value="{}"{}/></ssv:Parameter>'
+
+
+def test_run_takes_of_a_foreign_parameter_set_what_fits_and_says_what_does_not(call, project):
+    values = REAL.format("lag.time_constant", 4.0, "") + REAL.format("tow.north", 1.0, "")
+    (project / "extended.ssv").write_text(SSV.format(values), encoding="utf-8")
+    plain, other = (
+        call("run", "fill", "--out", out, *more) for out, more in (("a", []), ("b", ["--parameters", "extended.ssv"]))
+    )
+    assert plain.code == 0 and "tow.north" in other.err and "Left out" in other.err
+    slower = [float((project / out / "result.csv").read_text().split()[-1].split(",")[-1]) for out in ("a", "b")]
+    assert slower[1] < slower[0]
+
+
+def test_run_refuses_a_parameter_set_of_which_nothing_fits(call, project):
+    (project / "extended.ssv").write_text(SSV.format(REAL.format("tow.north", 1.0, "")), encoding="utf-8")
+    result = call("run", "fill", "--parameters", "extended.ssv")
+    assert result.code == 2 and "Nothing of it fits tank: tow.north." in result.err

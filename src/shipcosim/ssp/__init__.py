@@ -4,6 +4,7 @@ from shipcosim.ssp.check import check_file, check_system
 from shipcosim.ssp.edit.opening import new, read
 from shipcosim.ssp.edit.system_structure import SystemStructure
 from shipcosim.ssp.edit.write import pack, parameter, write_ssv
+from shipcosim.ssp.fitting_values import fitting_values
 from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.flatten.system import Component, Signal, System
 from shipcosim.ssp.flatten.with_values import with_values
@@ -27,6 +28,7 @@ __all__ = [
     "Variable",
     "check_file",
     "check_system",
+    "fitting_values",
     "new",
     "osp_file",
     "pack",

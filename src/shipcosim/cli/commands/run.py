@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Settings, Store, Timeout, Until
+from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Parameters, Settings, Store, Timeout, Until
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def run(
     ],
     out: Out = None,
     engine: Engine = "fmpy",
+    parameters: Parameters = None,
     settings: Settings = None,
     until: Until = None,
     store: Store = None,
@@ -35,6 +36,9 @@ def run(
 
     A part of a run is checked for what is expected within it. The scenarios of a folder are run one after another;
     report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it.
+
+    --parameters takes sets that were made for another system too, as extended.ssv of a diagnosis: what the scenario's
+    system has is taken, over what the scenario says, and what it has not is said.
     """
     from shipcosim.cli.project import find_scenario, find_scenarios
     from shipcosim.cli.requests import isolation, parsed_settings
@@ -47,13 +51,15 @@ def run(
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
             raise ShipcosimError(Problem(scenario, found, "Name one scenario, or leave out --store and --from."))
-        _run_all(files, out or Path("results") / files[0].resolve().parent.name, given, options)
+        _run_all(files, out or Path("results") / files[0].resolve().parent.name, parameters or [], given, options)
         return
-    system, happening = _prepared(find_scenario(scenario), given)
+    system, happening = _prepared(find_scenario(scenario), parameters or [], given)
     simulate_and_save(system, happening, out or Path("results") / happening.name, options, store)
 
 
-def _run_all(files: list[Path], out: Path, given: dict[str, object], options: "RunOptions") -> None:
+def _run_all(
+    files: list[Path], out: Path, parameters: list[Path], given: dict[str, object], options: "RunOptions"
+) -> None:
     """Run scenarios one after another, and write the table of all of them. All are read before the first one runs."""
     from shipcosim.cli.console import print_overview
     from shipcosim.cli.exits import FAILED
@@ -61,7 +67,7 @@ def _run_all(files: list[Path], out: Path, given: dict[str, object], options: "R
     from shipcosim.report import ScenarioRow, digest, overview_outcome, write_overview
 
     rows = []
-    for system, happening in [_prepared(file, given) for file in files]:
+    for system, happening in [_prepared(file, parameters, given) for file in files]:
         table, verdicts = simulated_and_saved(system, happening, out / happening.name, options)
         page = f"{happening.name}/report.html"
         rows.append(ScenarioRow(happening.name, happening.description, page, digest(table, verdicts)))
@@ -72,12 +78,12 @@ def _run_all(files: list[Path], out: Path, given: dict[str, object], options: "R
         raise typer.Exit(FAILED)
 
 
-def _prepared(path: Path, given: dict[str, object]) -> "tuple[System, Scenario]":
+def _prepared(path: Path, parameters: list[Path], given: dict[str, object]) -> "tuple[System, Scenario]":
     """System and scenario of a file, checked, with the values that are set for this run."""
     from shipcosim.cli.console import print_problems
     from shipcosim.cli.project import build_stale
     from shipcosim.scenario import check_files, check_times, read_scenario
-    from shipcosim.ssp import read_system, with_values
+    from shipcosim.ssp import fitting_values, read_system, with_values
 
     happening = read_scenario(path)
     if missing := check_files(happening):
@@ -86,4 +92,9 @@ def _prepared(path: Path, given: dict[str, object]) -> "tuple[System, Scenario]"
     system = read_system(happening.system_path, happening.parameter_paths, fmus=[fmus])
     with_values(system, given, "--set")
     print_problems(check_times(happening))
-    return system, happening.model_copy(update={"set": happening.set | given})
+    fitting = {}
+    for file in parameters:
+        values, left_out = fitting_values(file, system)
+        print_problems(left_out)
+        fitting |= values
+    return system, happening.model_copy(update={"set": happening.set | fitting | given})

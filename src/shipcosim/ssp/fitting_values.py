@@ -1,0 +1,88 @@
+"""Values of a parameter set that fit another system than the one it was made for; and what of it does not."""
+
+from __future__ import annotations
+
+from os import PathLike
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.flatten.with_values import with_values
+from shipcosim.ssp.read.parameters import ParameterSet, ParameterValue, read_parameter_set
+from shipcosim.ssp.xml.document import Findings, read_document
+from shipcosim.ssp.xml.values import Value
+from shipcosim.units import conversion, spelled_unit
+
+__all__ = ["fitting_values"]
+
+
+def fitting_values(path: str | PathLike[str], system: System) -> tuple[dict[str, Value], list[Problem]]:
+    """Start values of a parameter set, as far as a system has what they are for.
+
+    Parameters
+    ----------
+    path : path
+        An .ssv, such as extended.ssv of a diagnosis.
+    system : System
+
+    Returns
+    -------
+    dict of str to value
+        By signal, in the unit of the system's variable. The set's value for an input of its system is given to the only
+        input of a component of that name that nothing feeds, where this system has no such input itself.
+    list of Problem
+        Remarks: what does not fit, and why.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be read, or nothing in it fits.
+    """
+    values, remarks = {}, []
+    for one in _read(path).values:
+        signal = _signal(one.name, system)
+        converted = _converted(one, signal, system)
+        try:
+            with_values(system, {signal: converted}, str(path))
+            values[signal] = converted
+        except ShipcosimError as error:
+            remarks += [Problem(p.where, f"Left out: {p.found}", p.remedy, "remark") for p in error.problems]
+    if not values:
+        found = (
+            f"Nothing of it fits {system.name}: {', '.join(problem.where.rpartition(': ')[2] for problem in remarks)}."
+        )
+        raise ShipcosimError(Problem(str(path), found, f"Components: {', '.join(system.components)}."))
+    return values, remarks
+
+
+def _read(path: str | PathLike[str]) -> ParameterSet:
+    findings = Findings()
+    document = read_document(path, str(path), findings)
+    found = None if document is None else read_parameter_set(document, findings)
+    if findings.errors or found is None:
+        raise ShipcosimError(findings.errors)
+    return found
+
+
+def _signal(name: str, system: System) -> str:
+    """The signal that a value of a parameter set is for: of an input that the system lacks, the one it would feed."""
+    if "." in name or name in system.inputs:
+        return name
+    fed = {connection.target for connection in system.connections}
+    owners = [
+        component
+        for component, part in system.components.items()
+        if name in part.fmu.variables and part.fmu.variables[name].causality == "input" and (component, name) not in fed
+    ]
+    return f"{owners[0]}.{name}" if len(owners) == 1 else name
+
+
+def _converted(one: ParameterValue, signal: str, system: System) -> Value:
+    """A value in the unit of what it is for."""
+    if one.unit is None or not isinstance(one.value, float):
+        return one.value
+    component, _, variable = signal.rpartition(".")
+    part = system.components.get(component)
+    known = system.inputs.get(signal) if part is None else part.fmu.variables.get(variable)
+    unit = known.unit if known is not None else None
+    factor, offset = conversion(one.unit, spelled_unit(unit) if unit else None)
+    return factor * one.value + offset
