@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.commands import build, capability, check, compare, diagnose, export, run, simulate
+from shipcosim.cli.commands import build, capability, check, compare, diagnose, export, replay, run, simulate
 from shipcosim.cli.exits import EXIT_CODES, guarded
 
 app = typer.Typer(
@@ -25,6 +25,7 @@ for _function in (
     compare.compare,
     check.check,
     diagnose.diagnose,
+    replay.replay,
     capability.capability,
 ):
     app.command(epilog=EXIT_CODES)(guarded(_function))

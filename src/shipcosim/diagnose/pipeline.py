@@ -45,6 +45,7 @@ from shipcosim.diagnose.inference.verdict import judged
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.remarks import handled
+from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
 from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.ship.model import ship_model_of
@@ -53,6 +54,7 @@ from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.gain import baseline, gain
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.diagnose.validation.summary import prediction_errors
+from shipcosim.diagnose.validation.tracks import tracks_of
 from shipcosim.ssp import System, SystemStructure, read
 
 __all__ = ["Progress", "diagnose", "find_causes", "read_measurements", "verdict_on"]
@@ -171,7 +173,9 @@ def read_measurements(
     causes: str | os.PathLike | None = None,
 ) -> ReadLog:
     """A log by the roles of its columns, with the ship of a system and the causes that could be found."""
-    return ReadLog(read_log(log, channels), ship_model_of(system), read_catalogue(causes))
+    ship = ship_model_of(system)
+    log = run_as_log(log, ship.vessel, ship.thrusters) if channels is None else log
+    return ReadLog(read_log(log, channels), ship, read_catalogue(causes))
 
 
 def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
@@ -221,6 +225,7 @@ def completed(
         facts=log_facts(problem),
         log=summary,
         evidence=evidence_of(log),
+        tracks=tracks_of(log, found.is_named),
         force=predicted.force,
         extension=extended.extension,
         extended=extended.system,

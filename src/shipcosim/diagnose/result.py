@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.stages import JudgedLog
     from shipcosim.diagnose.validation.missing_force import MissingForce
     from shipcosim.diagnose.validation.summary import PredictionErrors
+    from shipcosim.diagnose.validation.tracks import Tracks
     from shipcosim.ssp import System
 
 __all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "ExperimentDesign", "LogSummary", "label_of"]
@@ -173,6 +174,8 @@ class Diagnosis:
     evidence : Evidence or None
     predictions : PredictionErrors or None
         None where there was too little data.
+    tracks : Tracks or None
+        The log predicted piece by piece, by the ship as she was modelled and with the named causes.
     force : MissingForce or None
     extension : Extension or None
         What was put into the system; None where no cause of the physics was named.
@@ -204,6 +207,7 @@ class Diagnosis:
     log: LogSummary | None = field(default=None, repr=False)
     evidence: Evidence | None = field(default=None, repr=False)
     predictions: PredictionErrors | None = field(default=None, repr=False)
+    tracks: Tracks | None = field(default=None, repr=False)
     force: MissingForce | None = field(default=None, repr=False)
     extension: Extension | None = None
     extended: System | None = field(default=None, repr=False)

@@ -50,8 +50,8 @@ FEWEST_SECTOR_ROWS = 5
 
 FASTEST = 20.0
 """Speed at which a prediction that runs away is held. [m/s]"""
-FASTEST_TURN = 0.5
-"""Rate of turn at which it is held. [rad/s]"""
+FASTEST_TURN = 5.0
+"""Rate of turn at which it is held; boats of 1 m spin at 1. [rad/s]"""
 REFERENCE_JOLTS = 3.0
 """Times the jolts that the reference is smoothed with, and seconds in which its force may change: the model moves it by
 some 2 cm then."""
@@ -66,3 +66,16 @@ INPUT_DELAY = 1.5
 """Steps from a row of the table until what it drives has moved the ship."""
 WEATHER_RATE = 1e3
 """Rates of the weather, so that it follows a log at once. [m/s2, rad/s]"""
+
+# Tracks: a log predicted piece by piece
+
+TIME_CONSTANTS = 10.0
+"""Length of a prediction in the craft's slowest time constant. Assumed."""
+SHORTEST_HORIZON, LONGEST_HORIZON = 10.0, 60.0
+"""Bounds of that length. [s] Assumed."""
+LEAST_SHARE = 0.24
+"""Share of a log that a prediction takes at most."""
+SMOOTHED_SHARE = 1.0 / 60.0
+"""Time over which measurements are averaged for the start of a prediction, over its length; 4 s at most."""
+MOST_ROWS = 4000
+"""Rows of a simulation that are drawn."""

@@ -10,6 +10,7 @@ from shipcosim.report.diagnosis.extension_section import ExtensionSection, exten
 from shipcosim.report.diagnosis.gain_section import GainSection, gain_section
 from shipcosim.report.diagnosis.key_figures import key_figures
 from shipcosim.report.diagnosis.log_section import LogSection, log_section
+from shipcosim.report.diagnosis.track_figures import over_time_figures, track_figure
 from shipcosim.report.diagnosis.words import next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page
@@ -26,6 +27,8 @@ class DiagnosisPage(Page):
     key_figures : tuple of KeyFigure
     next_steps : tuple of str
         What to do now.
+    tracks : tuple of Figure
+        Track and speeds, measured and simulated; empty where no stretch of the log is whole.
     log, error, cause, extension, gain : section of the page
     figures : tuple of Figure
         All of the page, in the order of `data`.
@@ -33,6 +36,7 @@ class DiagnosisPage(Page):
 
     key_figures: tuple[KeyFigure, ...]
     next_steps: tuple[str, ...]
+    tracks: tuple[Figure, ...]
     log: LogSection
     error: ErrorSection
     cause: CauseSection
@@ -71,7 +75,8 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     error = error_section(diagnosis)
     extension, gain = extension_section(diagnosis), gain_section(diagnosis)
     causes = (*cause.figures, *cause.unmodelled, *cause.whiteness)
-    figures = (*log.figures, *error.figures, *error.forces, *causes, *gain.figures)
+    tracks = () if diagnosis.tracks is None else (track_figure(diagnosis.tracks), *over_time_figures(diagnosis.tracks))
+    figures = (*tracks, *log.figures, *error.figures, *error.forces, *causes, *gain.figures)
     links = {"log": ("Log", log), "error": ("Error", error), "causes": ("Cause", cause)}
     links |= {"extension": ("Extension", extension), "gain": ("Gain", gain)}
     steps = next_steps(diagnosis, extension.system if extension.state == "extended" else None, diagnosis.causes)
@@ -83,6 +88,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
         data=tuple(figure.drawn for figure in figures),
         key_figures=key_figures(diagnosis),
         next_steps=tuple(steps),
+        tracks=tracks,
         log=log,
         error=error,
         cause=cause,

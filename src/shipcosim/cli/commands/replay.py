@@ -1,0 +1,52 @@
+"""The command `shipcosim replay`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.options import Debug, finite
+
+
+def replay(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="Measured data: .csv, .csv.gz, .parquet or .nc.")],
+    system: Annotated[
+        str | None,
+        typer.Option(
+            "--system", metavar="SSP", help="A system, or extended.ssp. [default: as of `shipcosim diagnose`]"
+        ),
+    ] = None,
+    before: Annotated[
+        str | None,
+        typer.Option(
+            "--before", metavar="SSP", help="The system to compare with. [default: the one that was extended]"
+        ),
+    ] = None,
+    channels: Annotated[
+        Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
+    ] = None,
+    parameters: Annotated[
+        list[Path] | None,
+        typer.Option("--parameters", metavar="X.SSV", help="A set over the system's own, for 'after'; repeatable."),
+    ] = None,
+    horizon: Annotated[
+        float | None,
+        typer.Option("--horizon", callback=finite, help="[s] Length of each prediction. Default: fits craft and log."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/LOG-replay]")
+    ] = None,
+    debug: Debug = False,
+) -> None:
+    """Draw a log and what a system makes of it, before and after a diagnosis: track, heading and speeds, errors.
+
+    The system is started again and again from the measured state and driven by what the log says of its thrusters.
+    Leaves report.html, errors.csv and replay.nc.
+    """
+    from shipcosim.cli.diagnosis import DEFAULT_SYSTEM
+    from shipcosim.cli.replaying import print_replay, replay_and_save, systems_of
+
+    systems = systems_of(system or DEFAULT_SYSTEM, before, parameters or [])
+    folder = out or Path("results") / f"{Path(log.name.removesuffix('.gz')).stem}-replay"
+    replayed = replay_and_save(log, systems, channels, horizon, folder)
+    print_replay(replayed, folder)

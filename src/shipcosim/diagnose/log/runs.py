@@ -1,0 +1,103 @@
+"""A run as a log: the table that `shipcosim run` and `simulate` leave, with the roles that its signals have."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Collection, Mapping
+from pathlib import Path
+
+import numpy as np
+import xarray
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import make_table, read_columns
+
+__all__ = ["run_as_log"]
+
+_SHIP = {
+    "north": ("x", "m"),
+    "east": ("y", "m"),
+    "heading": ("psi", "rad"),
+    "surge": ("u", "m/s"),
+    "sway": ("v", "m/s"),
+    "yaw_rate": ("r", "rad/s"),
+    "wind_speed": ("apparent_wind_speed", "m/s"),
+    "wind_from": ("apparent_wind_from", "rad"),
+}
+"""Role: output of the ship and its unit."""
+_WAVES = {"x": "x_wave", "y": "y_wave", "psi": "psi_wave", "u": "u_wave", "v": "v_wave", "r": "r_wave"}
+_NEEDED = ("north", "east", "heading")
+
+
+def run_as_log(
+    log: str | os.PathLike | xarray.Dataset, ship: str, thrusters: Collection[str]
+) -> str | os.PathLike | xarray.Dataset:
+    """A log by roles of the table of a run; any other log as it is.
+
+    What the instruments of a perfect ship would show: her position, heading and velocity with the waves that she
+    follows, the wind that she feels, speed and direction of her thrusters. What sensors of the system add is left out.
+
+    Parameters
+    ----------
+    log : path or xarray.Dataset
+        Signals are ``component.connector``, inputs of the system are named alone.
+    ship : str
+        Name of the ship's component.
+    thrusters : collection of str
+        Names of those of her thrusters.
+
+    Returns
+    -------
+    path or xarray.Dataset
+        Where `log` is the table of a run a table by roles, else `log`.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is the table of a run without this ship.
+    """
+    if isinstance(log, xarray.Dataset):
+        signals, file = {str(name): value.values for name, value in log.data_vars.items()}, {}
+        signals["time"] = log["time"].values
+        units = {str(name): value.attrs.get("units", "") for name, value in log.data_vars.items()}
+    else:
+        columns = read_columns(log)
+        signals, units = ({name: pair[i] for name, pair in columns.items()} for i in (0, 1))
+        file = {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()}
+    if not _is_run(signals):
+        return log
+    named = {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items() if f"{ship}.{output}" in signals}
+    if missing := [role for role in _NEEDED if role not in named]:
+        there = sorted({name.rpartition(".")[0] for name in signals if "." in name})
+        found = (
+            f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
+        )
+        remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
+        raise ShipcosimError(Problem(file.get("source", "log"), found, remedy))
+    for name in thrusters:
+        for kind in ("rpm", "azimuth"):
+            if f"{name}_{kind}" not in signals and f"{name}.{kind}" in signals:
+                named[f"{name}_{kind}"] = f"{name}.{kind}"
+    named |= {name: name for name in signals if name.endswith(("_rpm", "_azimuth", "_thrust")) and "." not in name}
+    table = make_table(
+        np.asarray(signals["time"], float), [_column(*pair, ship, signals, units) for pair in named.items()]
+    )
+    table.encoding |= file
+    return table
+
+
+def _is_run(signals: Mapping[str, object]) -> bool:
+    """Whether most columns are signals of components, and none is a position by its role."""
+    dotted = sum("." in name for name in signals)
+    return "time" in signals and "north" not in signals and "latitude" not in signals and 2 * dotted > len(signals)
+
+
+def _column(role: str, signal: str, ship: str, signals: Mapping, units: Mapping) -> tuple:
+    """A role's values with what waves add, and their unit."""
+    values = np.asarray(signals[signal], float)
+    wave = _WAVES.get(signal.removeprefix(f"{ship}."))
+    if wave and f"{ship}.{wave}" in signals:
+        values = values + np.asarray(signals[f"{ship}.{wave}"], float)
+    default = _SHIP[role][1] if role in _SHIP else "rad" if role.endswith("_azimuth") else "rpm"
+    return role, values, units.get(signal) or default, ""

@@ -1,0 +1,84 @@
+"""A log as a system replays it, and as the system extended by a diagnosis does: `replay_log`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import xarray
+
+from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.log.remarks import handled
+from shipcosim.diagnose.pipeline import read_measurements
+from shipcosim.diagnose.result import Finding
+from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
+from shipcosim.diagnose.validation.cosimulation import Replayed
+from shipcosim.diagnose.validation.tracks import Tracks, fitting_horizon, tracks_by_systems
+from shipcosim.ssp import System
+
+__all__ = ["LogReplay", "replay_log"]
+
+_SHOWN = dict(zip(CHANNELS, ("x", "y", "psi", "u", "v", "r"), strict=True))
+
+
+@dataclass(frozen=True)
+class LogReplay:
+    """A log as systems replay it.
+
+    Attributes
+    ----------
+    tracks : Tracks
+    faults : tuple of Finding
+        Of the log, put right or cut out before.
+    remarks : tuple of str
+        What the log lacks, and what was handled in it.
+    """
+
+    tracks: Tracks
+    faults: tuple[Finding, ...]
+    remarks: tuple[str, ...]
+
+
+def replay_log(
+    log: str | os.PathLike | xarray.Dataset,
+    systems: dict[str, System],
+    channels: str | os.PathLike | None = None,
+    *,
+    horizon: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> LogReplay:
+    """Predict a log piece by piece with some systems.
+
+    Parameters
+    ----------
+    log : path or xarray.Dataset
+        As for `shipcosim.diagnose`.
+    systems : dict of str to System
+        By name. The first is the plain ship; the others may have what an extension inserts.
+    channels : path, optional
+        Channel file.
+    horizon : float, optional
+        Length of each prediction; one that fits the craft and the log if not given. [s]
+    progress : callable, optional
+        Called with (predictions done, predictions in all).
+
+    Raises
+    ------
+    ShipcosimError
+        Data or systems that cannot be used.
+    """
+    first = next(iter(systems.values()))
+    known = checked(read_measurements(log, first, channels))
+    record = record_of(known.repaired, known.ship)
+    seconds = fitting_horizon(record, known.ship) if horizon is None else horizon
+    replayed = {name: Replayed(system, _signals(system)) for name, system in systems.items()}
+    tracks = tracks_by_systems(record, known.ship, replayed, seconds, progress)
+    return LogReplay(tracks, known.faults, (*record.remarks, *handled(known.log)))
+
+
+def _signals(system: System) -> dict[str, str] | None:
+    """By role, what the instruments show that a diagnosis inserted; None of a system without them."""
+    needed = {"heading_bias", "lever_x", "lever_y", "velocity_scale"}
+    own = next((name for name, part in system.components.items() if needed <= set(part.fmu.variables)), None)
+    return None if own is None else {role: f"{own}.{name}_meas" for role, name in _SHOWN.items()}

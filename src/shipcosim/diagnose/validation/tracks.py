@@ -1,0 +1,252 @@
+"""A log again as simulated: open-loop predictions one after another, each from the measured state, beside the log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray
+
+from shipcosim.cosim import replay
+from shipcosim.diagnose.log.roles import ROLES
+from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
+from shipcosim.diagnose.ship.instruments import readings, true_motion
+from shipcosim.diagnose.ship.third_party_fmu import number_of
+from shipcosim.diagnose.ship.time_scales import response_times
+from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table
+from shipcosim.diagnose.validation.gain import Predictor
+from shipcosim.diagnose.validation.predictions import predicted, replayable
+from shipcosim.diagnose.validation.thresholds import (
+    LEAST_SHARE,
+    LONGEST_HORIZON,
+    MOST_ROWS,
+    SHORTEST_HORIZON,
+    SMOOTHED_SHARE,
+    STEP,
+    TIME_CONSTANTS,
+)
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.diagnose.stages import JudgedLog
+
+__all__ = ["Tracks", "errors_of", "fitting_horizon", "tracks_by_models", "tracks_by_systems", "tracks_of"]
+
+_TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """A log, and what simulations make of it.
+
+    Attributes
+    ----------
+    horizon : float
+        Length of each prediction. [s]
+    measured : xarray.Dataset
+        Roles of the navigation over ``time``, heading unwrapped. [as the roles]
+    predicted : dict of str to xarray.Dataset
+        By simulation: the same over ``segment`` and ``time`` since the start of the segment, from ``start_time``.
+    """
+
+    horizon: float
+    measured: xarray.Dataset
+    predicted: dict[str, xarray.Dataset]
+
+
+def tracks_of(log: JudgedLog, is_named: bool) -> Tracks | None:
+    """Tracks of a judged log, before and, where causes are named, after; None where no stretch of it is whole."""
+    record, model = log.problem.record, log.problem.model
+    models = {"before": model} | ({"after": model.with_values(log.fit.values)} if is_named else {})
+    try:
+        return tracks_by_models(record, models, fitting_horizon(record, model))
+    except ShipcosimError:
+        return None
+
+
+def fitting_horizon(record: Record, model: ShipModel) -> float:
+    """Length of predictions: some of the craft's slowest time constants, and a part of the log at most. [s]"""
+    slowest = response_times(model, first_motion(record, model)).slowest
+    wanted = np.clip(TIME_CONSTANTS * slowest, SHORTEST_HORIZON, LONGEST_HORIZON)
+    return float(min(wanted, LEAST_SHARE * (record.time[-1] - record.time[0])))
+
+
+def tracks_by_models(record: Record, models: Mapping[str, ShipModel], horizon: float) -> Tracks:
+    """Predictions of ship models in array form.
+
+    Parameters
+    ----------
+    record : Record
+    models : dict of str to ShipModel
+        By name; with surrogates where they need them.
+    horizon : float
+        [s]
+    """
+    rows, count, found = *_segments(record, horizon), {}
+    for name, model in models.items():
+        seen = _seen(record, model, horizon)
+        driven, neutral = replayable(record, model, seen)
+        start = true_motion(Motion(*(value[rows] for value in seen)), model)
+        ahead = readings(predicted(start, rows, driven, neutral, range(1, count + 1)), model)
+        first = readings(start, model)
+        channels = [np.vstack([a[None], b]).T for a, b in zip(first, ahead, strict=True)]
+        found[name] = _dataset(channels, record.step * np.arange(count + 1), record.time[rows])
+    return Tracks(horizon, _measured(record), found)
+
+
+def tracks_by_systems(
+    record: Record,
+    model: ShipModel,
+    systems: Mapping[str, Replayed],
+    horizon: float,
+    progress: Callable[[int, int], None] | None = None,
+) -> Tracks:
+    """Predictions of systems, by co-simulation.
+
+    Parameters
+    ----------
+    record : Record
+    model : ShipModel
+        Of the systems, all of which have its thrusters.
+    systems : dict of str to Replayed
+        By name; those with signals have instruments of their own.
+    horizon : float
+        [s]
+    progress : callable, optional
+        Called with (segments done, segments in all).
+
+    Raises
+    ------
+    ShipcosimError
+        If a system has no inputs for what the log says of its thrusters, or a run fails.
+    """
+    rows, _ = _segments(record, horizon)
+    found, total = {}, rows.size * len(systems)
+    for number, (name, one) in enumerate(systems.items()):
+        each = None if progress is None else lambda n, _, done=number: progress(done * rows.size + n, total)
+        found[name] = _cosimulated(record, model, one, rows, horizon, each)
+    return Tracks(horizon, _measured(record), found)
+
+
+def _cosimulated(record, model, one, rows, horizon, progress):
+    """Predictions of one system from some rows."""
+    seen = _seen(record, model, horizon)
+    driven, neutral = replayable(record, model, seen)
+    errors, lag = _instruments(one)
+    own = model.with_values({f"instruments.{key}": value for key, value in errors.items()})
+    start = true_motion(Motion(*(value[rows] for value in seen)), own)
+    table, states = driving_table(one.system, Predictor(driven, neutral, own, start), STEP, lag)
+    states |= {f"{model.vessel}.{key}_start": value for key, value in zip(Motion._fields, start, strict=True)}
+    signals = [one.signals[role] for role in CHANNELS] if one.signals else _own_signals(model)
+    duration = STEP * np.ceil((horizon + lag) / STEP - 1e-6)
+    starts = record.time[rows] - lag
+    run = replay(one.system, table, starts, duration, states=states, step_size=STEP, signals=signals, progress=progress)
+    time = run["time"].values
+    channels = [run[signal].values for signal in signals]
+    channels[2] = np.unwrap(channels[2], axis=1)
+    channels[2] += 2.0 * np.pi * np.round((seen.psi[rows] - channels[2][:, 0]) / (2.0 * np.pi))[:, None]
+    kept = slice(int(round(lag / STEP)), None)
+    return _dataset([values[:, kept] for values in channels], time[kept] - time[kept][0], record.time[rows])
+
+
+def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
+    """Errors of the instruments of a system, and by how much they are late. [s]"""
+    if not one.signals:
+        return {}, 0.0
+    part = one.system.components[one.signals["north"].rpartition(".")[0]]
+    names = ("heading_bias", "lever_x", "lever_y", "velocity_scale")
+    given = {name: number_of(part, name) for name in (*names, "lag") if name in part.fmu.variables}
+    return given, given.pop("lag", 0.0)
+
+
+def _own_signals(model: ShipModel) -> list[str]:
+    return [f"{model.vessel}.{name}" for name in Motion._fields]
+
+
+def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
+    """Rows at which predictions start, one after another where the log is whole, and how many rows each has."""
+    count = max(int(horizon / record.step + 1e-6), 1)
+    whole = np.isfinite(record.measured[:, :3]).sum(axis=-1) == 3
+    rows, row = [], 0
+    while row + count + 1 < record.time.size:
+        if whole[row] and record.known[row : row + count].all():
+            rows.append(row)
+            row += count
+        else:
+            row += 1
+    if not rows:
+        found = f"no {horizon:g} s of the log have a position and heading, and everything that drives her throughout."
+        raise ShipcosimError(Problem("replay", found, "Ask for shorter predictions, or for a longer log."))
+    return np.array(rows), count
+
+
+def _seen(record: Record, model: ShipModel, horizon: float) -> Motion:
+    return first_motion(record, model, smooth=min(4.0, SMOOTHED_SHARE * horizon))
+
+
+def _measured(record: Record) -> xarray.Dataset:
+    thin = slice(None, None, max(record.time.size // MOST_ROWS, 1))
+    columns = {
+        role: ("time", record.measured[thin, i] * scale, {"units": ROLES[role].unit})
+        for i, (role, scale) in enumerate(zip(CHANNELS, _TO_LOG, strict=True))
+    }
+    return xarray.Dataset(columns, coords={"time": ("time", record.time[thin], {"units": "s"})})
+
+
+def _dataset(channels: list[np.ndarray], time: np.ndarray, starts: np.ndarray) -> xarray.Dataset:
+    """Channels, (segments, times) arrays in SI, with the units of the roles, and no more rows than can be drawn."""
+    thin = slice(None, None, max(starts.size * time.size // MOST_ROWS, 1))
+    columns = {
+        role: (("segment", "time"), values[:, thin] * scale, {"units": ROLES[role].unit})
+        for role, values, scale in zip(CHANNELS, channels, _TO_LOG, strict=True)
+    }
+    return xarray.Dataset(
+        columns,
+        coords={"time": ("time", time[thin], {"units": "s"}), "start_time": ("segment", starts, {"units": "s"})},
+    )
+
+
+def errors_of(tracks: Tracks, shares: tuple[float, ...] = (1.0 / 6.0, 0.5, 1.0)) -> xarray.Dataset:
+    """Root mean square errors against the log after parts of the horizon.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``position`` [m], ``heading`` [deg], ``surge``, ``sway`` [m/s], ``yaw_rate`` [deg/s] over ``simulation`` and
+        ``after`` [s]; NaN where the log has nothing.
+    """
+    names = list(tracks.predicted)
+    after = [_nearest(next(iter(tracks.predicted.values()))["time"].values, s * tracks.horizon) for s in shares]
+    found = {name: np.full((len(names), len(after)), np.nan) for name in ("position", *CHANNELS[2:])}
+    for i, name in enumerate(names):
+        for j, end in enumerate(after):
+            for channel, value in _missed(tracks, tracks.predicted[name], end).items():
+                found[channel][i, j] = value
+    units = {"position": "m"} | {role: ROLES[role].unit for role in CHANNELS[2:]}
+    return xarray.Dataset(
+        {name: (("simulation", "after"), values, {"units": units[name]}) for name, values in found.items()},
+        coords={"simulation": names, "after": ("after", after, {"units": "s"})},
+    )
+
+
+def _nearest(times: np.ndarray, time: float) -> float:
+    return float(times[np.argmin(np.abs(times - time))])
+
+
+def _missed(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, float]:
+    there = one.sel(time=end, method="nearest")
+    at = one["start_time"].values + float(there["time"])
+    off = {role: there[role].values - _between(tracks.measured, role, at) for role in CHANNELS}
+    off["heading"] = (off["heading"] + 180.0) % 360.0 - 180.0
+    far = np.hypot(off.pop("north"), off.pop("east"))
+    whole = {"position": far} | off
+    return {name: float(np.sqrt(np.nanmean(v**2))) if np.isfinite(v).any() else np.nan for name, v in whole.items()}
+
+
+def _between(measured: xarray.Dataset, role: str, at: np.ndarray) -> np.ndarray:
+    """A channel of the log at some times, linear between rows; NaN where one of them has no value."""
+    return np.interp(at, measured["time"].values, measured[role].values)

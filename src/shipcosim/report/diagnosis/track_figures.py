@@ -1,0 +1,66 @@
+"""A log and what simulations make of it: track, heading and speeds, measured, before and after."""
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import Dataset
+
+from shipcosim.diagnose.validation.tracks import Tracks
+from shipcosim.report.theme import palette
+from shipcosim.report.theme.figures import TIME, line
+from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.views import Figure, Table
+
+COLOURS = (palette.ORANGE, palette.BLUE, palette.GREEN)
+OVER_TIME = (
+    ("heading", "Heading", "deg"),
+    ("surge", "Surge", "m/s"),
+    ("sway", "Sway", "m/s"),
+    ("yaw_rate", "Yaw rate", "deg/s"),
+)
+
+
+def track_figure(tracks: Tracks) -> Figure:
+    """Measured, before and after on one chart, north up and one scale both ways."""
+    seen = tracks.measured
+    traces = [line("measured", seen["east"].values, seen["north"].values, palette.MEASURED, width=4.0)]
+    for (name, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
+        traces.append(line(name, joined(one, "east"), joined(one, "north"), colour, width=1.3))
+    layout = {"xaxis": {"title": {"text": "East"}}, "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"}}
+    note = f"Every {tracks.horizon:.0f} s the simulation starts anew from the measured position, heading and velocity."
+    return Figure("Track", "m", tuple(traces), layout, note, height=460)
+
+
+def over_time_figures(tracks: Tracks) -> list[Figure]:
+    """Heading, surge, sway and yaw rate over time, as far as the log has them."""
+    return [_over_time(tracks, *row) for row in OVER_TIME if np.isfinite(tracks.measured[row[0]].values).any()]
+
+
+def _over_time(tracks: Tracks, role: str, title: str, unit: str) -> Figure:
+    seen = tracks.measured
+    traces = [line("measured", seen["time"].values, seen[role].values, palette.MEASURED, width=3.0)]
+    for (name, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
+        traces.append(line(name, _times(one), joined(one, role), colour, width=1.2))
+    return Figure(title, unit, tuple(traces), {"xaxis": TIME})
+
+
+def joined(one: Dataset, role: str) -> NDArray:
+    """A channel of all predictions one after another, with a hole between them."""
+    values = one[role].values
+    return np.hstack([values, np.full((len(values), 1), np.nan)]).ravel()
+
+
+def _times(one: Dataset) -> NDArray:
+    time = one["start_time"].values[:, None] + one["time"].values
+    return np.hstack([time, np.full((len(time), 1), np.nan)]).ravel()
+
+
+def error_rows(errors: Dataset) -> Table:
+    """Root mean square errors by simulation and time, as from `errors_of`."""
+    channels = [str(name) for name in errors.data_vars if np.isfinite(errors[name].values).any()]
+    head = ("after", "simulation", *(f"{name.replace('_', ' ')} [{errors[name].attrs['units']}]" for name in channels))
+    rows = [
+        (f"{after:g} s", str(name), *(plain(float(errors[c].sel(after=after, simulation=name))) for c in channels))
+        for after in errors["after"].values
+        for name in errors["simulation"].values
+    ]
+    return Table(tuple(rows), head, tight=(0, 1))
