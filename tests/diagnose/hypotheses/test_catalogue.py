@@ -35,6 +35,22 @@ CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
     "navigation_lag": {"lag": "s"},
     "thruster_lag": {"lag": "s"},
 }
+SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
+    "hull_interaction": {"loss": "1"},
+    "slow_azimuths": {"rate": "rad/s"},
+    "azimuth_side_force": {"coefficient": "1"},
+    "drag_over_speed": {"power": "1"},
+    "drift_drag": {"coefficient": "1"},
+    "hull_lift": {"coefficient": "N.s2/m2"},
+    "hull_lift_place": {"place": "m"},
+    "late_orders": {"lag": "s"},
+    "surge_added_mass": {"mass": "kg"},
+    "sway_added_mass": {"mass": "kg"},
+    "sway_momentum": {"coefficient": "1"},
+    "turn_drag": {"coefficient": "1"},
+    "yaw_damping": {"coefficient": "1"},
+    "yaw_inertia": {"inertia": "kg.m2"},
+}
 WHERE = {
     "thrust_loss": ["port", "starboard", "tunnel"],
     "azimuth_offset": ["port", "starboard"],
@@ -59,9 +75,19 @@ def everyone():
     return hypotheses_of(read_catalogue(), twin.model())
 
 
+@pytest.fixture(scope="module")
+def at_sea_trials():
+    return hypotheses_of(read_catalogue(), twin.model(), "sea trials")
+
+
 def test_every_physical_cause_of_the_contract_is_there_with_its_parameters_and_units():
     found = {c: {n: p.unit for n, p in effect.parameters.items()} for c, effect in read_catalogue().items()}
-    assert found == CONTRACT
+    assert found == CONTRACT | SEA_TRIALS
+
+
+def test_causes_of_sea_trials_are_only_sought_there(everyone, at_sea_trials):
+    assert not {hypothesis.cause for hypothesis in everyone} & set(SEA_TRIALS)
+    assert {hypothesis.cause for hypothesis in at_sea_trials} == set(CONTRACT) | set(SEA_TRIALS)
 
 
 def test_each_cause_sits_where_the_contract_says(everyone):
@@ -76,8 +102,8 @@ def test_every_file_says_what_it_is_and_where_it_is_from():
         assert effect.sentence[0].isupper() and len(effect.sentence) > 20 and len(effect.reference) > 10
 
 
-def test_bounds_hold_the_model_and_what_is_typical_is_above_what_matters_above_what_is_tolerated(everyone):
-    for hypothesis in everyone:
+def test_bounds_hold_the_model_and_what_is_typical_is_above_what_matters_above_what_is_tolerated(at_sea_trials):
+    for hypothesis in at_sea_trials:
         for parameter in hypothesis.parameters:
             low, high = sorted(parameter.bounds)
             assert low <= parameter.neutral <= high, hypothesis.label
@@ -127,7 +153,7 @@ def test_a_cause_of_ones_own_takes_one_file(tmp_path):
     (tmp_path / "side_force.toml").write_text(MINE, encoding="utf-8")
     (tmp_path / "notes.txt").write_text("not a cause", encoding="utf-8")
     catalogue = read_catalogue(tmp_path)
-    assert set(catalogue) == {*CONTRACT, "side_force"}
+    assert set(catalogue) == {*CONTRACT, *SEA_TRIALS, "side_force"}
     mine = [hypothesis for hypothesis in hypotheses_of(catalogue, twin.model()) if hypothesis.cause == "side_force"]
     assert [hypothesis.label for hypothesis in mine] == ["side_force of port", "side_force of starboard"]
     (parameter,) = mine[0].parameters
@@ -139,7 +165,7 @@ def test_a_file_with_the_name_of_a_known_cause_replaces_it(tmp_path):
     mine = mine.replace("{thruster}.side_force_coefficient", "vessel.mass_scale")
     (tmp_path / "mass.toml").write_text(mine, encoding="utf-8")
     catalogue = read_catalogue(tmp_path)
-    assert set(catalogue) == set(CONTRACT) and list(catalogue["mass"].parameters) == ["coefficient"]
+    assert set(catalogue) == {*CONTRACT, *SEA_TRIALS} and list(catalogue["mass"].parameters) == ["coefficient"]
 
 
 @pytest.mark.parametrize(

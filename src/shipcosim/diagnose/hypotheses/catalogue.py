@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import ValidationError
 
@@ -137,13 +137,17 @@ def _contents(folder: str) -> Iterator[dict]:
             yield tomllib.loads(path.read_text(encoding="utf-8"))
 
 
-def hypotheses_of(catalogue: Mapping[str, Cause], model: ShipModel) -> list[Hypothesis]:
+def hypotheses_of(
+    catalogue: Mapping[str, Cause], model: ShipModel, sought_in: Literal["every log", "sea trials"] = "every log"
+) -> list[Hypothesis]:
     """Every cause at every place of a ship where it can be.
 
     Parameters
     ----------
     catalogue : dict of str to Cause
     model : ShipModel
+    sought_in : str
+        ``"sea trials"``: also those that are only sought there.
 
     Returns
     -------
@@ -151,18 +155,21 @@ def hypotheses_of(catalogue: Mapping[str, Cause], model: ShipModel) -> list[Hypo
         Without causes whose numbers the ship does not have.
     """
     places = {"ship": [None], "thruster": model.thrusters, "azimuth": model.azimuths}
-    found = [_on(cause, place, model) for cause in catalogue.values() for place in places[cause.for_each]]
+    causes = [cause for cause in catalogue.values() if cause.sought_in in ("every log", sought_in)]
+    found = [_on(cause, place, model) for cause in causes for place in places[cause.for_each]]
     return [hypothesis for hypothesis in found if hypothesis]
 
 
 def _on(cause: Cause, component: str | None, model: ShipModel) -> Hypothesis | None:
-    """A cause at one place of a ship; None where she lacks one of its numbers."""
+    """A cause at one place of a ship; None where she lacks one of its numbers, or it is a share of one that is 0."""
     parameters = []
     for name, parameter in cause.parameters.items():
         paths = [path for pattern in parameter.of for path in _paths(pattern, component, model)]
         if not paths or not all(model.has(path) for path in paths):
             return None
         parameters.append(_parameter(name, parameter, tuple(paths), component, model))
+        if parameters[-1].typical == 0.0:
+            return None
     return Hypothesis(cause, component, tuple(parameters))
 
 
@@ -183,7 +190,8 @@ def _parameter(
     size = per_model
     if parameter.relative_to:
         size *= model.get(_paths(parameter.relative_to, component, model)[0])
-    tolerance = model.tolerances.get(paths[0], parameter.tolerance * size)
+    tolerance = model.tolerances.get(paths[0], parameter.tolerance * abs(size))
+    low, high = parameter.bounds[0] * size, parameter.bounds[1] * size
     if paths[0] in model.referenced:
         tolerance = 0.0  # what is uncertain of it is part of every fit
     return HypothesisParameter(
@@ -191,8 +199,8 @@ def _parameter(
         parameter.unit,
         paths,
         model.get(paths[0]),
-        parameter.typical * size,
+        parameter.typical * abs(size),
         tolerance,
-        (parameter.bounds[0] * size, parameter.bounds[1] * size),
+        (min(low, high), max(low, high)),
         1.0 / per_model,
     )

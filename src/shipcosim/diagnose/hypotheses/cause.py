@@ -119,6 +119,8 @@ class Cause(_Strict):
         What this log lacks to show it, with facts of the log such as ``{speed}``.
     for_each : "ship", "thruster" or "azimuth"
         Where it can sit.
+    sought_in : "every log" or "sea trials"
+        ``"sea trials"``: only by features of circles, zig-zags and straight runs at speed.
     law : "linear", "vector" or "turning"
         Whether small effects add up; or act by a vector's size and direction, and the cause is sought by directions
         first; or by two vectors, at the first and the last row, and it is sought by `sought_by` first.
@@ -152,6 +154,7 @@ class Cause(_Strict):
     next_step: str = ""
     why_not_testable: str = ""
     for_each: Literal["ship", "thruster", "azimuth"] = "ship"
+    sought_in: Literal["every log", "sea trials"] = "every log"
     law: Literal["linear", "vector", "turning"] = "linear"
     sought_by: list[str] = []
     least: float = 0.2

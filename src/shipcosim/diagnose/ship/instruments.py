@@ -10,7 +10,7 @@ from shipcosim.models.ship import instruments
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["LAGS", "NONLINEAR", "Instruments", "readings", "true_motion"]
+__all__ = ["LAGS", "MOUNTING", "NONLINEAR", "Instruments", "readings", "true_motion"]
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,9 @@ class Instruments:
     velocity_scale: float = quantity(1.0, "1", "logged over true velocity", "neutral")
     navigation_lag: float = quantity(0.0, "s", "by how much the navigation's channels are late", "neutral")
     thruster_lag: float = quantity(0.0, "s", "by how much the thrusters' channels are late", "neutral")
+    order_lag: float = quantity(
+        0.0, "s", "by how much thrusters answer orders later than their models, where a log has orders", "neutral"
+    )
     wind_lag: float = quantity(
         1.25, "s", "half the time over which the wind sensor averages", "2 to 3 s", tolerance=0.3
     )
@@ -35,6 +38,8 @@ class Instruments:
 
 LAGS = tuple(f"instruments.{item.name}" for item in fields(Instruments) if item.name.endswith("_lag"))
 """By how much channels are late: paths of these numbers."""
+MOUNTING = ("instruments.heading_bias", "instruments.lever_x")
+"""What compass and antenna are off, of a log that nobody has checked: paths of these numbers."""
 NONLINEAR = frozenset({"instruments.wind_lag"})
 """Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them anew."""
 

@@ -67,6 +67,13 @@ class AzimuthParameters(PropellerParameters):
         0.0, "rad", "real direction of the thrust minus the given one", "neutral", tolerance=0.2 * pi / 180.0
     )
     rpm_offset: float = quantity(0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", share=5e-4)
+    angle_loss: float = quantity(
+        0.0,
+        "1",
+        "share of the thrust lost at the hull by a unit that points athwartships; goes with the squared sine",
+        "neutral",
+        maximum=1.0,
+    )
     interaction_loss: float = quantity(
         0.0, "1", "share of the thrust that is lost on the axis of the neighbour's slipstream", "neutral", maximum=1.0
     )
@@ -83,7 +90,7 @@ class AzimuthParameters(PropellerParameters):
     @cached_property
     def loses(self):
         """Whether some of the thrust of the propeller is lost."""
-        return any(map(acts, (self.thrust_loss, self.reverse_loss, self.interaction_loss)))
+        return any(map(acts, (self.thrust_loss, self.reverse_loss, self.angle_loss, self.interaction_loss)))
 
 
 def azimuth_step(
@@ -212,7 +219,8 @@ def azimuth_loads(
     Where n < 0, abs(n) D has the factor `side_force_astern`, 1 by default.
 
     The thrust is that of the propeller less its losses:
-    (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - interaction_loss · `slipstream_share`).
+    (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - angle_loss sin² of the azimuth)
+    (1 - interaction_loss · `slipstream_share`).
 
     Parameters
     ----------
@@ -234,13 +242,15 @@ def azimuth_loads(
 
     References
     ----------
-    Side force: nominal model, azimuth thrusters, fitted to the FMU of the unit; losses: definition.
+    Side force: nominal model, azimuth thrusters, fitted to the FMU of the unit; losses: definition. That a slipstream
+    across the hull loses thrust: Dang and Laheij, Hydrodynamic aspects of steerable thrusters, DP Conference 2004; the
+    squared sine is assumed.
     """
     n, (s, c) = thruster.n, sincos(thruster.azimuth + unit.azimuth_offset)
     u_a, u_s = _inflow(s, c, u_r, v_r, r, unit)
     thrust = propeller_loads(u_a, n, propeller=unit)[0] if propeller_thrust is None else propeller_thrust
     if unit.loses:
-        thrust = thrust * _kept(n, neighbour_azimuth, neighbour_rpm, unit)
+        thrust = thrust * _kept(n, s, neighbour_azimuth, neighbour_rpm, unit)
     D = unit.diameter
     wash = abs(n) * D
     if acts(unit.side_force_astern, neutral=1.0):
@@ -285,9 +295,11 @@ def _inflow(s, c, u_r, v_r, r, unit):
     return c * u + s * v, c * v - s * u
 
 
-def _kept(n, neighbour_azimuth, neighbour_rpm, unit):
-    """Share of the propeller's thrust that the losses leave. [1]"""
+def _kept(n, s, neighbour_azimuth, neighbour_rpm, unit):
+    """Share of the propeller's thrust that the losses leave, at an azimuth with the sine s. [1]"""
     kept = (1.0 - unit.thrust_loss) * where(n < 0.0, 1.0 - unit.reverse_loss, 1.0)
+    if acts(unit.angle_loss):
+        kept = kept * (1.0 - unit.angle_loss * s * s)
     if not acts(unit.interaction_loss):
         return kept
     x, y = unit.x - unit.neighbour_x, unit.y - unit.neighbour_y

@@ -13,6 +13,7 @@ from shipcosim.models.core.parameters import acts, quantity, required
 
 _UNUSED = "not used by this ship"
 _TINY = 1e-30
+_SPEED_SQUARED, _SLOW = 0.25**2 * 9.81, 0.02**2  # m/s2: of Froude number 0.25 over the length; 1
 
 
 def _unused(unit, description):
@@ -121,6 +122,14 @@ class HullParameters:
 
     mass_scale: float = quantity(
         1.0, "1", "factor on mass and moment of inertia together; added mass stays", "neutral", minimum=0.01
+    )
+    drag_growth: float = quantity(
+        0.0,
+        "1",
+        "power of speed by which the quadratic damping in surge grows more than u abs(u), equal at Froude number 0.25",
+        "neutral",
+        minimum=-1.0,
+        maximum=4.0,
     )
     drag_scale: float = quantity(1.0, "1", "factor on linear and quadratic damping in surge", "neutral", minimum=0.0)
     cross_flow_scale: float = quantity(
@@ -247,14 +256,22 @@ def linear_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullPar
 def quadratic_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
     """Quadratic damping of each velocity, X_uu u abs(u) and its like.
 
+    With a `drag_growth` p the damping in surge is X_uu u abs(u) ((u/u_0)² + 0.02²)^(p/2), where u_0 is the speed of
+    Froude number 0.25; the small term keeps it finite at rest.
+
     Parameters and returns as `hull_loads`.
 
     References
     ----------
-    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6. Waves make the
+    resistance grow faster than the square of speed (Molland, Turnock and Hudson, Ship Resistance and Propulsion,
+    Cambridge, 2017); a power is assumed.
     """
     X_uu, Y_vv, N_rr = hull.quadratic
-    return X_uu * u * abs(u), Y_vv * v * abs(v), N_rr * r * abs(r)
+    X = X_uu * u * abs(u)
+    if acts(hull.drag_growth):
+        X = X * (u * u / (_SPEED_SQUARED * hull.length) + _SLOW) ** (0.5 * hull.drag_growth)
+    return X, Y_vv * v * abs(v), N_rr * r * abs(r)
 
 
 def lift(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:

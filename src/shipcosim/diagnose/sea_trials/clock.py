@@ -1,0 +1,69 @@
+"""The clock that a log's own motion tells: true seconds from one row to the next, from the way over the speed."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from shipcosim.diagnose.sea_trials import thresholds
+
+__all__ = ["own_clock"]
+
+
+def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np.ndarray, float]:
+    """Times of a log's rows by the way of its positions over its logged speed.
+
+    The way is counted along the logged velocity, so that noise of the positions does not lengthen it. Where the ship
+    hardly moves, the logged time stands.
+
+    Parameters
+    ----------
+    time : (n,) array
+        As logged. [s]
+    measured : (n, 6) array
+        North, east, heading, surge, sway, yaw rate, SI.
+    length : float
+        Of the ship. [m]
+
+    Returns
+    -------
+    tuple of (n,) array, float
+        Times [s], and the scale of the logged velocity [1]: way over integrated speed, divided where the ship turns by
+        heading over integrated yaw rate. So a clock that runs wrong throughout is no scale of the velocity. Without a
+        yaw rate the clock is taken to be right in the median.
+    """
+    psi, u, v = measured[:, 2], measured[:, 3], measured[:, 4]
+    step, speed = np.diff(time), np.hypot(u, v)
+    if not np.isfinite(speed).all():
+        return time, 1.0
+    course = psi + np.arctan2(v, u)
+    north, east = np.cos(course) + np.cos(np.roll(course, -1)), np.sin(course) + np.sin(np.roll(course, -1))
+    size = np.maximum(np.hypot(north, east), 1e-9)
+    way = (np.diff(measured[:, 0]) * (north / size)[:-1]) + (np.diff(measured[:, 1]) * (east / size)[:-1])
+    sailed = 0.5 * step * (speed[1:] + speed[:-1])
+    rows = max(int(round(thresholds.CLOCK_WINDOW * np.sqrt(length) / np.median(step))), 1)
+    way, sailed = uniform_filter1d(way, rows), uniform_filter1d(sailed, rows)
+    moving = sailed > thresholds.UNDER_WAY * np.sqrt(9.81 * length) * np.median(step)
+    if not moving.any():
+        return time, 1.0
+    rate = np.where(moving, way / np.maximum(sailed, 1e-9), np.nan)
+    scale = float(np.nanmedian(rate)) / _clock_by_heading(rate, measured, step, length, rows)
+    rate = np.clip(np.where(moving, rate / scale, 1.0), 0.2, 5.0)
+    return np.concatenate(([0.0], np.cumsum(rate * step))), scale
+
+
+def _clock_by_heading(rate, measured, step, length, rows):
+    """Median rate of the clock: heading turned over integrated yaw rate, of the rows in which the ship turns, by way.
+
+    The way's own median there and throughout may differ, since a clock may be wrong where the ship turns.
+    """
+    psi, u, v, r = measured[:, 2:].T
+    if not np.isfinite(r).all():
+        return 1.0
+    turned, told = uniform_filter1d(np.diff(psi), rows), uniform_filter1d(0.5 * step * (r[1:] + r[:-1]), rows)
+    quick = np.abs(r[1:]) * length > thresholds.TURNS * np.hypot(u, v)[1:]
+    quick &= np.isfinite(rate) & (np.abs(told) > 0.2 * np.max(np.abs(told)))
+    if quick.sum() < 20:
+        return 1.0
+    by_heading = turned[quick] / told[quick]
+    return float(np.nanmedian(rate) / np.median(rate[quick] / by_heading))

@@ -1,0 +1,268 @@
+"""Sets of causes weighed by the features of sea trials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.sea_trials import thresholds
+from shipcosim.diagnose.sea_trials.features import covariance_of, features_of
+from shipcosim.diagnose.sea_trials.sailing import sailed
+from shipcosim.diagnose.ship.instruments import MOUNTING
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
+    from shipcosim.diagnose.sea_trials.windows import SeaTrial
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["SetOfCauses", "TrialEvidence", "changes_of", "predicted", "ranked", "trial_evidence"]
+
+_PART = 0.3  # of the typical size, by which a cause is moved for its first derivative
+
+
+@dataclass(frozen=True)
+class SetOfCauses:
+    """A set of causes fitted to sea trials.
+
+    Attributes
+    ----------
+    hypotheses : tuple of Hypothesis
+    values : (p,) array
+        Distance of each parameter from its neutral value, in typical sizes.
+    std : (p,) array
+        The same of their standard deviations.
+    evidence : float
+        Logarithm, up to a constant that all sets on these trials share. [nats]
+    """
+
+    hypotheses: tuple[Hypothesis, ...]
+    values: np.ndarray
+    std: np.ndarray
+    evidence: float
+
+    @property
+    def parameters(self) -> list[tuple[Hypothesis, HypothesisParameter]]:
+        """All parameters, each with its cause."""
+        return [(cause, parameter) for cause in self.hypotheses for parameter in cause.parameters]
+
+    @property
+    def label(self) -> str:
+        """``drag + mass``, or ``no cause``."""
+        return " + ".join(cause.label for cause in self.hypotheses) or "no cause"
+
+    @property
+    def plausible(self) -> bool:
+        """Whether each estimate is inside its bounds and at least the least that matters."""
+        return all(
+            parameter.bounds[0] < parameter.neutral + value * parameter.typical < parameter.bounds[1]
+            and abs(value) > cause.definition.least
+            for (cause, parameter), value in zip(self.parameters, self.values, strict=True)
+        )
+
+
+@dataclass(frozen=True)
+class TrialEvidence:
+    """Sea trials and all that may be wrong, linearised about the ship as modelled.
+
+    Attributes
+    ----------
+    trials : tuple of SeaTrial
+    model : ShipModel
+    orders : bool
+    hypotheses : tuple of Hypothesis
+    measured : (f,) array
+        Features of all trials, one after the other.
+    predicted : (f,) array
+        Those of the ship as modelled.
+    slopes : (p, f) array
+        By parameter of the hypotheses, over a typical size.
+    known : (q, f) array
+        By what is known within a tolerance or allowed for, over its standard deviation.
+    noise : (f, f) array
+        How well the features repeat, at the scale of most evidence.
+    """
+
+    trials: tuple[SeaTrial, ...]
+    model: ShipModel
+    orders: bool
+    hypotheses: tuple[Hypothesis, ...]
+    measured: np.ndarray
+    predicted: np.ndarray
+    slopes: np.ndarray
+    known: np.ndarray
+    noise: np.ndarray
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of the features about those of a ship with the right causes."""
+        return self.noise + self.known.T @ self.known
+
+
+def trial_evidence(
+    trials: Sequence[SeaTrial], model: ShipModel, hypotheses: Sequence[Hypothesis], *, orders: bool
+) -> TrialEvidence:
+    """Linearise sea trials about the ship as modelled, and find how well their features repeat.
+
+    Parameters
+    ----------
+    trials : sequence of SeaTrial
+    model : ShipModel
+    hypotheses : sequence of Hypothesis
+        Causes to weigh.
+    orders : bool
+        As for `sailed`.
+
+    Returns
+    -------
+    TrialEvidence
+    """
+    causes = [(parameter, _PART * parameter.typical) for one in hypotheses for parameter in one.parameters]
+    known = _known(model)
+    both = [{path: sign * size for path in p.paths} for sign in (1.0, -1.0) for p, size in causes]
+    found = predicted(trials, model, [{}, *both, *({path: size} for path, size in known)], orders=orders)
+    slopes = (found[1 : 1 + len(causes)] - found[1 + len(causes) : 1 + 2 * len(causes)]) / (2.0 * _PART)
+    beside = found[1 + 2 * len(causes) :] - found[0]
+    length = model.parts["hull"].length
+    noise = _blocks([covariance_of(trial, length) for trial in trials])
+    measured = np.concatenate([features_of(trial, trial.measured) for trial in trials])
+    first = TrialEvidence(tuple(trials), model, orders, tuple(hypotheses), measured, found[0], slopes, beside, noise)
+    scaled = [_with_noise(first, scale**2 * noise) for scale in thresholds.SCALES]
+    return max(scaled, key=lambda one: max(value for value, _ in _linear(one, 2)))
+
+
+def _with_noise(found, noise):
+    return TrialEvidence(
+        found.trials, found.model, found.orders, found.hypotheses, found.measured, found.predicted, found.slopes,
+        found.known, noise,
+    )  # fmt: skip
+
+
+def _known(model):
+    """What is uncertain whatever the cause: tolerances of hull and thrusters, current, compass and antenna."""
+    places = (model.vessel, *model.thrusters)
+    found = [(path, size) for path, size in model.tolerances.items() if path.rpartition(".")[0] in places]
+    found = [(path, size) for path, size in found if isinstance(model.get(path), float) and "wind" not in path]
+    found += [("water.current_north", thresholds.CURRENT), ("water.current_east", thresholds.CURRENT)]
+    sizes = thresholds.HEADING_BIAS, thresholds.LEVER * model.parts["hull"].length
+    return [*found, *zip(MOUNTING, sizes, strict=True)]
+
+
+def predicted(
+    trials: Sequence[SeaTrial], model: ShipModel, changes: Sequence[dict[str, float]], *, orders: bool
+) -> np.ndarray:
+    """Features of trials by changed ships, (p, f) array of all trials one after the other; as for `sailed`."""
+    motions = sailed(trials, model, changes, orders=orders)
+    return np.array(
+        [
+            np.concatenate([features_of(trial, motion[i]) for trial, motion in zip(trials, motions, strict=True)])
+            for i in range(len(changes))
+        ]
+    )
+
+
+def _blocks(matrices):
+    size = sum(len(one) for one in matrices)
+    found, at = np.zeros((size, size)), 0
+    for one in matrices:
+        found[at : at + len(one), at : at + len(one)] = one
+        at += len(one)
+    return found
+
+
+def changes_of(found: SetOfCauses) -> dict[str, float]:
+    """What a fitted set adds to the numbers of the ship."""
+    return _changes(found.hypotheses, found.values)
+
+
+def _changes(hypotheses, values):
+    changes = {}
+    parameters = (parameter for one in hypotheses for parameter in one.parameters)
+    for parameter, value in zip(parameters, values, strict=True):
+        for path in parameter.paths:
+            changes[path] = changes.get(path, 0.0) + float(value) * parameter.typical
+    return changes
+
+
+def _linear(found: TrialEvidence, most: int) -> Iterator[tuple[float, tuple[int, ...]]]:
+    """Log-evidence of sets of hypotheses in the linear approximation, with their places."""
+    products, free = _products(found.covariance, found.measured - found.predicted, found.slopes)
+    own = _columns(found.hypotheses)
+    yield free, ()
+    for count in range(1, most + 1):
+        for places in combinations(range(len(own)), count):
+            yield free + _gain(products, [i for place in places for i in own[place]])[0], places
+
+
+def _columns(hypotheses):
+    """Places of each hypothesis' parameters among all."""
+    ends = np.cumsum([len(one.parameters) for one in hypotheses])
+    return [list(range(end - len(one.parameters), end)) for one, end in zip(hypotheses, ends, strict=True)]
+
+
+def _products(covariance, rest, slopes):
+    """Inner products of residual and slopes, whitened; and the log-density of the residual alone."""
+    L = np.linalg.cholesky(covariance)
+    white = np.linalg.solve(L, np.column_stack((rest, slopes.T)) if len(slopes) else rest[:, None])
+    products = white.T @ white
+    return products, -0.5 * products[0, 0] - np.log(np.diag(L)).sum()
+
+
+def _gain(products, columns):
+    rows = [0, *(1 + i for i in columns)]
+    return evidence(products[np.ix_(rows, rows)], np.ones(len(columns)))
+
+
+def ranked(found: TrialEvidence) -> list[SetOfCauses]:
+    """Sets of causes by evidence, best first: those best in the linear approximation, fitted to the simulation itself.
+
+    Parameters
+    ----------
+    found : TrialEvidence
+
+    Returns
+    -------
+    list of SetOfCauses
+        The empty set among them, and every part of a set.
+    """
+    everyone = sorted(_linear(found, thresholds.MOST_CAUSES), reverse=True)
+    chosen = {()}
+    for count in range(1, thresholds.MOST_CAUSES + 1):
+        chosen |= {places for _, places in [one for one in everyone if len(one[1]) == count][: thresholds.RELINEARISED]}
+    chosen |= {part for places in chosen for part in combinations(places, max(len(places) - 1, 0))}
+    sets = [tuple(found.hypotheses[i] for i in places) for places in sorted(chosen)]
+    return sorted(_fitted(found, sets), key=lambda one: -one.evidence)
+
+
+def _fitted(found, sets):
+    """Sets fitted by linearising about what was found, a few times, all sets in one simulation."""
+    own = dict(zip((h.label for h in found.hypotheses), _columns(found.hypotheses), strict=True))
+    slopes = [found.slopes[[i for one in causes for i in own[one.label]]] for causes in sets]
+    fits = [
+        _solved(found, causes, s, found.predicted, np.zeros(len(s))) for causes, s in zip(sets, slopes, strict=True)
+    ]
+    for _ in range(thresholds.ROUNDS):
+        changes = []
+        for fit in fits:
+            steps = np.vstack((np.zeros(len(fit.values)), _PART * np.eye(len(fit.values))))
+            changes += [_changes(fit.hypotheses, fit.values + step) for step in steps]
+        features = iter(predicted(found.trials, found.model, changes, orders=found.orders))
+        again = []
+        for fit in fits:
+            here = next(features)
+            s = np.array([(next(features) - here) / _PART for _ in fit.values]).reshape(-1, here.size)
+            again.append(_solved(found, fit.hypotheses, s, here, fit.values))
+        fits = again
+    return fits
+
+
+def _solved(found, causes, slopes, here, centre):
+    """Posterior and evidence of a set, linearised about a centre."""
+    products, free = _products(found.covariance, found.measured - here, slopes)
+    gain, mean, covariance = evidence(products, np.ones(len(centre)), centre)
+    limit = 1.5 + np.abs(centre)
+    return SetOfCauses(causes, np.clip(mean, -limit, limit), np.sqrt(np.diag(covariance)), free + gain)

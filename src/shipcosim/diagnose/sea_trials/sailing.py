@@ -1,0 +1,139 @@
+"""The ship model sails the orders of sea trials, open loop: all manoeuvres and many changed ships at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.sea_trials import thresholds
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.instruments import readings, true_motion
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.propulsion.azimuth import AzimuthParameters, turned
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.sea_trials.windows import SeaTrial
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["sailed"]
+
+
+def sailed(
+    trials: Sequence[SeaTrial], model: ShipModel, changes: Sequence[Mapping[str, float]], *, orders: bool
+) -> list[np.ndarray]:
+    """What instruments would show of ships that sail the orders of trials from where these began.
+
+    Calm: without wind and waves. A straight run is sailed on with its mean orders until the speed has settled.
+
+    Parameters
+    ----------
+    trials : sequence of SeaTrial
+    model : ShipModel
+    changes : sequence of p mappings of str to float
+        By ship: numbers and what is added to them.
+    orders : bool
+        Whether the log has orders, which the units follow, instead of what the units did.
+
+    Returns
+    -------
+    list of (p, n, 6) arrays
+        By trial: position, heading, surge, sway, yaw rate at its times; of a straight run at as many as it needs.
+    """
+    ships = _side_by_side(model, changes)
+    lengths, driven = zip(*(_driven(trial, model) for trial in trials), strict=True)
+    most = max(lengths)
+    units = {name: tuple(_padded([d[name][i] for d in driven], most) for i in (0, 1)) for name in model.thrusters}
+    seen = Motion(*np.array([trial.measured[0] for trial in trials]).T)
+    state = true_motion(seen, ships)._replace(v=0.0 * seen.v)
+    h, many = float(trials[0].time[1]), (len(changes), len(trials))
+    state = Motion(*(np.broadcast_to(value, many).copy() for value in state))
+    actual, shown = _at_first(units), [_shown(state, ships)]
+    for k in range(most - 1):
+        after = _followed(actual, units, k + 1, ships, h) if orders else _at(units, k + 1)
+        state = _stepped(state, actual, after, ships, h)
+        actual = after
+        shown.append(_shown(state, ships))
+    table = np.stack(shown, axis=-2)  # ships, trials, rows, channels
+    return [table[:, i, :n] for i, n in enumerate(lengths)]
+
+
+def _shown(state, ships):
+    many = np.shape(state.x)
+    return np.stack([np.broadcast_to(value, many) for value in readings(state, ships)], axis=-1)
+
+
+def _side_by_side(model, changes):
+    """One ship model with the numbers of all as arrays over the first axis."""
+    paths = {path for change in changes for path in change}
+    return model.with_values(
+        {path: np.array([[model.get(path) + change.get(path, 0.0)] for change in changes]) for path in paths}
+    )
+
+
+def _driven(trial, model):
+    """Number of rows to sail, and speed and direction of each thruster there."""
+    if trial.kind != "straight run":
+        return trial.time.size, trial.units
+    speed = np.median(np.hypot(trial.measured[:, 3], trial.measured[:, 4]))
+    rows = int(thresholds.RUN * model.parts["hull"].length / speed / trial.time[1]) + 2
+    return rows, {name: tuple(np.full(rows, np.mean(s)) for s in pair) for name, pair in trial.units.items()}
+
+
+def _padded(series, rows):
+    """(rows, trials) array of series, each held after its end."""
+    return np.stack([np.concatenate((one, np.full(rows - one.size, one[-1]))) for one in series], axis=1)
+
+
+def _at(units, k):
+    return {name: (speed[k], direction[k]) for name, (speed, direction) in units.items()}
+
+
+def _at_first(units):
+    return _at(units, 0)
+
+
+def _followed(actual, units, k, ships, h):
+    """Speed and direction of each unit a step later, which follow their orders. [rev/s or N, rad]"""
+    found = {}
+    for name, (speed, direction) in units.items():
+        unit, lag = ships.parts[name], ships.parts["instruments"].order_lag
+        wanted, angle = _late(speed, k, lag / h), _late(direction, k, lag / h)
+        if hasattr(unit, "rpm_max"):
+            wanted = np.clip(wanted, -unit.rpm_max / 60.0, unit.rpm_max / 60.0)
+        n = wanted + (actual[name][0] - wanted) * np.exp(-h / thresholds.RPM_LAG)
+        if isinstance(unit, AzimuthParameters) and name not in ships.fixed:
+            angle = turned(actual[name][1], angle, unit.azimuth_rate * h)
+        found[name] = (n, angle)
+    return found
+
+
+def _late(series, k, rows):
+    """A series (n, trials) some rows before row k, linear between rows; by ship where the lag is an array."""
+    at = np.clip(k - np.asarray(rows, float), 0.0, len(series) - 1.0)
+    low = np.minimum(at.astype(int), len(series) - 2)
+    share, trial = at - low, np.arange(series.shape[1])
+    return (1.0 - share) * series[low, trial] + share * series[low + 1, trial]
+
+
+def _stepped(state, before, after, ships, h):
+    """A Runge-Kutta step of fourth order."""
+
+    def rates(motion, share):
+        units = {
+            name: tuple((1.0 - share) * a + share * b for a, b in zip(pair, after[name], strict=True))
+            for name, pair in before.items()
+        }
+        return motion_rates(motion, Inputs(0.0, units, None, None), ships)
+
+    def moved(by, seconds):
+        return Motion(*(value + seconds * rate for value, rate in zip(state, by, strict=True)))
+
+    k1 = rates(state, 0.0)
+    k2 = rates(moved(k1, 0.5 * h), 0.5)
+    k3 = rates(moved(k2, 0.5 * h), 0.5)
+    k4 = rates(moved(k3, h), 1.0)
+    mean = Motion(*((a + 2.0 * b + 2.0 * c + d) / 6.0 for a, b, c, d in zip(k1, k2, k3, k4, strict=True)))
+    return moved(mean, h)

@@ -1,0 +1,300 @@
+"""A study of sea trials: which causes explain one side's circles, and how well they predict the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
+from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.result import Estimate
+from shipcosim.diagnose.sea_trials import thresholds
+from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, changes_of, predicted, ranked, trial_evidence
+from shipcosim.diagnose.sea_trials.features import FEATURES, features_of
+from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
+from shipcosim.diagnose.ship.inputs import record_of
+from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
+from shipcosim.diagnose.stages import ReadLog
+from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    import os
+
+    import xarray
+
+    from shipcosim.diagnose.hypotheses.cause import Cause
+    from shipcosim.ssp import System
+
+__all__ = ["HeldOut", "SeaTrialStudy", "best_of", "causes_of_trials", "errors", "rivals_of", "studied", "study"]
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Causes fitted on some trials and judged on others.
+
+    Attributes
+    ----------
+    fitted_on, judged_on : tuple of str
+        Names of the trials.
+    ranking : tuple of SetOfCauses
+        Best first.
+    before, after : dict of str to float
+        Root mean square error of each feature on the trials judged on, in per cent (drift in deg), of the ship as
+        modelled and with the best set.
+    """
+
+    fitted_on: tuple[str, ...]
+    judged_on: tuple[str, ...]
+    ranking: tuple[SetOfCauses, ...]
+    before: dict[str, float]
+    after: dict[str, float]
+
+    @property
+    def best(self) -> SetOfCauses:
+        """The set that is named."""
+        return best_of(self.ranking)
+
+
+@dataclass(frozen=True)
+class SeaTrialStudy:
+    """What the sea trials of a log say.
+
+    Attributes
+    ----------
+    trials : tuple of SeaTrial
+    model : ShipModel
+    orders : bool
+    held_out : dict of str to HeldOut
+        By what was fitted on: ``"port"``, ``"starboard"``; empty where only one side was turned to.
+    ranking : tuple of SetOfCauses
+        On all trials, best first.
+    """
+
+    trials: tuple[SeaTrial, ...]
+    model: ShipModel
+    orders: bool
+    held_out: dict[str, HeldOut]
+    ranking: tuple[SetOfCauses, ...]
+
+    @property
+    def best(self) -> SetOfCauses:
+        """The set that is named."""
+        return best_of(self.ranking)
+
+    @property
+    def rivals(self) -> list[SetOfCauses]:
+        """Sets that fit alike."""
+        return rivals_of(self.ranking)
+
+    @property
+    def verdict(self) -> str:
+        """As of a diagnosis: ``"consistent"``, ``"named"`` or ``"ambiguous"``."""
+        if not self.best.hypotheses:
+            return "consistent"
+        return "ambiguous" if self.rivals else "named"
+
+    def as_json(self) -> dict[str, Any]:
+        """What `sea_trials.json` holds."""
+        return {
+            "schema": "shipcosim-sea-trials/1",
+            "verdict": self.verdict,
+            "trials": [trial.name for trial in self.trials],
+            "causes": _as_json(self.best),
+            "indistinguishable": [_as_json(one) for one in self.rivals],
+            "held_out": {
+                name: {
+                    "causes": _as_json(one.best),
+                    "judged_on": list(one.judged_on),
+                    "before": one.before,
+                    "after": one.after,
+                }
+                for name, one in self.held_out.items()
+            },
+        }
+
+
+def _as_json(found):
+    return [
+        {"cause": cause.cause, "component": cause.component, "parameters": _estimates(found, cause)}
+        for cause in found.hypotheses
+    ]
+
+
+def _estimates(found, cause):
+    return {
+        parameter.name: vars(estimate)
+        for (owner, parameter), estimate in zip(found.parameters, estimates(found), strict=True)
+        if owner is cause
+    }
+
+
+def estimates(found: SetOfCauses) -> list[Estimate]:
+    """Estimates of a set's parameters in the units of their files."""
+    return [
+        Estimate(float(p.factor * (p.neutral + value * p.typical)), float(abs(p.factor * p.typical) * std), p.unit)
+        for (_, p), value, std in zip(found.parameters, found.values, found.std, strict=True)
+    ]
+
+
+def study(
+    log: str | os.PathLike | xarray.Dataset,
+    system: System,
+    channels: str | os.PathLike | None = None,
+    causes: str | os.PathLike | None = None,
+    *,
+    orders: bool = False,
+) -> SeaTrialStudy:
+    """Find the sea trials of a log, and the causes for which the ship model does not sail them as the ship did.
+
+    Parameters
+    ----------
+    log : path or xarray.Dataset
+        Measured data, see docs/measured-data.md.
+    system : System
+    channels : path, optional
+        Channel file.
+    causes : path, optional
+        Folder with further causes.
+    orders : bool
+        Whether the thrusters' channels are orders, which the units follow, instead of feedback.
+
+    Returns
+    -------
+    SeaTrialStudy
+
+    Raises
+    ------
+    ShipcosimError
+        Data that cannot be used; no turning circle.
+    """
+    read = checked(ReadLog(read_log(log, channels), ship_model_of(system), read_catalogue(causes)))
+    if read.ship.third_party:
+        found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
+        raise ShipcosimError(Problem(system.file, found, "Sea trials are sailed with thrusters of ours."))
+    lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
+    record = record_of(read.repaired, read.ship)
+    record = as_ordered(record, read.repaired, read.ship) if orders else record
+    trials = sea_trials_of(record, read.ship, lost, orders=orders)
+    if not any(trial.kind == "turning circle" for trial in trials):
+        found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
+        right = (
+            f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
+        )
+        raise ShipcosimError(Problem(str(read.repaired.attrs.get("source", "log")), found, right))
+    return studied(trials, read.ship, causes_of_trials(read.ship, read.causes, orders=orders), orders=orders)
+
+
+def causes_of_trials(model: ShipModel, catalogue: Mapping[str, Cause], *, orders: bool) -> list[Hypothesis]:
+    """Causes in the hull and its thrusters, and where a log has orders how late these are answered.
+
+    A current, the compass and the antenna are allowed for beside every cause.
+    """
+    places = {model.vessel, *model.thrusters}
+    allowed = {path for path in model.numbers if path.rpartition(".")[0] in places and "wind" not in path}
+    allowed |= {"instruments.order_lag"} if orders else set()
+    everyone = hypotheses_of(catalogue, model, "sea trials")
+    return [
+        one
+        for one in everyone
+        if one.definition.law == "linear" and all(path in allowed for p in one.parameters for path in p.paths)
+    ]
+
+
+def studied(
+    trials: Sequence[SeaTrial], model: ShipModel, hypotheses: Sequence[Hypothesis], *, orders: bool
+) -> SeaTrialStudy:
+    """The study of known sea trials: each side judged by the other, then all together.
+
+    Parameters
+    ----------
+    trials : sequence of SeaTrial
+    model : ShipModel
+    hypotheses : sequence of Hypothesis
+    orders : bool
+        As for `study`.
+
+    Returns
+    -------
+    SeaTrialStudy
+    """
+    sides = {name: [t for t in trials if _turns(t, side)] for name, side in (("port", -1), ("starboard", 1))}
+    held_out = {}
+    if all(sides.values()):
+        for name, own in sides.items():
+            others = [trial for trial in trials if trial.kind != "straight run" and trial not in own]
+            straight = [trial for trial in trials if trial.kind == "straight run"]
+            held_out[name] = _judged([*straight, *own], others, model, hypotheses, orders)
+    whole = trial_evidence(trials, model, hypotheses, orders=orders)
+    return SeaTrialStudy(tuple(trials), model, orders, held_out, tuple(ranked(whole)))
+
+
+def _turns(trial, side):
+    return trial.kind == "turning circle" and trial.side == side
+
+
+def _judged(train, others, model, hypotheses, orders):
+    both_sides = [one for one in hypotheses if one.component is None]  # one unit alone: told by comparing both sides
+    ranking = tuple(ranked(trial_evidence(train, model, both_sides, orders=orders)))
+    before, after = (errors(others, model, changes, orders=orders) for changes in ({}, changes_of(best_of(ranking))))
+    names = (tuple(trial.name for trial in some) for some in (train, others))
+    return HeldOut(*names, ranking, before, after)
+
+
+def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:
+    """The set that is named: each of its causes adds enough to what the set explains without it."""
+    everyone = [one for one in ranking if one.plausible]
+    by_label = {frozenset(c.label for c in one.hypotheses): one for one in ranking}
+    for one in everyone:
+        names = frozenset(c.label for c in one.hypotheses)
+        less = [by_label[names - {name}].evidence for name in names if names - {name} in by_label]
+        if all(one.evidence - value > thresholds.NAMED for value in less):
+            return one
+    return by_label[frozenset()]
+
+
+def rivals_of(ranking: Iterable[SetOfCauses]) -> list[SetOfCauses]:
+    """Sets of no more causes that fit as well as the best one."""
+    ranking = list(ranking)
+    best = best_of(ranking)
+    return [
+        one
+        for one in ranking
+        if one is not best
+        and one.plausible
+        and len(one.hypotheses) <= len(best.hypotheses)
+        and one.evidence > best.evidence - thresholds.RIVAL
+    ]
+
+
+def errors(
+    trials: Sequence[SeaTrial], model: ShipModel, changes: dict[str, float], *, orders: bool
+) -> dict[str, float]:
+    """Root mean square errors of a changed ship on trials, by kind and feature, in per cent (drift in deg).
+
+    Parameters
+    ----------
+    trials : sequence of SeaTrial
+    model : ShipModel
+    changes : dict of str to float
+        What is added to the ship's numbers.
+    orders : bool
+        As for `study`.
+
+    Returns
+    -------
+    dict of str to float
+        ``"turning circle: speed"`` and the like.
+    """
+    measured = [features_of(trial, trial.measured) for trial in trials]
+    sailed = predicted(trials, model, [changes], orders=orders)[0]
+    found, at = {}, 0
+    for trial, own in zip(trials, measured, strict=True):
+        for name, off in zip(FEATURES[trial.kind], sailed[at : at + own.size] - own, strict=True):
+            size = np.degrees(off) if name == "drift" else 100.0 * np.expm1(off)
+            found.setdefault(f"{trial.kind}: {name}", []).append(size)
+        at += own.size
+    return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in found.items()}

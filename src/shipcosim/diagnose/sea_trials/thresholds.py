@@ -1,0 +1,87 @@
+"""Thresholds of the sea trials: what counts as a manoeuvre, and how well a model is expected to meet its features.
+
+Lengths of time and way are those of ships of similar form at similar Froude number: they go with L and the root of L.
+"""
+
+TURNING = 0.14
+"""Steering, as commanded yaw moment over commanded thrust and lever, above which a ship is turned: sin 8 deg. [1]"""
+STEADY = 0.035
+"""Steering below which a ship is kept straight: sin 2 deg. [1]"""
+ZIG_ZAG = 0.06
+"""Steering of a helm in a zig-zag. [1]"""
+CIRCLE = 330.0
+"""Heading turned by a circle that can be used, from the start of the order. [deg]"""
+HALF_A_CIRCLE = 180.0
+"""Heading turned from which on a circle is steady: speeds of the trials of 2022 change little after it. [deg]"""
+CIRCLES = 540.0
+"""Heading turned up to which a circle is used. [deg]"""
+SWINGS = 3
+"""Changes of the helm of a zig-zag that can be used. [1]"""
+LONGEST_SWING = 20.0
+"""Way from one change of the helm to the next, above which it is no zig-zag. [ship lengths]"""
+SETTLED = 15.0
+"""Way after a manoeuvre until the speed has settled: exp(-3) of a difference is left on a ship of 34 m. [ship lengths]"""
+STRAIGHT = 8.0
+"""Way of a straight run that can be used. [ship lengths]"""
+STRAIGHT_RATE = 0.03
+"""Yaw rate r L / U of a straight run, averaged over the time of rest: a curve of 33 lengths radius. [1]"""
+REST = 10.0
+"""Time over which a helmsman's corrections average out, and orders are held. [s]"""
+CLIPPED = 0.98
+"""Order over the largest speed of a shaft, above which it says nothing of the speed that the shaft had. [1]"""
+CLIPPED = 0.98
+"""Order over the largest speed of a shaft, above which it says nothing of the speed that the shaft had. [1]"""
+RUN = 40.0
+"""Way over which the model settles to its own speed. [ship lengths]"""
+LONGEST_HOLE = 6
+"""Rows without a value that are bridged. [1]"""
+CLOCK_WINDOW = 1.4
+"""Over which way and logged speed are compared, times the root of the length in m: 8 s for 34 m. [s/m^0.5]"""
+STEP = 0.086
+"""Step of the simulation, times the root of the length in m: 0.5 s for 34 m. [s/m^0.5]"""
+TURNS = 0.2
+"""Yaw rate in ship lengths turned per length sailed, r L / U, above which heading and rate tell the clock. [1]"""
+UNDER_WAY = 0.03
+"""Froude number below which a ship makes no trials. [1]"""
+RPM_LAG = 1.0
+"""With which a propeller follows its order, assumed. [s]"""
+
+HEADINGS = (20.0, 60.0, 90.0, 180.0)
+"""Headings turned whose times are compared. [deg]"""
+HEADINGS_OF_SPEED = (40.0, 90.0, 180.0)
+"""Headings turned at which speeds are compared. [deg]"""
+
+SPEED, RATE, DRIFT = 0.025, 0.025, 0.026
+"""How well the steady speed, rate (shares) and drift angle (rad) of a circle repeat, assumed: waves, wind, helm."""
+TIMES = (0.10, 0.06, 0.05, 0.04)
+"""The same of the times to `HEADINGS`, assumed. [1]"""
+SPEEDS = 0.05
+"""The same of the speeds at `HEADINGS_OF_SPEED`, assumed. [1]"""
+STRAIGHT_SPEED = 0.015
+"""The same of the speed of a straight run, beside the current, assumed. [1]"""
+PEAK_RATE, SWING, ZIG_ZAG_SPEED = 0.04, 0.08, 0.03
+"""The same of a zig-zag's mean largest rate, mean heading change of a swing, and mean speed, assumed. [1]"""
+START = 0.12
+"""How well the start of a circle's order is known, times the root of the length in m: 0.7 s for 34 m. [s/m^0.5]"""
+COMMON = 0.02
+"""What all speeds of a manoeuvre, and all its rates, share: another rpm than logged, a heel, a gust, assumed. [1]"""
+SCALES = (0.7, 1.0, 1.4, 2.0, 2.8, 4.0)
+"""Factors on all of these among which the one of most evidence is taken. [1]"""
+
+CURRENT = 0.25
+"""Prior of a steady current in each direction. [m/s]"""
+HEADING_BIAS = 0.052
+"""Prior of what the compass is off: 3 deg. [rad]"""
+LEVER = 0.118
+"""Prior of how far the antenna is off the origin ahead, as a share of the length. [1]"""
+
+MOST_CAUSES = 3
+"""Causes that are sought at once. [1]"""
+RELINEARISED = 8
+"""Sets, best in the linear approximation, that are fitted to the simulation itself. [1]"""
+ROUNDS = 2
+"""Times that they are linearised anew. [1]"""
+NAMED = 5.0
+"""Evidence that each cause of a set must add. [nats]"""
+RIVAL = 3.0
+"""Evidence within which a set counts as fitting alike. [nats]"""

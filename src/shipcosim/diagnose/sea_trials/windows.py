@@ -1,0 +1,285 @@
+"""The sea trials of a log: straight runs, turning circles and zig-zags, by what was ordered and what the ship did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.sea_trials import thresholds
+from shipcosim.diagnose.sea_trials.clock import own_clock
+from shipcosim.diagnose.ship.thrusters import dp_thruster_of
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["SeaTrial", "as_ordered", "sea_trials_of", "steering"]
+
+
+@dataclass(frozen=True)
+class SeaTrial:
+    """One manoeuvre of a log, on the clock that its own motion tells.
+
+    Attributes
+    ----------
+    kind : str
+        ``"straight run"``, ``"turning circle"`` or ``"zig-zag"``.
+    side : int
+        1 to starboard, -1 to port, of the first order; 0 of a straight run.
+    logged : tuple of two floats
+        First and last time in the log. [s]
+    steering : float
+        Median size of the steering, as the sine of an azimuth. [1]
+    time : (n,) array
+        From the start, even. [s]
+    measured : (n, 6) array
+        North, east, heading (unwrapped), surge, sway, yaw rate, SI; speeds as the way says.
+    units : dict of str to tuple of two (n,) arrays
+        Speed or thrust and direction of each thruster. [rev/s or N, rad]
+    """
+
+    kind: str
+    side: int
+    logged: tuple[float, float]
+    steering: float
+    time: np.ndarray
+    measured: np.ndarray
+    units: dict[str, tuple[np.ndarray, np.ndarray]]
+
+    @property
+    def name(self) -> str:
+        """``turning circle to port at 2316 s``."""
+        to = {1: " to starboard", -1: " to port", 0: ""}[self.side]
+        return f"{self.kind}{to if self.kind == 'turning circle' else ''} at {self.logged[0]:.0f} s"
+
+
+def sea_trials_of(
+    record: Record, model: ShipModel, lost: Sequence[tuple[float, float]] = (), *, orders: bool = False
+) -> list[SeaTrial]:
+    """The manoeuvres of a log in the order of time.
+
+    Parameters
+    ----------
+    record : Record
+        Of the repaired log.
+    model : ShipModel
+    lost : sequence of (float, float)
+        Segments in which rows are lost; no trial reaches over one. [s]
+    orders : bool
+        Whether the log has orders: of a straight run at the largest one nobody knows the shaft speed.
+
+    Returns
+    -------
+    list of SeaTrial
+        Each on its own clock, in steps for the simulation.
+    """
+    measured, whole = _bridged(record.measured)
+    length = model.parts["hull"].length
+    helm = steering(record, model)
+    speed = np.hypot(measured[:, 3], measured[:, 4])
+    whole &= record.known | (np.arange(whole.size) == whole.size - 1)
+    for first, last in lost:
+        whole &= (record.time < first - record.step) | (record.time > last + record.step)
+    found = [*_circles(helm, measured), *_zig_zags(helm, measured, length)]
+    busy = _merged([rows for _, rows in found])
+    found += _straight_runs(helm, record, measured, length, busy)
+    kept = [(kind, rows) for kind, rows in found if whole[rows].all()]
+    fast = thresholds.UNDER_WAY * np.sqrt(9.81 * length)
+    kept = [(kind, rows) for kind, rows in kept if np.mean(speed[rows]) > fast]
+    clock, scale = own_clock(record.time, measured, length)
+    measured = measured.copy()
+    measured[:, 3:5] *= scale
+    kept = [one for one in kept if not (orders and one[0] == "straight run" and _clipped(one[1], record, model))]
+    trials = [_trial(kind, rows, record, measured, clock, helm, length) for kind, rows in kept]
+    return sorted(trials, key=lambda trial: trial.logged)
+
+
+def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
+    """The record with the orders of thrusters as logged, not averaged over neighbouring rows: an order is a step.
+
+    Parameters
+    ----------
+    record : Record
+    log : xarray.Dataset
+        The repaired log that it was made of.
+    model : ShipModel
+
+    Returns
+    -------
+    Record
+    """
+    time = log["time"].values
+    after = np.clip(np.searchsorted(time, record.time), 1, time.size - 1)
+    at = after - (record.time - time[after - 1] < time[after] - record.time)
+    units = {}
+    for name, (speed, direction) in record.units.items():
+        told = {f"{name}_rpm": (speed, 1.0 / 60.0), f"{name}_thrust": (speed, 1.0)}
+        role = next(
+            (role for role in told if role in log and role.removeprefix(f"{name}_") in model.drives(name)), None
+        )
+        own = speed if role is None else told[role][1] * _known(log[role].values, speed, at)
+        azimuth = f"{name}_azimuth"
+        units[name] = (
+            own,
+            _known(unwrap_series(np.radians(log[azimuth].values)), direction, at) if azimuth in log else direction,
+        )
+    return replace(record, units=units)
+
+
+def _known(series, otherwise, at):
+    """Values of a series at some rows, others where there is none."""
+    return np.where(np.isfinite(series[at]), series[at], otherwise)
+
+
+def steering(record: Record, model: ShipModel) -> np.ndarray:
+    """Commanded yaw moment over the largest that the commanded thrusts could have, to starboard. (n,) [1]
+
+    Of a ship with azimuths or a rudder it is the sine of their angle, of one with two fixed propellers their difference
+    over their sum.
+    """
+    moment = most = np.zeros(record.time.size)
+    for name, (speed, direction) in record.units.items():
+        unit = dp_thruster_of(model, name)
+        thrust = (
+            speed
+            if "thrust" in model.drives(name)
+            else speed * abs(speed) * np.where(speed < 0, unit.astern, unit.ahead)
+        )
+        if not unit.pointed and abs(np.cos(unit.axis)) < 0.5:
+            continue  # a tunnel thruster: no trial is steered with it
+        angle = unit.axis + direction if unit.pointed else unit.axis
+        moment = moment + thrust * (unit.x * np.sin(angle) - unit.y * np.cos(angle))
+        most = most + abs(thrust) * (abs(unit.x) if unit.pointed else abs(unit.y))
+    return np.where(most > 0.0, moment / np.maximum(most, 1e-9), 0.0)
+
+
+def _bridged(measured):
+    """Measurements with short holes filled, and whether each row has values all the same."""
+    filled, whole, rows = measured.copy(), np.ones(len(measured), bool), np.arange(len(measured))
+    for channel in range(measured.shape[1]):
+        there = np.isfinite(measured[:, channel])
+        if not there.any():
+            continue
+        filled[:, channel] = np.interp(rows, rows[there], measured[there, channel])
+        for a, b in pairwise(np.flatnonzero(there)):
+            if b - a - 1 > thresholds.LONGEST_HOLE:
+                whole[a + 1 : b] = False
+        whole[: np.argmax(there)] = False
+        whole[len(there) - np.argmax(there[::-1]) :] = False
+    return filled, whole
+
+
+def _runs(mask):
+    """Runs of rows where a mask holds: slices."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(int), [0]))))
+    return [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _circles(helm, measured):
+    """Rows of orders held until the ship has turned round, from where the order leaves its rest."""
+    for side in (1.0, -1.0):
+        for run in _runs(side * helm > thresholds.TURNING):
+            turned = side * (measured[:, 2] - measured[run.start, 2])
+            if turned[run.stop - 1] < np.radians(thresholds.CIRCLE):
+                continue
+            start = run.start
+            while start > 0 and side * helm[start - 1] > thresholds.STEADY and start > run.start - 20:
+                start -= 1
+            far = np.flatnonzero(turned[run] > np.radians(thresholds.CIRCLES))
+            end = run.start + int(far[0]) + 1 if far.size else run.stop
+            yield "turning circle", slice(max(start - 1, 0), end)
+
+
+def _zig_zags(helm, measured, length):
+    """Rows from the first order of a zig-zag to its last change of the helm."""
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
+    side = np.where(helm > thresholds.ZIG_ZAG, 1, np.where(helm < -thresholds.ZIG_ZAG, -1, 0))
+    swings = [run for s in (1, -1) for run in _runs(side == s)]
+    swings.sort(key=lambda run: run.start)
+    chain = []
+    for run in [*swings, None]:
+        longest = thresholds.LONGEST_SWING * length
+        if run is not None and chain:
+            last = chain[-1]
+            short = (
+                way[run.stop - 1] - way[last.start] < 2.0 * longest
+                and way[run.start] - way[last.stop - 1] < 2.0 * length
+            )
+            if short and side[run.start] != side[last.start]:
+                chain.append(run)
+                continue
+        if len(chain) > thresholds.SWINGS:
+            start = chain[0].start
+            while start > 0 and abs(helm[start - 1]) > thresholds.STEADY and start > chain[0].start - 10:
+                start -= 1
+            yield "zig-zag", slice(max(start - 1, 0), chain[-1].start + 1)
+        turned = run is not None and np.ptp(measured[run, 2]) < np.radians(thresholds.HALF_A_CIRCLE)
+        chain = [run] if turned else []
+
+
+def _merged(slices):
+    return sorted(slices, key=lambda rows: rows.start)
+
+
+def _straight_runs(helm, record, measured, length, busy):
+    """Rows of straight courses at held orders, after the speed has settled."""
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
+    held = np.abs(uniform_filter1d(helm, _rows_of_rest(record))) < thresholds.STEADY
+    rate, speed = uniform_filter1d(measured[:, 5], _rows_of_rest(record)), np.hypot(measured[:, 3], measured[:, 4])
+    held &= np.abs(rate) * length < thresholds.STRAIGHT_RATE * speed
+    for order, _ in record.units.values():
+        held &= _held(order, record)
+    for rows in busy:
+        held[rows] = False
+    for run in _runs(held):
+        after = np.flatnonzero(way[run] - way[run.start] > thresholds.SETTLED * length)
+        if not after.size:
+            continue
+        rows = slice(run.start + int(after[0]), run.stop)
+        if way[rows.stop - 1] - way[rows.start] > thresholds.STRAIGHT * length:
+            yield "straight run", rows
+
+
+def _rows_of_rest(record):
+    """Rows over which a helmsman's corrections average out."""
+    return max(int(thresholds.REST / record.step), 1)
+
+
+def _clipped(rows, record, model):
+    """Whether a thruster is ordered to its largest speed."""
+    most = {name: getattr(model.parts[name], "rpm_max", np.inf) / 60.0 for name in record.units}
+    return any(np.mean(speed[rows]) > thresholds.CLIPPED * most[name] for name, (speed, _) in record.units.items())
+
+
+def _held(series, record):
+    """Whether an order stays near its value some seconds ago and hence."""
+    rows = _rows_of_rest(record)
+    size = 0.03 * np.max(np.abs(series)) + 1e-9
+    off = np.abs(series - np.roll(series, rows)) < size
+    return off & np.roll(off, -rows)
+
+
+def _trial(kind, rows, record, measured, clock, helm, length):
+    """The rows of a manoeuvre on even steps of its own clock."""
+    own = clock[rows] - clock[rows][0]
+    h = thresholds.STEP * np.sqrt(length)
+    time = np.arange(int(own[-1] / h) + 1) * h
+
+    def even(series):
+        return np.interp(time, own, series[rows])
+
+    nearest = np.argmin(np.abs(own[:, None] - time), axis=0) + rows.start
+    units = {name: (speed[nearest], direction[nearest]) for name, (speed, direction) in record.units.items()}
+    order = helm[rows][np.argmax(np.abs(helm[rows]) > thresholds.ZIG_ZAG)]
+    side = 0 if kind == "straight run" else int(np.sign(order))
+    logged = float(record.time[rows][0]), float(record.time[rows][-1])
+    size = float(np.median(np.abs(helm[rows])))
+    return SeaTrial(kind, side, logged, size, time, np.stack([even(c) for c in measured.T], axis=1), units)

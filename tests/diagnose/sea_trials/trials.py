@@ -1,0 +1,108 @@
+"""Simulated sea trials: logs of ships with planted causes that sail straight legs, circles and a zig-zag by orders.
+
+The ship is the model's, drawn within her tolerances: these logs say whether the inference is right, nothing about the
+models. Their clock is bad: the true seconds between rows, 1 s by their stamps, wander between 0.75 and 1.2.
+"""
+
+import numpy as np
+from diagnose import twin
+
+from shipcosim.angles import wrap
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.propulsion.azimuth import turned
+from shipcosim.series import make_table
+
+FINE = 0.5  # s
+RPM_LAG = 1.0  # s
+WHITE = np.array([0.3, 0.3, np.radians(0.2), 0.03, 0.03, np.radians(0.05)])
+ROLES = {"north": "m", "east": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
+TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
+LEGS = ((20.0, 170.0), (-20.0, 170.0), (10.0, 170.0), (-10.0, 170.0), (32.0, 110.0), (-32.0, 110.0))  # deg, rpm
+STRAIGHT, ROUND, SWING = 200.0, {20.0: 170.0, 10.0: 240.0, 32.0: 200.0}, 20.0  # s
+
+
+def orders(time):
+    """Azimuth [rad] and speed [rpm] of both units over time."""
+    azimuth, rpm, start = np.zeros(time.size), np.full(time.size, LEGS[0][1]), 0.0
+    for angle, speed in LEGS:
+        end = start + STRAIGHT + ROUND[abs(angle)]
+        rpm[time >= start] = speed
+        azimuth[(time >= start + STRAIGHT) & (time < end)] = np.radians(angle)
+        start = end
+    start += STRAIGHT
+    for k in range(6):
+        azimuth[(time >= start + k * SWING) & (time < start + (k + 1) * SWING)] = np.radians(10.0) * (-1) ** k
+    return azimuth, rpm
+
+
+def duration():
+    """Of all of them. [s]"""
+    return sum(STRAIGHT + ROUND[abs(angle)] for angle, _ in LEGS) + STRAIGHT + 8 * SWING
+
+
+def logs(problems, seed=0):
+    """Logs of ships with numbers changed, each also drawn within the tolerances of hull and thrusters.
+
+    Parameters
+    ----------
+    problems : dict of str to dict of str to float
+        By name, numbers of the ship and what they are; ``lag``: by how much the units answer late. [s]
+    seed : int
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+    """
+    random, many = np.random.default_rng(seed), len(problems)
+    ship = _ships(problems, random)
+    time = np.arange(0.0, duration(), FINE)
+    azimuth, rpm = orders(time)
+    lags = np.array([values.get("lag", 0.0) for values in problems.values()])
+    zero = np.zeros(many)
+    state = Motion(zero, zero, zero, zero + 5.4, zero, zero)
+    angle, n, shown = zero, zero + rpm[0] / 60.0, []
+    for now in time:
+        shown.append(np.stack([np.broadcast_to(value, many) for value in readings(state, ship)], axis=1))
+        late = np.clip(((now - lags) / FINE).astype(int), 0, time.size - 1)
+        angle = turned(angle, azimuth[late], np.radians(10.0) * FINE)
+        n = rpm[late] / 60.0 + (n - rpm[late] / 60.0) * np.exp(-FINE / RPM_LAG)
+        units = {name: (n, angle) for name in ("port", "starboard")} | {"tunnel": (zero, zero)}
+        state = _stepped(state, Inputs(now, units, None, None), ship)
+    rate = 1.0 - 0.2 * np.sin(np.cumsum(random.normal(0.0, 0.05, int(duration()))))  # true seconds a row
+    rows = np.minimum((np.cumsum(rate) / FINE).astype(int), time.size - 1)
+    rows = rows[: np.argmax(rows >= time.size - 1) or None]
+    found = np.stack(shown)[rows] + WHITE * random.standard_normal((rows.size, many, 6))
+    tables = {}
+    for i, name in enumerate(problems):
+        found[:, i, 2] = wrap(found[:, i, 2]) % (2.0 * np.pi)
+        columns = [
+            (role, factor * values, unit, role)
+            for (role, unit), factor, values in zip(ROLES.items(), TO_LOG, found[:, i].T, strict=True)
+        ]
+        for unit in ("port", "starboard"):
+            columns.append((f"{unit}_rpm", rpm[rows], "rpm", ""))
+            columns.append((f"{unit}_azimuth", np.degrees(azimuth[rows]), "deg", ""))
+        tables[name] = make_table(np.arange(rows.size, dtype=float), columns)
+    return tables
+
+
+def _ships(problems, random):
+    """Ships side by side, each with tolerances drawn anew and her planted numbers."""
+    model, values = twin.model(), {}
+    for path, size in model.tolerances.items():
+        if path.partition(".")[0] in (model.vessel, *model.thrusters) and isinstance(model.get(path), float):
+            values[path] = model.get(path) + size * random.standard_normal(len(problems))
+    planted = {path for changes in problems.values() for path in changes if path != "lag"}
+    for path in planted:
+        drawn = values.get(path, np.full(len(problems), model.get(path)))
+        values[path] = np.array([changes.get(path, own) for changes, own in zip(problems.values(), drawn, strict=True)])
+    return model.with_values(values)
+
+
+def _stepped(state, inputs, ship):
+    """A midpoint step."""
+    half = Motion(*(a + 0.5 * FINE * b for a, b in zip(state, motion_rates(state, inputs, ship), strict=True)))
+    return Motion(*(a + FINE * b for a, b in zip(state, motion_rates(half, inputs, ship), strict=True)))
