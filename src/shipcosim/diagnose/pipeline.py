@@ -8,6 +8,7 @@ From a log to its verdict, `verdict_on`:
     corrected          Identification  faults of the log and of connections that only the ship's response shows
     with_learnt_form   Identification  how far the form of the ship's loads differs from the model's
     with_causes        ExplainedLog    sets of causes fitted to the log
+    with_settled_form  ExplainedLog    the model's form after all, where the causes found do without another
     with_right_inputs  ExplainedLog    mislabelled channels of thrusters and wind, which look like causes
     with_change_point  ExplainedLog    causes that began during the log
     judged             JudgedLog       the verdict, against unmodelled errors and what healthy ships gain
@@ -37,7 +38,7 @@ from shipcosim.diagnose.experiment.testability import log_facts, untestable_caus
 from shipcosim.diagnose.extension.extended_system import with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.change_point import with_change_point
-from shipcosim.diagnose.inference.form import with_learnt_form
+from shipcosim.diagnose.inference.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.inference.search import with_causes
 from shipcosim.diagnose.inference.summary import evidence_of
@@ -183,7 +184,8 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
     log = checked(read)
     progress("which causes explain it?")
     identification = with_learnt_form(corrected(identified(log)))
-    explained = with_change_point(with_right_inputs(with_causes(identification)))
+    explained = with_settled_form(with_causes(identification))
+    explained = with_change_point(with_right_inputs(explained))
     progress("what do healthy ships look like?")
     return judged(explained)
 

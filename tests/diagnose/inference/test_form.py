@@ -1,12 +1,14 @@
 """How far the form differs is learnt: not at all on a ship of the model's form, beside the cause on another."""
 
 import pytest
+import xarray
 from diagnose import twin
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.inference.fitting import fitted
-from shipcosim.diagnose.inference.form import learnt, scores_by_scale
+from shipcosim.diagnose.inference.form import learnt, of_scale, scores_by_scale, with_settled_form
 from shipcosim.diagnose.inference.search import explain
+from shipcosim.diagnose.stages import ExplainedLog, Identification
 
 FORM = {
     "hull_form.cross_flow_1": 0.35,
@@ -48,3 +50,15 @@ def test_a_loss_of_thrust_is_found_beside_another_form(problems):
         best = explain(formed)[0]
     assert best.label == "thrust_loss of port"
     assert abs(best.values["port.thrust_loss"] - 0.25) < 3.0 * best.std["port.thrust_loss"]
+
+
+def test_a_form_that_the_causes_found_do_without_is_given_up_again(problems):
+    """Of a ship of the model's form, taken for one of another; the other ship keeps hers."""
+    with threadpool_limits(1):
+        for problem, expected in ((of_scale(twin.problem("thrust_loss"), 1.0), 0.0), (learnt(problems["loss"]), None)):
+            scale = problem.model.form_scale
+            found = Identification(xarray.Dataset(), problem.model, {}, (), xarray.Dataset(), problem)
+            settled = with_settled_form(ExplainedLog(found, tuple(explain(problem)), False))
+            assert settled.identification.problem.model.form_scale == (scale if expected is None else expected)
+            assert settled.identification.ship.form_scale == settled.identification.problem.model.form_scale
+            assert settled.fits[0].label == "thrust_loss of port"

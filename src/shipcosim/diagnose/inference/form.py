@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.noise import tuned
 from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
 from shipcosim.diagnose.inference.screening import gains, screened, screening_regressors
+from shipcosim.diagnose.inference.search import explain
 from shipcosim.diagnose.inference.thresholds import (
     FORM_COST,
     FORM_SCALES,
@@ -22,14 +24,16 @@ from shipcosim.diagnose.inference.thresholds import (
     MOST_WALK,
     TUNED_BESIDE,
 )
+from shipcosim.diagnose.inference.unmodelled import is_healthy
 from shipcosim.diagnose.ship.form import form_sizes
-from shipcosim.diagnose.stages import Identification
+from shipcosim.diagnose.stages import ExplainedLog, Identification
 
 if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.inference.innovations import Noise
 
-__all__ = ["learnt", "of_scale", "scores_by_scale", "tuned_noise", "with_learnt_form"]
+__all__ = ["learnt", "of_scale", "scores_by_scale", "tuned_noise", "with_learnt_form", "with_settled_form"]
 
 
 def with_learnt_form(found: Identification) -> Identification:
@@ -62,6 +66,24 @@ def learnt(problem: IdentificationProblem) -> IdentificationProblem:
     formed = of_scale(problem, scale)
     is_likelier = _beside_likeliest(formed).score - FORM_COST > _beside_likeliest(problem).score
     return formed if is_likelier else problem
+
+
+def with_settled_form(explained: ExplainedLog) -> ExplainedLog:
+    """An explained log, its ship of the model's form after all where the causes found do without another.
+
+    At first sight a cause that is not linear, or the second of two, can look like another form.
+    """
+    found, best = explained.identification, explained.fits[0]
+    if not found.problem.model.form_scale:
+        return explained
+    plain = of_scale(found.problem, 0.0, best.hypotheses, best.values)
+    if fitted(plain, best.hypotheses, best.values).score + FORM_COST < best.score:
+        return explained
+    fits = tuple(explain(plain))
+    if fits[0].score + FORM_COST < best.score:
+        return explained
+    again = replace(found, ship=replace(found.ship, form_scale=0.0), problem=plain)
+    return ExplainedLog(again, fits, is_healthy(plain, fits[0]))
 
 
 def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, float]:
@@ -98,15 +120,21 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
     return found
 
 
-def of_scale(problem: IdentificationProblem, scale: float) -> IdentificationProblem:
-    """The problem of a ship whose form may differ by some scale, its noise tuned anew."""
-    formed = prepared(replace(problem, model=replace(problem.model, form_scale=scale)))
-    return prepared(replace(formed, noise=tuned_noise(formed)))
+def of_scale(
+    problem: IdentificationProblem,
+    scale: float,
+    hypotheses: Sequence[Hypothesis] = (),
+    values: Mapping[str, float] | None = None,
+) -> IdentificationProblem:
+    """The problem of a ship whose form may differ by some scale, its noise tuned anew beside some causes."""
+    formed = prepared(replace(problem, model=replace(problem.model, form_scale=scale)), rounds=1)
+    fit = fitted(formed, hypotheses, values) if hypotheses else _beside_likeliest(formed)
+    return prepared(replace(formed, noise=tuned_noise(formed, fit)), rounds=1)
 
 
-def tuned_noise(problem: IdentificationProblem) -> Noise:
-    """Noise of maximum likelihood beside the cause that explains most at first sight."""
-    fit = _beside_likeliest(problem)
+def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:
+    """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
+    fit = fit or _beside_likeliest(problem)
     most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
     most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
     return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most)
