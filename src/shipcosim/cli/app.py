@@ -4,7 +4,18 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.commands import build, capability, check, compare, diagnose, export, replay, run, simulate
+from shipcosim.cli.commands import (
+    build,
+    capability,
+    check,
+    compare,
+    diagnose,
+    export,
+    replay,
+    run,
+    sea_trials,
+    simulate,
+)
 from shipcosim.cli.exits import EXIT_CODES, guarded
 
 app = typer.Typer(
@@ -26,6 +37,7 @@ for _function in (
     check.check,
     diagnose.diagnose,
     replay.replay,
+    sea_trials.sea_trials,
     capability.capability,
 ):
     app.command(epilog=EXIT_CODES)(guarded(_function))

@@ -358,6 +358,13 @@ def test_loss_in_reverse_acts_at_negative_speed_only_and_on_what_the_other_loss_
         assert replayed(rpm, unit=unit)[1].thrust == pytest.approx(kept * replayed(rpm, unit=UNIT)[1].thrust)
 
 
+def test_loss_at_the_hull_is_none_ahead_and_whole_athwartships():
+    unit = replace(UNIT, angle_loss=0.3)
+    for angle, kept in ((0.0, 1.0), (pi / 6.0, 1.0 - 0.3 * 0.25), (-pi / 2.0, 0.7), (pi, 1.0)):
+        thrust = replayed(120.0, angle, unit=unit)[1].thrust
+        assert thrust == pytest.approx(kept * replayed(120.0, angle, unit=UNIT)[1].thrust)
+
+
 def test_the_drive_knows_nothing_of_lost_thrust():
     """Shaft and torque follow the command as without; the ship gets a fifth less."""
     lossy = replace(UNIT, thrust_loss=0.2)
@@ -413,7 +420,13 @@ def test_both_units_of_the_ship_know_where_the_other_one_is():
 
 
 EFFECTS = dict(
-    thrust_loss=0.2, reverse_loss=0.3, azimuth_offset=0.1, rpm_offset=8.0, interaction_loss=0.4, interaction_width=0.5
+    thrust_loss=0.2,
+    reverse_loss=0.3,
+    angle_loss=0.3,
+    azimuth_offset=0.1,
+    rpm_offset=8.0,
+    interaction_loss=0.4,
+    interaction_width=0.5,
 )
 
 

@@ -122,6 +122,15 @@ def test_cross_flow_scale_of_a_hull_without_strips_is_on_damping_in_sway_and_yaw
     np.testing.assert_allclose(found, (0.0 * u, 0.4 * Y, 0.4 * N), rtol=1e-6, atol=1e-2)
 
 
+def test_growing_drag_is_the_quadratic_one_at_froude_number_a_quarter_and_a_higher_power_of_speed():
+    growing = replace(LONG, drag_growth=1.0)
+    middle = 0.25 * np.sqrt(9.81 * LONG.length)
+    drag = [-models.quadratic_damping(u, 0.0, 0.0, hull=growing)[0] for u in (middle, 2.0 * middle, -2.0 * middle)]
+    assert drag[0] == pytest.approx(-LONG.X_uu * middle**2, rel=1e-3)
+    assert drag[1] == pytest.approx(8.0 * drag[0], rel=1e-3) and drag[2] == -drag[1]
+    assert models.quadratic_damping(0.0, 0.0, 0.0, hull=growing)[0] == 0.0
+
+
 @pytest.mark.parametrize("hull", [LONG, SHORT], ids=["long", "short"])
 @pytest.mark.parametrize("name", ["mass_scale", "drag_scale", "cross_flow_scale"])
 def test_scales_as_an_array_are_as_many_hulls(name, hull):

@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.result import Estimate
+from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, changes_of, predicted, ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.features import FEATURES, features_of
@@ -97,6 +97,20 @@ class SeaTrialStudy:
             return "consistent"
         return "ambiguous" if self.rivals else "named"
 
+    @property
+    def findings(self) -> list[Finding]:
+        """The causes that are named, as those of a diagnosis; their probability is the best set's among its rivals."""
+        share = 1.0 / sum(np.exp(one.evidence - self.best.evidence) for one in (self.best, *self.rivals))
+        return [
+            Finding(
+                cause.cause,
+                cause.component,
+                probability=min(float(share), 0.99),
+                parameters=_estimates(self.best, cause),
+            )
+            for cause in self.best.hypotheses
+        ]
+
     def as_json(self) -> dict[str, Any]:
         """What `sea_trials.json` holds."""
         return {
@@ -119,14 +133,18 @@ class SeaTrialStudy:
 
 def _as_json(found):
     return [
-        {"cause": cause.cause, "component": cause.component, "parameters": _estimates(found, cause)}
+        {
+            "cause": cause.cause,
+            "component": cause.component,
+            "parameters": {name: vars(estimate) for name, estimate in _estimates(found, cause).items()},
+        }
         for cause in found.hypotheses
     ]
 
 
 def _estimates(found, cause):
     return {
-        parameter.name: vars(estimate)
+        parameter.name: estimate
         for (owner, parameter), estimate in zip(found.parameters, estimates(found), strict=True)
         if owner is cause
     }
@@ -240,8 +258,8 @@ def _judged(train, others, model, hypotheses, orders):
     both_sides = [one for one in hypotheses if one.component is None]  # one unit alone: told by comparing both sides
     ranking = tuple(ranked(trial_evidence(train, model, both_sides, orders=orders)))
     before, after = (errors(others, model, changes, orders=orders) for changes in ({}, changes_of(best_of(ranking))))
-    names = (tuple(trial.name for trial in some) for some in (train, others))
-    return HeldOut(*names, ranking, before, after)
+    fitted_on, judged_on = (tuple(trial.name for trial in some) for some in (train, others))
+    return HeldOut(fitted_on, judged_on, ranking, before, after)
 
 
 def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:

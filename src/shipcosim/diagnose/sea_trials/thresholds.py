@@ -19,8 +19,10 @@ SWINGS = 3
 """Changes of the helm of a zig-zag that can be used. [1]"""
 LONGEST_SWING = 20.0
 """Way from one change of the helm to the next, above which it is no zig-zag. [ship lengths]"""
+REVERSED = 2.0
+"""Way over which the helm of a zig-zag is put over from side to side. [ship lengths]"""
 SETTLED = 15.0
-"""Way after a manoeuvre until the speed has settled: exp(-3) of a difference is left on a ship of 34 m. [ship lengths]"""
+"""Way after a manoeuvre until the speed has settled: exp(-3) of a difference is left. [ship lengths]"""
 STRAIGHT = 8.0
 """Way of a straight run that can be used. [ship lengths]"""
 STRAIGHT_RATE = 0.03

@@ -202,27 +202,24 @@ def _zig_zags(helm, measured, length):
     """Rows from the first order of a zig-zag to its last change of the helm."""
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
     side = np.where(helm > thresholds.ZIG_ZAG, 1, np.where(helm < -thresholds.ZIG_ZAG, -1, 0))
-    swings = [run for s in (1, -1) for run in _runs(side == s)]
+    swings = [run for one in (1, -1) for run in _runs(side == one)]
     swings.sort(key=lambda run: run.start)
-    chain = []
-    for run in [*swings, None]:
-        longest = thresholds.LONGEST_SWING * length
-        if run is not None and chain:
-            last = chain[-1]
-            short = (
-                way[run.stop - 1] - way[last.start] < 2.0 * longest
-                and way[run.start] - way[last.stop - 1] < 2.0 * length
-            )
-            if short and side[run.start] != side[last.start]:
-                chain.append(run)
-                continue
-        if len(chain) > thresholds.SWINGS:
-            start = chain[0].start
-            while start > 0 and abs(helm[start - 1]) > thresholds.STEADY and start > chain[0].start - 10:
-                start -= 1
-            yield "zig-zag", slice(max(start - 1, 0), chain[-1].start + 1)
-        turned = run is not None and np.ptp(measured[run, 2]) < np.radians(thresholds.HALF_A_CIRCLE)
-        chain = [run] if turned else []
+    chains = []
+    for run in swings:
+        if np.ptp(measured[run, 2]) > np.radians(thresholds.HALF_A_CIRCLE):
+            continue
+        last = chains[-1][-1] if chains else run
+        near = way[run.start] - way[last.stop - 1] < thresholds.REVERSED * length
+        quick = way[run.stop - 1] - way[last.start] < 2.0 * thresholds.LONGEST_SWING * length
+        if near and quick and side[run.start] != side[last.start]:
+            chains[-1].append(run)
+        else:
+            chains.append([run])
+    for chain in (chain for chain in chains if len(chain) > thresholds.SWINGS):
+        start = chain[0].start
+        while start > 0 and abs(helm[start - 1]) > thresholds.STEADY and start > chain[0].start - 10:
+            start -= 1
+        yield "zig-zag", slice(max(start - 1, 0), chain[-1].start + 1)
 
 
 def _merged(slices):

@@ -1,0 +1,44 @@
+"""The command `shipcosim sea-trials`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.exits import FAILED
+from shipcosim.cli.options import Debug
+
+
+def sea_trials(
+    data: Annotated[Path, typer.Argument(metavar="DATA", help="Measured data: .csv, .csv.gz, .parquet or .nc.")],
+    channels: Annotated[
+        Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
+    ] = None,
+    system: Annotated[
+        str | None,
+        typer.Option("--system", metavar="SSP", help="The ship: a path, or its name in ssp/. [default: gunnerus_open]"),
+    ] = None,
+    effects: Annotated[
+        Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
+    ] = None,
+    orders: Annotated[
+        bool, typer.Option("--orders", help="Thruster channels are orders, which the units follow, not feedback.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print sea_trials.json instead of a summary.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Say what a simulation gets wrong of a ship's manoeuvring trials: straight runs, turning circles, zig-zags.
+
+    By features that need no clock: steady speed, rate and drift, time and speed over heading. Causes are fitted on
+    circles to one side and judged on those to the other. Leaves sea_trials.json, and where causes were found
+    extended.ssp and extended.ssv. Exit code 0 if simulation and trials agree, 1 if something was found.
+    """
+    from shipcosim.cli.sea_trials import print_study, study_log
+
+    found, folder = study_log(data, out, system=system, channels=channels, effects=effects, orders=orders)
+    print_study(found, folder, as_json)
+    if found.verdict != "consistent":
+        raise typer.Exit(FAILED)

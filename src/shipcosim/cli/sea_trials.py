@@ -1,0 +1,120 @@
+"""The command `sea-trials`: what a simulation gets wrong of a ship's manoeuvring trials."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, default_folder
+from shipcosim.cli.project import build_stale, find_project, find_system
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
+    from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
+
+FILE = "sea_trials.json"
+EXTENDED = ("extended.ssp", "extended.ssv")
+
+
+def study_log(
+    data: str | os.PathLike,
+    out: Path | None = None,
+    *,
+    system: str | None = None,
+    channels: str | os.PathLike | None = None,
+    effects: str | os.PathLike | None = None,
+    orders: bool = False,
+) -> tuple[SeaTrialStudy, Path]:
+    """Study the sea trials of a log and write what was found.
+
+    Parameters
+    ----------
+    data : path
+    out : Path, optional
+        Gets sea_trials.json, and where causes were found extended.ssp and extended.ssv. Default: results/DATA.
+    system : str, optional
+        As for `find_system`; the default one without.
+    channels, effects : path, optional
+        Channel file, and folder with further causes.
+    orders : bool
+        Whether thruster channels are orders instead of feedback.
+
+    Returns
+    -------
+    tuple of SeaTrialStudy, Path
+        What was found, and the folder.
+
+    Raises
+    ------
+    ShipcosimError
+        Input that cannot be used; nothing is written then.
+    """
+    from shipcosim.cli.results import check_targets, staged
+    from shipcosim.diagnose.extension.extend import extend
+    from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+    from shipcosim.diagnose.sea_trials.study import study
+    from shipcosim.ssp import read, read_system
+
+    folder = out or default_folder(Path(data))
+    check_targets(folder)
+    given = find_system(system or DEFAULT_SYSTEM, "--system")
+    project = find_project(Path(given.partition("#")[0]))
+    fmus = [build_stale(project)] if project else []
+    found = study(data, read_system(given, fmus=fmus), channels, effects, orders=orders)
+    with staged(folder) as stage:
+        text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
+        (stage / FILE).write_text(text + "\n", encoding="utf-8")
+        if found.findings:
+            extend(read(given), found.findings, stage, catalogue=read_catalogue(effects))
+        written = {path.name for path in stage.iterdir()}
+    for name in set(EXTENDED) - written:  # of an earlier study
+        (folder / name).unlink(missing_ok=True)
+    return found, folder
+
+
+def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
+    """What was found, on stdout."""
+    from rich.console import Console
+    from rich.text import Text
+
+    from shipcosim.cli.console import shown_path
+
+    if as_json:
+        print(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
+        return
+    console = Console(highlight=False, soft_wrap=True)
+    kinds = [trial.kind for trial in found.trials]
+    console.print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in dict.fromkeys(kinds)))
+    style = {"consistent": "bold green", "named": "bold blue"}.get(found.verdict, "bold red")
+    console.print(Text(found.verdict, style=style), Text(_sentence(found)))
+    for row in _causes(found.best):
+        console.print(f"  {row}", markup=False)
+    for one in found.rivals:
+        console.print(f"  as likely: {'; '.join(_causes(one))}", markup=False)
+    for side, one in found.held_out.items():
+        console.print(f"Fitted on circles to {side}: {one.best.label}. Errors on the others, before and after:")
+        for name in one.before:
+            unit = "deg" if name.endswith("drift") else "%"
+            console.print(f"  {name:<28} {one.before[name]:6.1f} {one.after[name]:6.1f} {unit}", markup=False)
+    console.print(f"Numbers: {shown_path(folder / FILE)}", markup=False)
+
+
+def _sentence(found: SeaTrialStudy) -> str:
+    """The verdict in a sentence."""
+    if found.verdict == "consistent":
+        return "the model sails these trials as the ship did"
+    alike = "" if found.verdict == "named" else "; these trials do not tell it from the sets below"
+    return f"{found.best.label} explains them best{alike}"
+
+
+def _causes(one: SetOfCauses) -> list[str]:
+    """Causes of a set with their estimates."""
+    from shipcosim.diagnose.sea_trials.study import estimates
+
+    rows = []
+    for (cause, parameter), found in zip(one.parameters, estimates(one), strict=True):
+        unit = "" if found.unit == "1" else f" {found.unit}"
+        rows.append(f"{cause.label}: {parameter.name} {found.estimate:.3g} ± {found.std:.1g}{unit}")
+    return rows
