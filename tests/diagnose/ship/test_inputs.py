@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.diagnose.ship import inputs
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table
@@ -151,3 +152,51 @@ def test_a_stiff_ship_gets_as_many_steps_as_her_damping_asks_for():
     assert record.substeps(model) == 1
     assert replace(record, rate=3.5 / record.step).substeps(model) == 4
     assert replace(record, rate=1e9).substeps(model) == 64
+
+
+def fast(step, rows, **changed):
+    """A log with rows that close; ramps go on at the same pace."""
+    time = step * np.arange(rows)
+    channels = [(role, np.interp(time, TIME, values), unit, "") for role, (values, unit) in RAMP.items()]
+    channels = [(role, changed.get(role, values), unit, meaning) for role, values, unit, meaning in channels]
+    return make_table(time, [one for one in channels if one[0] not in ("heading", "port_azimuth", "wind_from")])
+
+
+@pytest.mark.parametrize(("step", "rows", "thinned"), [(0.1, 9, 0.9), (0.5, 2, 1.0), (0.9, 1, 0.9), (1.0, 1, 1.0)])
+def test_rows_closer_than_the_ship_answers_are_averaged_and_that_is_said(step, rows, thinned):
+    heading = np.mod(350.0 + 0.1 * step * np.arange(1800), 360.0)
+    table = fast(step, 1800).assign(heading=("time", heading, {"units": "deg", "long_name": ""}))
+    record = record_of(table, twin.model())
+    assert record.step == pytest.approx(thinned)
+    middles = step * (np.arange(record.time.size) * rows + 0.5 * (rows - 1))
+    np.testing.assert_allclose(record.time, middles, atol=1e-9)
+    np.testing.assert_allclose(record.measured[:, 0], 0.5 * np.minimum(middles, 399.0), atol=0.5)
+    np.testing.assert_allclose(record.measured[:, 2], np.radians(350.0 + 0.1 * middles), atol=1e-9)
+    said = [remark for remark in record.remarks if "averaged" in remark]
+    assert said == ([] if rows == 1 else [f"Rows {step:g} s apart are averaged over {thinned:g} s, " + ENOUGH])
+
+
+ENOUGH = "which resolves this ship's answer."
+
+
+def test_a_speed_that_swings_is_averaged_by_its_push():
+    """Half the time at 60 rpm, half at 180: the thrust of 134 rpm, not of 120; and to and fro, of none."""
+    swings = np.where(np.arange(1800) % 2, 60.0, 180.0)
+    forth = np.where(np.arange(1800) // 2 % 2, 90.0, -90.0)
+    heading = ("time", np.full(1800, 10.0), {"units": "deg", "long_name": ""})
+    table = fast(0.25, 1800, port_rpm=swings, tunnel_rpm=forth).assign(heading=heading)
+    record = record_of(table, twin.model())
+    assert record.step == 1.0
+    port, tunnel = record.units["port"][0][2:-2] * 60.0, record.units["tunnel"][0][2:-2] * 60.0
+    before = 0.25 * swings[:-2] + 0.5 * swings[1:-1] + 0.25 * swings[2:]  # what no reader could tell from noise
+    np.testing.assert_allclose(port, np.sqrt(np.mean(before**2)), rtol=1e-9)
+    np.testing.assert_allclose(tunnel, 0.0, atol=1e-9)
+
+
+def test_a_very_long_log_is_averaged_further_as_far_as_the_ship_answers_slowly(monkeypatch):
+    monkeypatch.setattr(inputs, "_MANY_ROWS", 100)
+    heading = ("time", np.full(1200, 10.0), {"units": "deg", "long_name": ""})
+    record = record_of(fast(1.0, 1200).assign(heading=heading), twin.model())
+    assert 1.0 < record.step <= inputs._LONGEST_ROW * inputs._SLOW_ENOUGH * np.sqrt(33.9)
+    assert record.step * record.rate <= inputs._SHARE_OF_ANSWER
+    assert any("this long log" in remark for remark in record.remarks)

@@ -19,6 +19,7 @@ from shipcosim.diagnose.inference.thresholds import (
     CHANGE_POINT_GAIN,
     CHANGE_POINT_MARGIN,
     CHANGE_POINT_SKIPPED,
+    MOST_CHANGE_POINT_BLOCKS,
 )
 from shipcosim.diagnose.stages import ExplainedLog
 
@@ -68,7 +69,8 @@ def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> floa
     hypotheses = [hypothesis for hypothesis in problem.hypotheses if hypothesis.definition.law != "turning"]
     groups = [group for hypothesis in hypotheses for group in screening_regressors(hypothesis)]
     linear = beside(nothing.linear, problem.base_of([column for group in groups for column in group]))
-    parts = max(int(problem.record.time.size * problem.record.step / CHANGE_POINT_BLOCK), 8)
+    span = problem.record.time.size * problem.record.step
+    parts = int(np.clip(span / CHANGE_POINT_BLOCK, 8, MOST_CHANGE_POINT_BLOCKS))
     blocks = inner_products(linear, problem.noise, problem.record, parts).blocks
     known, place, gains = len(nothing.columns), len(nothing.columns), []
     priors = []

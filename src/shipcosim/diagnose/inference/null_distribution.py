@@ -19,6 +19,7 @@ from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import LOST_TRACK
+from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.ship.inputs import Record, first_motion
 from shipcosim.diagnose.ship.instruments import readings
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
@@ -85,12 +86,14 @@ def healthy_products(
         The known numbers; the log, these, and the screening regressors of each wanted hypothesis in turn.
     """
     records = healthy_records(problem, motion, count, np.random.default_rng(seed))
-    problem, found = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses), []
-    for first in range(0, count, batch):
+    problem = replace(problem, hypotheses=tuple(wanted), known_of=problem.hypotheses)
+
+    def products_of(first):
         record = _some(records, slice(first, first + batch))
         here = prepared(replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1)
-        found.append(inner_products(here.linear, problem.noise, record).products)
-    return problem.known(()), np.concatenate(found)
+        return inner_products(here.linear, problem.noise, record).products
+
+    return problem.known(()), np.concatenate(each(products_of, range(0, count, batch)))
 
 
 def on_track(products: np.ndarray) -> np.ndarray:

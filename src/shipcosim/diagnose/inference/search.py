@@ -11,6 +11,7 @@ import numpy as np
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.inference.unmodelled import is_healthy
+from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.stages import ExplainedLog, Identification
 
 if TYPE_CHECKING:
@@ -66,9 +67,8 @@ def explain(
     fits, front = {frozenset(): nothing}, [nothing]
     for stage in range(most):
         best = max(fit.score for fit in fits.values())
-        tried = {}
-        for fit in front:
-            gains = screened(problem, fit)
+        wanted = {}
+        for fit, gains in zip(front, each(lambda fit: screened(problem, fit), front), strict=True):
             most_gain = gains[0][0]
             least = max(most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0)
             first, strained = likely if stage == 0 else likely // 2, _strained(fit)
@@ -79,8 +79,9 @@ def explain(
                     continue
                 hypotheses = (*fit.hypotheses, hypothesis)
                 key = names(hypotheses)
-                if key not in fits and key not in tried:
-                    tried[key] = fitted(problem, hypotheses, fit.values | values)
+                if key not in fits and key not in wanted:
+                    wanted[key] = hypotheses, fit.values | values
+        tried = dict(zip(wanted, each(lambda one: fitted(problem, *one), wanted.values()), strict=True))
         fits |= tried
         ranked = sorted(tried.values(), key=lambda fit: -fit.score)
         front = [fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)]
@@ -120,20 +121,22 @@ def _simplify(problem: Any, fits: dict[frozenset[str], Fit], fitted: Callable[..
     """Fit the best set again without each of its causes, and with simpler ones instead, from the values that it has."""
     while True:
         best = max(fits.values(), key=lambda fit: fit.score)
-        new = False
-        for hypotheses in _simpler(problem, best.hypotheses):
-            parameters = [(parameter, hypothesis) for hypothesis in hypotheses for parameter in hypothesis.parameters]
-            values = {
-                path: _value(parameter, hypothesis, best)
-                for parameter, hypothesis in parameters
-                for path in parameter.paths
-            }
-            again = fitted(problem, hypotheses, values)
+        new, sets = False, _simpler(problem, best.hypotheses)
+        tried = each(lambda some, start=best: fitted(problem, some, _values(some, start)), sets)
+        for hypotheses, again in zip(sets, tried, strict=True):
             known = fits.get(names(hypotheses))
             if known is None or again.score > known.score + 0.1:
                 fits[names(hypotheses)], new = again, True
         if not new:
             return
+
+
+def _values(hypotheses, fit):
+    """What a fit says of the numbers of some hypotheses."""
+    parameters = [(parameter, hypothesis) for hypothesis in hypotheses for parameter in hypothesis.parameters]
+    return {
+        path: _value(parameter, hypothesis, fit) for parameter, hypothesis in parameters for path in parameter.paths
+    }
 
 
 def _simpler(problem, hypotheses):

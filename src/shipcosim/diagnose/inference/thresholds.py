@@ -80,6 +80,8 @@ CHANGE_POINT_GAIN = 6.0
 the search over all times (developing logs). [nats]"""
 CHANGE_POINT_BLOCK = 60.0
 """Blocks between which it is sought. [s]"""
+MOST_CHANGE_POINT_BLOCKS = 100
+"""In a log of more than 100 minutes they are longer."""
 CHANGE_POINT_SKIPPED = 2
 """Blocks after it that are left out: the filter still answers to the change."""
 CHANGE_POINT_MARGIN = 3

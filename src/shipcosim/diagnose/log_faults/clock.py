@@ -24,6 +24,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     CLOCK_GAIN,
     CLOCK_SLAB,
     LARGEST_SHARE,
+    MOST_BLOCKS,
     MOST_SEGMENTS,
     OVER_CAUSE,
     PLAUSIBLE_RATES,
@@ -139,7 +140,7 @@ def is_testable(problem: IdentificationProblem) -> bool:
 def _edges(problem):
     """Even edges of blocks."""
     time = problem.record.time
-    return np.linspace(time[0], time[-1], max(int(np.ptp(time) / CLOCK_BLOCK), 4) + 1)
+    return np.linspace(time[0], time[-1], int(np.clip(np.ptp(time) / CLOCK_BLOCK, 4, MOST_BLOCKS)) + 1)
 
 
 def _most_likely(blocks):
@@ -206,7 +207,7 @@ def _left(problem, columns, count, driven):
     linear = with_columns(
         problem.base_of(columns), count, lambda rows: (driven(rows), np.zeros((rows.stop - rows.start, 6, count)))
     )
-    products = inner_products(linear, problem.noise, problem.record).products
+    products = inner_products(linear, problem.noise, problem.record, parts=1).products
     theirs, own = slice(1, 1 + others), slice(1 + others, None)
     inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
     left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])

@@ -17,11 +17,13 @@ import numpy as np
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.innovations import inner_products, innovations
 from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
+from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, Mislabel, finding_of, negative, possible, undone
 from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.log_faults.thresholds import (
     FIRST_MOVE,
     LEAST_ROW_GAIN,
+    MOST_PLACES,
     PART_GAIN,
     SEARCH_STEP,
     SEGMENT_GAIN,
@@ -97,25 +99,32 @@ def with_refined_segment(
             known[ends] = likelihood(problem, record_of(with_label(log, mislabel, segment(ends)), problem.model))
         return known[ends]
 
+    def likelihoods_of(many):
+        """The same, of several side by side."""
+        return dict(zip(many, each(likelihood_of, many), strict=True)).get
+
     whole = (0, last)
     first = tuple(int(i) for i in np.searchsorted(time, finding.segments[0])) if finding.segments else whole
-    ends = _likeliest_ends(likelihood_of, first, last, round(SEARCH_STEP / problem.record.step))
+    stride = max(round(SEARCH_STEP / problem.record.step), last // MOST_PLACES)
+    ends = _likeliest_ends(likelihoods_of, first, last, stride)
     least_gain = PART_GAIN if first == whole else SEGMENT_GAIN
     gained = likelihood_of(ends) >= likelihood_of(first) + least_gain
     return replace(finding, segments=segment(ends)) if gained else finding
 
 
-def _likeliest_ends(likelihood_of, first, last, stride):
+def _likeliest_ends(likelihoods_of, first, last, stride):
     """First and last row of the likeliest segment: each end anywhere in coarse steps, then moved by halved steps."""
     ends, places = first, [*range(0, last, stride), last]
     for _ in range(2):
         for i in (0, 1):
-            ends = max([ends, *(_moved(ends, i, place) for place in places)], key=likelihood_of)
-    step = FIRST_MOVE
+            tried = list(dict.fromkeys([ends, *(_moved(ends, i, place) for place in places)]))
+            ends = max(tried, key=likelihoods_of(tried))
+    step = max(FIRST_MOVE, stride // 2)
     while step:
-        near = [_moved(ends, i, ends[i] + by) for i in (0, 1) for by in (-step, step)]
-        best = max(near, key=likelihood_of)
-        ends, step = (best, step) if likelihood_of(best) > likelihood_of(ends) else (ends, step // 2)
+        tried = [_moved(ends, i, ends[i] + by) for i in (0, 1) for by in (-step, step)]
+        known = likelihoods_of([*tried, ends])
+        best = max(tried, key=known)
+        ends, step = (best, step) if known(best) > known(ends) else (ends, step // 2)
     return ends
 
 

@@ -29,6 +29,8 @@ WHOLE = 0.85
 """Share of the log from which on a segment is taken as all of it. Assumed."""
 SEARCH_STEP = 60.0
 """Time between the places where an end of a segment is sought first. [s]"""
+MOST_PLACES = 80
+"""So many places at most; in a log of more than 80 minutes they are farther apart, as the time goes with both."""
 FIRST_MOVE = 32
 """Rows by which an end is then moved, halved until it stays."""
 SEGMENT_GAIN = 5.0
@@ -62,6 +64,8 @@ CLOCK_SLAB = 0.25
 """Prior standard deviation of ρ - 1, with ρ true seconds per logged second."""
 CLOCK_BLOCK = 12.0
 """Blocks of which its segments consist. [s]"""
+MOST_BLOCKS = 400
+"""In a log of more than 80 minutes blocks are longer: time and memory go with rows times blocks."""
 SHORTEST_CLOCK = 60.0
 """Shortest segment. [s]"""
 LARGEST_SHARE = 0.5

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["CHANNELS", "Inputs", "Record", "first_motion", "record_of"]
 
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s for 33.9 m
+_MANY_ROWS = 20_000  # of which more are averaged further: five and a half hours at 1 Hz
+_LONGEST_ROW = 4  # times that long, and
+_SHARE_OF_ANSWER = 0.25  # of the time of the ship's fastest answer
 _ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
 _RATE_OF_A_STEP = 1.0  # 1, of the fastest answer times the step: Runge-Kutta of fourth order diverges beyond 2.8
 _MOST_STEPS = 64  # from row to row; a model or a log that asks for more is wrong
@@ -148,13 +151,30 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     remarks += [_about_third_party(name, one) for name, one in model.third_party.items()]
     known[:-1] &= known[1:]
     record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
+    return _thinned_for(model, record)
+
+
+def _thinned_for(model: ShipModel, record: Record) -> Record:
+    """The record at the rate that a ship's answer needs, and at less than that where it is very long."""
     slow = _SLOW_ENOUGH * np.sqrt(model.parts["hull"].length)
-    record = _thinned(record, max(int(slow / record.step + 1e-6), 1))
-    return replace(record, rate=fastest_rate(model, first_motion(record, model)))
+    rows = max(round(slow / record.step), 1)
+    thinned = _thinned(record, rows, model)
+    rate = fastest_rate(model, first_motion(thinned, model))
+    longest = min(_LONGEST_ROW * slow, _SHARE_OF_ANSWER / max(rate, 1e-9))
+    further = min(int(np.ceil(thinned.time.size / _MANY_ROWS)), int(longest / thinned.step + 1e-6))
+    if further > 1:
+        rows *= further
+        thinned = _thinned(record, rows, model)
+        rate = fastest_rate(model, first_motion(thinned, model))
+    if rows == 1:
+        return replace(record, rate=rate)
+    why = "this long log" if further > 1 else "this ship's answer"
+    remark = f"Rows {record.step:.3g} s apart are averaged over {thinned.step:.3g} s, which resolves {why}."
+    return replace(thinned, rate=rate, remarks=(*record.remarks, remark))
 
 
-def _thinned(record: Record, rows: int) -> Record:
-    """The record with every so many rows averaged into one."""
+def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
+    """The record with every so many rows averaged into one; of speeds, which push by their square, as that."""
     if rows == 1:
         return record
 
@@ -163,8 +183,13 @@ def _thinned(record: Record, rows: int) -> Record:
         count = np.isfinite(whole).sum(1)
         return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
 
-    units = {name: (mean(speed), mean(direction)) for name, (speed, direction) in record.units.items()}
-    wind = None if record.wind is None else (mean(record.wind[0]), mean(record.wind[1]))
+    def of_squares(series):
+        push = mean(series * np.abs(series))
+        return np.sign(push) * np.sqrt(np.abs(push))
+
+    pushes = {name: mean if "thrust" in model.drives(name) else of_squares for name in record.units}
+    units = {name: (pushes[name](drive), mean(direction)) for name, (drive, direction) in record.units.items()}
+    wind = None if record.wind is None else (of_squares(record.wind[0]), mean(record.wind[1]))
     known = mean(record.known.astype(float)) == 1.0
     return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
 
