@@ -4,6 +4,7 @@ From a log to its verdict, `verdict_on`:
 
     read_measurements  ReadLog         the log by the roles of its columns, the ship, the catalogue of causes
     checked            CheckedLog      faults of the log that its own channels show, repaired
+    compared           ComparedLog     commanded against felt force: what is grossly wrong, put right
     identified         Identification  the identification problem: noise, linearisation about the ship without a cause
     corrected          Identification  faults of the log and of connections that only the ship's response shows
     with_learnt_form   Identification  how far the form of the ship's loads differs from the model's
@@ -33,6 +34,7 @@ from pathlib import Path
 import xarray
 from threadpoolctl import threadpool_limits
 
+from shipcosim.diagnose.comparison.compared import compared
 from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
 from shipcosim.diagnose.experiment.testability import log_facts, untestable_causes
 from shipcosim.diagnose.extension.extended_system import with_findings
@@ -52,7 +54,7 @@ from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, ReadLog, SimulatedLog
 from shipcosim.diagnose.validation.conditions import with_predictions
-from shipcosim.diagnose.validation.gain import baseline, gain
+from shipcosim.diagnose.validation.gain import gain
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.diagnose.validation.tracks import tracks_of
@@ -183,7 +185,10 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
     """The way of a log to its verdict, stage by stage."""
     log = checked(read)
     progress("which causes explain it?")
-    identification = with_learnt_form(corrected(identified(log)))
+    held = compared(log)
+    if not held.comparison.is_resolved:
+        return judged(with_causes(identified(held)))
+    identification = with_learnt_form(corrected(identified(held)))
     explained = with_settled_form(with_causes(identification))
     explained = with_change_point(with_right_inputs(explained))
     progress("what do healthy ships look like?")
@@ -193,15 +198,22 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
 def stated(log: JudgedLog) -> Diagnosis:
     """What is said of a log: faults, causes since when they act, what it could not have shown, what to sail next."""
     found, judgement = log.explained.identification, log.judgement
-    of_log = (*found.faults, *found.misconnections)
+    comparison = found.comparison
+    beyond_doubt = comparison.findings if comparison else ()
+    of_log = (*found.faults, *found.misconnections, *beyond_doubt)
+    if comparison and judgement.verdict == "unknown":
+        of_log = (*of_log, *comparison.found_without(found.causes))
+    seen = {one.label for one in (*judgement.candidates, *judgement.findings)}
     rivals = judgement.rivals if not found.ship.third_party else ()  # with those no manoeuvre can be prescribed
     return Diagnosis(
         "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
         (*of_log, *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings)),
         judgement.candidates,
         judgement.indistinguishable,
-        untestable_causes(log),
+        tuple(label for label in untestable_causes(log) if label not in seen),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
+        comparison.errors if comparison else None,
+        discrepancies=comparison.discrepancies if comparison else (),
         basis=log,
     )
 
@@ -239,7 +251,6 @@ def completed(
         return complete
     return replace(
         complete,
-        baseline=baseline(errors),
         gain=gain(errors) if found.is_named else None,
         predictions=prediction_errors(
             predicted.comparison,

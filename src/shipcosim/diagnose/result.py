@@ -19,7 +19,17 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.validation.tracks import Tracks
     from shipcosim.ssp import System
 
-__all__ = ["SCHEMA", "Candidate", "Diagnosis", "Estimate", "Finding", "ExperimentDesign", "LogSummary", "label_of"]
+__all__ = [
+    "SCHEMA",
+    "Candidate",
+    "Diagnosis",
+    "Discrepancy",
+    "Estimate",
+    "Finding",
+    "ExperimentDesign",
+    "LogSummary",
+    "label_of",
+]
 
 SCHEMA = "shipcosim-diagnosis/1"
 
@@ -97,6 +107,31 @@ class Finding:
         if self.alternatives:
             entry["alternatives"] = list(self.alternatives)
         return entry
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """Something in which simulation and log differ, before any cause is sought.
+
+    Attributes
+    ----------
+    what : str
+        In words, with its size.
+    component, axis : str or None
+        Thruster, and ``"surge"``, ``"sway"`` or ``"yaw"``, where it is of one.
+    estimate, std : float
+    unit : str
+    share : float
+        Of the error that it explains.
+    """
+
+    what: str
+    component: str | None
+    axis: str | None
+    estimate: float
+    std: float
+    unit: str
+    share: float
 
 
 @dataclass(frozen=True)
@@ -187,6 +222,8 @@ class Diagnosis:
         That the log was held against.
     remarks : tuple of str
         What did not work.
+    discrepancies : tuple of Discrepancy
+        In what simulation and log differ at first sight, largest first.
     basis : JudgedLog or None
         What the findings rest on, for further work: the log, the identification problem, the fits.
     folder : TemporaryDirectory or None
@@ -214,6 +251,7 @@ class Diagnosis:
     changes: tuple[Change, ...] = ()
     system: System | None = field(default=None, repr=False)
     remarks: tuple[str, ...] = ()
+    discrepancies: tuple[Discrepancy, ...] = ()
     basis: JudgedLog | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
 
@@ -237,6 +275,7 @@ class Diagnosis:
             "indistinguishable": [asdict(candidate) for candidate in self.indistinguishable],
             "not_testable": list(self.not_testable),
             "prescription": asdict(self.prescription) if self.prescription else None,
+            "discrepancies": [asdict(discrepancy) for discrepancy in self.discrepancies],
             "baseline": self.baseline,
             "gain": self.gain,
         }

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.diagnose.comparison.compared import LogComparison
     from shipcosim.diagnose.extension.extend import Extension
     from shipcosim.diagnose.extension.extended_system import Change
     from shipcosim.diagnose.hypotheses.catalogue import Cause
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CheckedLog",
+    "ComparedLog",
     "ExplainedLog",
     "ExtendedSystem",
     "Identification",
@@ -67,6 +69,18 @@ class CheckedLog(ReadLog):
 
 
 @dataclass(frozen=True)
+class ComparedLog(CheckedLog):
+    """A checked log held against the simulation; what is grossly wrong is put right, in the log and in the ship.
+
+    Attributes
+    ----------
+    comparison : LogComparison
+    """
+
+    comparison: LogComparison
+
+
+@dataclass(frozen=True)
 class Identification(CheckedLog):
     """A checked log as an identification problem; the faults grow by those that only the ship's response shows.
 
@@ -76,10 +90,13 @@ class Identification(CheckedLog):
         Of the repaired log: noise and linearisation about the ship without a cause.
     misconnections : tuple of Finding
         Connections of the system that the log contradicts; `ship` has them put right.
+    comparison : LogComparison or None
+        Of simulated with measured, commanded with felt.
     """
 
     problem: IdentificationProblem
     misconnections: tuple[Finding, ...] = ()
+    comparison: LogComparison | None = None
 
 
 @dataclass(frozen=True)

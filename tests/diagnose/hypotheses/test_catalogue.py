@@ -34,6 +34,7 @@ CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
     "velocity_scale": {"scale": "1"},
     "navigation_lag": {"lag": "s"},
     "thruster_lag": {"lag": "s"},
+    "thrust_to_inertia": {"ratio": "1"},
 }
 SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "hull_interaction": {"loss": "1"},
@@ -51,6 +52,8 @@ SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "yaw_damping": {"coefficient": "1"},
     "yaw_inertia": {"inertia": "kg.m2"},
 }
+BY_COMPARISON = {"thrust_to_inertia"}
+"""Found by holding commanded against felt force, so no hypothesis of a fit."""
 WHERE = {
     "thrust_loss": ["port", "starboard", "tunnel"],
     "azimuth_offset": ["port", "starboard"],
@@ -87,14 +90,14 @@ def test_every_physical_cause_of_the_contract_is_there_with_its_parameters_and_u
 
 def test_causes_of_sea_trials_are_only_sought_there(everyone, at_sea_trials):
     assert not {hypothesis.cause for hypothesis in everyone} & set(SEA_TRIALS)
-    assert {hypothesis.cause for hypothesis in at_sea_trials} == set(CONTRACT) | set(SEA_TRIALS)
+    assert {hypothesis.cause for hypothesis in at_sea_trials} == (set(CONTRACT) | set(SEA_TRIALS)) - BY_COMPARISON
 
 
 def test_each_cause_sits_where_the_contract_says(everyone):
     found = {}
     for hypothesis in everyone:
         found.setdefault(hypothesis.cause, []).append(hypothesis.component)
-    assert found == {cause: WHERE.get(cause, [None]) for cause in CONTRACT}
+    assert found == {cause: WHERE.get(cause, [None]) for cause in set(CONTRACT) - BY_COMPARISON}
 
 
 def test_every_file_says_what_it_is_and_where_it_is_from():

@@ -119,12 +119,16 @@ def test_wind_over_ground_serves_where_there_is_no_apparent_wind():
 
 
 @pytest.mark.parametrize(
-    ("table", "said"), [(log(("east", "heading")), "no channel east, heading"), (None, "100 rows")]
+    ("rows", "absent", "said"),
+    [
+        (400, ("east", "heading"), "no channel east, heading.*needs north, east and heading"),
+        (46, (), "46 rows over 45 s, of a ship whose slowest answer takes .* s.*60 rows over 105 s"),
+        (100, (), "100 rows over 99 s.*over 105 s"),
+    ],
 )
-def test_too_little_is_refused_with_what_is_needed(table, said):
-    table = log().isel(time=slice(100)) if table is None else table
-    with pytest.raises(ShipcosimError, match=f"{said}.*north, east and heading over at least two minutes"):
-        record_of(table, twin.model())
+def test_too_little_is_refused_with_what_is_needed(rows, absent, said):
+    with pytest.raises(ShipcosimError, match=said):
+        record_of(log(absent).isel(time=slice(rows)), twin.model())
 
 
 def test_first_motion_has_rates_of_positions_where_none_are_measured():

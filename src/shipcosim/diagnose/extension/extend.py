@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from shipcosim.diagnose.extension.insertions import add_current, add_force, add_
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnections
 from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import SystemStructure, read, write_ssv
 
@@ -150,7 +151,10 @@ def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str,
     """Numbers of the ship that a finding has estimates for."""
     found = {}
     for name, estimate in finding.parameters.items():
-        for pattern in cause.parameters[name].of if name in cause.parameters else ():
+        parameter = cause.parameters.get(name)
+        if parameter is not None and parameter.complement:
+            estimate = replace(estimate, estimate=1.0 - estimate.estimate)
+        for pattern in parameter.of if parameter is not None else ():
             found |= dict.fromkeys(_paths(draft, pattern, finding), estimate)
     return found
 
@@ -213,4 +217,6 @@ def _paths(draft: ExtensionDraft, pattern: str, finding: Finding) -> list[str]:
         return [f"{draft.ship}.{pattern.removeprefix('vessel.')}"]
     if "{azimuths}" in pattern:
         return [pattern.replace("{azimuths}", name) for name in draft.thrusters("azimuth_in")]
+    if "{thrusters}" in pattern:
+        return [pattern.replace("{thrusters}", name) for name in ship_model_of(draft.structure.checked()).thrusters]
     return [pattern.replace("{thruster}", finding.component or "")]

@@ -152,7 +152,7 @@ def hypotheses_of(
     Returns
     -------
     list of Hypothesis
-        Without causes whose numbers the ship does not have.
+        Without causes whose numbers the ship does not have, and those that no fit finds.
     """
     places = {"ship": [None], "thruster": model.thrusters, "azimuth": model.azimuths}
     causes = [cause for cause in catalogue.values() if cause.sought_in in ("every log", sought_in)]

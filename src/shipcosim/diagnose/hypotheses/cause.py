@@ -40,7 +40,7 @@ class CauseParameter(_Strict):
     ----------
     of : list of str
         Numbers of the ship that take its value: ``vessel.mass_scale``; ``{thruster}`` stands for the component,
-        ``{azimuths}`` for each azimuth thruster at once, whether it turns or not.
+        ``{azimuths}`` for each azimuth thruster at once, whether it turns or not, ``{thrusters}`` for each thruster.
     unit : str
         Unit in which it is reported; that of the number is converted.
     typical : float
@@ -49,6 +49,8 @@ class CauseParameter(_Strict):
         Standard deviation that is no cause yet, where the ship's parameter sets do not say.
     bounds : tuple of two floats
         Values beyond are implausible.
+    complement : bool
+        Whether the number is 1 minus what is reported.
     relative_to : str, optional
         Number of the ship whose value typical, tolerance and bounds are multiplied by.
     on_connections : OnConnections, optional
@@ -60,6 +62,7 @@ class CauseParameter(_Strict):
     typical: float
     tolerance: float = 0.0
     bounds: tuple[float, float]
+    complement: bool = False
     relative_to: str | None = None
     on_connections: OnConnections | None = None
 
@@ -119,8 +122,9 @@ class Cause(_Strict):
         What this log lacks to show it, with facts of the log such as ``{speed}``.
     for_each : "ship", "thruster" or "azimuth"
         Where it can sit.
-    sought_in : "every log" or "sea trials"
-        ``"sea trials"``: only by features of circles, zig-zags and straight runs at speed.
+    sought_in : "every log", "sea trials" or "comparison"
+        ``"sea trials"``: only by features of circles, zig-zags and straight runs at speed. ``"comparison"``: not by a
+        fit, but as the ratio of felt to commanded force that all thrusters have in common.
     law : "linear", "vector" or "turning"
         Whether small effects add up; or act by a vector's size and direction, and the cause is sought by directions
         first; or by two vectors, at the first and the last row, and it is sought by `sought_by` first.
@@ -154,7 +158,7 @@ class Cause(_Strict):
     next_step: str = ""
     why_not_testable: str = ""
     for_each: Literal["ship", "thruster", "azimuth"] = "ship"
-    sought_in: Literal["every log", "sea trials"] = "every log"
+    sought_in: Literal["every log", "sea trials", "comparison"] = "every log"
     law: Literal["linear", "vector", "turning"] = "linear"
     sought_by: list[str] = []
     least: float = 0.2

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.inference.channel_noise import most_white
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
@@ -137,7 +138,8 @@ def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise
     fit = fit or _beside_likeliest(problem)
     most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
     most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
-    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most)
+    white = np.maximum(most_white(problem.record), problem.noise.white)
+    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most, most_white=white)
 
 
 def _beside_likeliest(problem: IdentificationProblem) -> Fit:

@@ -62,7 +62,14 @@ def first_noise(record: Record, length: float) -> Noise:
 
 
 def tuned(
-    noise: Noise, linear: Linear | InParts, record: Record, theta: np.ndarray, *, most_walk: np.ndarray, rounds: int = 4
+    noise: Noise,
+    linear: Linear | InParts,
+    record: Record,
+    theta: np.ndarray,
+    *,
+    most_walk: np.ndarray,
+    most_white: np.ndarray | float = np.inf,
+    rounds: int = 4,
 ) -> Noise:
     """The noise under which what is left of a log is likeliest.
 
@@ -76,6 +83,8 @@ def tuned(
         What explains the log, in units of its columns; taken out first.
     most_walk : (3,) array
         No unexplained force may walk faster, or it would swallow every cause.
+    most_white : (6,) array, optional
+        No channel may be noisier: what position and velocity agree upon, or a wrong model would pass as noise.
     rounds : int
 
     Returns
@@ -95,7 +104,12 @@ def tuned(
         move = np.clip(move, -_LONGEST, _LONGEST)
         tries = _scaled(noise, _SHARES[:, None] * move)
         frequency = np.clip(tries.wave_frequency, *_FREQUENCIES[[0, -1]])
-        tries = replace(tries, walk=np.minimum(tries.walk, most_walk), wave_frequency=frequency)
+        tries = replace(
+            tries,
+            walk=np.minimum(tries.walk, most_walk),
+            white=np.minimum(tries.white, most_white),
+            wave_frequency=frequency,
+        )
         scores = log_likelihoods(left, tries, record)
         move = _SHARES[scores.argmax()] * move
         noise = _of(tries, scores.argmax())

@@ -12,7 +12,7 @@ from shipcosim.diagnose.inference.form import tuned_noise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.surrogate import with_surrogates
-from shipcosim.diagnose.stages import CheckedLog, Identification
+from shipcosim.diagnose.stages import ComparedLog, Identification
 
 if TYPE_CHECKING:
     import xarray
@@ -22,14 +22,15 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["identification_problem", "identified", "unidentifiable"]
+__all__ = ["as_logged", "identification_problem", "identified", "unidentifiable"]
 
 
-def identified(checked: CheckedLog) -> Identification:
-    """A checked log as an identification problem; its ship gets surrogates of third-party FMUs for this log."""
+def identified(checked: ComparedLog) -> Identification:
+    """A compared log as an identification problem; its ship gets surrogates of third-party FMUs for this log."""
     problem = identification_problem(checked.repaired, checked.ship, checked.causes)
     ship = replace(checked.ship, third_party=problem.model.third_party)
-    return Identification(checked.log, ship, checked.causes, checked.faults, checked.repaired, problem)
+    known = (checked.log, ship, checked.causes, checked.faults, checked.repaired, problem)
+    return Identification(*known, comparison=checked.comparison)
 
 
 def identification_problem(
@@ -49,7 +50,7 @@ def identification_problem(
     -------
     IdentificationProblem
     """
-    ship = _as_logged(ship, repaired)
+    ship = as_logged(ship, repaired)
     record = record_of(repaired, ship)
     motion = first_motion(record, ship)
     ship = with_surrogates(ship, record, motion)
@@ -63,7 +64,7 @@ def identification_problem(
     return problem if noise is not None else prepared(replace(problem, noise=tuned_noise(problem)))
 
 
-def _as_logged(ship, repaired):
+def as_logged(ship: ShipModel, repaired: xarray.Dataset) -> ShipModel:
     """The ship with the log's time span, its kind of wind, and thrusters fixed where it has no direction of them."""
     return replace(
         ship,

@@ -24,6 +24,9 @@ UNMODELLED_SHARE = 0.02
 last per cent (developing logs)."""
 MOST_CAUSES = 2
 """Causes at once that are named. Where a third is needed, an unknown one is likelier than three at once."""
+BESIDE_UNKNOWN = 0.5
+"""Factor on the probability of a cause beside an error that no cause explains. Assumed: as likely as not it is only the
+nearest of the known ones."""
 SHAPE_CHANCE = 0.01
 """Probability of a shape as far from the known one, below which it is that of something else. Two logs of one of some
 forty developing ships pull at the headings like a wave drift of 1000 N without arm and surge."""
@@ -96,3 +99,9 @@ GUST_FACTOR = 10.0
 """Times as fast may it walk where nobody knows the wind. Assumed."""
 TUNED_BESIDE = 3.0
 """Gain of a cause at first sight, from which on noise is tuned beside it. [nats]"""
+NOISE_MARGIN = 1.5
+"""Factor on the noise that position and velocity leave room for. Assumed."""
+NOISE_WIDTHS = (2.0, 4.0, 8.0)
+"""Widths of the kernels that they are compared with. [rows]"""
+SOUND = 0.98
+"""Share of the rows that is taken to be sound where they are compared. Assumed."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2
@@ -14,6 +14,7 @@ from shipcosim.diagnose.inference.null_distribution import null_gains
 from shipcosim.diagnose.inference.search import names, without_causes
 from shipcosim.diagnose.inference.thresholds import (
     APART,
+    BESIDE_UNKNOWN,
     DEVIATIONS,
     ENOUGH,
     FAR_ABOVE_NULL,
@@ -60,7 +61,9 @@ class Judgement:
 
 def judged(explained: ExplainedLog) -> JudgedLog:
     """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
-    problem, fits = explained.identification.problem, explained.fits
+    problem, fits, comparison = explained.identification.problem, explained.fits, explained.identification.comparison
+    if comparison is not None and not comparison.is_resolved:
+        return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
     unmodelled, without_wind = {}, problem.record.wind is None
 
     def unmodelled_beside(fit):
@@ -121,7 +124,7 @@ def judge(
     if len(best.hypotheses) > MOST_CAUSES or all(
         _stands_out(unmodelled(fit), gain) for fit in (best, *_with_a_small_cause(best, fits))
     ):
-        return Judgement("unknown", best, (), candidates, ())
+        return Judgement("unknown", best, (), _beside_unknown(candidates), ())
     if not best.hypotheses:
         return Judgement("consistent", best, (), candidates, ())
     rivals = [fit for fit in fair if fit.hypotheses and fit is not best and fit.score > best.score - APART]
@@ -134,6 +137,11 @@ def judge(
         findings = tuple(f for f in findings if f.label in shared)
         return Judgement("ambiguous", best, findings, candidates, same, tuple(rivals))
     return Judgement("named", best, findings, candidates, ())
+
+
+def _beside_unknown(candidates):
+    """Candidates beside an error that no cause explains: what they gain may be its, or what made room for it."""
+    return tuple(replace(one, probability=round(BESIDE_UNKNOWN * one.probability, 4)) for one in candidates)
 
 
 def _stands_out(gains, of_causes):

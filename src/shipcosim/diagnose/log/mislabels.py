@@ -24,6 +24,7 @@ __all__ = [
     "VELOCITY",
     "WIND_LABELS",
     "Mislabel",
+    "exchanged",
     "finding_of",
     "mislabel_in",
     "mislabel_of",
@@ -35,6 +36,8 @@ __all__ = [
     "velocity_frame",
 ]
 
+DRIVES = ("_rpm", "_azimuth", "_thrust")
+"""How roles of what drives a thruster end."""
 KNOT = 1852.0 / 3600.0  # m/s
 POSITION, VELOCITY, WIND = ("north", "east"), ("surge", "sway"), ("wind_speed", "wind_from")
 CHANNEL_UNITS = {
@@ -74,6 +77,17 @@ class Mislabel:
 def negative(role: str) -> Mislabel:
     """A channel with the other sign."""
     return Mislabel("sign", (role,), f"{role} has the other sign", lambda log: {role: -log[role]})
+
+
+def exchanged(pairs: Sequence[tuple[str, str]]) -> Mislabel:
+    """Channels of two thrusters that are exchanged, by pairs of roles."""
+
+    def undo(log):
+        return {a: log[b] for a, b in pairs} | {b: log[a] for a, b in pairs}
+
+    channels = tuple(role for side in zip(*pairs, strict=True) for role in side)
+    names = " and ".join(" with ".join(pair) for pair in pairs)
+    return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
 
 
 def swap_of(one: str, other: str) -> Mislabel:
@@ -200,7 +214,13 @@ def mislabel_of(finding: Finding) -> Mislabel | None:
     """The mislabel that a finding names by its note; None where the finding is another fault, or leaves it open."""
     if finding.alternatives:
         return None
-    return next((m for m in MISLABELS if (m.cause, m.sentence) == (finding.cause, finding.note)), None)
+    half = len(finding.channels) // 2
+    of_thrusters = []
+    if finding.channels and all(role.endswith(DRIVES) for role in finding.channels):
+        pairs = list(zip(finding.channels[:half], finding.channels[half:], strict=False))
+        of_thrusters = [exchanged(pairs)] if pairs else [negative(finding.channels[0])]
+    listed = (*MISLABELS, *of_thrusters)
+    return next((m for m in listed if (m.cause, m.sentence) == (finding.cause, finding.note)), None)
 
 
 def mislabel_in(finding: Finding) -> Mislabel:

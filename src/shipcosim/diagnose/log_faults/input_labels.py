@@ -18,7 +18,7 @@ from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.innovations import inner_products, innovations
 from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
 from shipcosim.diagnose.inference.workers import each
-from shipcosim.diagnose.log.mislabels import WIND_LABELS, Mislabel, finding_of, negative, possible, undone
+from shipcosim.diagnose.log.mislabels import WIND_LABELS, Mislabel, exchanged, finding_of, negative, possible, undone
 from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.log_faults.thresholds import (
     FIRST_MOVE,
@@ -142,12 +142,12 @@ def _mislabels(log, model):
     """Every way in which channels of thrusters and wind could be wrong."""
     found = []
     for one, other in combinations(model.thrusters, 2):
-        pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "azimuth")]
+        pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "thrust", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in log and pair[1] in log]
         if _make(model, one) == _make(model, other):
-            found += [_swapped(group) for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]]) if group]
+            found += [exchanged(group) for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]]) if group]
     for name in model.thrusters:
-        found += [negative(role) for role in (f"{name}_rpm", f"{name}_azimuth") if role in log]
+        found += [negative(role) for role in (f"{name}_rpm", f"{name}_thrust", f"{name}_azimuth") if role in log]
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
@@ -159,15 +159,6 @@ def _make(model, name):
     """What kind of thruster it is."""
     third_party = model.third_party.get(name)
     return third_party.component.fmu.model_name if third_party else type(model.parts[name])
-
-
-def _swapped(pairs):
-    def undo(log):
-        return {a: log[b] for a, b in pairs} | {b: log[a] for a, b in pairs}
-
-    channels = tuple(role for side in zip(*pairs, strict=True) for role in side)
-    names = " and ".join(" with ".join(pair) for pair in pairs)
-    return Mislabel("channel_swap", channels, f"{names} are swapped", undo)
 
 
 def with_label(log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[tuple[float, float]] = ()) -> xarray.Dataset:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from shipcosim.angles import unwrap_series
-from shipcosim.diagnose.ship.time_scales import fastest_rate
+from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
@@ -19,12 +19,14 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 
-__all__ = ["CHANNELS", "Inputs", "Record", "first_motion", "record_of"]
+__all__ = ["CHANNELS", "Inputs", "Record", "averaged", "first_motion", "record_of"]
 
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s for 33.9 m
 _MANY_ROWS = 20_000  # of which more are averaged further: five and a half hours at 1 Hz
 _LONGEST_ROW = 4  # times that long, and
 _SHARE_OF_ANSWER = 0.25  # of the time of the ship's fastest answer
+_SHORTEST = 18.0  # s over the root of the length in m: 105 s for 33.9 m, 20 s for 1.2 m
+_FEWEST_ROWS = 60
 _ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
 _RATE_OF_A_STEP = 1.0  # 1, of the fastest answer times the step: Runge-Kutta of fourth order diverges beyond 2.8
 _MOST_STEPS = 64  # from row to row; a model or a log that asks for more is wrong
@@ -135,9 +137,8 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     """
     rows = log.sizes["time"]
     missing = [role for role in ("north", "east", "heading") if role not in log]
-    if missing or rows < 120:
-        found = f"no channel {', '.join(missing)}." if missing else f"{rows} rows."
-        right = "A diagnosis needs north, east and heading over at least two minutes, better forty."
+    if missing:
+        found, right = f"no channel {', '.join(missing)}.", "A diagnosis needs north, east and heading."
         raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
     measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
     measured[:, 2] = unwrap_series(measured[:, 2])
@@ -151,7 +152,9 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     remarks += [_about_third_party(name, one) for name, one in model.third_party.items()]
     known[:-1] &= known[1:]
     record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
-    return _thinned_for(model, record)
+    thinned = _thinned_for(model, record)
+    _check_length(log, model, first_motion(thinned, model))
+    return thinned
 
 
 def _thinned_for(model: ShipModel, record: Record) -> Record:
@@ -171,6 +174,18 @@ def _thinned_for(model: ShipModel, record: Record) -> Record:
     why = "this long log" if further > 1 else "this ship's answer"
     remark = f"Rows {record.step:.3g} s apart are averaged over {thinned.step:.3g} s, which resolves {why}."
     return replace(thinned, rate=rate, remarks=(*record.remarks, remark))
+
+
+def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None:
+    """Raise ShipcosimError for a log that is too short for what its ship does, or has too few rows."""
+    rows, span = log.sizes["time"], float(log["time"][-1] - log["time"][0])
+    least = _SHORTEST * np.sqrt(model.parts["hull"].length)
+    if span < least or rows < _FEWEST_ROWS:
+        slowest = max((time for time in response_times(model, motion) if np.isfinite(time)), default=np.inf)
+        answer = f"whose slowest answer takes {slowest:.2g} s" if slowest < 1e4 else "that hardly moves"
+        found = f"{rows} rows over {span:.0f} s, of a ship {answer}."
+        right = f"It takes {_FEWEST_ROWS} rows over {least:.0f} s at the least, better twenty times that."
+        raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
 
 
 def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
@@ -214,7 +229,7 @@ def _unit(log, name, model, rows, remarks):
     if name not in model.azimuths or f"{name}_azimuth" not in log:
         direction = np.full(rows, model.fixed.get(name, 0.0))
     whole = np.isfinite(speed) & np.isfinite(direction)
-    return (_averaged(speed), _averaged(unwrap_series(direction))), whole
+    return (averaged(speed), averaged(unwrap_series(direction))), whole
 
 
 def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
@@ -241,12 +256,12 @@ def _wind(log, rows, remarks):
             pair = _column(log, speed, rows), unwrap_series(_column(log, direction, rows) * np.pi / 180.0)
             whole = np.isfinite(pair[0]) & np.isfinite(pair[1])
             if whole.any():
-                return (_averaged(pair[0]), _averaged(pair[1])), whole
+                return (averaged(pair[0]), averaged(pair[1])), whole
     remarks.append("No wind in the log: forces of the wind, of waves, of a current and of a line cannot be told apart.")
     return None, np.ones(rows, bool)
 
 
-def _averaged(series: np.ndarray) -> np.ndarray:
+def averaged(series: np.ndarray) -> np.ndarray:
     """The series without gaps, averaged over neighbouring rows.
 
     So the noise of a channel does not get less, and the log likelier, when the channel is taken half a row later.

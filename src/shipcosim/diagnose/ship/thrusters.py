@@ -19,7 +19,15 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.ssp import System
 
-__all__ = ["DpThruster", "fixed_of", "neighbours_of", "neighbours_placed", "dp_thruster_of", "thruster_loads"]
+__all__ = [
+    "DpThruster",
+    "fixed_of",
+    "neighbours_of",
+    "neighbours_placed",
+    "dp_thruster_of",
+    "thruster_loads",
+    "with_thrust",
+]
 
 
 class DpThruster(NamedTuple):
@@ -175,3 +183,22 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
         if not turned or parts[name].azimuth_rate == 0.0:
             found[name] = number_of(system.components[name], start)
     return found
+
+
+def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
+    """The ship with all thrusters' thrust a ratio of what it was, known as well as the standard deviation says.
+
+    Parameters
+    ----------
+    model : ShipModel
+    ratio, std : float
+        Thrust over that of the model.
+
+    Returns
+    -------
+    ShipModel
+    """
+    paths = [path for name in model.thrusters if model.has(path := f"{name}.thrust_loss")]
+    values = {path: 1.0 - ratio * (1.0 - model.get(path)) for path in paths}
+    known = {path: float(np.hypot(model.tolerances.get(path, 0.0), std)) for path in paths}
+    return replace(model.with_values(values), tolerances=model.tolerances | known)

@@ -1,0 +1,1 @@
+"""Simulated against measured, and commanded force against felt: what is grossly wrong."""

@@ -1,0 +1,250 @@
+"""Commanded against felt on each axis: how much of the felt force the thrusters explain, with which gain.
+
+The felt force is inertia times acceleration, less what turning asks of the rigid body. Beside the thrusters it is
+explained by whatever else may act: the model's load of the water with any size, further damping of any size, coupling
+of the axes, wind, and a steady force. Damping takes energy away, in whatever model: its coefficients have one sign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.commanded import inertia, moving_mass
+from shipcosim.diagnose.comparison.regression import regressed
+from shipcosim.diagnose.comparison.thresholds import (
+    BLOCK_WIDTHS,
+    LEAST_COMMANDED,
+    MOST_BLOCKS,
+    STEADY_SHARE,
+    TURNED_ROUND,
+    WEAKER_WAY,
+)
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.commanded import Commanded
+    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.regression import Regression
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["AXES", "Axis", "AxisFit", "axes_of"]
+
+AXES = ("surge", "sway", "yaw")
+_OF_HULL = 3  # columns of the water's load: the model's, and linear and quadratic damping
+
+
+@dataclass(frozen=True)
+class AxisFit:
+    """The felt force on one axis explained by commanded loads and all else that may act.
+
+    Attributes
+    ----------
+    gains, std : (k,) array
+        Of the commanded loads, and their standard deviations.
+    support : float
+        Log-likelihood that the commanded loads gain. [nats]
+    squares : float
+        Mean square of what is left. [N2 or N2.m2]
+    damping, damping_std : float
+        The water's load as fitted over that of the model, along the log.
+    hull : (n,) array
+        The water's load as fitted.
+    """
+
+    gains: np.ndarray
+    std: np.ndarray
+    support: float
+    squares: float
+    damping: float
+    damping_std: float
+    hull: np.ndarray
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis of the ship over a log, smoothed, usable rows only.
+
+    Attributes
+    ----------
+    number : int
+        Of `AXES`.
+    felt : (n,) array
+        Felt force. [N or N.m]
+    hull, wind : (n,) array
+        Loads by the model; no wind is 0.
+    rest : (n, q) array
+        Columns of all but the thrusters, those of the water first.
+    positive : (q,) bool array
+        Which have a coefficient that must not be negative.
+    size : float
+        What the thrusters are commanded, root mean square: other forces that no model knows are of its order.
+    rows : (m,) bool array
+        The usable rows of the log.
+    felt_by : Felt
+    block : int
+        Rows of a block.
+    """
+
+    number: int
+    felt: np.ndarray
+    hull: np.ndarray
+    wind: np.ndarray
+    rest: np.ndarray
+    positive: np.ndarray
+    size: float
+    rows: np.ndarray
+    felt_by: Felt
+    block: int
+
+    @property
+    def name(self) -> str:
+        """``"surge"``, ``"sway"`` or ``"yaw"``."""
+        return AXES[self.number]
+
+    def smoothed(self, loads: np.ndarray) -> np.ndarray:
+        """Loads on all rows, (3, m) array, as this axis has them: (n,)."""
+        return self.felt_by.kernel.smooth(loads[self.number])[self.rows]
+
+    def total(self, commanded: Commanded) -> np.ndarray:
+        """What all thrusters are commanded, (n,) array."""
+        return sum((self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size))
+
+    def is_driven(self, commanded: Commanded) -> bool:
+        """Whether the thrusters are commanded to do something on this axis, beside what is felt."""
+        total = self.total(commanded)
+        return bool(total.std() > LEAST_COMMANDED * max(self.felt.std(), 1e-9))
+
+    def explained(self, columns: np.ndarray) -> AxisFit:
+        """The felt force explained by some commanded loads, whose gains must not be negative.
+
+        Parameters
+        ----------
+        columns : (k, n) array
+
+        Returns
+        -------
+        AxisFit
+        """
+        return self._fit(columns, True)
+
+    def compared(self, columns: np.ndarray) -> AxisFit:
+        """The same with gains of any sign."""
+        return self._fit(columns, False)
+
+    def most_gain(self, total: np.ndarray) -> tuple[float, float]:
+        """Largest gain that a commanded load may have, with its standard deviation: what is felt explains it in turn.
+
+        Where thrust and damping balance, what is left over is small, and any error of either makes the gain look small.
+        Explained the other way round, the same errors make it look large: the truth is between.
+
+        Parameters
+        ----------
+        total : (n,) array
+
+        Returns
+        -------
+        tuple of float, float
+            Infinite where nothing of what is felt goes with it.
+        """
+        unit = self.felt_unit
+        columns = np.concatenate([self.felt[:, None] / unit, -self.rest], axis=1)
+        found = regressed(total, columns, np.r_[True, self.positive], self.block)
+        slope = found.coefficients[0] / unit
+        if slope <= 0.0:
+            return np.inf, np.inf
+        return 1.0 / slope, float(found.std[0] / unit / slope**2)
+
+    def unexplained(self, given: np.ndarray) -> float:
+        """Mean square of the felt force that is left beside a given load, (n,) array, and all but the thrusters."""
+        return regressed(self.felt - given, self.rest, self.positive, self.block, self._prior).squares
+
+    @property
+    def felt_unit(self) -> float:
+        """Root mean square of the felt force."""
+        return float(np.sqrt((self.felt**2).mean())) + 1e-30
+
+    def both_ways(self, ahead: np.ndarray, astern: np.ndarray) -> AxisFit:
+        """The same by what thrusters do ahead and astern, neither way much weaker than the other.
+
+        Parameters
+        ----------
+        ahead, astern : (n,) array
+            Loads of thrusters that run ahead, and of those that run astern.
+        """
+        return self.explained(np.stack([ahead + WEAKER_WAY * astern, astern + WEAKER_WAY * ahead]))
+
+    def _fit(self, columns: np.ndarray, one_sign: bool) -> AxisFit:
+        k = len(columns)
+        every = np.concatenate([columns.T, self.rest], axis=1)
+        positive = np.r_[np.full(k, one_sign), self.positive]
+        found = regressed(self.felt, every, positive, self.block, np.r_[np.full(k, np.inf), self._prior])
+        without = self._without
+        support = 0.5 * min(found.independent, without.independent) * np.log(without.squares / found.squares)
+        hull, damping, std = self._water(found, k)
+        return AxisFit(found.coefficients[:k], found.std[:k], float(support), found.squares, damping, std, hull)
+
+    @cached_property
+    def _prior(self) -> np.ndarray:
+        """What forces that no model knows may be, as coefficients of their columns."""
+        return np.where(self.positive, np.inf, STEADY_SHARE * self.size / np.sqrt((self.rest**2).mean(0) + 1e-30))
+
+    @cached_property
+    def _without(self) -> Regression:
+        """The felt force explained by all but the thrusters."""
+        return regressed(self.felt, self.rest, self.positive, self.block, self._prior)
+
+    def _water(self, found: Regression, k: int) -> tuple[np.ndarray, float, float]:
+        """The water's load as fitted, and its size along the model's with the standard deviation."""
+        own = slice(k, k + _OF_HULL)
+        columns = self.rest[:, :_OF_HULL]
+        along = columns.T @ self.hull / max(float(self.hull @ self.hull), 1e-30)
+        variance = float(along @ found.covariance[own, own] @ along)
+        return columns @ found.coefficients[own], float(along @ found.coefficients[own]), float(np.sqrt(variance))
+
+
+def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
+    """The axes of a ship over a log.
+
+    Parameters
+    ----------
+    felt : Felt
+    commanded : Commanded
+        Its thrusters do not matter here.
+    model : ShipModel
+
+    Returns
+    -------
+    list of three Axis
+    """
+    kernel, motion, rows = felt.kernel, felt.motion, felt.usable
+    force = inertia(model) @ felt.rates + kernel.smooth(moving_mass(motion, model))
+    block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
+    speeds, found = np.stack([motion.u, motion.v, motion.r]), []
+    thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
+    wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
+    for i, groups in enumerate(_beside(speeds, motion.psi)):
+        drag = [commanded.hull[i], -speeds[i], -speeds[i] * np.abs(speeds[i])]
+        positive = [*drag, *([wind[i]] if np.any(wind) else []), *groups["damping"]]
+        listed = [*positive, *groups["coupling"], *groups["steady"]]
+        rest = kernel.smooth(np.stack(np.broadcast_arrays(*listed)))[:, rows].T
+        sign = np.arange(len(listed)) < len(positive)
+        size = float(np.sqrt((kernel.smooth(thrust[i])[rows] ** 2).mean())) + 1e-9
+        hull, air = (kernel.smooth(load[i])[rows] for load in (commanded.hull, wind))
+        found.append(Axis(i, force[i][rows], hull, air, rest, sign, size, rows, felt, block))
+    return found
+
+
+def _beside(speeds: np.ndarray, psi: np.ndarray) -> list[Mapping[str, list[np.ndarray]]]:
+    """By axis: what else damps it, what couples it to the others, and what is steady."""
+    u, v, r = speeds
+    once = [np.ones_like(u)]
+    earth = [np.cos(psi), np.sin(psi)] if np.ptp(psi) > TURNED_ROUND else once
+    return [
+        {"damping": [], "coupling": [v * r, r * r], "steady": earth},
+        {"damping": [-np.abs(u) * v], "coupling": [u * r], "steady": earth},
+        {"damping": [-np.abs(u) * r], "coupling": [u * v], "steady": once},
+    ]

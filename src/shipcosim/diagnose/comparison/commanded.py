@@ -1,0 +1,91 @@
+"""The loads that a model has on the ship along the measured motion: of each thruster, of the wind, of the hull."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.ship.dynamics import loads
+from shipcosim.models.ship.hull import hull_loads
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.models.core.motion import Load, Motion
+
+__all__ = ["Commanded", "commanded_by", "inertia", "late", "moving_mass"]
+
+
+@dataclass(frozen=True)
+class Commanded:
+    """Loads by a model along a measured motion, unsmoothed.
+
+    Attributes
+    ----------
+    thrusters : dict of str to (3, n) array
+        By thruster. [N, N, N.m]
+    hull : (3, n) array
+        Of the water on the hull.
+    wind : (3, n) array or None
+        None where the log has no wind.
+    """
+
+    thrusters: dict[str, np.ndarray]
+    hull: np.ndarray
+    wind: np.ndarray | None
+
+
+def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
+    """The loads of a model along what a log shows.
+
+    Parameters
+    ----------
+    record : Record
+    felt : Felt
+        Of the log.
+    model : ShipModel
+        With surrogates of third-party FMUs.
+
+    Returns
+    -------
+    Commanded
+    """
+    inputs = record.inputs(model)
+    motion, size = felt.motion, record.time.size
+    steps = type(motion)(*(value[:-1] for value in motion))
+    found = {name: _rows(load, size) for name, load in loads(steps, inputs, model).items()}
+    hull = _rows(hull_loads(motion.u, motion.v, motion.r, hull=model.parts["hull"]), size)
+    return Commanded({name: found[name] for name in model.thrusters}, hull, found.get("wind"))
+
+
+def _rows(load: Load, size: int) -> np.ndarray:
+    """A load as (3, n) array; what is known of each step only, held at the last row."""
+    rows = np.stack([np.broadcast_to(axis, np.broadcast_shapes(*map(np.shape, load))) for axis in load])
+    rows = np.broadcast_to(rows if rows.ndim > 1 else rows[:, None], (3, max(rows.shape[-1], 1)))
+    return np.pad(rows, ((0, 0), (0, size - rows.shape[1])), mode="edge")
+
+
+def inertia(model: ShipModel) -> np.ndarray:
+    """Mass and moment of inertia with added mass, (3, 3) array. [kg, kg, kg.m2]"""
+    i11, i22, i26, i62, i66 = model.parts["hull"].inverse_mass
+    return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
+
+
+def moving_mass(motion: Motion, model: ShipModel) -> np.ndarray:
+    """Loads that turning asks of the rigid body, C_RB(ν) ν, (3, n) array. [N, N, N.m]"""
+    hull = model.parts["hull"]
+    mass, ahead = hull.rigid_body[0], hull.centre_of_gravity_x
+    u, v, r = motion.u, motion.v, motion.r
+    return mass * np.stack([-r * (v + ahead * r), r * u, ahead * r * u])
+
+
+def late(commanded: Commanded, rows: float) -> Commanded:
+    """The same with thrusters that act that many rows later."""
+    at = np.arange(commanded.hull.shape[1])
+    moved = {
+        name: np.stack([np.interp(at - rows, at, axis) for axis in load]) for name, load in commanded.thrusters.items()
+    }
+    return replace(commanded, thrusters=moved)

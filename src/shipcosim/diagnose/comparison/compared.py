@@ -1,0 +1,138 @@
+"""The stage between the checks of a log and its identification: what is grossly wrong, and where to start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.axes import axes_of
+from shipcosim.diagnose.comparison.commanded import commanded_by
+from shipcosim.diagnose.comparison.discrepancies import discrepancies_of
+from shipcosim.diagnose.comparison.errors import errors_of
+from shipcosim.diagnose.comparison.felt import felt_by
+from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
+from shipcosim.diagnose.comparison.labels import read_labels
+from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
+from shipcosim.diagnose.inference.problem import as_logged
+from shipcosim.diagnose.log.mislabels import exchanged, finding_of, negative
+from shipcosim.diagnose.log.repair import repaired
+from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
+from shipcosim.diagnose.ship.inputs import first_motion, record_of
+from shipcosim.diagnose.ship.smoothing import froude_time
+from shipcosim.diagnose.ship.surrogate import with_surrogates
+from shipcosim.diagnose.ship.thrusters import with_thrust
+from shipcosim.diagnose.stages import CheckedLog, ComparedLog
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
+    from shipcosim.diagnose.comparison.labels import Change, Labels
+    from shipcosim.diagnose.hypotheses.catalogue import Cause
+
+__all__ = ["LogComparison", "compared"]
+
+_ONLY_RATIO = "Thrust and inertia cannot be told apart: only their ratio is known."
+
+
+@dataclass(frozen=True)
+class LogComparison:
+    """Simulated against measured, and commanded against felt.
+
+    Attributes
+    ----------
+    errors : dict
+        Of the simulation, as from `errors_of`.
+    discrepancies : tuple of Discrepancy
+        Largest first.
+    gains : tuple of AxisGain
+        By axis that the thrusters drive; empty where the log has too few usable rows.
+    labels : Labels or None
+    ratio : CommonRatio or None
+        Of thrust to inertia.
+    findings : tuple of Finding
+        Of the physics, beyond doubt: the ship is started with them.
+    is_resolved : bool
+        Whether rows are close enough for the ship's answers.
+    """
+
+    errors: dict[str, list[float]]
+    discrepancies: tuple[Discrepancy, ...]
+    gains: tuple[AxisGain, ...] = ()
+    labels: Labels | None = None
+    ratio: CommonRatio | None = None
+    findings: tuple[Finding, ...] = ()
+    is_resolved: bool = True
+
+    def found_without(self, causes: dict[str, Cause]) -> tuple[Finding, ...]:
+        """What may be named where no cause of the catalogue explains the log: a common ratio that is not gross."""
+        if self.findings or self.ratio is None or not self.ratio.differs(PLAIN):
+            return ()
+        return _ratio_finding(self.ratio, causes)
+
+
+def compared(log: CheckedLog) -> ComparedLog:
+    """A checked log held against the simulation: what is grossly wrong is put right before anything else.
+
+    Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
+    that is far off is in the ship from here on.
+    """
+    ship = as_logged(log.ship, log.repaired)
+    record = record_of(log.repaired, ship)
+    length = ship.parts["hull"].length
+    felt = felt_by(record, length)
+    ship = with_surrogates(ship, record, first_motion(record, ship))
+    errors = errors_of(record, felt, ship)
+    is_resolved = float(np.diff(log.repaired["time"].values[:2])[0]) <= RESOLVED * froude_time(length)
+    if not is_resolved or felt.usable.sum() < FEWEST_USABLE:
+        return _stage(log, LogComparison(errors, (), is_resolved=is_resolved))
+    axes = axes_of(felt, commanded_by(record, felt, ship), ship)
+    labels = read_labels(record, felt, axes, ship)
+    gains = gains_of(axes, labels.used.commanded)
+    ratio = common_ratio(gains)
+    told = tuple(discrepancies_of(labels, gains, ratio))
+    gross = ratio is not None and ratio.differs(GROSS)
+    findings = _ratio_finding(ratio, log.causes) if ratio is not None and gross else ()
+    comparison = LogComparison(errors, told, tuple(gains), labels, ratio, findings)
+    found = _stage(log, comparison)
+    if labels.is_sure and labels.best.changes:
+        found = _relabelled(found, labels)
+    if ratio is not None and findings:
+        found = replace(found, ship=with_thrust(found.ship, ratio.ratio, ratio.std))
+    return found
+
+
+def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:
+    return ComparedLog(log.log, log.ship, log.causes, log.faults, log.repaired, comparison)
+
+
+def _relabelled(log: ComparedLog, labels: Labels) -> ComparedLog:
+    """The log with sides and signs of the thrusters put right."""
+    sure = float(1.0 - np.exp(-min(labels.best.score - labels.logged.score, 4.6)))
+    faults = [finding_of(_label(change, log.log), sure) for change in labels.best.changes]
+    faults = (*log.faults, *faults)
+    return replace(log, faults=faults, repaired=repaired(log.log, faults))
+
+
+def _label(change: Change, log: xarray.Dataset):
+    """What is wrong with the channels of a change."""
+    if len(change.thrusters) == 1:
+        return negative(_drives(change.thrusters[0], log)[0])
+    one, other = (_drives(name, log) for name in change.thrusters)
+    return exchanged(list(zip(one, other, strict=False)))
+
+
+def _drives(name: str, log: xarray.Dataset) -> list[str]:
+    """Channels of what drives a thruster, its speed or thrust first."""
+    return [f"{name}_{kind}" for kind in ("rpm", "thrust", "azimuth") if f"{name}_{kind}" in log]
+
+
+def _ratio_finding(ratio: CommonRatio, causes: dict[str, Cause]) -> tuple[Finding, ...]:
+    """The finding of a common ratio, by the cause that says so; none without one in the catalogue."""
+    cause = next((one for one in causes.values() if one.sought_in == "comparison"), None)
+    if cause is None:
+        return ()
+    size = {name: Estimate(ratio.ratio, ratio.std, "1") for name in cause.parameters}
+    return (Finding(cause.cause, None, "physics", 0.95, size, note=_ONLY_RATIO),)

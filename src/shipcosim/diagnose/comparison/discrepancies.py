@@ -1,0 +1,144 @@
+"""What differs between commanded and felt force, in words with sizes, the largest first, and what remains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.regression import regressed
+from shipcosim.diagnose.comparison.thresholds import (
+    LEAST_SUPPORT,
+    MENTIONED,
+    REMAINS,
+    SURE_OF_GAIN,
+)
+from shipcosim.diagnose.result import Discrepancy
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
+    from shipcosim.diagnose.comparison.labels import Change, Labels
+
+__all__ = ["discrepancies_of"]
+
+FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
+
+
+def discrepancies_of(labels: Labels, gains: Sequence[AxisGain], ratio: CommonRatio | None) -> list[Discrepancy]:
+    """What differs between commanded and felt force: signs, then sizes, largest first, then what is left.
+
+    Parameters
+    ----------
+    labels : Labels
+        Of the thrusters.
+    gains : sequence of AxisGain
+        With those labels.
+    ratio : CommonRatio or None
+
+    Returns
+    -------
+    list of Discrepancy
+    """
+    signs, found = sorted(_wrong_signs(labels, gains), key=lambda one: -one.share), []
+    off = [one for one in gains if one.is_off and one.is_known]
+    if ratio is not None and ratio.differs(MENTIONED):
+        share = max((_explained_by_gain(one) for one in off), default=0.0)
+        text = f"thrust over inertia {ratio.ratio:.2f} of the model's"
+        found.append(Discrepancy(text, None, None, ratio.ratio, ratio.std, "1", share))
+    else:
+        found += [one for gain in gains if gain.is_off for one in _weak(gain)]
+    if all(one.is_common for one in off):  # else what one thruster lacks passes for damping
+        found += [one for gain in off for one in _damping(gain)]
+    if labels.used.is_late:
+        text = f"thrust acts {labels.used.lag:.2g} s after its command"
+        found.append(Discrepancy(text, None, None, labels.used.lag, 0.25 * labels.used.lag, "s", _of_lag(labels)))
+    found = [*signs, *sorted(found, key=lambda one: -one.share)]
+    return found + [one for gain in gains if gain.is_off and found for one in _rest(gain)]
+
+
+def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepancy]:
+    """Axes on which the thrusters do the opposite of what they are commanded, as logged; else the labels themselves."""
+    readings = [labels.best, *labels.rivals] if labels.is_wrong else []
+    why = " or ".join("; ".join(map(in_words, one.changes)) for one in readings)
+    told = False
+    for one in gains:
+        axis = one.axis
+        before = axis.total(labels.logged.commanded)
+        fit = axis.compared(before[None])
+        gain, std = float(fit.gains[0]), float(fit.std[0])
+        if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT:
+            continue
+        because = bool(why) and bool(np.abs(before - axis.total(labels.best.commanded)).max() > 0.1 * axis.size)
+        told |= because
+        text = f"{FORCES[axis.name]}: wrong sign" + (f", as with {why}" if because else "")
+        share = float(np.clip(1.0 - fit.squares / axis.unexplained(np.zeros(before.size)), 0.0, 1.0))
+        yield Discrepancy(text, None, axis.name, gain, std, "1", share)
+    if why and not told:
+        gained = 1.0 - max(labels.logged.support, 0.0) / labels.best.support
+        yield Discrepancy(f"thrust does not go with its command, but with {why}", None, None, -1.0, 0.0, "1", gained)
+
+
+def in_words(change: Change) -> str:
+    """A change of labels: ``left and right exchanged``, ``left running the other way``."""
+    if len(change.thrusters) == 2:
+        return " and ".join(change.thrusters) + " exchanged"
+    return f"{change.thrusters[0]} running the other way"
+
+
+def _explained_by_gain(one: AxisGain) -> float:
+    """Share of the error that goes with the gain, the water's load as the log has it."""
+    return float(np.clip(1.0 - one.fit.squares / one.axis.unexplained(one.total), 0.0, 1.0))
+
+
+def _weak(one: AxisGain) -> Iterator[Discrepancy]:
+    """A gain on one axis, or those of its thrusters where they differ."""
+    if max(one.support_of_each, one.fit.support) < LEAST_SUPPORT:
+        return
+    apart = {} if one.is_common else one.each
+    apart = {
+        n: v
+        for n, v in apart.items()
+        if v > SURE_OF_GAIN * one.each_std[n] and abs(v - 1.0) > SURE_OF_GAIN * one.each_std[n] + MENTIONED - 1.0
+    }
+    share = _explained_by_gain(one)
+    for name, value in apart.items():
+        text = f"{FORCES[one.axis.name]} of {name} over inertia {value:.2f} of the model's"
+        yield Discrepancy(text, name, one.axis.name, value, one.each_std[name], "1", share)
+    if one.is_common and one.is_known and one.differs(MENTIONED):
+        text = f"{FORCES[one.axis.name]} over inertia {one.gain:.2f} of the model's"
+        yield Discrepancy(text, None, one.axis.name, one.gain, one.std, "1", share)
+
+
+def _damping(one: AxisGain) -> Iterator[Discrepancy]:
+    """What the water resists, where the log tells it."""
+    axis, fit = one.axis, one.fit
+    if fit.gains[0] <= 0.0 or not np.any(axis.hull):
+        return
+    scale = max(one.gain, float(fit.gains[0])) / float(fit.gains[0])  # what makes the gain look small does it to both
+    damping, std = fit.damping * scale, fit.damping_std * scale + fit.damping * scale * one.std / one.gain
+    left = regressed(
+        axis.felt - axis.hull,
+        np.concatenate([one.total[:, None], axis.rest[:, 3:]], axis=1),
+        np.r_[False, axis.positive[3:]],
+        axis.block,
+    )
+    support = 0.5 * left.independent * np.log(left.squares / fit.squares)
+    far = abs(np.log(max(damping, 0.01))) - SURE_OF_GAIN * std / max(damping, 0.01) > np.log(MENTIONED)
+    if support > LEAST_SUPPORT and far:
+        text = f"damping in {axis.name} over inertia {damping:.2f} of the model's"
+        yield Discrepancy(text, None, axis.name, damping, std, "1", float(1.0 - fit.squares / left.squares))
+
+
+def _of_lag(labels: Labels) -> float:
+    """Share of the support that only a lag gives."""
+    return float(np.clip(0.0 if not labels.used.support else labels.used.gained_by_lag / labels.used.support, 0.0, 1.0))
+
+
+def _rest(one: AxisGain) -> Iterator[Discrepancy]:
+    """What nothing of all this explains."""
+    left = one.fit.squares / float((one.axis.felt**2).mean())
+    if left > REMAINS:
+        name = FORCES[one.axis.name]
+        text = f"{name}: {100.0 * left:.0f} % of what is felt remains unexplained"
+        yield Discrepancy(text, None, one.axis.name, left, 0.0, "1", 0.0)

@@ -1,0 +1,107 @@
+"""Simulated against measured: errors of open-loop predictions from smoothed measurements, over a craft's own times."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.thresholds import (
+    ANSWER,
+    FEWEST_STARTS,
+    LONGEST_ANSWER,
+    MOST_OF_LOG,
+    MOST_STARTS,
+    SHORTEST_ANSWER,
+)
+from shipcosim.diagnose.ship.instruments import readings, true_motion
+from shipcosim.diagnose.ship.smoothing import froude_time
+from shipcosim.diagnose.ship.time_scales import response_times
+from shipcosim.diagnose.validation.predictions import missing, predicted, replayable
+from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["errors_of", "horizons_of"]
+
+_LADDER = np.array([1.0, 2.0, 3.0, 6.0, 10.0])
+
+
+def horizons_of(model: ShipModel, motion: Motion, span: float, step: float) -> tuple[float, ...]:
+    """Horizons that fit a craft's own time constants: a sixth, a half and the whole of the time in which she answers.
+
+    Parameters
+    ----------
+    model : ShipModel
+    motion : Motion
+        Near the measured one.
+    span, step : float
+        Length of the log, and time from row to row. [s]
+
+    Returns
+    -------
+    tuple of float
+        Rounded, increasing. [s]
+    """
+    unit = froude_time(model.parts["hull"].length)
+    answer = np.clip(ANSWER * response_times(model, motion).middle, SHORTEST_ANSWER * unit, LONGEST_ANSWER * unit)
+    longest = max(min(float(answer), MOST_OF_LOG * span), 6.0 * step)
+    power = 10.0 ** np.floor(np.log10(longest))
+    rounded = float(power * _LADDER[np.abs(np.log(_LADDER * power / longest)).argmin()])
+    return tuple(float(f"{rounded * share:.3g}") for share in (1.0 / 6.0, 0.5, 1.0))
+
+
+def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[float]]:
+    """Errors of the simulation of a ship: the entry ``baseline`` of diagnosis.json.
+
+    Predictions start all over the log from the measured motion, smoothed without a model, and run with the logged
+    thrusters and wind.
+
+    Parameters
+    ----------
+    record : Record
+    felt : Felt
+        Of the log.
+    model : ShipModel
+
+    Returns
+    -------
+    dict
+        Horizons [s], and root mean squares of the errors after each, in position [m] and heading [deg].
+    """
+    span = float(record.time[-1] - record.time[0])
+    horizons = horizons_of(model, felt.motion, span, record.step)
+    rows = _starts(record, felt, horizons[-1])
+    while rows.size < FEWEST_STARTS and horizons[-1] > 6.0 * record.step:
+        horizons = tuple(0.5 * horizon for horizon in horizons)
+        rows = _starts(record, felt, horizons[-1])
+    motion = felt.motion
+    seen = Motion(*(felt.kernel.smooth(value) for value in motion))
+    counts = [max(1, round(horizon / record.step)) for horizon in horizons]
+    off = _missed(record, model, seen, rows, counts)
+    return {
+        "horizon_s": [count * record.step for count in counts],
+        "position_error_m": [float(np.sqrt(np.mean(one**2))) for one in off["position"]],
+        "heading_error_deg": [float(np.sqrt(np.mean(one**2))) for one in off["heading"]],
+    }
+
+
+def _starts(record: Record, felt: Felt, horizon: float) -> np.ndarray:
+    """Rows from which predictions start, as many as touch no gap; else any from which one can be made."""
+    reach = round(horizon / record.step)
+    rows = np.arange(0, record.time.size - reach)
+    lost = np.concatenate([[0], np.cumsum(~record.known)])
+    good = rows[(lost[rows + reach] == lost[rows]) & felt.usable[rows] & felt.usable[rows + reach]]
+    good = good if good.size >= FEWEST_STARTS else rows[lost[rows + reach] == lost[rows]]
+    return good[:: max(1, good.size // MOST_STARTS)]
+
+
+def _missed(record, model, seen, rows, counts):
+    """Errors of the predictions by channel, (horizons, s) arrays."""
+    logged, ship = replayable(record, model, seen)
+    start = true_motion(Motion(*(value[rows] for value in seen)), ship)
+    found = predicted(start, rows, logged, ship, counts)
+    return missing(readings(found, ship), seen, rows + np.array(counts)[:, None])

@@ -1,0 +1,69 @@
+"""The motion and the acceleration that a log shows, smoothed without any model of the ship."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.thresholds import KERNEL, SHORTEST_KERNEL
+from shipcosim.diagnose.ship.inputs import averaged
+from shipcosim.diagnose.ship.smoothing import Kernel, froude_time, is_measured, unsmoothed
+from shipcosim.models.core.kinematics import to_body
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.models.core.motion import Motion
+
+__all__ = ["Felt", "felt_by"]
+
+
+@dataclass(frozen=True)
+class Felt:
+    """What a log shows of a ship's motion.
+
+    Attributes
+    ----------
+    motion : Motion
+        Rows but gaps filled, unsmoothed, (n,) arrays.
+    rates : (3, n) array
+        Rates of surge, sway and yaw rate, by the kernel. [m/s2, m/s2, rad/s2]
+    usable : (n,) bool array
+        Rows that no gap reaches.
+    kernel : Kernel
+    """
+
+    motion: Motion
+    rates: np.ndarray
+    usable: np.ndarray
+    kernel: Kernel
+
+
+def felt_by(record: Record, length: float) -> Felt:
+    """The acceleration that a log shows.
+
+    Rates of the measured velocities; where those are not measured, of the positions, turned by the heading.
+
+    Parameters
+    ----------
+    record : Record
+        Of one log.
+    length : float
+        Of the ship. [m]
+
+    Returns
+    -------
+    Felt
+    """
+    kernel = Kernel(max(KERNEL * froude_time(length), SHORTEST_KERNEL * record.step), record.step)
+    motion, bad = unsmoothed(record, kernel)
+    motion = type(motion)(*(averaged(series) for series in motion))  # as what drives her is
+    rates = kernel.rate(np.stack([motion.u, motion.v, motion.r]))
+    if not is_measured(record, 3) or not is_measured(record, 4):
+        psi, r = kernel.smooth(motion.psi), kernel.smooth(motion.r)
+        along, across = to_body(psi, *(kernel.rate(series, 2) for series in (motion.x, motion.y)))
+        rates[0], rates[1] = along + r * kernel.smooth(motion.v), across - r * kernel.smooth(motion.u)
+    if not is_measured(record, 5):
+        rates[2] = kernel.rate(motion.psi, 2)
+    return Felt(motion, rates, kernel.clear_of(bad | ~record.known), kernel)

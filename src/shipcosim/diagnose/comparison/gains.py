@@ -1,0 +1,163 @@
+"""How large the commanded force is beside the felt one: on each axis, of each thruster, and as a common ratio."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.thresholds import (
+    COMMON_SPREAD,
+    LEAST_SUPPORT,
+    OFF,
+    SURE_OF_GAIN,
+    THRUSTER_SPREAD,
+)
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.axes import Axis, AxisFit
+    from shipcosim.diagnose.comparison.commanded import Commanded
+
+__all__ = ["AxisGain", "CommonRatio", "common_ratio", "gains_of"]
+
+
+@dataclass(frozen=True)
+class AxisGain:
+    """The felt over the commanded force on one axis.
+
+    Attributes
+    ----------
+    axis : Axis
+    total : (n,) array
+        What all thrusters are commanded. [N or N.m]
+    fit : AxisFit
+        The felt force explained by that, any sign.
+    gain, std : float
+        Middle and standard deviation of the gain, by what both ways of explaining it say; of the fit alone where only
+        that says something.
+    each, each_std : dict of str to float
+        By thruster.
+    support_of_each : float
+        Log-likelihood that the thrusters gain, each with a gain of its own. [nats]
+    correlation : float
+        Of what is commanded with what is felt less the model's other loads.
+    error : float
+        Root mean square of the felt force less all of the model's, over that of the commanded one.
+    """
+
+    axis: Axis
+    total: np.ndarray
+    fit: AxisFit
+    gain: float
+    std: float
+    each: dict[str, float]
+    each_std: dict[str, float]
+    support_of_each: float
+    correlation: float
+    error: float
+
+    @property
+    def is_off(self) -> bool:
+        """Whether the model as it is is far from what is felt."""
+        return self.error > OFF
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the log tells the gain."""
+        return self.fit.support > LEAST_SUPPORT and self.gain > SURE_OF_GAIN * self.std
+
+    @property
+    def is_common(self) -> bool:
+        """Whether no thruster's own gain is surely far from that of all."""
+        common = float(self.fit.gains[0])
+        near = THRUSTER_SPREAD * abs(common)
+        return all(abs(v - common) <= SURE_OF_GAIN * self.each_std[name] + near for name, v in self.each.items())
+
+    def differs(self, least: float) -> bool:
+        """Whether the gain differs from 1 by a factor of more than `least` for sure."""
+        return self.gain <= 0.0 or abs(np.log(self.gain)) - SURE_OF_GAIN * self.std / self.gain > np.log(least)
+
+
+def gains_of(axes: Sequence[Axis], commanded: Commanded) -> list[AxisGain]:
+    """The gain on each axis that the thrusters drive.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+    commanded : Commanded
+
+    Returns
+    -------
+    list of AxisGain
+    """
+    return [_gain(axis, commanded) for axis in axes if axis.is_driven(commanded)]
+
+
+def _gain(axis: Axis, commanded: Commanded) -> AxisGain:
+    total = axis.total(commanded)
+    names = [name for name, load in commanded.thrusters.items() if np.any(load[axis.number])]
+    fit = axis.compared(total[None])
+    apart = axis.compared(np.stack([axis.smoothed(commanded.thrusters[name]) for name in names]))
+    gain, std = float(fit.gains[0]), float(fit.std[0])
+    if gain > 0.0:
+        most, most_std = axis.most_gain(total)
+        if np.isfinite(most):
+            middle = float(np.sqrt(gain * max(most, gain)))
+            half = 0.5 * np.log(max(most / gain, 1.0)) / np.sqrt(3.0)  # evenly likely between the two
+            std = float(middle * np.sqrt(half**2 + (std / gain) ** 2 + (most_std / most) ** 2))
+            gain = middle
+    other = axis.felt - axis.hull - axis.wind
+    size = float(np.sqrt((total**2).mean()))
+    correlation = float(np.corrcoef(other, total)[0, 1]) if total.std() > 0.0 else 0.0
+    error = float(np.sqrt(((other - total) ** 2).mean())) / size
+    each = dict(zip(names, map(float, apart.gains), strict=True))
+    each_std = dict(zip(names, map(float, apart.std), strict=True))
+    return AxisGain(axis, total, fit, gain, std, each, each_std, apart.support, correlation, error)
+
+
+@dataclass(frozen=True)
+class CommonRatio:
+    """A ratio of thrust to inertia, real over modelled, that is common to all thrusters and axes.
+
+    Attributes
+    ----------
+    ratio, std : float
+    axes : tuple of str
+        That tell it.
+    """
+
+    ratio: float
+    std: float
+    axes: tuple[str, ...]
+
+    def differs(self, least: float) -> bool:
+        """Whether it differs from 1 by a factor of more than `least` for sure."""
+        return abs(np.log(self.ratio)) - SURE_OF_GAIN * self.std / self.ratio > np.log(least)
+
+
+def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:
+    """The ratio that the axes have in common; None where they contradict, or thrusters do, or none tells it.
+
+    Parameters
+    ----------
+    gains : sequence of AxisGain
+
+    Returns
+    -------
+    CommonRatio or None
+    """
+    known = [one for one in gains if one.is_known]
+    if not known or not any(one.is_off for one in known):
+        return None
+    logs = np.log([one.gain for one in known])
+    stds = np.array([one.std / one.gain for one in known])
+    weights = 1.0 / (stds**2 + COMMON_SPREAD**2)
+    mean = float(weights @ logs / weights.sum())
+    apart = np.abs(logs - mean) > SURE_OF_GAIN * stds + 2.0 * COMMON_SPREAD
+    if apart.any() or not all(one.is_common for one in known):
+        return None
+    spread = float(np.sqrt(weights @ (logs - mean) ** 2 / weights.sum()))
+    std = max(1.0 / np.sqrt(weights.sum()), spread)
+    return CommonRatio(float(np.exp(mean)), float(np.exp(mean) * std), tuple(one.axis.name for one in known))

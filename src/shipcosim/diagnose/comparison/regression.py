@@ -1,0 +1,126 @@
+"""Robust regression with coefficients that must not be negative, and errors honest about autocorrelation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from shipcosim.diagnose.comparison.thresholds import HUBER, ROBUST_ROUNDS, SOUND
+
+__all__ = ["Regression", "regressed"]
+
+
+@dataclass(frozen=True)
+class Regression:
+    """A regression of one series on some columns.
+
+    Attributes
+    ----------
+    coefficients : (p,) array
+    covariance : (p, p) array
+        By blocks; of coefficients at their bound 0.
+    left : (n,) array
+        Residuals.
+    squares : float
+        Mean of Huber's loss of them, twice: their mean square without outliers.
+    apart : float
+        Rows from one independent residual to the next.
+    """
+
+    coefficients: np.ndarray
+    covariance: np.ndarray
+    left: np.ndarray
+    squares: float
+    apart: float
+
+    @property
+    def independent(self) -> float:
+        """Number of independent residuals."""
+        return self.left.size / self.apart
+
+    @property
+    def std(self) -> np.ndarray:
+        """Standard deviations of the coefficients."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+
+def regressed(
+    series: np.ndarray, columns: np.ndarray, positive: np.ndarray, block: int, prior: np.ndarray | None = None
+) -> Regression:
+    """Regress a series on columns.
+
+    Parameters
+    ----------
+    series : (n,) array
+    columns : (n, p) array
+    positive : (p,) bool array
+        Coefficients that must not be negative.
+    block : int
+        Rows of a block whose errors are taken together: longer than errors are correlated.
+    prior : (p,) array, optional
+        Standard deviations of the coefficients about 0; infinite where nothing is known.
+
+    Returns
+    -------
+    Regression
+    """
+    scale = np.sqrt((columns**2).mean(0))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    unit, weights, pull = columns / scale, np.ones(series.size), np.zeros(scale.size)
+    for _ in range(ROBUST_ROUNDS):
+        heavy = unit * (weights**2)[:, None]
+        found = _bounded(unit.T @ heavy + np.diag(pull**2), heavy.T @ series, positive)
+        left = series - unit @ found
+        size = np.sort(np.abs(left))[: int(SOUND * left.size)]
+        spread = np.sqrt((size**2).mean()) + 1e-300  # not the median: a craft that lies idle would hide what she does
+        weights = np.sqrt(np.minimum(1.0, HUBER * spread / np.maximum(np.abs(left), 1e-300)))
+        if prior is not None:
+            pull = np.sqrt(np.mean((weights * left) ** 2) * _apart(left, block)) / (prior * scale)
+    covariance = _by_blocks(unit, left * weights**2, weights, pull, (found != 0.0) | ~positive, block)
+    squares = float((weights**2 * left**2 * (2.0 - weights**2)).mean())
+    return Regression(found / scale, covariance / np.outer(scale, scale), left, squares, _apart(left, block))
+
+
+def _bounded(products, with_series, positive):
+    """Least squares, from inner products, with some coefficients that must not be negative.
+
+    The free ones are differences of two that are not.
+    """
+    size, turn = np.linalg.eigh(products)
+    root = np.sqrt(np.maximum(size, 1e-12 * size.max() + 1e-300))
+    upper = root[:, None] * turn.T
+    target = (turn.T @ with_series) / root
+    both = np.concatenate([upper, -upper[:, ~positive]], axis=1)
+    found = nnls(both, target, maxiter=50 * both.shape[1])[0]
+    found, other = found[: positive.size].copy(), found[positive.size :]
+    found[~positive] -= other
+    return found
+
+
+def _by_blocks(unit, errors, weights, pull, free, block):
+    """Covariance of the coefficients that are not at their bound, from sums over blocks of rows."""
+    count = max(-(-errors.size // block), 2)
+    number = np.minimum(np.arange(errors.size) // block, count - 1)
+    sums = np.zeros((count, unit.shape[1]))
+    np.add.at(sums, number, unit * errors[:, None])
+    inside = np.flatnonzero(free)
+    normal = (unit[:, inside] * weights[:, None] ** 2).T @ unit[:, inside]
+    normal += np.diag(pull[inside] ** 2)
+    inverse = np.linalg.pinv(normal, rcond=1e-10, hermitian=True)
+    bread = inverse @ (sums[:, inside].T @ sums[:, inside]) @ inverse * count / (count - 1.0)
+    found = np.zeros((free.size, free.size))
+    found[np.ix_(inside, inside)] = bread
+    return found
+
+
+def _apart(left, block):
+    """Integral of the autocorrelation of residuals. [rows]"""
+    most = min(4 * block, left.size // 2)
+    centred = left - left.mean()
+    spectrum = np.abs(np.fft.rfft(centred, 2 * left.size)) ** 2
+    correlation = np.fft.irfft(spectrum)[:most]
+    correlation = correlation / max(correlation[0], 1e-300)
+    negative = np.flatnonzero(correlation < 0.0)
+    return float(1.0 + 2.0 * correlation[1 : negative[0] if negative.size else most].sum())

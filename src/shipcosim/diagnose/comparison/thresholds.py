@@ -1,0 +1,104 @@
+"""Settings and thresholds of the comparison, each with its unit and what it was set on.
+
+"Assumed" is what nobody has measured.
+"""
+
+# Smoothing
+
+KERNEL = 1.5
+"""Width of the kernel that accelerations are taken with, over the root of the ship's length over gravity."""
+SHORTEST_KERNEL = 2.0
+"""The least width. [rows]"""
+
+# Regression
+
+SOUND = 0.98
+"""Share of the rows that is taken to be sound. Assumed."""
+HUBER = 3.0
+"""Standard deviations of the sound rows beyond which a row counts less."""
+ROBUST_ROUNDS = 4
+"""Rounds of reweighting."""
+BLOCK_WIDTHS = 6.0
+"""Widths of the kernel to a block of rows, over which errors are correlated."""
+MOST_BLOCKS = 30
+"""Blocks that a log is divided into at most."""
+
+# What acts beside the thrusters
+
+STEADY_SHARE = 0.3
+"""Steady force that nobody explains, over what the thrusters are commanded: standard deviation. Assumed."""
+TURNED_ROUND = 1.5
+"""Turn in a log from which a steady force is taken as fixed in the earth's frame. [rad]"""
+LEAST_COMMANDED = 0.05
+"""Deviation of what is commanded on an axis over what is felt, below which the thrusters do not drive it."""
+WEAKER_WAY = 0.2
+"""Least gain astern over that ahead, and ahead over that astern, while the sides and signs of thrusters are judged.
+Assumed: no propeller is dead one way."""
+
+# Sides and signs of thrusters
+
+CHANGE_COST = 3.0
+"""What each change of the labels costs: 20 to 1 against a label that is wrong. [nats] Assumed."""
+MOST_CHANGES = 2
+"""Changes at once."""
+SURELY_WRONG = 5.0
+"""By how much another reading, after its cost, must beat the logged one to be beyond doubt. [nats] 150 to 1."""
+RIVAL = 3.0
+"""Readings closer than this cannot be told apart. [nats]"""
+OPPOSITE = 4.0
+"""Standard deviations by which a gain is surely positive, or surely negative. Assumed."""
+LEAST_GAIN = 0.1
+"""Gain below which thrusters do not do what they are commanded. Assumed."""
+LAG_COST = 3.0
+"""What a lag costs beside none. [nats] Assumed."""
+LEAST_LAG = 2.0
+"""Least lag that is said. [rows]"""
+LAGS = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0)
+"""Lags of the thrust that are tried, over the root of the ship's length over gravity."""
+
+# Gains
+
+OFF = 0.3
+"""Root mean square of the felt force less the model's over that of the commanded one, above which a model is far off.
+Healthy small craft with noisy velocities reach 0.15 in yaw."""
+LEAST_SUPPORT = 8.0
+"""Log-likelihood that commanded loads must gain before their size is said. [nats] As an unmodelled error."""
+SURE_OF_GAIN = 3.0
+"""Standard deviations that a gain must differ (assumed)."""
+COMMON_SPREAD = 0.08
+"""Natural logarithm by which a common ratio may differ from axis to axis: forms of a hull differ. Assumed."""
+THRUSTER_SPREAD = 0.3
+"""Share by which thrusters may differ from the gain that they have in common. Assumed."""
+GROSS = 1.5
+"""Factor of a common ratio of thrust to inertia from which it is put right before anything else. No healthy ship of the
+tolerances comes near, nor a lost third of one thruster."""
+PLAIN = 1.15
+"""Factor from which it is said, where no cause in the catalogue explains the log."""
+MENTIONED = 1.25
+"""Factor from which a gain or a damping is a discrepancy."""
+REMAINS = 0.1
+"""Share of the mean square of the felt force from which what nothing explains is said."""
+
+# Predictions
+
+ANSWER = 1.7
+"""Longest horizon over the middle of a ship's time constants: 60 s for a ship of 34 m at 1 m/s."""
+SHORTEST_ANSWER = 10.0
+"""The least, over the root of her length over gravity: model and ship may differ in their time constants. Assumed."""
+LONGEST_ANSWER = 32.0
+"""The most: 60 s for a ship of 34 m, beyond which weather rules, not the ship. Assumed."""
+MOST_OF_LOG = 0.25
+"""The most, as a share of the log."""
+FEWEST_STARTS = 5
+"""Predictions that a horizon must have."""
+MOST_STARTS = 300
+"""Predictions that are made at most."""
+
+# What a log must have
+
+RESOLVED = 1.5
+"""Time from row to row up to which a log resolves a ship, over the root of her length over gravity: 2.8 s at 34 m. Her
+fastest answer, sway with yaw at full speed, takes some 1 of these times; between rows farther apart thrusters and ship
+do what the log does not have."""
+FEWEST_USABLE = 60
+"""Rows without gaps nearby from which commanded and felt force are compared."""

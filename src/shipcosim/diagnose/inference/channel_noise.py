@@ -1,0 +1,55 @@
+"""How noisy the channels can be at most, by what position and velocity agree upon, without any model of the ship."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.inference.thresholds import NOISE_MARGIN, NOISE_WIDTHS, SOUND
+from shipcosim.diagnose.ship.smoothing import Kernel, is_measured, unsmoothed
+from shipcosim.models.core.kinematics import to_body
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Record
+
+__all__ = ["most_white"]
+
+
+def most_white(record: Record) -> np.ndarray:
+    """Largest white noise of each channel by how far position and velocity, heading and yaw rate, are apart.
+
+    Where the two are apart, either may be it: each gets the whole of the difference. A channel whose partner was not
+    measured has no limit.
+
+    Parameters
+    ----------
+    record : Record
+        Of one log.
+
+    Returns
+    -------
+    (6,) array
+        Standard deviations. [m, m, rad, m/s, m/s, rad/s]
+    """
+    most = np.full(6, np.inf)
+    for rows in NOISE_WIDTHS:
+        kernel = Kernel(rows * record.step, record.step)
+        motion, bad = unsmoothed(record, kernel)
+        use = kernel.clear_of(bad)
+        if use.sum() < 20:
+            continue
+        by_place = (
+            *to_body(kernel.smooth(motion.psi), kernel.rate(motion.x), kernel.rate(motion.y)),
+            kernel.rate(motion.psi),
+        )
+        for axis, (speed, other) in enumerate(zip((motion.u, motion.v, motion.r), by_place, strict=True)):
+            if not is_measured(record, 3 + axis):
+                continue
+            apart = np.sort(np.abs(kernel.smooth(speed) - other)[use])[: int(SOUND * use.sum())]
+            size = float(np.sqrt((apart**2).mean())) * NOISE_MARGIN
+            of_speed = size * np.sqrt(2.0 * np.sqrt(np.pi) * rows)
+            of_place = size * record.step * np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
+            most[3 + axis], most[axis] = min(most[3 + axis], of_speed), min(most[axis], of_place)
+    most[:2], most[3:5] = most[:2].max(), most[3:5].max()
+    return most

@@ -1,0 +1,98 @@
+"""Measured motions smoothed without a model of the ship: a Gaussian kernel, and rates by its derivative."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.ship.inputs import Record
+
+__all__ = ["Kernel", "froude_time", "is_measured", "unsmoothed"]
+
+_REACH = 2.5  # widths that a gap in the log reaches
+_ENOUGH = 0.2  # share of the rows that a channel must be measured in
+
+
+def froude_time(length: float) -> float:
+    """Root of the length over gravity: the time in which ships of all sizes do alike. [s]"""
+    return float(np.sqrt(length / 9.81))
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A Gaussian kernel over rows; its derivative gives rates, so that both are of equal bandwidth.
+
+    Attributes
+    ----------
+    width : float
+        Standard deviation. [s]
+    step : float
+        Time from row to row. [s]
+    """
+
+    width: float
+    step: float
+
+    def smooth(self, series: np.ndarray) -> np.ndarray:
+        """The series, averaged along its last axis."""
+        return gaussian_filter1d(series, self.width / self.step, mode="nearest")
+
+    def rate(self, series: np.ndarray, order: int = 1) -> np.ndarray:
+        """Its derivative of an order, averaged alike. [per s]"""
+        return gaussian_filter1d(series, self.width / self.step, order=order, mode="nearest") / self.step**order
+
+    def clear_of(self, bad: np.ndarray) -> np.ndarray:
+        """Rows as far from bad ones, and from both ends, as the kernel reaches."""
+        reach = int(np.ceil(_REACH * self.width / self.step))
+        ends = np.pad(bad, reach, constant_values=True)
+        return np.convolve(ends, np.ones(2 * reach + 1), "valid") < 0.5
+
+
+def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
+    """The measured motion with gaps filled, and rows without a measurement; velocities from positions where missing.
+
+    Parameters
+    ----------
+    record : Record
+    kernel : Kernel
+        For what has to be derived.
+
+    Returns
+    -------
+    tuple of Motion, (n,) bool array
+    """
+    rows, columns, bad = np.arange(record.time.size), [], np.zeros(record.time.size, bool)
+    for channel in range(6):
+        series = record.measured[:, channel]
+        whole = np.isfinite(series)
+        if is_measured(record, channel):
+            bad |= ~whole & _is_long(~whole, kernel)
+            series = np.interp(rows, rows[whole], series[whole])
+        columns.append(series)
+    x, y, psi, u, v, r = columns
+    if not is_measured(record, 3) or not is_measured(record, 4):
+        u, v = to_body(kernel.smooth(psi), kernel.rate(x), kernel.rate(y))
+    if not is_measured(record, 5):
+        r = kernel.rate(psi)
+    return Motion(x, y, psi, u, v, r), bad
+
+
+def is_measured(record: Record, channel: int) -> bool:
+    """Whether a channel has values in a good part of the rows."""
+    return bool(np.isfinite(record.measured[:, channel]).mean() > _ENOUGH)
+
+
+def _is_long(gap, kernel):
+    """Rows of gaps that are longer than what the kernel averages over anyway."""
+    edges = np.flatnonzero(np.diff(np.r_[0, gap.astype(int), 0]))
+    long = np.zeros(gap.size, bool)
+    for first, last in edges.reshape(-1, 2):
+        long[first:last] = (last - first) * kernel.step > kernel.width
+    return long

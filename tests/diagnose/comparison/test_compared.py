@@ -1,0 +1,95 @@
+"""What commanded force against felt says of small craft with gross faults, and that it says nothing of healthy ones."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from diagnose import usv
+
+from shipcosim.diagnose.comparison.compared import compared
+from shipcosim.diagnose.comparison.errors import horizons_of
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.stages import ReadLog
+from shipcosim.models.core.motion import Motion
+
+EXCHANGED = {"left_rpm": ("right_rpm", 1.0), "right_rpm": ("left_rpm", 1.0)}
+LEFT_REVERSED = {"left_rpm": ("left_rpm", -1.0)}
+WEAK = {"left.thrust_loss": 0.6, "right.thrust_loss": 0.6}
+
+
+@cache
+def ship():
+    return ship_model_of(usv.structure().checked())
+
+
+@cache
+def sailed(seed, left=0.0, right=0.0):
+    return usv.log(8.0, seed, usv.structure("weak", **{"left.thrust_loss": left, "right.thrust_loss": right}))
+
+
+def held(log, labels=None):
+    """A log, with other labels, after the comparison."""
+    log = log.assign({role: sign * log[of].copy() for role, (of, sign) in (labels or {}).items()})
+    return compared(checked(ReadLog(read_log(log), ship(), read_catalogue())))
+
+
+@pytest.mark.parametrize("seed", [11, 12])
+def test_nothing_is_said_of_a_healthy_craft(seed):
+    found = held(sailed(seed))
+    assert found.comparison.discrepancies == () == found.comparison.findings == found.faults
+    assert found.ship is not None and found.ship.parts == ship().parts
+
+
+def test_exchanged_thrusters_are_a_fault_of_the_log_and_exchanged_back():
+    found, right = held(sailed(11), EXCHANGED), held(sailed(11))
+    (fault,) = found.faults
+    assert (fault.cause, fault.channels) == ("channel_swap", ("left_rpm", "right_rpm"))
+    np.testing.assert_allclose(found.repaired["left_rpm"], right.repaired["left_rpm"])
+    assert "left and right exchanged" in found.comparison.discrepancies[0].what
+
+
+def test_one_reversed_thruster_is_told_from_exchanged_ones():
+    found = held(sailed(12), LEFT_REVERSED)
+    (fault,) = found.faults
+    assert (fault.cause, fault.channels) == ("sign", ("left_rpm",))
+    assert "left running the other way" in found.comparison.discrepancies[0].what
+
+
+def test_a_common_ratio_of_thrust_to_inertia_is_found_with_its_size():
+    found = held(sailed(13, 0.6, 0.6))
+    (finding,) = found.comparison.findings
+    ratio = finding.parameters["ratio"]
+    assert abs(ratio.estimate - 0.4) < 0.04 and "only their ratio" in finding.note
+    assert found.comparison.discrepancies[0].what.startswith("thrust over inertia 0.")
+    assert found.ship.get("left.thrust_loss") == pytest.approx(1.0 - ratio.estimate)
+
+
+def test_one_weak_thruster_is_no_common_ratio_but_named_by_itself():
+    found = held(sailed(14, 0.6, 0.0))
+    assert found.comparison.findings == () == found.faults
+    first = found.comparison.discrepancies[0]
+    assert first.component == "left" and abs(first.estimate - 0.4) < 0.05
+
+
+@pytest.mark.parametrize("seed", [11, 13])
+def test_there_are_always_figures_of_the_error(seed):
+    errors = held(sailed(seed)).comparison.errors
+    assert sorted(errors["horizon_s"]) == errors["horizon_s"] and len(errors["position_error_m"]) == 3
+    assert all(np.isfinite(value) and value > 0.0 for values in errors.values() for value in values)
+
+
+def test_horizons_follow_the_size_of_the_craft():
+    still = Motion(*np.zeros((6, 3)))
+    small = replace(ship().parts["hull"], length=1.25)
+    ours = horizons_of(ship(), still._replace(u=np.full(3, 1.0)), 1e4, 0.01)
+    less = horizons_of(replace(ship(), parts=ship().parts | {"hull": small}), still, 10.0, 0.01)
+    assert ours[-1] > less[-1] and less[-1] <= 3.0
+
+
+def test_rows_too_far_apart_for_the_craft_are_said_to_be():
+    log = sailed(11).isel(time=slice(None, None, 4))
+    assert not held(log).comparison.is_resolved
