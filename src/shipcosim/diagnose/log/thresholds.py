@@ -38,9 +38,11 @@ LARGEST_TURN = 75.0
 """From row to row, beyond which rows are too far apart to follow the motion. [deg] Assumed."""
 TURNED_TOO_FAR = 0.05
 """Share of the rows that may turn further."""
-ALONGSIDE = 45.0
-"""By how much the heading may be off the way that the yaw rate tells from row to row, to count turns by it. [deg]
+ALONGSIDE = 30.0
+"""By how much nine in ten headings may be off what the yaw rate tells from row to row, to count turns by it. [deg]
 Assumed."""
+LITTLE_EXPLAINED = 0.5
+"""What the best form may leave unexplained of a relation that is heard. Assumed."""
 CLEARLY_APART = 20.0
 """Evidence between two forms that is enough. [nats]"""
 RELATION_WINDOWS = 16
@@ -203,5 +205,5 @@ LONGEST_SPAN = 50.0
 """Span of a log over what its rows can fill, from which on some of its stamps are wrong. Assumed."""
 UNEVEN = 0.02
 """Spread of the steps as a share of the usual one, from which on it is remarked. Assumed."""
-LATEST = 1e12
-"""Latest time that is one. [s]"""
+LATEST = 1e19
+"""Latest time that is one: nanoseconds since 1970 in a column of seconds. [s]"""

@@ -200,7 +200,7 @@ def _frames() -> Iterator[Change]:
     yield _label("velocity", 5.5, _mirrored("velocity", 1j), swap_of(*VELOCITY))
     yield _label("velocity", 5.0, _mirrored("velocity", -1.0), negative("surge"))
     yield _label("velocity", 5.0, _mirrored("velocity"), negative("sway"))
-    yield _label("velocity", 5.0, lambda reading: replace(reading, earth=True), velocity_frame("north", "east"))
+    yield _label("axes", 5.0, lambda reading: replace(reading, earth=True), velocity_frame("north", "east"))
     east_north = lambda reading: _mirrored("velocity", 1j)(replace(reading, earth=True))  # noqa: E731
     yield _label("velocity", 6.0, east_north, velocity_frame("east", "north"))
     yield _label("sign of rate", 4.5, _factor_of("rate", -1.0), negative("yaw_rate"))

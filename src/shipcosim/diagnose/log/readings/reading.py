@@ -68,7 +68,8 @@ def evidence_of(log: dict) -> Evidence:
             metres = POSITION_IN_DEGREES.undo(log)
             positions[True] = metres["north"] + 1j * metres["east"]
         position = position_relations(log, headings, positions)
-        speed = float(np.sqrt(np.nanmean(log["surge"] ** 2 + log["sway"] ** 2)))
+        speeds = np.hypot(log["surge"], log["sway"])
+        speed = float(np.sqrt(np.mean(speeds[np.isfinite(speeds)] ** 2))) if np.isfinite(speeds).any() else None
     return Evidence(position, rate, _turning(log), speed, float(np.median(np.diff(log["time"]))))
 
 

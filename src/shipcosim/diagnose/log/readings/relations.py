@@ -24,6 +24,7 @@ from shipcosim.diagnose.log.thresholds import (
     CLEARLY_APART,
     FEWEST_INCREMENTS,
     LARGEST_TURN,
+    LITTLE_EXPLAINED,
     LONGEST_BRIDGE,
     MOST_INCREMENTS,
     RELATION_WINDOWS,
@@ -132,7 +133,7 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
         change = wrap_series(np.diff(heading[rows]))
         if _can_be_followed(change):
             beside = wrap_series(np.diff(heading[rows] - told))  # she can turn by more than half a turn between rows
-            if not _can_be_followed(np.diff(told)) and np.median(np.abs(beside)) < ALONGSIDE:
+            if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
                 change = np.diff(told) + beside
             pairs[name] = np.r_[0.0, np.cumsum(change)].astype(complex), told.astype(complex)
     return _most_telling(time[rows], pairs)
@@ -169,6 +170,8 @@ def _most_telling(time, pairs):
         if apart > most:
             shares, most = relations, apart
     said = ("unexplained", "count", "throughout")
+    if not shares or min(share.unexplained for share in shares.values()) > LITTLE_EXPLAINED:
+        return {}
     return {k: replace(factors[k], **{name: getattr(share, name) for name in said}) for k, share in shares.items()}
 
 
