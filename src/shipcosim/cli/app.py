@@ -6,6 +6,7 @@ import typer
 
 from shipcosim.cli.commands import (
     build,
+    calibrate,
     capability,
     check,
     compare,
@@ -38,6 +39,7 @@ for _function in (
     diagnose.diagnose,
     replay.replay,
     sea_trials.sea_trials,
+    calibrate.calibrate,
     capability.capability,
 ):
     app.command(epilog=EXIT_CODES)(guarded(_function))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -43,6 +44,7 @@ def diagnose_log(
     system: str | None = None,
     channels: str | os.PathLike | None = None,
     effects: str | os.PathLike | None = None,
+    reference: str | os.PathLike | None = None,
 ) -> Diagnosis:
     """Diagnose a log and write all that there is to say of it.
 
@@ -55,6 +57,8 @@ def diagnose_log(
         As for `find_system`; the open Gunnerus without.
     channels, effects : path, optional
         Channel file, and folder with further causes.
+    reference : path, optional
+        Folder or file that a calibration left.
 
     Returns
     -------
@@ -67,15 +71,17 @@ def diagnose_log(
     """
     from shipcosim.cli.results import staged
     from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.diagnose.reference.reference import read_reference
     from shipcosim.report.diagnosis.page import write_diagnosis
     from shipcosim.ssp import read_system
 
-    _check_inputs(data, channels, effects)
+    check_inputs([data], channels, effects)
+    known = None if reference is None else read_reference(reference)
     given = find_system(system or DEFAULT_SYSTEM, "--system")
     project = find_project(Path(given.partition("#")[0]))
     ship = read_system(given, fmus=[build_stale(project)] if project else [])
-    with _progress() as show, staged(folder) as stage:
-        diagnosis = diagnose(data, ship, channels, effects, show, out=stage)
+    with shown_progress() as show, staged(folder) as stage:
+        diagnosis = diagnose(data, ship, channels, effects, show, out=stage, reference=known)
         show(LAST_STEP)
         text = json.dumps(diagnosis.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
         (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
@@ -89,9 +95,12 @@ def diagnose_log(
     return replace(diagnosis, extension=replace(diagnosis.extension, **at_home))
 
 
-def _check_inputs(data, channels, effects):
+def check_inputs(
+    logs: Iterable[str | os.PathLike], channels: str | os.PathLike | None, effects: str | os.PathLike | None
+) -> None:
+    """Raise ShipcosimError where a file or folder that was given is not there."""
     problems = []
-    for path, what in ((data, "file of measured data"), (channels, "channel file")):
+    for path, what in (*((log, "file of measured data") for log in logs), (channels, "channel file")):
         if path is not None and not Path(path).is_file():
             problems.append(Problem(str(path), f"There is no such {what}.", "Give the path of one."))
     if effects is not None and not Path(effects).is_dir():
@@ -101,8 +110,11 @@ def _check_inputs(data, channels, effects):
 
 
 @contextmanager
-def _progress():
-    """Which stage is being worked on, on stderr; yields a function of (what is done, parts done, of how many)."""
+def shown_progress(first: str = "1 of 5: ") -> Iterator[Callable[..., None]]:
+    """Which stage is being worked on, on stderr; yields a function of (what is done, parts done, of how many).
+
+    `first` goes before steps that have no name of their own.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -112,7 +124,7 @@ def _progress():
         task = bar.add_task("", total=None)
 
         def show(doing, done=None, total=None):
-            text = doing if doing == LAST_STEP else STEPS.get(doing, f"1 of 5: {doing}")
+            text = doing if doing == LAST_STEP else STEPS.get(doing, f"{first}{doing}")
             bar.update(task, description=text, completed=done or 0, total=total)
 
         yield show

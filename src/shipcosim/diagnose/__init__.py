@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.pipeline import Progress
+    from shipcosim.diagnose.reference.reference import Reference
     from shipcosim.diagnose.result import Diagnosis
     from shipcosim.ssp import System, SystemStructure
 
@@ -31,11 +32,12 @@ class _Room(ModuleType):
         progress: Progress | None = None,
         *,
         out: str | os.PathLike | None = None,
+        reference: str | os.PathLike | Reference | None = None,
     ) -> Diagnosis:
         """Diagnose a log, see `shipcosim.diagnose.pipeline.diagnose`."""
         from shipcosim.diagnose.pipeline import diagnose
 
-        return diagnose(log, system, channels, causes, progress, out=out)
+        return diagnose(log, system, channels, causes, progress, out=out, reference=reference)
 
 
 sys.modules[__name__].__class__ = _Room

@@ -50,6 +50,8 @@ from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
+from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
+from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
 from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, ReadLog, SimulatedLog
@@ -74,6 +76,7 @@ def diagnose(
     progress: Progress | None = None,
     *,
     out: str | os.PathLike | None = None,
+    reference: str | os.PathLike | Reference | None = None,
 ) -> Diagnosis:
     """Diagnose a log: what the simulation gets wrong, by which causes, the system with them, and what that gains.
 
@@ -92,6 +95,8 @@ def diagnose(
     out : path, optional
         Folder that gets extended.ssp and extended.ssv, where a cause of the physics is named; a temporary one that is
         there as long as the diagnosis if not given.
+    reference : path or Reference, optional
+        What logs in which the ship was well say of her, as a calibration leaves it: what has changed since is told.
 
     Returns
     -------
@@ -107,8 +112,11 @@ def diagnose(
     if out is None:
         folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
         out = folder.name
-    given = _given(system)
-    found = find_causes(log, given.given, channels, causes, say)
+    given = given_system(system)
+    if reference is not None:
+        reference = read_reference(reference)
+        given = with_calibrated_numbers(given, reference, out)
+    found = find_causes(log, given.given, channels, causes, say, reference)
     say("what does the simulation get wrong")
     basis = found.basis
     if basis is None:
@@ -121,7 +129,7 @@ def diagnose(
     return replace(completed(found, predicted, extended, simulated), folder=folder)
 
 
-def _given(system):
+def given_system(system: str | os.PathLike | SystemStructure | System) -> ExtendedSystem:
     """A system in whichever form, to be extended."""
     if isinstance(system, System):
         return ExtendedSystem(system, system.file)
@@ -135,6 +143,7 @@ def find_causes(
     channels: str | os.PathLike | None = None,
     causes: str | os.PathLike | None = None,
     progress: Progress | None = None,
+    reference: str | os.PathLike | Reference | None = None,
 ) -> Diagnosis:
     """Diagnose a log: its faults, and the causes for which the ship does not behave as modelled.
 
@@ -150,6 +159,8 @@ def find_causes(
         Folder with further causes.
     progress : callable, optional
         Called with what is being done, in words.
+    reference : path or Reference, optional
+        As for `diagnose`.
 
     Returns
     -------
@@ -165,7 +176,7 @@ def find_causes(
     with threadpool_limits(1):  # many small matrices: threads would only wait for each other
         say = progress or (lambda *_: None)
         say("is the log right?")
-        read = read_measurements(log, system, channels, causes)
+        read = read_measurements(log, system, channels, causes, reference)
         return stated(verdict_on(read, say))
 
 
@@ -174,9 +185,11 @@ def read_measurements(
     system: System,
     channels: str | os.PathLike | None = None,
     causes: str | os.PathLike | None = None,
+    reference: str | os.PathLike | Reference | None = None,
 ) -> ReadLog:
-    """A log by the roles of its columns, with the ship of a system and the causes that could be found."""
+    """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""
     ship = ship_model_of(system)
+    ship = ship if reference is None else with_reference(ship, read_reference(reference))
     log = run_as_log(log, ship.vessel, ship.thrusters) if channels is None else log
     return ReadLog(read_log(log, channels), ship, read_catalogue(causes))
 

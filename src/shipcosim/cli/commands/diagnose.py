@@ -21,6 +21,10 @@ def diagnose(
     effects: Annotated[
         Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
     ] = None,
+    reference: Annotated[
+        Path | None,
+        typer.Option("--reference", metavar="DIR", help="What `shipcosim calibrate` left: say what has changed since."),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]")
     ] = None,
@@ -37,7 +41,7 @@ def diagnose(
 
     folder = out or default_folder(data)
     check_targets(folder)
-    diagnosis = diagnose_log(data, folder, system=system, channels=channels, effects=effects)
+    diagnosis = diagnose_log(data, folder, system=system, channels=channels, effects=effects, reference=reference)
     print_diagnosis(diagnosis, folder, as_json)
     if diagnosis.verdict != "consistent":
         raise typer.Exit(FAILED)

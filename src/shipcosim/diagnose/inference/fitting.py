@@ -195,7 +195,7 @@ def fitted(
     Fit
     """
     values, about, motion, last = bounded(hypotheses, values or {}), {}, problem.motion, None
-    columns = columns_of(problem, hypotheses)
+    columns = problem.known(hypotheses) + own_columns(problem, hypotheses)
     for _ in range(rounds):
         about_it = linearised(problem, columns, values | about, motion)
         prior = np.array([column.prior for column in columns])
@@ -209,18 +209,13 @@ def fitted(
     return fit
 
 
-def columns_of(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
-    """Columns of a fit: known numbers, what is only known within a tolerance about the hypotheses, their parameters."""
-    return problem.known(hypotheses) + _own(problem, hypotheses)
-
-
 def _moved(fit: Fit, values: Mapping[str, float]) -> float:
     """How far the next values of the parameters are from those of a fit, in typical sizes; the largest."""
     parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
     return max((abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for k in parameters), default=0.0)
 
 
-def _own(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
+def own_columns(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
     """Columns of hypotheses, what is only known within a tolerance about them first."""
     about = [path for hypothesis in hypotheses for path in hypothesis.definition.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]

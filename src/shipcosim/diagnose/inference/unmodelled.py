@@ -27,7 +27,7 @@ from shipcosim.diagnose.ship.instruments import readings
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
-__all__ = ["FORCES", "is_healthy", "unmodelled_gains"]
+__all__ = ["FORCES", "errors_of_the_fit", "is_healthy", "unmodelled_gains"]
 
 FORCES = ("slow", "with the heading", "periodic")
 """Kinds of unmodelled errors that push the ship."""
@@ -46,7 +46,8 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
     Forces of three kinds: slow ones in the body frame (a few basis functions over time), ones that go with the heading,
     and single sinusoids of any period, for which the search over periods is paid. Channels that are off by a
     constant, by a factor, or drift. Whether the causes of the fit are as large in each part of the log. And whether
-    the numbers of the ship lie, taken together, within their tolerances.
+    the numbers of the ship lie, taken together, within their tolerances. What a reference has of forces and channels
+    is taken off.
 
     Parameters
     ----------
@@ -75,8 +76,13 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
             here[place : place + size] = 1.0
             place += size
             scores.append(evidence(products, here, centre)[0] - nothing)
-        found[kind] = float(max(scores) - np.log(len(scores)))
-    return found | {"from part to part": _differs_by_part(fit), "beyond tolerances": _beyond_tolerances(fit)}
+        found[kind] = float(max(scores) - np.log(len(scores)) - problem.model.ordinary_errors.get(kind, 0.0))
+    return found | errors_of_the_fit(fit)
+
+
+def errors_of_the_fit(fit: Fit) -> dict[str, float]:
+    """Those of the unmodelled errors that show in a fit by itself, by kind. [nats]"""
+    return {"from part to part": _differs_by_part(fit), "beyond tolerances": _beyond_tolerances(fit)}
 
 
 def _differs_by_part(fit):
@@ -104,9 +110,10 @@ def _beyond_tolerances(fit):
     the prior; the sum of its squares is taken as a scaled chi-square of the same mean and variance.
     """
     known = len(fit.columns) - sum(len(hypothesis.parameters) for hypothesis in fit.hypotheses)
-    told = np.clip(1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known]), 1e-9, None)
+    prior = np.array([column.prior for column in fit.columns[:known]])
+    told = np.clip(1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known] / prior[:, None] / prior), 1e-9, None)
     mean, half_variance = told.sum(), (told**2).sum()
-    squares = (fit.theta[:known] ** 2).sum()
+    squares = ((fit.theta[:known] / prior) ** 2).sum()
     return _most_evidence(chi2.logsf(squares * mean / half_variance, mean**2 / half_variance))
 
 

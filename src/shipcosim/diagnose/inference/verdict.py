@@ -28,6 +28,7 @@ from shipcosim.diagnose.inference.thresholds import (
 )
 from shipcosim.diagnose.inference.unmodelled import FORCES, unmodelled_gains
 from shipcosim.diagnose.result import Candidate, Estimate, Finding
+from shipcosim.diagnose.ship.model import ANY_CAUSE
 from shipcosim.diagnose.stages import ExplainedLog, JudgedLog
 
 __all__ = ["Judgement", "admissible", "gained", "judge", "judged", "labels"]
@@ -72,7 +73,8 @@ def judged(explained: ExplainedLog) -> JudgedLog:
         # where nobody knows the wind, a force that nobody explains is no surprise
         return {kind: gain for kind, gain in unmodelled[fit].items() if kind not in FORCES or not without_wind}
 
-    null = {hypothesis.label: NULL_GAIN_WITHOUT_WIND for hypothesis in problem.hypotheses if without_wind}
+    usual = problem.model.ordinary_errors.get(ANY_CAUSE, 0.0) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
+    null = {hypothesis.label: usual for hypothesis in problem.hypotheses}
     judgement = judge(fits, unmodelled_beside, null)
     if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
         return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)  # whatever healthy logs gain

@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.wiring import Wiring
     from shipcosim.ssp import Component, System
 
-__all__ = ["ShipModel", "ship_model_of"]
+__all__ = ["ANY_CAUSE", "ShipModel", "ship_model_of"]
 
+ANY_CAUSE = "any cause"
 _OURS = (AzimuthParameters, TunnelParameters)
 
 
@@ -53,6 +54,9 @@ class ShipModel:
     directions : tuple of dict of str to float
         What a reference leaves uncertain of her numbers, instead of their tolerances: changes of several numbers at
         once, independent of each other, each of one standard deviation.
+    ordinary_errors : dict of str to float
+        Gain of unmodelled errors, by kind, up to which they are no news by a reference; under `ANY_CAUSE` what a cause
+        gains by a model of another form. [nats]
     span : tuple of two floats
         First and last time of the log, between which the current varies. [s]
     wind_is_true : bool
@@ -72,6 +76,7 @@ class ShipModel:
     tolerances: dict[str, float] = field(default_factory=dict)
     form_scale: float = 0.0
     directions: tuple[dict[str, float], ...] = ()
+    ordinary_errors: dict[str, float] = field(default_factory=dict)
     span: tuple[float, float] = (0.0, 1.0)
     wind_is_true: bool = False
     wiring: Wiring | None = None

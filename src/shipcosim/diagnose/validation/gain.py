@@ -89,7 +89,9 @@ class Comparison:
     predictors: dict[str, Predictor]
 
 
-def compare(problem: IdentificationProblem, fit: Fit, *, train: np.ndarray | None = None) -> Comparison | None:
+def compare(
+    problem: IdentificationProblem, fit: Fit, *, train: np.ndarray | None = None, part: Fit | None = None
+) -> Comparison | None:
     """Predict with the plain model, a bias observer, the causes of a fit, and see how far each is off.
 
     Parameters
@@ -100,6 +102,8 @@ def compare(problem: IdentificationProblem, fit: Fit, *, train: np.ndarray | Non
         To the whole log. Its causes are fitted again on the training rows; near its motion is the reference.
     train : (n,) bool array, optional
         Rows to fit on; the first 65 %.
+    part : Fit, optional
+        The fit to these rows, where it is known: that of several logs together.
 
     Returns
     -------
@@ -111,7 +115,8 @@ def compare(problem: IdentificationProblem, fit: Fit, *, train: np.ndarray | Non
     inside, rows = sorted_by(train, starts(record), record)
     if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < BLOCK:
         return None
-    part = fitted(trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1)
+    if part is None:
+        part = fitted(trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1)
     linear = linearise(fit.motion, record, fit.model, [])
     seen = reference(linear, fit.motion, problem.noise, record, fit.model)
     extended = problem.model.with_values(part.values)

@@ -1,0 +1,44 @@
+"""The command `shipcosim calibrate`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.exits import FAILED
+from shipcosim.cli.options import Debug
+
+
+def calibrate(
+    logs: Annotated[
+        list[Path],
+        typer.Argument(metavar="LOG...", help="Logs of one ship that is well: .csv, .csv.gz, .parquet, .nc."),
+    ],
+    channels: Annotated[
+        Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
+    ] = None,
+    system: Annotated[
+        str | None,
+        typer.Option("--system", metavar="SSP", help="The ship: a path, or its name in ssp/. [default: gunnerus_open]"),
+    ] = None,
+    effects: Annotated[
+        Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/calibrated-SYSTEM]"),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print reference.json instead of a summary.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
+
+    Leaves calibrated.ssv, reference.json and report.html. `shipcosim diagnose LOG --reference DIR` then says what has
+    changed since. Exit code 1 if these logs make no reference: only the page is left then, which says why.
+    """
+    from shipcosim.cli.calibration import calibrate_ship, print_calibration
+
+    ship, folder = calibrate_ship(logs, out, system=system, channels=channels, effects=effects)
+    print_calibration(ship, folder, as_json)
+    if ship.refusals:
+        raise typer.Exit(FAILED)

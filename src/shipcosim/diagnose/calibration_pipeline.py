@@ -1,0 +1,252 @@
+"""From logs of a ship that is well to her own parameter set, and the reference that other logs are held against."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from threadpoolctl import threadpool_limits
+
+import shipcosim
+from shipcosim.diagnose.inference.problem import identified
+from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.log_faults.corrections import corrected
+from shipcosim.diagnose.pipeline import Progress, given_system, read_measurements
+from shipcosim.diagnose.reference.calibration import (
+    Calibration,
+    calibrated_to,
+    causes_beside,
+    numbers_of,
+    reference_of,
+)
+from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
+from shipcosim.diagnose.reference.parameter_set import FILE as SET
+from shipcosim.diagnose.reference.parameter_set import write_parameter_set
+from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
+from shipcosim.diagnose.reference.several_logs import SeveralLogs
+from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
+from shipcosim.diagnose.result import Finding
+from shipcosim.diagnose.stages import Identification
+from shipcosim.diagnose.validation.gain import compare, rms
+from shipcosim.diagnose.validation.split import HORIZONS, first_rows, trained
+from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.ssp import System, SystemStructure
+
+__all__ = ["CalibratedLog", "CalibratedShip", "calibrate", "identified_log", "log_names"]
+
+_KINDS_OF_THE_LOG = ("slow", "with the heading", "periodic", "in a channel")
+
+
+@dataclass(frozen=True)
+class CalibratedLog:
+    """One of the logs that a ship was calibrated to.
+
+    Attributes
+    ----------
+    name : str
+    faults : tuple of Finding
+        Of the log, repaired before.
+    weather : dict of str to float
+        Current and forces of its day that were fitted beside the ship: numbers in SI, by ``place.name``.
+    errors : dict of str to tuple of float, or None
+        Root mean square errors of open-loop predictions on rows that nothing was fitted on, after `HORIZONS`: position
+        [m] before, after calibration and with all rows fitted; None where the log is too short.
+    unmodelled : dict of str to float
+        Gain of unmodelled errors that are left, by kind. [nats]
+    """
+
+    name: str
+    faults: tuple[Finding, ...]
+    weather: dict[str, float]
+    errors: dict[str, tuple[float, ...]] | None
+    unmodelled: dict[str, float]
+
+
+@dataclass(frozen=True)
+class CalibratedShip:
+    """A ship calibrated to logs in which she is said to be well.
+
+    Attributes
+    ----------
+    reference : Reference
+    logs : tuple of CalibratedLog
+    refusals : tuple of str
+        Why these logs make no reference; empty where they do.
+    remarks : tuple of str
+        What to know before it is trusted.
+    """
+
+    reference: Reference
+    logs: tuple[CalibratedLog, ...]
+    refusals: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def untold(self) -> tuple[KnownNumber, ...]:
+        """Numbers of which the logs say next to nothing."""
+        scale = self.reference.tolerance_scale
+        return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
+
+
+def calibrate(
+    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    system: str | os.PathLike | SystemStructure | System,
+    channels: str | os.PathLike | None = None,
+    causes: str | os.PathLike | None = None,
+    progress: Progress | None = None,
+    *,
+    out: str | os.PathLike | None = None,
+) -> CalibratedShip:
+    """Fit a ship's numbers to logs in which she is known to be well.
+
+    Parameters
+    ----------
+    logs : sequence of path or xarray.Dataset
+        Measured data, one or several logs of the same ship.
+    system : path, SystemStructure or System
+        The ship.
+    channels : path, optional
+        Channel file, the same for all.
+    causes : path, optional
+        Folder with further causes.
+    progress : callable, optional
+        Called with what is being done, in words.
+    out : path, optional
+        Folder that gets calibrated.ssv and reference.json, unless the logs are refused.
+
+    Returns
+    -------
+    CalibratedShip
+
+    Raises
+    ------
+    ShipcosimError
+        Data, system or causes that cannot be used.
+    """
+    say = progress or (lambda *_: None)
+    given = given_system(system).given
+    names = log_names(logs)
+    with threadpool_limits(1):
+        found = {}
+        for name, log in zip(names, logs, strict=True):
+            say(f"is {name} right?")
+            found[name] = identified_log(log, given, channels, causes)
+        several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
+        say("fitting the ship's numbers")
+        fitted = calibrated_to(several)
+        say("is she well?")
+        suspects = causes_beside(fitted)
+        say("what does the calibrated ship get wrong?")
+        errors = _held_out(fitted)
+    told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
+    ship = next(iter(found.values())).ship
+    ordinary = {kind: max(one[kind] for one in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG}
+    reference = reference_of(
+        fitted, ship, ordinary, list(told.values()), system=given.name, version=shipcosim.__version__
+    )
+    each = tuple(
+        CalibratedLog(name, one.faults, _weather(fitted.fit, name), errors[name], fitted.unmodelled[name])
+        for name, one in found.items()
+    )
+    result = CalibratedShip(reference, each, *_judged(reference, fitted, suspects))
+    if out is not None and not result.refusals:
+        write_parameter_set(given, reference, Path(out) / SET)
+        reference.write(Path(out) / FILE)
+    return result
+
+
+def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
+    """Names of logs, each its own: those of their files, with a number where two are alike."""
+    if not logs:
+        raise ShipcosimError(Problem("logs", "There are none.", "Give at least one log."))
+    stems = [_stem(log, k) for k, log in enumerate(logs, start=1)]
+    return [stem if stems.count(stem) == 1 else f"{stem}-{k}" for k, stem in enumerate(stems, start=1)]
+
+
+def _stem(log, number):
+    if isinstance(log, str | os.PathLike):
+        return Path(Path(log).name.removesuffix(".gz")).stem.replace("|", "_")
+    return f"log-{number}"
+
+
+def identified_log(
+    log: str | os.PathLike | xarray.Dataset,
+    system: System,
+    channels: str | os.PathLike | None = None,
+    causes: str | os.PathLike | None = None,
+    reference: Reference | None = None,
+) -> Identification:
+    """A log as an identification problem, its faults repaired."""
+    return corrected(identified(checked(read_measurements(log, system, channels, causes, reference))))
+
+
+def _about(name, one):
+    """What a reference says of a log that it was made from."""
+    time = one.log["time"].values
+    span = float(time[0]), float(time[-1])
+    return {"name": name, "sha256": one.log.encoding.get("sha256", ""), "rows": int(time.size), "span_s": span}
+
+
+def _weather(fit: JointFit, name: str) -> dict[str, float]:
+    part = fit.parts[name]
+    return {path: float(value) for path, value in part.values.items() if path.startswith("water.")}
+
+
+def _held_out(found: Calibration) -> dict[str, dict[str, tuple[float, ...]] | None]:
+    """Errors on rows that nothing was fitted on, by log: before and after calibration, and with all rows fitted."""
+    logs = found.logs
+    rows = {name: first_rows(problem.record) for name, problem in logs.problems.items()}
+    early = SeveralLogs({name: trained(problem, rows[name]) for name, problem in logs.problems.items()}, is_well=True)
+    part = fitted_jointly(early, found.fit.hypotheses, found.fit.values, scale=found.scale, about_all=True)
+    errors = {}
+    for name, problem in logs.problems.items():
+        compared = compare(problem, found.fit.parts[name], train=rows[name], part=part.parts[name])
+        models = {"before": "plain", "after": "calibrated", "floor": "floor"}
+        errors[name] = compared and {
+            label: tuple(rms(compared.errors, "position", model, horizon) for horizon in HORIZONS)
+            for label, model in models.items()
+        }
+    return errors
+
+
+def _judged(reference, found, suspects):
+    """Why these logs make no reference, and what to know of one that they do make."""
+    refusals, remarks = [], []
+    names, _, by, _ = numbers_of(found.fit)
+    moved = dict(zip(names, by, strict=True))
+    for label, gain in suspects.items():
+        text = f"The logs still look like {label} beside the calibrated ship ({gain:.0f} nats)"
+        if gain > NOT_WELL:
+            refusals.append(f"{text}: she is not well, or the system is wrong there. Diagnose these logs first.")
+        else:
+            remarks.append(f"{text}. If it is there, later logs will be held against a ship that has it.")
+    for number in reference.numbers:
+        wanted = number.nominal + moved[number.name]
+        if abs(wanted - number.estimate) > BEYOND * number.std:
+            refusals.append(f"{number.name} would be {wanted:g} {number.unit}, beyond its bounds.")
+        elif abs(number.estimate - number.nominal) > AT_EDGE * reference.tolerance_scale * number.tolerance:
+            off = abs(number.estimate - number.nominal) / number.tolerance
+            remarks.append(f"{number.name} is {off:.1f} of its tolerances off: is its value right, and the tolerance?")
+    for name, kinds in found.unmodelled.items():
+        for kind, gain in kinds.items():
+            if gain > NOT_WELL:
+                refusals.append(f"{name}: the calibrated ship does not fit it ({kind}, {gain:.0f} nats).")
+    if reference.tolerance_scale > 1.0:
+        remarks.append(
+            f"The logs are only explained with {reference.tolerance_scale:g} times the stated tolerances: the ship is "
+            "of another form than the model, or her numbers are less well known than the system says."
+        )
+    if reference.form_scale > 0.0:
+        remarks.append(
+            f"She is of another form than the model, {reference.form_scale:g} times what is usual: drag along the "
+            "hull, wind over the angle, damping and added mass are fitted as functions. The reference has all of them, "
+            "calibrated.ssv those that the system has numbers for."
+        )
+    return tuple(refusals), tuple(remarks)

@@ -1,0 +1,245 @@
+"""The ship as her logs would have her, where she is known to be well: a fit of her numbers alone, and its reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import cast
+
+import numpy as np
+
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.inference.form import of_scale, scores_by_scale
+from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.screening import Gain
+from shipcosim.diagnose.inference.search import explain
+from shipcosim.diagnose.inference.thresholds import ENOUGH, FORM_COST
+from shipcosim.diagnose.inference.unmodelled import errors_of_the_fit, unmodelled_gains
+from shipcosim.diagnose.inference.verdict import admissible
+from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly
+from shipcosim.diagnose.reference.reference import SCHEMA, KnownNumber, Reference, ReferenceLog, fingerprint
+from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
+from shipcosim.diagnose.reference.thresholds import MOST_SUSPECTS, MOST_WEIGHT, SCALES, WEATHER_GAIN, WIDER
+from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["Calibration", "calibrated_to", "causes_beside", "numbers_of", "reference_of"]
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A ship fitted to logs in which she is well.
+
+    Attributes
+    ----------
+    logs : SeveralLogs
+        With the ship's form as uncertain as they say.
+    fit : JointFit
+        With causes of the days, where a log has any.
+    scale : float
+        Times the stated tolerances within which her numbers were moved.
+    unmodelled : dict of str to dict of str to float
+        Gain of unmodelled errors that are left, by log and kind. [nats]
+    """
+
+    logs: SeveralLogs
+    fit: JointFit
+    scale: float
+    unmodelled: dict[str, dict[str, float]]
+
+
+def calibrated_to(logs: SeveralLogs) -> Calibration:
+    """Move the numbers of a ship that is well to fit logs, the weather of each day beside them.
+
+    Parameters
+    ----------
+    logs : SeveralLogs
+        With `is_well`.
+
+    Returns
+    -------
+    Calibration
+    """
+    logs = with_common_form(logs)
+    scale = likeliest_scale(fitted_jointly(logs, about_all=True))
+    fit = partial(fitted_jointly, scale=scale, about_all=True)
+    fits = cast(list[JointFit], explain(logs, most=2 * len(logs.problems), fitted=fit, screened=screened_jointly))
+    ordinary = {one.label: WEATHER_GAIN for one in logs.hypotheses}
+    best = next(one for one in fits if not one.hypotheses or admissible(one, fits, ordinary))
+    again = likeliest_scale(best, scale)
+    if again != scale:
+        best = fitted_jointly(logs, best.hypotheses, best.values, scale=again, about_all=True)
+    own = errors_of_the_fit(best)
+    unmodelled = {name: unmodelled_gains(one, best.parts[name]) | own for name, one in logs.problems.items()}
+    return Calibration(logs, best, again, unmodelled)
+
+
+def with_common_form(logs: SeveralLogs) -> SeveralLogs:
+    """The logs of a ship whose form may differ from the model's as far as they say together."""
+    scores: dict[float, float] = {}
+    for problem in logs.problems.values():
+        for scale, score in scores_by_scale(problem, fitted(problem)).items():
+            scores[scale] = scores.get(scale, 0.0) + score
+    best = max(scores, key=lambda scale: scores[scale] - FORM_COST * (scale > 0.0))
+    if not best:
+        return logs
+    return replace(logs, problems={name: of_scale(problem, best) for name, problem in logs.problems.items()})
+
+
+def causes_beside(found: Calibration) -> dict[str, float]:
+    """Causes in the ship that the logs still look like beside the calibrated ship, with their gain. [nats]
+
+    Parameters
+    ----------
+    found : Calibration
+
+    Returns
+    -------
+    dict of str to float
+        By label; those that could be named, were healthy logs to gain what is assumed of weather. Where the logs want
+        wider tolerances, a cause beside the stated ones must explain them better than those do.
+    """
+    every, suspects = replace(found.logs, is_well=False), {}
+    for scale in dict.fromkeys((found.scale, 1.0)):
+        fit = partial(fitted_jointly, scale=scale, about_all=True)
+        without = found.fit if scale == found.scale else fit(every, found.fit.hypotheses, found.fit.values)
+        for _, hypothesis, values in _most_likely(every, without):
+            again = fit(every, (*without.hypotheses, hypothesis), without.values | values)
+            gain = again.score - found.fit.score
+            if gain > ENOUGH + WEATHER_GAIN and admissible(again, [without, again], {}):
+                suspects[hypothesis.label] = max(gain, suspects.get(hypothesis.label, 0.0))
+    return suspects
+
+
+def _most_likely(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
+    """The causes in the ship that gain most beside a fit at first sight, where that is enough to look closer."""
+    gains = [one for one in screened_jointly(logs, fit) if not is_in_one_log(one[1])]
+    return [one for one in gains[:MOST_SUSPECTS] if one[0] > WEATHER_GAIN]
+
+
+def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
+    """Times the stated tolerances within which logs are likeliest; 1 unless more is clearly likelier.
+
+    Parameters
+    ----------
+    fit : JointFit
+        By some scale of the tolerances.
+    scale : float
+        That scale.
+
+    Returns
+    -------
+    float
+    """
+    of_ship = np.array([_is_known_of_ship(column, fit) for column in fit.columns])
+    prior = np.array([column.prior for column in fit.columns])
+    scores = np.array(
+        [evidence(fit.products.products, np.where(of_ship, s / scale, 1.0) * prior, fit.centre)[0] for s in SCALES]
+    )
+    near = np.flatnonzero(scores > scores.max() - WIDER)
+    return SCALES[near[0]]
+
+
+def _is_known_of_ship(column: Regressor, fit: JointFit) -> bool:
+    """Whether a column is of known numbers of the ship, and of no cause."""
+    turned = {path for one in fit.hypotheses for parameter in one.parameters for path in parameter.paths}
+    return not any(ShipModel.is_of_day(path) or path in turned for path in column.changes)
+
+
+def numbers_of(fit: JointFit) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
+    """The ship's numbers by a fit.
+
+    Returns
+    -------
+    tuple of list of str, (n,) array, (n,) array, (n, n) array
+        Names, tolerances before the logs, by how much each is moved, covariance of what they are on another day: that
+        of the posterior, and twice that from part to part of the logs, for these days and the other.
+    """
+    wanted = [i for i, column in enumerate(fit.columns) if _is_known_of_ship(column, fit)]
+    names = list(dict.fromkeys(path for i in wanted for path in fit.columns[i].changes))
+    sizes = np.array([[fit.columns[i].changes.get(name, 0.0) for i in wanted] for name in names])
+    spread = (fit.covariance + 2.0 * _by_part(fit))[np.ix_(wanted, wanted)]
+    return names, np.sqrt((sizes**2).sum(1)), sizes @ fit.theta[wanted], sizes @ spread @ sizes.T
+
+
+def dispersion_of(fit: JointFit) -> float:
+    """How much more the parts of logs pull at the columns than by noise, mean square; 1 where the form is right."""
+    pulls = np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
+    known = np.stack([np.diag(part)[1:] for part in fit.products.blocks])
+    told = np.minimum(known * np.array([column.prior for column in fit.columns]) ** 2, MOST_WEIGHT)
+    return float((told * pulls**2 / np.maximum(known, 1e-12)).sum() / told.sum())
+
+
+def _by_part(fit: JointFit) -> np.ndarray:
+    """Covariance of the columns' θ by how differently the parts of the logs pull at them, (p, p) array.
+
+    Where the model's form is right this is at most the posterior's covariance; where it is not, each part of a log, and
+    each day, would have other numbers (the sandwich estimator of misspecified models: White 1982).
+    """
+    pulls = np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
+    moves = pulls @ fit.covariance
+    return moves.T @ moves
+
+
+def reference_of(
+    found: Calibration,
+    ship: ShipModel,
+    ordinary: Mapping[str, float],
+    logs: Sequence[ReferenceLog],
+    *,
+    system: str,
+    version: str,
+) -> Reference:
+    """What a calibration leaves uncertain of a ship's numbers.
+
+    Parameters
+    ----------
+    found : Calibration
+    ship : ShipModel
+        With the system's own numbers.
+    ordinary : mapping of str to float
+        Gain of unmodelled errors in these logs. [nats]
+    logs : sequence of ReferenceLog
+    system, version : str
+        Name of the system; version of this program.
+
+    Returns
+    -------
+    Reference
+    """
+    names, tolerances, moved, covariance = numbers_of(found.fit)
+    std = np.sqrt(np.diag(covariance))
+    correlation = np.clip(covariance / np.outer(std, std), -1.0, 1.0)
+    numbers = [
+        KnownNumber(
+            name=name,
+            unit=ship.about(name)["unit"],
+            nominal=float(ship.get(name)),
+            tolerance=float(tolerance),
+            estimate=_within_bounds(ship, name, float(ship.get(name) + by)),
+            std=float(deviation),
+        )
+        for name, tolerance, by, deviation in zip(names, tolerances, moved, std, strict=True)
+    ]
+    first = next(iter(found.logs.problems.values()))
+    return Reference(
+        schema=SCHEMA,
+        form_scale=first.model.form_scale,
+        shipcosim=version,
+        system=system,
+        system_sha256=fingerprint(ship, names),
+        tolerance_scale=found.scale,
+        logs=tuple(logs),
+        dispersion=dispersion_of(found.fit),
+        ordinary_errors={kind: float(gain) for kind, gain in ordinary.items()},
+        numbers=tuple(numbers),
+        correlation=tuple(tuple(map(float, row)) for row in correlation),
+    )
+
+
+def _within_bounds(ship: ShipModel, name: str, value: float) -> float:
+    """A number's value, brought to what it can be."""
+    about = ship.about(name)
+    low, high = (-np.inf if about["minimum"] is None else about["minimum"]), about["maximum"]
+    return float(np.clip(value, low, np.inf if high is None else high))

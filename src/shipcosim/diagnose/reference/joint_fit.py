@@ -1,0 +1,235 @@
+"""Sets of causes fitted to several logs together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.evidence import Gram, evidence
+from shipcosim.diagnose.inference.fitting import (
+    ROUNDS,
+    Fit,
+    bounded,
+    deviations,
+    linearised,
+    next_values,
+    own_columns,
+    tolerated,
+)
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.parts import beside
+from shipcosim.diagnose.inference.screening import Gain, gains, screening_regressors
+from shipcosim.diagnose.reference.several_logs import Layout, SeveralLogs, laid_out, values_in
+from shipcosim.diagnose.reference.thresholds import CLOSE
+from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["JointFit", "fitted_jointly", "screened_jointly", "screening_layout"]
+
+
+@dataclass(frozen=True, eq=False)
+class JointFit(Fit):
+    """A set of causes fitted to several logs; its model, motions and record are those of the first.
+
+    Attributes
+    ----------
+    parts : dict of str to Fit
+        By name of the log: its causes, with the posterior of all logs.
+    layout : Layout
+        Of its columns.
+    """
+
+    parts: dict[str, Fit] = field(default_factory=dict)
+    layout: Layout = field(default_factory=lambda: Layout([], {}))
+
+    def get(self, path: str) -> float:
+        """Value of a number of the ship, or of the day of one log, that the columns were linearised about."""
+        name, separator, number = path.rpartition("|")
+        return self.parts[name].model.get(number) if separator else self.model.get(path)
+
+
+def fitted_jointly(
+    logs: SeveralLogs,
+    hypotheses: Sequence[Hypothesis] = (),
+    values: Mapping[str, float] | None = None,
+    rounds: int = ROUNDS,
+    *,
+    scale: float = 1.0,
+    about_all: bool = False,
+) -> JointFit:
+    """Fit the parameters of some causes to several logs, with all known numbers within their tolerances.
+
+    Parameters
+    ----------
+    logs : SeveralLogs
+    hypotheses : sequence of Hypothesis
+        Of `SeveralLogs.hypotheses`.
+    values : dict of str to float, optional
+        To start from.
+    rounds : int
+        Of linearisation.
+    scale : float
+        Of the tolerances of the ship's numbers.
+    about_all : bool
+        Whether the known numbers of the ship, too, are linearised about where the logs would have them.
+
+    Returns
+    -------
+    JointFit
+    """
+    values, last = bounded(hypotheses, values or {}), None
+    about: dict[str, dict[str, float]] = {name: {} for name in logs.problems}
+    motions = {name: problem.motion for name, problem in logs.problems.items()}
+    own = {name: tuple(one for _, one in logs.all_within(name, hypotheses)) for name in logs.problems}
+    columns = {
+        name: [_scaled(column, scale) for column in problem.known(own[name])] + own_columns(problem, own[name])
+        for name, problem in logs.problems.items()
+    }
+    layout, common = _layout(logs, hypotheses, columns)
+    for _ in range(rounds):
+        found = {
+            name: linearised(problem, columns[name], values_in(name, values) | about[name], motions[name])
+            for name, problem in logs.problems.items()
+        }
+        fit = _posterior(logs, hypotheses, own, values, layout, found)
+        motions, values = {name: part.motion for name, part in fit.parts.items()}, next_values(fit)
+        about = {
+            name: tolerated(part) | (_at_the_mean(fit, common) if about_all else {}) for name, part in fit.parts.items()
+        }
+        if _moved(fit, values) < CLOSE and last and abs(fit.score - last.score) < 1.0:
+            break
+        last = fit
+    return fit
+
+
+def _scaled(column: Regressor, scale: float) -> Regressor:
+    """A known number's column whose tolerance is so many times as large, if it is the ship's."""
+    of_day = any(ShipModel.is_of_day(path) for path in column.changes)
+    return column if of_day else replace(column, prior=scale * column.prior)
+
+
+def _layout(
+    logs: SeveralLogs, hypotheses: Sequence[Hypothesis], columns: Mapping[str, Sequence[Regressor]]
+) -> tuple[Layout, np.ndarray]:
+    """Where the columns of each log are among all, and which of all are known numbers of the ship, (p,) bool array."""
+    parameters = [
+        (f"{one.label}, {k}", Regressor(dict.fromkeys(parameter.paths, parameter.typical)))
+        for one in hypotheses
+        for k, parameter in enumerate(one.parameters)
+    ]
+    known, companions, named = {}, [], {}
+    for name in logs.problems:
+        pairs = logs.all_within(name, hypotheses)
+        turned = [f"{one.label}, {k}" for one, _ in pairs for k in range(len(one.parameters))]
+        about = sum(len(own.definition.companions) for _, own in pairs)
+        split = len(columns[name]) - len(turned) - about
+        known[name] = columns[name][:split]
+        beside_them = [(f"{name}, {i}", column) for i, column in enumerate(columns[name][split : split + about])]
+        companions += beside_them
+        named[name] = [key for key, _ in beside_them] + turned
+    layout = laid_out(known, companions + parameters, named)
+    first = len(layout.regressors) - len(companions) - len(parameters)
+    common = [
+        i < first and not any(ShipModel.is_of_day(path) for path in column.changes)
+        for i, column in enumerate(layout.regressors)
+    ]
+    return layout, np.array(common, bool)
+
+
+def _posterior(logs, hypotheses, own, values, layout, found):
+    """The joint fit of logs that are linearised, each about its own motion."""
+    products = Gram(
+        np.sum([layout.spread(name, one.products.products) for name, one in found.items()], axis=0),
+        np.concatenate([layout.spread(name, one.products.blocks) for name, one in found.items()]),
+        np.sum([one.products.log_determinant for one in found.values()], axis=0),
+    )
+    centre = layout.together({name: one.centre for name, one in found.items()})
+    score, theta, covariance = evidence(products.products, layout.prior, centre)
+    score += sum(float(one.products.free) for one in found.values())
+    parts = {}
+    for name, one in found.items():
+        at = layout.places[name]
+        posterior = theta[at], covariance[np.ix_(at, at)]
+        parts[name] = one.with_posterior(logs.problems[name], own[name], values_in(name, values), score, *posterior)
+    first = next(iter(parts.values()))
+    return JointFit(
+        tuple(hypotheses),
+        dict(values),
+        deviations(hypotheses, covariance),
+        score,
+        layout.regressors,
+        products,
+        theta,
+        covariance,
+        centre,
+        first.model,
+        first.about,
+        first.motion,
+        first.record,
+        parts,
+        layout,
+    )
+
+
+def _at_the_mean(fit: JointFit, common: np.ndarray) -> dict[str, float]:
+    """Every known number of the ship where the logs would have it."""
+    found = {}
+    for column, left in ((fit.columns[i], fit.left[i]) for i in np.flatnonzero(common)):
+        for path, size in column.changes.items():
+            found[path] = found.get(path, fit.model.get(path)) + size * left
+    return found
+
+
+def _moved(fit: JointFit, values: Mapping[str, float]) -> float:
+    """How far the next values of the parameters are from those of a fit, in typical sizes; the largest."""
+    parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
+    return max((abs(values[k.paths[0]] - fit.get(k.paths[0])) / k.typical for k in parameters), default=0.0)
+
+
+def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
+    """Gain in log-evidence of each hypothesis beside a fit to several logs, linearised once; as `screened`."""
+    wanted = [one for one in logs.hypotheses if one not in fit.hypotheses]
+    found = {}
+    for name, problem in logs.problems.items():
+        part = fit.parts[name]
+        added = [
+            column
+            for _, own in logs.all_within(name, wanted)
+            for group in screening_regressors(own)
+            for column in group
+        ]
+        linear = beside(part.linear, problem.base_of(added))
+        found[name] = inner_products(linear, problem.noise, problem.record).products
+    layout = screening_layout(logs, fit.layout, wanted)
+    products = np.sum([layout.spread(name, one) for name, one in found.items()], axis=0)
+    return gains(products, fit.columns, fit.centre, wanted, fit.get)
+
+
+def screening_layout(logs: SeveralLogs, layout: Layout, wanted: Sequence[Hypothesis]) -> Layout:
+    """Columns of a fit to several logs, and behind them those by which hypotheses are first sought.
+
+    Parameters
+    ----------
+    logs : SeveralLogs
+    layout : Layout
+        Of the fit.
+    wanted : sequence of Hypothesis
+        Of `SeveralLogs.hypotheses`, in their order.
+
+    Returns
+    -------
+    Layout
+        In each log the columns of the fit are followed by those of the hypotheses that it has something to say of.
+    """
+    regressors, places = list(layout.regressors), {name: list(own) for name, own in layout.places.items()}
+    for hypothesis in wanted:
+        columns = [column for group in screening_regressors(hypothesis) for column in group]
+        where = range(len(regressors), len(regressors) + len(columns))
+        for name, own in places.items():
+            if logs.within(name, hypothesis) is not None:
+                own += where
+        regressors += columns
+    return Layout(regressors, {name: np.array(own, int) for name, own in places.items()})

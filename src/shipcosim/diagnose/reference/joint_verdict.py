@@ -1,0 +1,132 @@
+"""The verdict on several logs of one ship together: common causes, and those of each log's weather."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from shipcosim.diagnose.experiment.testability import not_testable
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.null_distribution import healthy_products, on_track
+from shipcosim.diagnose.inference.screening import gains, screening_regressors
+from shipcosim.diagnose.inference.search import explain, without_causes
+from shipcosim.diagnose.inference.thresholds import FAR_ABOVE_NULL, NULL_GAIN_UNKNOWN, NULL_GAIN_WITHOUT_WIND
+from shipcosim.diagnose.inference.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
+from shipcosim.diagnose.inference.verdict import Judgement, gained, judge
+from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly, screening_layout
+from shipcosim.diagnose.reference.several_logs import SeveralLogs
+from shipcosim.diagnose.ship.model import ANY_CAUSE
+
+__all__ = ["JointVerdict", "judged_jointly", "untestable_jointly"]
+
+
+@dataclass(frozen=True)
+class JointVerdict:
+    """What several logs say together.
+
+    Attributes
+    ----------
+    logs : SeveralLogs
+    fits : tuple of JointFit
+        Best first; the one without a cause is among them.
+    judgement : Judgement
+    unmodelled : dict of str to float
+        Gain of unmodelled errors beside its causes, by kind. [nats]
+    null_gains : dict of str to float
+        Gain of its causes on simulated healthy logs, by label. [nats]
+    """
+
+    logs: SeveralLogs
+    fits: tuple[JointFit, ...]
+    judgement: Judgement
+    unmodelled: dict[str, float]
+    null_gains: dict[str, float]
+
+
+def judged_jointly(logs: SeveralLogs) -> JointVerdict:
+    """The sets of causes that explain several logs together, and the verdict on them.
+
+    Parameters
+    ----------
+    logs : SeveralLogs
+
+    Returns
+    -------
+    JointVerdict
+    """
+    fits = cast(list[JointFit], explain(logs, fitted=fitted_jointly, screened=screened_jointly))
+    known: dict[Any, dict[str, float]] = {}
+    silent = any(problem.record.wind is None for problem in logs.problems.values())
+
+    def unmodelled_beside(fit):
+        if fit not in known:
+            known[fit] = _unmodelled(logs, fit)
+        # where nobody knows the wind, a force that nobody explains is no surprise
+        return {kind: gain for kind, gain in known[fit].items() if kind not in FORCES or not silent}
+
+    models = [problem.model for problem in logs.problems.values()]
+    usual = max(model.ordinary_errors.get(ANY_CAUSE, 0.0) for model in models) + NULL_GAIN_WITHOUT_WIND * silent
+    null = {one.label: usual for one in logs.hypotheses}
+    judgement = judge(fits, unmodelled_beside, null)
+    if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
+        return JointVerdict(logs, tuple(fits), judgement, known[judgement.fit], null)
+    if simulated := _null_gains(logs, judgement.fit, fits):
+        null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
+        judgement = judge(fits, unmodelled_beside, null)
+    return JointVerdict(logs, tuple(fits), judgement, known[judgement.fit], null)
+
+
+def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
+    """Gain of unmodelled errors beside a joint fit: of a force or a channel in any log, or the same kind in all."""
+    each = [unmodelled_gains(problem, fit.parts[name]) for name, problem in logs.problems.items()]
+    own = errors_of_the_fit(fit)
+    kinds = (kind for kind in each[0] if kind not in own)
+    found = {}
+    for kind in kinds:
+        values = [gains[kind] for gains in each]
+        found[kind] = max(max(values) - float(np.log(len(values))), sum(values))
+    return found | own
+
+
+def _null_gains(logs, fit, fits):
+    """Largest gain of a fit's causes on simulated healthy logs of the same drawn ships, as with one log."""
+    if not any(gained(one, fit, fits) < FAR_ABOVE_NULL for one in fit.hypotheses):
+        return {}
+    nothing, wanted = cast(JointFit, without_causes(fits)), fit.hypotheses
+    layout = screening_layout(logs, nothing.layout, wanted)
+    together, kept = np.zeros(()), np.array(True)
+    for name, problem in logs.problems.items():
+        own = [one for _, one in logs.all_within(name, wanted)]
+        _, products = healthy_products(problem, fit.parts[name].motion, own)
+        kept = kept & on_track(products)
+        together = together + layout.spread(name, products)
+    found = {one.label: [] for one in wanted}
+    for products in together[kept]:
+        for gain, one, _ in gains(products, nothing.columns, np.zeros(len(nothing.columns)), wanted, nothing.get):
+            found[one.label].append(gain)
+    return {
+        label: float(max(np.mean(values) + 3.0 * np.std(values), max(values))) if values else NULL_GAIN_UNKNOWN
+        for label, values in found.items()
+    }
+
+
+def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
+    """Causes that these logs together could not have shown had they had their typical size."""
+    logs, nothing = verdict.logs, cast(JointFit, without_causes(verdict.fits))
+    layout = screening_layout(logs, nothing.layout, logs.hypotheses)
+    together = np.zeros(())
+    for name, problem in logs.problems.items():
+        columns = list(nothing.parts[name].columns)
+        columns += [
+            c for _, own in logs.all_within(name, logs.hypotheses) for g in screening_regressors(own) for c in g
+        ]
+        products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
+        together = together + layout.spread(name, products)
+    groups, place = [], len(nothing.columns)
+    for one in logs.hypotheses:
+        for group in screening_regressors(one):
+            groups.append((one, list(range(place, place + len(group)))))
+            place += len(group)
+    return not_testable(together, layout.regressors, groups)

@@ -1,0 +1,84 @@
+"""The numbers of a reference as a parameter set of its system: the ship as she is known to be well."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from shipcosim.diagnose.reference.reference import KnownNumber, Reference, is_same
+from shipcosim.diagnose.stages import ExtendedSystem
+from shipcosim.ssp import System, SystemStructure, parameter, read, write_ssv
+
+__all__ = ["FILE", "with_calibrated_numbers", "write_parameter_set"]
+
+FILE = "calibrated.ssv"
+"""Name of the set in the folder that a calibration leaves."""
+
+
+def write_parameter_set(system: System, reference: Reference, path: str | os.PathLike[str]) -> dict[str, float]:
+    """Write a parameter set with the numbers of a reference that the system has.
+
+    Not all of it is true: numbers that the logs cannot tell apart share what they explain.
+
+    Parameters
+    ----------
+    system : System
+        That the reference was made with.
+    reference : Reference
+    path : path
+        The .ssv, to be bound to the system.
+
+    Returns
+    -------
+    dict of str to float
+        What the set holds, in the units of the FMUs.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
+    values = {}
+    for number in reference.numbers:
+        variable = _variable(system, number)
+        if variable is not None:
+            unit = None if variable.unit in (None, "1") else variable.unit
+            text = f"{variable.description}; calibrated to {len(reference.logs)} logs, {number.nominal:g} before"
+            values[number.name] = parameter(number.name, number.estimate, unit, text, tolerance=number.std)
+    write_ssv(path, "calibrated", values.values())
+    return {name: value.value for name, value in values.items()}
+
+
+def _variable(system: System, number: KnownNumber):
+    """Variable of the system that holds a number; None where it has none, or it is another number there."""
+    component, _, name = number.name.rpartition(".")
+    part = system.components.get(component)
+    if part is None or name not in part.fmu.variables:
+        return None
+    start = part.start_value(name)
+    known = isinstance(start, int | float) and any(is_same(start, one) for one in (number.nominal, number.estimate))
+    return part.fmu.variables[name] if known else None
+
+
+def with_calibrated_numbers(
+    given: ExtendedSystem, reference: Reference, folder: str | os.PathLike[str]
+) -> ExtendedSystem:
+    """A system with the numbers of a reference bound, to be extended by what has changed since.
+
+    Parameters
+    ----------
+    given : ExtendedSystem
+        Not extended yet.
+    reference : Reference
+    folder : path
+        Gets calibrated.ssv, which must stay there until the system is written.
+
+    Returns
+    -------
+    ExtendedSystem
+    """
+    source = given.source
+    structure = source.copy() if isinstance(source, SystemStructure) else read(source)
+    write_parameter_set(given.given, reference, Path(folder) / FILE)
+    structure.bind(Path(folder) / FILE)
+    return ExtendedSystem(structure.checked(), structure)

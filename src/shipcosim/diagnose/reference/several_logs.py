@@ -1,0 +1,170 @@
+"""Several logs of one ship as one identification problem: her numbers are common, the weather is each log's own.
+
+Each log keeps its own noise, and is linearised about its own motion. A number of the ship has one column, in which the
+inner products of the logs add up; a number of the day has one for each log.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
+from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["Layout", "SeveralLogs", "is_in_one_log", "is_of_day", "laid_out", "of_log", "values_in"]
+
+_SEPARATOR = "|"
+
+
+def is_of_day(hypothesis: Hypothesis) -> bool:
+    """Whether a cause is in the weather of one day: all its numbers are the water's.
+
+    An instrument that is wrong, unlike what it is off within its tolerance, is wrong in all logs.
+    """
+    return all(path.startswith("water.") for parameter in hypothesis.parameters for path in parameter.paths)
+
+
+def of_log(hypothesis: Hypothesis, name: str) -> Hypothesis:
+    """A cause of the day as that of one log: its component is the log's name, which its numbers have before theirs."""
+    parameters = (
+        replace(parameter, paths=tuple(f"{name}{_SEPARATOR}{path}" for path in parameter.paths))
+        for parameter in hypothesis.parameters
+    )
+    sought = [f"{name}{_SEPARATOR}{path}" for path in hypothesis.definition.sought_by]
+    definition = hypothesis.definition.model_copy(update={"sought_by": sought})
+    return replace(hypothesis, definition=definition, component=name, parameters=tuple(parameters))
+
+
+def is_in_one_log(hypothesis: Hypothesis) -> bool:
+    """Whether a cause is of the day of one log, as `of_log` makes it."""
+    return all(_SEPARATOR in path for parameter in hypothesis.parameters for path in parameter.paths)
+
+
+@dataclass(frozen=True, eq=False)
+class SeveralLogs:
+    """Identification problems of several logs of one ship.
+
+    Attributes
+    ----------
+    problems : dict of str to IdentificationProblem
+        By name of the log.
+    is_well : bool
+        Whether nothing is wrong with the ship: only causes of the day are looked for.
+    """
+
+    problems: dict[str, IdentificationProblem]
+    is_well: bool = False
+
+    @cached_property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """Causes in the ship once, those of the day for each log."""
+        ship, day = {}, []
+        for name, problem in self.problems.items():
+            for hypothesis in problem.hypotheses:
+                if is_of_day(hypothesis):
+                    day.append(of_log(hypothesis, name))
+                elif not self.is_well:
+                    ship.setdefault(hypothesis.label, hypothesis)
+        return (*ship.values(), *day)
+
+    def within(self, name: str, hypothesis: Hypothesis) -> Hypothesis | None:
+        """A cause as the problem of one log has it; None where that log has nothing to say of it."""
+        component = hypothesis.component
+        if is_in_one_log(hypothesis):
+            if component != name:
+                return None
+            component = None
+        wanted = hypothesis.cause, component
+        return next((one for one in self.problems[name].hypotheses if (one.cause, one.component) == wanted), None)
+
+    def all_within(self, name: str, hypotheses: Sequence[Hypothesis]) -> list[tuple[Hypothesis, Hypothesis]]:
+        """Causes that one log has something to say of, each with what it is there."""
+        pairs = ((one, self.within(name, one)) for one in hypotheses)
+        return [(one, own) for one, own in pairs if own is not None]
+
+
+def values_in(name: str, values: Mapping[str, float]) -> dict[str, float]:
+    """Numbers as one log has them: those of the ship, and those of its own day."""
+    found = {}
+    for path, value in values.items():
+        owner, separator, number = path.rpartition(_SEPARATOR)
+        if not separator or owner == name:
+            found[number if separator else path] = value
+    return found
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Columns of several logs in one row.
+
+    Attributes
+    ----------
+    regressors : list of p Regressor
+    places : dict of str to array of int
+        By name of the log: where its columns are in the row.
+    """
+
+    regressors: list[Regressor]
+    places: dict[str, np.ndarray]
+
+    @property
+    def prior(self) -> np.ndarray:
+        """Standard deviations of the columns' θ."""
+        return np.array([column.prior for column in self.regressors])
+
+    def spread(self, name: str, products: np.ndarray) -> np.ndarray:
+        """Inner products of one log, (..., 1 + p_i, 1 + p_i), its own column first, at their places among all."""
+        where = np.concatenate([[0], 1 + self.places[name]])
+        size = 1 + len(self.regressors)
+        found = np.zeros((*products.shape[:-2], size, size))
+        found[..., where[:, None], where] = products
+        return found
+
+    def together(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        """One value a column, (p,) array, from those of the logs; common columns have the same in all."""
+        found = np.zeros(len(self.regressors))
+        for name, own in values.items():
+            found[self.places[name]] = own
+        return found
+
+
+def laid_out(
+    known: Mapping[str, Sequence[Regressor]],
+    others: Sequence[tuple[str, Regressor]],
+    named: Mapping[str, Sequence[str]],
+) -> Layout:
+    """Columns of several logs in one row: known numbers first, those of the ship common, then others by name.
+
+    Parameters
+    ----------
+    known : dict of str to sequence of Regressor
+        By name of the log: its first columns.
+    others : sequence of (str, Regressor)
+        The columns behind them all, by name.
+    named : dict of str to sequence of str
+        By name of the log: which of these it has, in its own order.
+
+    Returns
+    -------
+    Layout
+    """
+    found: dict[object, Regressor] = {}
+    for log, columns in known.items():
+        for column in columns:
+            found.setdefault(_key(log, column), column)
+    found |= dict(others)
+    order = {key: place for place, key in enumerate(found)}
+    keys = {log: [*(_key(log, column) for column in columns), *named[log]] for log, columns in known.items()}
+    return Layout(list(found.values()), {log: np.array([order[key] for key in own], int) for log, own in keys.items()})
+
+
+def _key(log: str, column: Regressor) -> object:
+    """What tells columns of known numbers apart: those of the day by their log, too."""
+    changes = tuple(sorted(column.changes.items()))
+    return (log, changes) if any(ShipModel.is_of_day(path) for path in column.changes) else changes

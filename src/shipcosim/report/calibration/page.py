@@ -1,0 +1,150 @@
+"""The page of a calibration: what moved, the error before and after, and what the logs could not tell."""
+
+import os
+from dataclasses import dataclass
+
+from shipcosim.diagnose.calibration_pipeline import CalibratedShip
+from shipcosim.diagnose.validation.split import HORIZONS
+from shipcosim.report.calibration.words import error_rows, log_rows, moved, moved_rows, sentence, untold
+from shipcosim.report.theme import palette
+from shipcosim.report.theme.figures import bars, rounded
+from shipcosim.report.theme.numbers import metres
+from shipcosim.report.theme.pages import render
+from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
+from shipcosim.series import write_file
+
+SECTIONS = {"moved": "Numbers", "errors": "Errors", "logs": "Logs", "untold": "Not told"}
+_ROW = 22  # px, of a number in the figure
+
+
+@dataclass(frozen=True)
+class CalibrationPage(Page):
+    """What the page of a calibration shows.
+
+    Attributes
+    ----------
+    refusals, remarks : tuple of str
+    key_figures : tuple of KeyFigure
+    moved, errors, figures : tuple of Figure
+        What moved by how many tolerances; errors before and after; all of them in the order of `data`.
+    numbers, error_table, logs : Table
+    untold : str
+        Numbers that the logs say next to nothing of.
+    """
+
+    refusals: tuple[str, ...]
+    remarks: tuple[str, ...]
+    key_figures: tuple[KeyFigure, ...]
+    moved: tuple[Figure, ...]
+    errors: tuple[Figure, ...]
+    figures: tuple[Figure, ...]
+    numbers: Table
+    error_table: Table
+    logs: Table
+    untold: str
+
+
+def write_calibration(ship: CalibratedShip, path: str | os.PathLike[str]) -> None:
+    """Write the page of a calibration.
+
+    Parameters
+    ----------
+    ship : CalibratedShip
+    path : path
+        HTML file; it is there completely or not at all.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be written.
+    """
+    write_file(path, render("calibration/templates/calibration.html.jinja", _page(ship)).encode())
+
+
+def _page(ship: CalibratedShip) -> CalibrationPage:
+    what, errors = (_moved_figure(ship),), _error_figures(ship)
+    reference, refused = ship.reference, bool(ship.refusals)
+    facts = {"System": reference.system, "Logs": ", ".join(log.name for log in ship.logs)}
+    scale = reference.tolerance_scale
+    facts["Tolerances"] = "as stated" if scale == 1.0 else f"{scale:g} times as stated"
+    return CalibrationPage(
+        title=f"Calibration of {reference.system}",
+        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        outcome=Outcome("unknown" if refused else "consistent", "refused" if refused else "calibrated", sentence(ship)),
+        links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
+        data=tuple(figure.drawn for figure in (*what, *errors)),
+        refusals=ship.refusals,
+        remarks=ship.remarks,
+        key_figures=_key_figures(ship),
+        moved=what,
+        errors=errors,
+        figures=(*what, *errors),
+        numbers=Table(tuple(moved_rows(ship)), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)),
+        error_table=Table(tuple(error_rows(ship)), ("Log", "After", "Before", "Calibrated", "All rows fitted"), (1,)),
+        logs=Table(tuple(log_rows(ship)), ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left")),
+        untold=untold(ship),
+    )
+
+
+def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
+    errors = [log.errors for log in ship.logs if log.errors]
+    most = max(ship.reference.numbers, key=lambda number: abs(moved(number)))
+    found = [KeyFigure(f"{moved(most):+.1f}".replace("-", "−"), f"tolerances: most that a number moved, {most.name}")]
+    if errors:
+        worst = max(errors, key=lambda one: one["after"][-1])
+        labels = {"before": "before", "after": "calibrated", "floor": "with all rows fitted"}
+        found += [
+            KeyFigure(metres(worst[label][-1]), f"position error after {HORIZONS[-1]:g} s, held-out rows, {text}")
+            for label, text in labels.items()
+        ]
+    return tuple(found)
+
+
+def _moved_figure(ship: CalibratedShip) -> Figure:
+    """How far each number is from that of the system, in tolerances, with its standard deviation before and after."""
+    ranked = sorted(ship.reference.numbers, key=lambda number: abs(moved(number)))
+    names, at = [number.name for number in ranked], [moved(number) for number in ranked]
+    spread = rounded([number.std / number.tolerance for number in ranked], 3)
+    look = {"color": palette.BLUE, "thickness": 1.5, "width": 0}
+    dots = {
+        "type": "scatter",
+        "mode": "markers",
+        "name": "by the logs",
+        "x": rounded(at, 3),
+        "y": names,
+        "marker": {"color": palette.BLUE, "size": 8},
+        "error_x": {"type": "data", "array": spread} | look,
+        "hovertemplate": "%{x:.2f} ± %{error_x.array:.2f} tolerances",
+    }
+    band = {"type": "rect", "x0": -1, "x1": 1, "y0": 0, "y1": 1, "yref": "paper", "layer": "below"}
+    layout = {
+        "shapes": [band | {"fillcolor": palette.BAND, "line": {"width": 0}}],
+        "xaxis": {"title": {"text": "tolerances"}, "zeroline": True},
+        "yaxis": {"automargin": True, "tickfont": {"size": 12}, "dtick": 1},
+        "hovermode": "closest",
+        "showlegend": False,
+    }
+    note = "Dot and line: estimate and standard deviation on another day. Shaded: the tolerance that the system states."
+    height = 90 + _ROW * len(names)
+    return Figure("What moved", "tolerances", (dots,), layout, note, height)
+
+
+def _error_figures(ship: CalibratedShip) -> tuple[Figure, ...]:
+    """Errors of each log over the horizons."""
+    looks = {
+        "before": ("before", palette.VERMILLION),
+        "after": ("calibrated", palette.BLUE),
+        "floor": ("all rows fitted", palette.FAINT),
+    }
+    found = []
+    for log in ship.logs:
+        if log.errors:
+            horizons = [f"{horizon:g} s" for horizon in HORIZONS]
+            traces = tuple(
+                bars(name, horizons, log.errors[label], colour, "m") for label, (name, colour) in looks.items()
+            )
+            note = (
+                "Root mean square over open-loop predictions on the last third of the log, which nothing was fitted on."
+            )
+            found.append(Figure(f"Position error, {log.name}", "m", traces, {"barmode": "group"}, note))
+    return tuple(found)
