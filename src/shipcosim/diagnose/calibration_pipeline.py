@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from threadpoolctl import threadpool_limits
 
 import shipcosim
+from shipcosim.diagnose.comparison.compared import compared
 from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log_faults.corrections import corrected
@@ -138,6 +139,7 @@ def calibrate(
         for name, log in zip(names, logs, strict=True):
             say(f"is {name} right?")
             found[name] = identified_log(log, given, channels, causes)
+        _check_gross(found)
         several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
         say("fitting the ship's numbers")
         fitted = calibrated_to(several)
@@ -162,6 +164,22 @@ def calibrate(
     return result
 
 
+def _check_gross(found: dict[str, Identification]) -> None:
+    """Raise ShipcosimError where a system is wrong by far: it is to be mended, not calibrated."""
+    problems = [
+        Problem(
+            name, f"{finding.label} stands beyond doubt: the system is wrong by far, or the ship is not well.", _MEND
+        )
+        for name, one in found.items()
+        for finding in (one.comparison.findings if one.comparison else ())
+    ]
+    if problems:
+        raise ShipcosimError(problems)
+
+
+_MEND = "Diagnose the log, and calibrate the extended system."
+
+
 def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
     """Names of logs, each its own: those of their files, with a number where two are alike."""
     if not logs:
@@ -184,7 +202,7 @@ def identified_log(
     reference: Reference | None = None,
 ) -> Identification:
     """A log as an identification problem, its faults repaired."""
-    return corrected(identified(checked(read_measurements(log, system, channels, causes, reference))))
+    return corrected(identified(compared(checked(read_measurements(log, system, channels, causes, reference)))))
 
 
 def _about(name, one):
