@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import os
 from collections.abc import Collection, Mapping
@@ -61,6 +62,8 @@ def run_as_log(
         signals, file = {str(name): value.values for name, value in log.data_vars.items()}, {}
         signals["time"] = log["time"].values
         units = {str(name): value.attrs.get("units", "") for name, value in log.data_vars.items()}
+    elif not _names_components(Path(log)):
+        return log
     else:
         columns = read_columns(log)
         signals, units = ({name: pair[i] for name, pair in columns.items()} for i in (0, 1))
@@ -85,6 +88,26 @@ def run_as_log(
     )
     table.encoding |= file
     return table
+
+
+def _names_components(path: Path) -> bool:
+    """Whether a file has columns with a dot in their names, of which nothing but the names is read."""
+    try:
+        return any("." in name for name in _names(path))
+    except (OSError, EOFError, ValueError):
+        return False  # reading it says what is wrong
+
+
+def _names(path: Path) -> list[str]:
+    """Names of the columns, without units; none of a file of another kind than runs leave."""
+    if path.suffix == ".nc":
+        with xarray.open_dataset(path) as table:
+            return [str(name) for name in table.data_vars]
+    if path.suffix not in (".csv", ".gz"):
+        return []
+    opened = gzip.open if path.suffix == ".gz" else open
+    with opened(path, "rt", encoding="utf-8") as file:
+        return [name.partition("[")[0] for name in file.readline().split(",")]
 
 
 def _is_run(signals: Mapping[str, object]) -> bool:
