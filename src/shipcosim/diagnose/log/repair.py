@@ -11,7 +11,7 @@ from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
-from shipcosim.diagnose.log.rows import inside, usable_rows, usual_step
+from shipcosim.diagnose.log.rows import inside, usable_rows, usual_distance, usual_step
 from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
@@ -61,7 +61,7 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
     channels = _put_right(logged, channels, findings)
     _check_span(time, step)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
-    place = _Place(time, grid, np.diff(base) > HOLE * step)
+    place = _Place(time, grid, np.diff(base) > HOLE * usual_distance(base))
     columns = [
         (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"]) for n, v in channels.items()
     ]

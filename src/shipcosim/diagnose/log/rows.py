@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.log.thresholds import UNEVEN
+
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["arrays_of", "inside", "usable_rows", "usual_step"]
+__all__ = ["arrays_of", "inside", "usable_rows", "usual_distance", "usual_step"]
 
 
 def usable_rows(time: np.ndarray) -> np.ndarray:
@@ -23,6 +25,16 @@ def usable_rows(time: np.ndarray) -> np.ndarray:
 def usual_step(time: np.ndarray) -> float:
     """Median step of increasing times, without the last digits of rounding. [s]"""
     return float(f"{np.median(np.diff(time)):.9g}")
+
+
+def usual_distance(time: np.ndarray) -> float:
+    """Distance of increasing times within which data is not missing: their step, or that of 95 % of uneven rows. [s]
+
+    Times are uneven where they keep to no clock; a log of even times with lost rows is not.
+    """
+    step, spans = usual_step(time), np.diff(time)
+    off = np.abs(spans / step - np.round(spans / step))
+    return float(np.quantile(spans, 0.95)) if np.median(off) > UNEVEN else step
 
 
 def inside(time: np.ndarray, segments: Sequence[tuple[float, float]]) -> np.ndarray:

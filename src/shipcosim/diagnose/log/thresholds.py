@@ -22,6 +22,8 @@ FASTER = 5.0
 """Over what nine in ten changes of a log stay below, from which on it is no turn of the craft. Assumed."""
 LEAP = 5.0
 """Way between two rows over that by the logged velocity, from which on rows were lost. Assumed."""
+UNEVEN = 0.05
+"""Median distance of the spans from whole steps, in steps, from which on the times of a log are uneven. Assumed."""
 END_DISTANCE = 10.0
 """Distance of the first or last sample of a channel from the middle of all others over their range, from which on it is
 no measurement: it has one neighbour only. Start-up rows were off by millions. Assumed."""
