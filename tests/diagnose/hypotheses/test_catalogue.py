@@ -40,7 +40,7 @@ SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "hull_interaction": {"loss": "1"},
     "slow_azimuths": {"rate": "rad/s"},
     "azimuth_side_force": {"coefficient": "1"},
-    "drag_over_speed": {"power": "1"},
+    "drag_over_speed": {"power": "1", "scale": "1"},
     "drift_drag": {"coefficient": "1"},
     "hull_lift": {"coefficient": "N.s2/m2"},
     "hull_lift_place": {"place": "m"},

@@ -57,11 +57,12 @@ class SetOfCauses:
 
     @property
     def plausible(self) -> bool:
-        """Whether each estimate is inside its bounds and at least the least that matters."""
-        return all(
-            parameter.bounds[0] < parameter.neutral + value * parameter.typical < parameter.bounds[1]
-            and abs(value) > cause.definition.least
-            for (cause, parameter), value in zip(self.parameters, self.values, strict=True)
+        """Whether each estimate is inside its bounds, and one of each cause at least the least that matters."""
+        pairs = list(zip(self.parameters, self.values, strict=True))
+        inside = all(p.bounds[0] < p.neutral + value * p.typical < p.bounds[1] for (_, p), value in pairs)
+        return inside and all(
+            max(abs(value) for (owner, _), value in pairs if owner is cause) > cause.definition.least
+            for cause in self.hypotheses
         )
 
 
