@@ -160,7 +160,7 @@ def _sections(diagnosis):
 
     from shipcosim.cli.console import shown_path
     from shipcosim.report.diagnosis.key_figures import key_figures
-    from shipcosim.report.diagnosis.words import next_steps, title
+    from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, title
 
     alike = [(title(c.cause, c.component), f"{100 * c.probability:.0f} %") for c in diagnosis.indistinguishable]
     silent = ", ".join(title(name).lower() for name in diagnosis.not_testable)
@@ -168,6 +168,7 @@ def _sections(diagnosis):
     extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
     steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended, diagnosis.causes))
     return [
+        ("Wrong, largest first", _table(discrepancy_rows(diagnosis))),
         ("Found", _table(row for finding in diagnosis.findings for row in _rows(finding))),
         ("This log cannot tell apart", _table(alike)),
         ("Errors", _table(key_figures(diagnosis))),

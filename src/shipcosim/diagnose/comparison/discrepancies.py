@@ -9,6 +9,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.regression import regressed
 from shipcosim.diagnose.comparison.thresholds import (
+    LEAST_DAMPING,
     LEAST_SUPPORT,
     MENTIONED,
     REMAINS,
@@ -125,7 +126,7 @@ def _damping(one: AxisGain) -> Iterator[Discrepancy]:
     )
     support = 0.5 * left.independent * np.log(left.squares / fit.squares)
     far = abs(np.log(max(damping, 0.01))) - SURE_OF_GAIN * std / max(damping, 0.01) > np.log(MENTIONED)
-    if support > LEAST_SUPPORT and far:
+    if support > LEAST_SUPPORT and far and damping > max(SURE_OF_GAIN * std, LEAST_DAMPING):
         text = f"damping in {axis.name} over inertia {damping:.2f} of the model's"
         yield Discrepancy(text, None, axis.name, damping, std, "1", float(1.0 - fit.squares / left.squares))
 

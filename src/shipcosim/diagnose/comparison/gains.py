@@ -13,6 +13,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     LEAST_SUPPORT,
     OFF,
     SURE_OF_GAIN,
+    SURE_OF_RATIO,
     THRUSTER_SPREAD,
 )
 
@@ -134,7 +135,7 @@ class CommonRatio:
 
     def differs(self, least: float) -> bool:
         """Whether it differs from 1 by a factor of more than `least` for sure."""
-        return abs(np.log(self.ratio)) - SURE_OF_GAIN * self.std / self.ratio > np.log(least)
+        return abs(np.log(self.ratio)) - SURE_OF_RATIO * self.std / self.ratio > np.log(least)
 
 
 def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:

@@ -72,8 +72,12 @@ THRUSTER_SPREAD = 0.3
 GROSS = 1.5
 """Factor of a common ratio of thrust to inertia from which it is put right before anything else. No healthy ship of the
 tolerances comes near, nor a lost third of one thruster."""
+SURE_OF_RATIO = 2.0
+"""The same for a common ratio, whose standard deviation has the difference of axes in it already. Assumed."""
 PLAIN = 1.15
 """Factor from which it is said, where no cause in the catalogue explains the log."""
+LEAST_DAMPING = 0.05
+"""Damping over the model's below which it is not said: a hull that is unstable on her course has none to compare."""
 MENTIONED = 1.25
 """Factor from which a gain or a damping is a discrepancy."""
 REMAINS = 0.1

@@ -11,9 +11,9 @@ from shipcosim.report.diagnosis.gain_section import GainSection, gain_section
 from shipcosim.report.diagnosis.key_figures import key_figures
 from shipcosim.report.diagnosis.log_section import LogSection, log_section
 from shipcosim.report.diagnosis.track_figures import over_time_figures, track_figure
-from shipcosim.report.diagnosis.words import next_steps, outcome
+from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page
+from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
 from shipcosim.series import write_file
 from shipcosim.ssp import System
 
@@ -25,6 +25,8 @@ class DiagnosisPage(Page):
     Attributes
     ----------
     key_figures : tuple of KeyFigure
+    discrepancies : Table
+        What is wrong at first sight, largest first.
     next_steps : tuple of str
         What to do now.
     tracks : tuple of Figure
@@ -35,6 +37,7 @@ class DiagnosisPage(Page):
     """
 
     key_figures: tuple[KeyFigure, ...]
+    discrepancies: Table
     next_steps: tuple[str, ...]
     tracks: tuple[Figure, ...]
     log: LogSection
@@ -87,6 +90,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
         links=tuple(Link(anchor, title, section.found) for anchor, (title, section) in links.items()),
         data=tuple(figure.drawn for figure in figures),
         key_figures=key_figures(diagnosis),
+        discrepancies=Table(tuple(discrepancy_rows(diagnosis)), ("", "size", "of the error")),
         next_steps=tuple(steps),
         tracks=tracks,
         log=log,

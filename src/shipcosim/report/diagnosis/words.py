@@ -85,8 +85,7 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
     physics = [told(f, causes) for f in diagnosis.findings if f.kind == "physics"]
     log = f" The log itself is faulty: {_listed(data)}." if data else ""
     if diagnosis.verdict == "unknown":
-        sentence = "The simulation is wrong by more than noise, and none of the known causes explains it."
-        return "UNKNOWN", sentence + log
+        return "UNKNOWN", _unknown(diagnosis, physics) + log
     if diagnosis.verdict == "ambiguous":
         names = [title(c.cause, c.component).lower() for c in diagnosis.indistinguishable]
         besides = f" Certain is: {_listed(physics)}." if physics else ""
@@ -97,6 +96,26 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
     if data:
         return "NAMED", f"The log is faulty: {_listed(data)}. Apart from that, simulation and log agree."
     return "CONSISTENT", "Simulation and log agree, within noise and the tolerances of the model."
+
+
+def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
+    """What an answer without a name does know: the largest discrepancy, and what is beyond doubt."""
+    if not diagnosis.discrepancies:
+        certain = f" Certain is: {_listed(physics)}." if physics else ""
+        return f"The simulation is wrong by more than noise, and none of the known causes explains it.{certain}"
+    first = diagnosis.discrepancies[0].what
+    certain = f" Certain is: {_listed(physics)}." if physics else ""
+    return f"The simulation is wrong, first of all: {first}.{certain} None of the known causes explains all of it."
+
+
+def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
+    """What is wrong at first sight, largest first: in words, its size, and what share of the error it explains."""
+    rows = []
+    for one in diagnosis.discrepancies:
+        unit = "" if one.unit == "1" else f" {one.unit}"
+        size = f"{one.estimate:.2f} ± {one.std:.2f}{unit}" if one.std else ""
+        rows.append((one.what, size, f"{100.0 * one.share:.0f} %" if one.share else ""))
+    return rows
 
 
 def _listed(texts: Sequence[str], last: str = "and") -> str:
