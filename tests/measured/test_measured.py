@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from measured.logs import CHANNELS, FOLDERS, as_table, files
 
@@ -55,12 +56,20 @@ def diagnosed(table, channels, system, fmus):
 
 def has_figures(found):
     """Whether the errors of the simulation are stated, as numbers."""
-    errors = errors_of(found.tracks)
+    base, errors = found.baseline, errors_of(found.tracks)
+    if not all(np.isfinite(base[key]).all() for key in ("position_error_m", "heading_error_deg")):
+        return False
     return all(np.isfinite(errors[channel].values).all() for channel in ("position", "heading", "surge", "yaw_rate"))
 
 
-def test_a_short_log_goes_through_the_whole_diagnosis(log, fmus):
-    assert has_figures(diagnosed(*log(*SHORT), fmus))
+def test_a_short_log_goes_through_the_whole_diagnosis_and_its_thrusters_are_found_exchanged(log, fmus):
+    """The left thruster is at y = -0.285 m: more force there turns her to starboard, and in this spin to port."""
+    table, channels, system = log(*SHORT)
+    spin = pandas.read_csv(table)
+    assert np.corrcoef(spin["left_force"] - spin["right_force"], spin["yaw_rate"])[0, 1] < -0.8
+    found = diagnosed(table, channels, system, fmus)
+    assert has_figures(found)
+    assert [finding.cause for finding in found.findings] == ["channel_swap"]
 
 
 @pytest.mark.slow
