@@ -140,7 +140,7 @@ def check_log(path: Path, channels: Path | None = None) -> list[Problem]:
         more = f" and {len(finding.segments) - 3} more" if len(finding.segments) > 3 else ""
         where = f"{path}, {', '.join(finding.channels[:3])}{', ...' if len(finding.channels) > 3 else ''}"
         values = "".join(f", {name} {e.estimate:.3g}" for name, e in finding.parameters.items())
-        found = f"{finding.cause}{values}: {finding.note}, {', '.join(shown) + more or 'throughout'}."
+        found = f"{finding.cause}{values}: {finding.sentence}, {', '.join(shown) + more or 'throughout'}."
         problems.append(Problem(where, found, f"Probability {finding.probability:.2f}."))
     return problems
 

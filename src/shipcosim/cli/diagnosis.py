@@ -188,7 +188,7 @@ def _rows(finding):
         yield name, sure, parameter, f"{value} ± {std} {unit}".rstrip()
         name = sure = ""
     if not rows:
-        yield name, sure, where(finding), finding.note or ", ".join(finding.channels)
+        yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)
 
 
 def _table(rows):

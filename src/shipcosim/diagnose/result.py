@@ -93,6 +93,13 @@ class Finding:
         """``thrust_loss of port``."""
         return label_of(self.cause, self.component)
 
+    @property
+    def sentence(self) -> str:
+        """The note, with what explains the log alike."""
+        if not self.alternatives:
+            return self.note
+        return f"{'; or '.join([self.note, *self.alternatives])}: the log does not tell, nothing is put right"
+
     def as_json(self) -> dict:
         """The finding as an entry of diagnosis.json; what does not apply is left out."""
         entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}

@@ -324,3 +324,38 @@ def test_a_small_craft_that_swings_across_north_is_no_heading_wrap():
     time, random = np.arange(300.0), np.random.default_rng(4)
     heading = np.where(time % 40 < 3, 50.0, -20.0) + random.normal(size=len(time))
     assert examine(table({"time": time, "heading": np.mod(heading, 360.0)})) == []
+
+
+@pytest.mark.parametrize("grain", [0.1, 0.6, 1.1])
+@pytest.mark.parametrize("noise", [0.02, 0.5])
+@pytest.mark.parametrize("swing", [0.0, 20.0])
+@pytest.mark.parametrize("speed", [0.1, 0.5, 2.0])
+def test_positions_of_five_decimals_of_a_degree_are_no_gap(grain, noise, speed, swing):
+    """At 1 Hz a slow craft stays on one such step for seconds, and goes on by one: no line, nothing held."""
+    time, random = np.arange(600.0), np.random.default_rng(5)
+    course = np.radians(40.0 + swing * np.sin(time / 60.0))
+    position = np.cumsum(speed * np.exp(1j * course))
+    log = {"time": time}
+    for role, values in (("north", position.real), ("east", position.imag)):
+        log[role] = grain * np.round((values + noise * random.normal(size=len(time))) / grain)
+    assert examine(table(log)) == []
+
+
+@pytest.mark.parametrize("dead", [("surge", "sway"), ("sway",), ("yaw_rate",)])
+@pytest.mark.parametrize("value", [0.0, 1.7])
+def test_a_channel_that_never_changes_is_said_and_not_used(dead, value):
+    log = measured(seed=14)
+    log |= {role: np.full(len(log["time"]), value) for role in dead}
+    found = examine(table(log))
+    assert [(finding.cause, finding.channels) for finding in found] == [("gap", dead)]
+    again = repaired(table(log), found)
+    assert all(np.isnan(again[role].values).all() for role in dead) and np.isfinite(again["north"].values).any()
+
+
+def test_a_ship_moored_with_a_channel_at_zero_gives_no_finding():
+    log, random = measured(seed=15), np.random.default_rng(6)
+    log |= {role: 0.2 * random.normal(size=len(log["time"])) for role in ("north", "east")}
+    log["heading"] = np.mod(40.0 + 0.1 * random.normal(size=len(log["time"])), 360.0)
+    log |= {role: np.zeros(len(log["time"])) for role in ("surge", "sway", "yaw_rate")}
+    log = {role: values for role, values in log.items() if not role.startswith("wind")}
+    assert examine(table(log)) == []

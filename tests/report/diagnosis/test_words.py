@@ -129,6 +129,14 @@ def test_ambiguous_log_asks_for_the_prescribed_manoeuvre():
     assert "heading turn, 8 minutes" in step and "wind scale from current" in step
 
 
+def test_log_that_may_be_misread_asks_for_its_channel_file():
+    finding = Finding("frame", None, "data", 0.4, channels=("north",), note="one", alternatives=("two",))
+    diagnosis = Diagnosis("ambiguous", (finding,))
+    assert "one; or two" in outcome(diagnosis).sentence
+    (step,) = next_steps(diagnosis)
+    assert "channel file" in step
+
+
 def test_consistent_log_asks_for_nothing():
     assert next_steps(Diagnosis("consistent")) == ["Nothing needs to be done."]
 

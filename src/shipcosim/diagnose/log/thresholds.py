@@ -12,6 +12,14 @@ FEWEST_GAP_ROWS = 5
 """Fewest rows of a gap. Assumed."""
 RUN_CHANCE = 1e-7
 """Probability of a run of equal or straight values that long anywhere in a log, below which data was lost."""
+FEWEST_CONSTANT = 30
+"""Rows from which on a channel that never changes is one without life. Assumed."""
+CHANGES = 20.0
+"""Range of a channel over its noise and resolution that is a change. Assumed."""
+FEWEST_OTHERS = 0.3
+"""Share of a log outside of runs that must be there to say that runs are unusual. Assumed."""
+MOST_FLAGGED = 0.6
+"""Share of these rows that are held or straight, from which on a channel is too coarse to say so. Assumed."""
 LONGEST_WRAP = 6
 """Most samples of the heading that are interpolated across north. Assumed."""
 NEAR_NORTH = 45.0

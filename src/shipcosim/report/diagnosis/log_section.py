@@ -35,7 +35,13 @@ def log_section(diagnosis: Diagnosis, log: LogSummary) -> LogSection:
     findings = diagnosis.findings
     faults = [f for f in findings if f.kind == "data"]
     rows = (
-        (title(f.cause), ", ".join(f.channels) or "all", where(f), f.note or told(f), read_faults()[f.cause].repair)
+        (
+            title(f.cause),
+            ", ".join(f.channels) or "all",
+            where(f),
+            f.sentence or told(f),
+            "nothing" if f.alternatives else read_faults()[f.cause].repair,
+        )
         for f in faults
     )
     track = track_figure(log.repaired)

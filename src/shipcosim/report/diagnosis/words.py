@@ -81,11 +81,13 @@ def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> 
 
 
 def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[str, str]:
-    data = [told(f) for f in diagnosis.findings if f.kind == "data"]
+    data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
     physics = [told(f, causes) for f in diagnosis.findings if f.kind == "physics"]
     log = f" The log itself is faulty: {_listed(data)}." if data else ""
     if diagnosis.verdict == "unknown":
         return "UNKNOWN", _unknown(diagnosis, physics) + log
+    if misread := [f.sentence for f in diagnosis.findings if f.alternatives]:
+        return "AMBIGUOUS", f"The log is misread, and its own channels cannot tell where: {_listed(misread)}.{log}"
     if diagnosis.verdict == "ambiguous":
         names = [title(c.cause, c.component).lower() for c in diagnosis.indistinguishable]
         besides = f" Certain is: {_listed(physics)}." if physics else ""
@@ -147,14 +149,17 @@ def next_steps(
     list of str
     """
     steps = []
-    if data := [f for f in diagnosis.findings if f.kind == "data"]:
+    misread = any(f.alternatives for f in diagnosis.findings)
+    if misread:
+        steps.append("Find out which it is, correct units, signs or columns in the channel file, and diagnose again.")
+    if data := [f for f in diagnosis.findings if f.kind == "data" and not f.alternatives]:
         where = ", ".join(dict.fromkeys(title(f.cause).lower() for f in data))
         steps.append(f"Correct the logging where it is wrong ({where}); this diagnosis used a repaired copy.")
     physics = [f for f in diagnosis.findings if f.kind == "physics"]
     causes = read_catalogue() if causes is None else causes
     wanted = [(causes[f.cause].next_step, f.component) for f in physics if f.cause in causes]
     steps += [step.format(component=component) for step, component in wanted if step]
-    if diagnosis.verdict == "ambiguous":
+    if diagnosis.verdict == "ambiguous" and not misread:
         steps.append(_manoeuvre(diagnosis.prescription))
     if diagnosis.verdict == "unknown":
         steps.append("Look on the page how the missing force goes with time, heading and wind.")

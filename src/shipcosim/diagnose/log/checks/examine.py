@@ -10,7 +10,7 @@ import numpy as np
 from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.log.checks.clock import wrong_clock
 from shipcosim.diagnose.log.checks.labels import mislabelled
-from shipcosim.diagnose.log.checks.samples import gaps, outliers, wraps
+from shipcosim.diagnose.log.checks.samples import gaps, lifeless, outliers, wraps
 from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
@@ -46,17 +46,17 @@ def examine(log: xarray.Dataset) -> list[Finding]:
         As from `read_log`.
     """
     logged = _arrays(log)
-    turned = wraps(logged)
-    logged = _without(logged, turned)
-    throughout = misread(logged, _stated_units(log))
-    table, start = read_anew(logged, throughout), logged["time"][0]
-    rounded_away = {role: logged[role] for role, values in table.items() if np.isnan(values).all()}
-    found = gaps(table | rounded_away)
+    useless = [*wraps(logged), *lifeless(logged)]
+    used = _without(logged, useless)
+    throughout = misread(used, _stated_units(log))
+    table, start = read_anew(used, throughout), logged["time"][0]
+    empty = {role: logged[role] for role, values in table.items() if np.isnan(values).all()}  # not lost, but unusable
+    found = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
         found += _in_parts(_with_even_heading(_without(table, found)))
     rate = rate_of(throughout)
     found = [replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found]
-    return sorted([*turned, *throughout, *found], key=lambda finding: -finding.probability)
+    return sorted([*useless, *throughout, *found], key=lambda finding: -finding.probability)
 
 
 def _in_parts(table):

@@ -9,12 +9,16 @@ import numpy as np
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log.thresholds import (
+    CHANGES,
     END_DISTANCE,
     FASTER,
+    FEWEST_CONSTANT,
     FEWEST_GAP_ROWS,
     FEWEST_LEAPS,
+    FEWEST_OTHERS,
     LEAP,
     LONGEST_WRAP,
+    MOST_FLAGGED,
     NEAR_NORTH,
     NO_TURN,
     RUN_CHANCE,
@@ -22,8 +26,9 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.result import Finding
 
-__all__ = ["gaps", "outliers", "runs", "wraps"]
+__all__ = ["gaps", "lifeless", "outliers", "runs", "wraps"]
 
+LIFELESS = "values never change, while others say that they should: not used"
 LEAPING = "the ship leaps many times faster than she goes"
 NO_ROWS, NO_VALUES, HELD, STRAIGHT = (
     "there are no rows",
@@ -62,6 +67,44 @@ def gaps(log: dict) -> list[Finding]:
                 found.append(_finding(time, run))
     found += [_finding(time, run) for run in _leaps(log)]
     return _joined(found)
+
+
+def lifeless(log: dict) -> list[Finding]:
+    """Channels of the navigation that never change, although others say that they should.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        As in `gaps`.
+    """
+    constant = [role for role in NAVIGATION if role in log and _is_constant(log[role])]
+    moved = all(role in log and _changes(log[role]) for role in ("north", "east"))
+    turned = "heading" in log and _changes(np.degrees(np.unwrap(np.radians(_known(log["heading"])))))
+    sailed = any(role in log and _changes(log[role]) for role in ("surge", "sway"))
+    should = {"surge": moved, "sway": moved and turned, "yaw_rate": turned, "north": sailed, "east": sailed}
+    should["heading"] = "yaw_rate" in log and _changes(log["yaw_rate"])
+    roles = tuple(role for role in constant if should[role])
+    whole = ((float(log["time"][0]), float(log["time"][-1])),)
+    return [Finding("gap", None, "data", 1.0, {}, whole, roles, note=LIFELESS)] if roles else []
+
+
+def _known(values):
+    return values[np.isfinite(values)]
+
+
+def _is_constant(values):
+    values = _known(values)
+    is_one = len(values) >= FEWEST_CONSTANT and np.ptp(values) == 0.0
+    return is_one and len(np.unique(np.signbit(values))) == 1  # zeros of both signs are what a coarse unit leaves
+
+
+def _changes(values):
+    """Whether a channel changes by much more than its noise and resolution."""
+    values = _known(values)
+    if len(values) < FEWEST_CONSTANT:
+        return False
+    noise = np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0)
+    return bool(np.ptp(values) > CHANGES * (noise + quantum(values)))
 
 
 def _leaps(log):
@@ -183,10 +226,16 @@ def runs(flags: np.ndarray) -> np.ndarray:
 
 
 def _long_runs(flags, least):
-    """Runs of at least some rows, and longer than chance makes them, by how often flags follow flags in other runs."""
+    """Runs of at least some rows, and longer than chance makes them, by how often flags follow flags in other runs.
+
+    None where flags are what is usual, as in a channel of coarse resolution.
+    """
     spans = runs(flags)
     lengths = np.diff(spans, axis=1)[:, 0]
     ordinary = lengths[lengths < least]
+    others = len(flags) - lengths[lengths >= least].sum()
+    if others < FEWEST_OTHERS * len(flags) or ordinary.sum() > MOST_FLAGGED * others:
+        return
     chance = ((ordinary - 1).sum() + 0.2) / (ordinary.sum() + 2.0)
     for (first, last), length in zip(spans, lengths, strict=True):
         if length >= least and len(flags) * chance ** (length - 1) < RUN_CHANCE:

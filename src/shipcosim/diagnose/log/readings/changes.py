@@ -24,7 +24,7 @@ from shipcosim.diagnose.log.mislabels import (
     velocity_frame,
 )
 
-__all__ = ["Change", "Reading", "Slab", "changes"]
+__all__ = ["CLOCK", "Change", "Reading", "Slab", "changes"]
 
 
 @dataclass(frozen=True)

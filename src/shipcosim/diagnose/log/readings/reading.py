@@ -8,7 +8,7 @@ import numpy as np
 
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of
-from shipcosim.diagnose.log.readings.changes import Change, changes
+from shipcosim.diagnose.log.readings.changes import CLOCK, Change, changes
 from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, reading_of
 from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations, steadiness
 from shipcosim.diagnose.log.thresholds import (
@@ -106,6 +106,7 @@ def _holds_throughout(best, evidence):
 
 def _findings(readings: list[Judged], unexplained: float) -> list[Finding]:
     """Findings of the changes that are sure, and one of what is left open."""
+    readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
     for one in readings:
         for said in {change.sentence for change in one.changes}:
@@ -121,6 +122,25 @@ def _findings(readings: list[Judged], unexplained: float) -> list[Finding]:
     if unexplained + rests.get((), 0.0) > 1.0 - READING_SURE:
         return found if unexplained < LEFT_OPEN else []
     return [*found, _left_open(rests)]
+
+
+def _with_known_rates(readings):
+    """Readings in which a clock of any rate is one of a usual rate, where that explains as much."""
+    usual = {_beside_clock(one): one for one in reversed(readings) if _clock_of(one) not in (None, CLOCK)}
+    found = []
+    for one in readings:
+        other = usual.get(_beside_clock(one)) if _clock_of(one) == CLOCK else None
+        same = other is not None and abs(np.log(one.rate[0] / other.rate[0])) < 3.0 * one.rate[1] / one.rate[0]
+        found.append(replace(other, probability=one.probability) if same else one)
+    return sorted(found, key=lambda one: -one.probability)
+
+
+def _clock_of(one):
+    return next((change.sentence for change in one.changes if change.slot == "time"), None)
+
+
+def _beside_clock(one):
+    return frozenset(change.sentence for change in one.changes if change.slot != "time")
 
 
 def _named(change, probability, readings):

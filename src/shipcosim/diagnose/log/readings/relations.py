@@ -161,7 +161,10 @@ def _most_telling(time, pairs):
         relations = {
             key: _relation(seen[first + horizon] - seen[first], told[first + horizon] - told[first], count)
             for key, (seen, told) in pairs.items()
+            if np.ptp(told) and np.ptp(seen)
         }
+        if not relations:
+            return {}
         for key, relation in relations.items():
             if key not in factors or np.hypot(*relation.std) < np.hypot(*factors[key].std):
                 factors[key] = relation
