@@ -211,9 +211,10 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
 def stated(log: JudgedLog) -> Diagnosis:
     """What is said of a log: faults, causes since when they act, what it could not have shown, what to sail next."""
     found, judgement = log.explained.identification, log.judgement
-    if any(fault.alternatives for fault in found.faults):  # of a log that may be misread, nothing is said of the ship
-        return Diagnosis("ambiguous", found.faults, not_testable=untestable_causes(log), basis=log)
     comparison = found.comparison
+    if any(fault.alternatives for fault in found.faults):  # of a log that may be misread, nothing is said of the ship
+        errors = comparison.errors if comparison else None
+        return Diagnosis("ambiguous", found.faults, not_testable=untestable_causes(log), baseline=errors, basis=log)
     beyond_doubt = comparison.findings if comparison else ()
     of_log = (*found.faults, *found.misconnections, *beyond_doubt)
     if comparison and judgement.verdict == "unknown":

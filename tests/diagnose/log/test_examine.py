@@ -320,6 +320,21 @@ def test_a_craft_that_spins_goes_the_long_way_round_and_that_is_no_heading_wrap(
     assert examine(table(log)) == []
 
 
+def test_a_ship_that_keeps_north_wraps_again_and_again_and_each_is_found():
+    log, random = measured(seed=16), np.random.default_rng(7)
+    heading = np.mod(0.5 * np.sin(log["time"] / 20.0) + 0.3 * random.normal(size=len(log["time"])), 360.0)
+    few = {"time": log["time"], "heading": heading}
+    crossing = np.flatnonzero(np.abs(np.diff(heading)) > 180.0)[::3]
+    crossing = crossing[(np.diff(crossing, append=9999) > 4) & (crossing < len(heading) - 4)]
+    found = []
+    for row in crossing:
+        if abs(heading[row + 3] - heading[row]) > 180.0:
+            heading[row : row + 4] = np.linspace(heading[row], heading[row + 3], 4)
+            found.append(row)
+    (finding,) = [f for f in examine(table(few)) if f.cause == "heading_wrap"]
+    assert len(found) > 20 and {first for first, _ in finding.segments} >= {float(row + 1) for row in found}
+
+
 def test_a_small_craft_that_swings_across_north_is_no_heading_wrap():
     time, random = np.arange(300.0), np.random.default_rng(4)
     heading = np.where(time % 40 < 3, 50.0, -20.0) + random.normal(size=len(time))

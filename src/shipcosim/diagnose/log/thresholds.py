@@ -27,7 +27,7 @@ NEAR_NORTH = 45.0
 NO_TURN = 15.0
 """Change of heading from row to row that can be one interpolated across north. [deg] Assumed."""
 FASTER = 5.0
-"""Over what nine in ten changes of a log stay below, from which on it is no turn of the craft. Assumed."""
+"""Over what three in four changes of a log stay below, from which on it is no turn of the craft. Assumed."""
 LEAP = 5.0
 """Way between two rows over that by the logged velocity, from which on rows were lost. Assumed."""
 UNEVEN = 0.05
@@ -82,7 +82,7 @@ STEADINESS_FLOOR = 0.1
 """What gusts take from the steadiness of a wind. Assumed."""
 EXPLAINED = 0.3
 """What a relation may leave unexplained, to be asked whether it holds throughout. Assumed."""
-THROUGHOUT = 0.85
+THROUGHOUT = 0.75
 """Share of a log in which a reading holds that is one of all of it. Assumed."""
 READING_SURE = 0.95
 """Probability from which on a change is named."""

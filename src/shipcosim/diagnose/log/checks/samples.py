@@ -288,7 +288,7 @@ def wraps(log: dict) -> list[Finding]:
 def _no_turn(heading):
     """Change from row to row that is no turn of this craft, however agile she is. [deg]"""
     change = np.abs(wrap_series(np.diff(heading[np.isfinite(heading)])))
-    return max(NO_TURN, FASTER * float(np.quantile(change, 0.9))) if len(change) else NO_TURN
+    return max(NO_TURN, FASTER * float(np.quantile(change, 0.75))) if len(change) else NO_TURN
 
 
 def _long_way(time, heading, a, b, tolerance, faster):
@@ -298,6 +298,9 @@ def _long_way(time, heading, a, b, tolerance, faster):
     """
     n, between = len(a), len(heading) - len(a) - 1
     crossing = (np.abs(b - a) > 180.0) & (np.abs(wrap_series(b - a)) < 45.0) & (np.abs(b - a) > faster * (between + 1))
+    turning = np.nan_to_num(np.abs(wrap_series(np.diff(heading))))
+    beside = np.minimum(np.r_[0.0, turning[: n - 1]], np.r_[turning[between + 1 :], 0.0])  # before a, after b
+    crossing &= np.abs(b - a) > 2.0 * beside * (between + 1)
     some = np.zeros(n, bool)
     for k in range(1, between + 1):
         share = (time[k : n + k] - time[:n]) / (time[between + 1 :] - time[:n])

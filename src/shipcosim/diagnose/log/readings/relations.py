@@ -218,7 +218,7 @@ def _relation(seen, told, count):
 
 def _throughout(sums, factor):
     """Share of what is seen to change in windows in which a factor explains it; no window counts for many."""
-    seen = np.minimum(sums[:, 0].real, 4.0 * np.quantile(sums[:, 0].real, ROBUST_SHARE))
+    seen = np.minimum(sums[:, 0].real, np.quantile(sums[:, 0].real, ROBUST_SHARE))
     holds = _left(sums, factor) < 0.5 * sums[:, 0].real
     return float(seen[holds].sum() / max(seen.sum(), 1e-300))
 
