@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.cli.project import build_stale, find_project, find_system
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.result import Diagnosis
+    from shipcosim.diagnose.result import Diagnosis, Finding
 
 DEFAULT_SYSTEM = "gunnerus_open"
 FILES = ("diagnosis.json", "report.html", "extended.ssp", "extended.ssv")
@@ -169,13 +169,18 @@ def _sections(diagnosis):
     steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended, diagnosis.causes))
     return [
         ("Wrong, largest first", _table(discrepancy_rows(diagnosis))),
-        ("Found", _table(row for finding in diagnosis.findings for row in _rows(finding))),
+        ("Found", finding_table(diagnosis.findings)),
         ("This log cannot tell apart", _table(alike)),
         ("Errors", _table(key_figures(diagnosis))),
         ("This log could not have shown", Text(silent) if silent else None),
         ("Remarks", Text("\n".join(diagnosis.notes), style="yellow") if diagnosis.notes else None),
         ("What to do next", Text(steps)),
     ]
+
+
+def finding_table(findings: Iterable[Finding]) -> Any:
+    """Findings as a table, their parameters row by row; None without one."""
+    return _table(row for finding in findings for row in _rows(finding))
 
 
 def _rows(finding):

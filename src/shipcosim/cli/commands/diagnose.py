@@ -10,7 +10,12 @@ from shipcosim.cli.options import Debug
 
 
 def diagnose(
-    data: Annotated[Path, typer.Argument(metavar="DATA", help="Measured data: .csv, .csv.gz, .parquet or .nc.")],
+    data: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="DATA...", help="Measured data: .csv, .csv.gz, .parquet or .nc; several logs of one ship."
+        ),
+    ],
     channels: Annotated[
         Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
     ] = None,
@@ -34,14 +39,21 @@ def diagnose(
     """Say what a simulation gets wrong of a measured log, and why: causes by name, with size and probability.
 
     Leaves diagnosis.json and report.html; where a cause in the model was named extended.ssp and extended.ssv. Exit
-    code 0 if simulation and log agree, 1 if something was found.
+    code 0 if simulation and log agree, 1 if something was found. Several logs are weighed together: the ship is common,
+    the weather each log's own; diagnosis.json says what all say, and each.
     """
     from shipcosim.cli.diagnosis import default_folder, diagnose_log, print_diagnosis
+    from shipcosim.cli.joint_diagnosis import diagnose_logs, print_joint
     from shipcosim.cli.results import check_targets
 
-    folder = out or default_folder(data)
+    folder = out or default_folder(data[0])
     check_targets(folder)
-    diagnosis = diagnose_log(data, folder, system=system, channels=channels, effects=effects, reference=reference)
-    print_diagnosis(diagnosis, folder, as_json)
+    given = {"system": system, "channels": channels, "effects": effects, "reference": reference}
+    if len(data) > 1:
+        diagnosis = diagnose_logs(data, folder, **given)
+        print_joint(diagnosis, folder, as_json)
+    else:
+        diagnosis = diagnose_log(data[0], folder, **given)
+        print_diagnosis(diagnosis, folder, as_json)
     if diagnosis.verdict != "consistent":
         raise typer.Exit(FAILED)
