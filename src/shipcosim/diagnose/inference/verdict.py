@@ -74,7 +74,7 @@ def judged(explained: ExplainedLog) -> JudgedLog:
         return {kind: gain for kind, gain in unmodelled[fit].items() if kind not in FORCES or not without_wind}
 
     usual = problem.model.ordinary_errors.get(ANY_CAUSE, 0.0) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
-    null = {hypothesis.label: usual for hypothesis in problem.hypotheses}
+    null = {hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {}
     judgement = judge(fits, unmodelled_beside, null)
     if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
         return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)  # whatever healthy logs gain
