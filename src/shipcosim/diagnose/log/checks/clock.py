@@ -39,6 +39,8 @@ from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["wrong_clock"]
 
+_AT_ONCE = 8  # columns that are whitened together: of a long log all of them, several times over, would fill the memory
+
 
 @dataclass(frozen=True)
 class _Side:
@@ -53,10 +55,13 @@ class _Side:
 
     def column(self, first, last):
         """Whitened change (n * a, k) of the level by a clock that is wrong by 1 in each of k segments."""
-        time = self.motion.time
-        inner = (time[:, None] > np.asarray(first)) & (time[:, None] <= np.asarray(last))
-        ways = np.cumsum(self.steps[:, :, None] * inner[:, None, :], axis=0)
-        return self.whitener(ways).reshape(self.rest.size, -1)
+        time, found = self.motion.time, np.empty((self.rest.size, len(first)))
+        for some in range(0, len(first), _AT_ONCE):
+            part = slice(some, some + _AT_ONCE)
+            inner = (time[:, None] > np.asarray(first[part])) & (time[:, None] <= np.asarray(last[part]))
+            ways = np.cumsum(self.steps[:, :, None] * inner[:, None, :], axis=0)
+            found[:, part] = self.whitener(ways).reshape(self.rest.size, -1)
+        return found
 
     def match(self, columns):
         """Match of columns with the rest, beside the scale of the whole log, (k,)."""

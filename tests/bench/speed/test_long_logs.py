@@ -1,0 +1,90 @@
+"""Memory of a long log that is linearised and filtered part by part, beside the same in one piece; and side by side.
+
+Each measurement of memory is that of a process of its own: its largest resident size. The log is four hours at 1 Hz,
+drawn from the independent truth; the ship model takes it as it is. CPU time is counted, as the machine may be shared.
+"""
+
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+MINUTES, SEED = 240, 5900
+LESS_MEMORY, MOST_MEMORY = 1.3, 600.0  # 1, MB
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    from truth import draw_many
+
+    path = tmp_path_factory.mktemp("long") / "log.csv"
+    draw_many("work", [SEED], minutes=MINUTES, causes=0)[0].save(path)
+    return path
+
+
+@pytest.mark.slow
+def test_parts_need_less_memory_and_no_more_time(log):
+    whole, parts = measured(log, 10**9), measured(log, 4096)
+    print(f"\n{MINUTES * 60} rows in one piece: {whole[0]:.0f} MB, {whole[1]:.1f} s CPU; in parts: {parts}")
+    assert parts[2] == pytest.approx(whole[2], rel=1e-9)  # the same score
+    assert whole[0] / parts[0] >= LESS_MEMORY and parts[0] <= MOST_MEMORY
+    assert parts[1] <= 1.1 * whole[1]
+
+
+@pytest.mark.slow
+def test_fits_side_by_side_cost_no_more_processor_time():
+    """Up to a fifth: threads wait for each other. The results are equal, which a test beside the sources holds."""
+    from diagnose import twin
+
+    from shipcosim.diagnose.inference import workers
+    from shipcosim.diagnose.inference.fitting import fitted
+    from speed.measure import cpu_seconds, reported
+
+    problem = twin.problem("healthy")
+    causes = [(one,) for one in problem.hypotheses[:8]]
+    alone = lambda: [fitted(problem, one) for one in causes]  # noqa: E731
+    together = lambda: workers.each(lambda one: fitted(problem, one), causes)  # noqa: E731
+    alone()
+    ratios = [cpu_seconds(together) / cpu_seconds(alone) for _ in range(5)]
+    assert reported("fits in threads over fits in turn", ratios, "times the CPU time", "1.2") <= 1.2
+
+
+def measured(log, part):
+    """Memory [MB], CPU time [s] and score of a fit to a log, in a process of its own, in parts of so many rows."""
+    environment = os.environ | {"OMP_NUM_THREADS": "1"}
+    command = [sys.executable, __file__, str(log), str(part)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return tuple(map(float, done.stdout.split()[-3:]))
+
+
+def main(log, part):
+    """A fit and a first look at all causes; the process's memory, its CPU time for both and the score, printed."""
+    from shipcosim.diagnose.inference import parts
+    from shipcosim.diagnose.inference.fitting import fitted
+    from shipcosim.diagnose.inference.problem import identification_problem
+    from shipcosim.diagnose.inference.screening import screened
+    from shipcosim.diagnose.log.repair import repaired
+    from shipcosim.diagnose.pipeline import read_measurements
+    from shipcosim.diagnose.ship import inputs
+    from shipcosim.ssp import read_system
+    from speed.measure import cpu_seconds
+
+    parts.PART, parts._ENTRIES, inputs._MANY_ROWS = part, part * 64, 10**9
+    read = read_measurements(log, read_system(ROOT / "ssp" / "gunnerus_open", fmus=[ROOT / "build" / "fmus"]))
+    table = repaired(read.log)
+    short = identification_problem(
+        table.isel(time=slice(0, 1200)), read.ship, read.causes
+    )  # compiles, and has the noise
+    problem, found = identification_problem(table, read.ship, read.causes, short.noise), []
+    seconds = cpu_seconds(lambda: found.append(fitted(problem)))
+    seconds += cpu_seconds(lambda: screened(problem, found[0]))
+    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, seconds, found[0].score)
+
+
+if __name__ == "__main__":
+    sys.path[:0] = [str(Path(__file__).resolve().parents[1])]
+    main(*sys.argv[1:2], int(sys.argv[2]))
