@@ -23,6 +23,8 @@ PART = 4096
 _ENTRIES = 4096 * 64
 _LEAST = 512
 """Rows times columns of a part, some 50 MB in all that the filter makes of them; rows that it has at least."""
+_KEPT = 400_000
+"""Rows times columns that are kept for a second look, 38 MB; more are made anew, which takes half as long again."""
 
 Columns = Callable[[slice], tuple[np.ndarray, np.ndarray]]
 """Further columns of some rows, `driven` and `seen` as in `Linear`."""
@@ -54,7 +56,8 @@ class InParts:
 
     def whole(self) -> Linear:
         """All rows in one, for problems of few columns."""
-        return Linear(*(np.concatenate(fields) for fields in zip(*map(self.part, self.slices()), strict=True)))
+        made = list(map(self.part, self.slices()))
+        return made[0] if len(made) == 1 else Linear(*map(np.concatenate, zip(*made, strict=True)))
 
     def chosen(self, columns: Sequence[int]) -> InParts:
         """The problem with only some of its columns, by number from 1 on, besides the first."""
@@ -95,22 +98,23 @@ def linearised_by_parts(
     model : ShipModel
     regressors : sequence of Regressor
     kept : bool
-        Whether a log of one part is linearised once for all.
+        Whether a log that is not too long is linearised once for all.
 
     Returns
     -------
     InParts
     """
-    rows, done = record.time.size, []
+    rows, columns, done = record.time.size, len(regressors), []
+    anew = InParts(rows, columns, lambda which: linearise(motion, record, model, regressors, which))
+    if not kept or rows * (1 + columns) > _KEPT:
+        return anew
 
     def part(which):
-        if not kept or rows > PART:
-            return linearise(motion, record, model, regressors, which)
         if not done:
-            done.append(in_parts(linearise(motion, record, model, regressors)))
+            done.append(in_parts(anew.whole()))
         return done[0].part(which)
 
-    return InParts(rows, len(regressors), part)
+    return InParts(rows, columns, part)
 
 
 def with_columns(linear: Linear | InParts, count: int, more: Columns) -> InParts:
