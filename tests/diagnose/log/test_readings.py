@@ -108,3 +108,10 @@ def test_positions_and_headings_alone_are_left_as_they_are():
     few = {role: log[role] for role in ("time", "north", "east", "heading")}
     for factor in (1e3, 1.0 / 60.0, 0.5):
         assert examine(table(few | {"time": factor * few["time"]})) == []
+
+
+def test_an_ordinary_dropout_is_no_gap_where_rows_are_a_thousand_seconds_apart():
+    log = measured(seed=29)
+    log["heading"][300:303] = np.nan
+    few = {role: log[role] for role in ("north", "east", "heading")}
+    assert examine(table({"time": 1000.0 * log["time"]} | few)) == []

@@ -161,7 +161,7 @@ def _flat_runs(log, roles):
         return
     time, values = log["time"], np.column_stack([log[role] for role in roles])
     for first, last in runs(np.all(np.isnan(values), axis=1)):
-        if time[last - 1] - time[first] >= SHORTEST_GAP:
+        if time[last - 1] - time[first] >= SHORTEST_GAP and last - first >= FEWEST_GAP_ROWS:
             yield _Run(first, last - 1, roles, NO_VALUES)
     bends = np.column_stack([_bend(log[role], role) for role in roles])
     limits = [_straight(log[role], role) for role in roles]
