@@ -118,14 +118,17 @@ def find_common_causes(
         alone[name] = find_causes(log, system, channels, causes, reference=reference)
     say("all logs together")
     identified = {name: one.basis.explained.identification for name, one in alone.items() if one.basis}
-    crude = {
-        name: one.comparison.findings for name, one in identified.items() if one.comparison and one.comparison.findings
-    }
     widest = max(one.problem.model.form_scale for one in identified.values())
     problems = {name: _with_form(one.problem, widest) for name, one in identified.items()}
     with threadpool_limits(1):
         found = judged_jointly(SeveralLogs(problems))
         untestable = untestable_jointly(found)
+    unknown = found.judgement.verdict == "unknown"
+    crude = {
+        name: (*one.comparison.findings, *(one.comparison.found_without(one.causes) if unknown else ()))
+        for name, one in identified.items()
+        if one.comparison
+    }
     return _stated(found, combined(crude, len(alone)), untestable, alone)
 
 
