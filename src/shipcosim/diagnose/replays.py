@@ -13,6 +13,7 @@ from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.result import Finding
 from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
+from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.tracks import Tracks, fitting_horizon, tracks_by_systems
 from shipcosim.ssp import System
@@ -79,6 +80,6 @@ def replay_log(
 
 def _signals(system: System) -> dict[str, str] | None:
     """By role, what the instruments show that a diagnosis inserted; None of a system without them."""
-    needed = {"heading_bias", "lever_x", "lever_y", "velocity_scale"}
+    needed = set(Instruments().errors)
     own = next((name for name, part in system.components.items() if needed <= set(part.fmu.variables)), None)
     return None if own is None else {role: f"{own}.{name}_meas" for role, name in _SHOWN.items()}

@@ -12,7 +12,7 @@ import xarray
 from shipcosim.cosim import replay
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
-from shipcosim.diagnose.ship.instruments import readings, true_motion
+from shipcosim.diagnose.ship.instruments import Instruments, readings, true_motion
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.diagnose.ship.time_scales import response_times
 from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table
@@ -158,7 +158,7 @@ def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
     if not one.signals:
         return {}, 0.0
     part = one.system.components[one.signals["north"].rpartition(".")[0]]
-    names = ("heading_bias", "lever_x", "lever_y", "velocity_scale")
+    names = tuple(Instruments().errors)
     given = {name: number_of(part, name) for name in (*names, "lag") if name in part.fmu.variables}
     return given, given.pop("lag", 0.0)
 

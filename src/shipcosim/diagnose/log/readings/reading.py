@@ -130,8 +130,9 @@ def _with_known_rates(readings):
     found = []
     for one in readings:
         other = usual.get(_beside_clock(one)) if _clock_of(one) == CLOCK else None
-        same = other is not None and abs(np.log(one.rate[0] / other.rate[0])) < 3.0 * one.rate[1] / one.rate[0]
-        found.append(replace(other, probability=one.probability) if same else one)
+        if other is not None and abs(np.log(one.rate[0] / other.rate[0])) < 3.0 * one.rate[1] / one.rate[0]:
+            one = replace(other, probability=one.probability)
+        found.append(one)
     return sorted(found, key=lambda one: -one.probability)
 
 
