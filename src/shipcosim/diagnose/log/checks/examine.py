@@ -15,7 +15,7 @@ from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_in, undone
-from shipcosim.diagnose.log.readings.reading import misread
+from shipcosim.diagnose.log.readings.reading import is_as_labelled, misread
 from shipcosim.diagnose.log.repair import rate_of, read_anew, repaired
 from shipcosim.diagnose.log.rows import inside, usable_rows
 from shipcosim.diagnose.stages import CheckedLog, ReadLog
@@ -48,22 +48,36 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     logged = _arrays(log)
     useless = [*wraps(logged), *lifeless(logged)]
     used = _without(logged, useless)
-    throughout = misread(used, _stated_units(log))
+    throughout = _unless_in_part(misread(used, _stated_units(log)), used, _stated_units(log))
     table, start = read_anew(used, throughout), logged["time"][0]
     empty = {role: logged[role] for role, values in table.items() if np.isnan(values).all()}  # not lost, but unusable
     found = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
-        found += _in_parts(_with_even_heading(_without(table, found)))
+        found += _in_parts(_with_even_heading(_without(table, found)), _stated_units(log))
     rate = rate_of(throughout)
     found = [replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found]
     return sorted([*useless, *throughout, *found], key=lambda finding: -finding.probability)
 
 
-def _in_parts(table):
-    """Mistakes of parts of a log, and those of the wind."""
+def _unless_in_part(throughout, table, stated):
+    """Mistakes throughout a log; none where wrong labels in a part of it explain all of it."""
+    if throughout:
+        labels, right = mislabelled(_with_even_heading(table))
+        if labels and is_as_labelled(right, stated):
+            return []
+    return throughout
+
+
+def _in_parts(table, stated):
+    """Mistakes of parts of a log, and those of the wind.
+
+    A label is wrong in a part of a log only where all channels agree throughout once it is put right.
+    """
     quiet = silent_rate(table)
     table = undone(table, mislabel_in(quiet[0]), quiet[0].segments) if quiet else table
     labels, right = mislabelled(table)
+    if labels and not is_as_labelled(right, stated):
+        labels, right = [], table
     clock = wrong_clock(right)
     kept = [label for label in labels if not _is_the_clock(label, clock, table["time"])]
     if len(kept) < len(labels):

@@ -24,7 +24,7 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.result import Estimate, Finding
 
-__all__ = ["misread"]
+__all__ = ["is_as_labelled", "misread"]
 
 DEGREE = float(np.degrees(1.0))
 
@@ -47,6 +47,20 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
     evidence = evidence_of(log)
     readings, unexplained = judged(evidence, changes(stated))
     return _findings(readings, unexplained) if _holds_throughout(readings[0], evidence) else []
+
+
+def is_as_labelled(log: dict, stated: dict[str, str]) -> bool:
+    """Whether no reading of a log, but for its clock, is likelier than the one that its labels say.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        As in `misread`.
+    stated : dict of str to str
+    """
+    readings, unexplained = judged(evidence_of(log), changes(stated))
+    labels_only = [change for change in readings[0].changes if change.slot != "time"]
+    return not labels_only and unexplained < LEFT_OPEN
 
 
 def evidence_of(log: dict) -> Evidence:
