@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from diagnose import usv
+from diagnose import twin, usv
 
 from shipcosim.diagnose.comparison.compared import compared
 from shipcosim.diagnose.comparison.errors import horizons_of
@@ -15,6 +15,7 @@ from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.stages import ReadLog
 from shipcosim.models.core.motion import Motion
+from truth import draw
 
 EXCHANGED = {"left_rpm": ("right_rpm", 1.0), "right_rpm": ("left_rpm", 1.0)}
 LEFT_REVERSED = {"left_rpm": ("left_rpm", -1.0)}
@@ -93,3 +94,14 @@ def test_horizons_follow_the_size_of_the_craft():
 def test_rows_too_far_apart_for_the_craft_are_said_to_be():
     log = sailed(11).isel(time=slice(None, None, 4))
     assert not held(log).comparison.is_resolved
+
+
+@pytest.mark.parametrize("seed", [704, 705])
+def test_thrusters_that_answer_weather_which_nobody_knows_are_not_said_to_run_the_wrong_way(tmp_path, seed):
+    """In stationkeeping what is commanded goes against what is felt, and most of what is felt is not the thrusters'."""
+    draw("hold", seed, causes="unknown").save(tmp_path / "log.csv")
+    ship = ship_model_of(twin.system())
+    found = compared(checked(ReadLog(read_log(tmp_path / "log.csv"), ship, read_catalogue())))
+    assert found.comparison.labels.best.changes and not found.comparison.labels.is_wrong
+    assert not found.faults
+    assert not [one for one in found.comparison.discrepancies if "its command" in one.what]

@@ -49,6 +49,8 @@ class AxisFit:
         Log-likelihood that the commanded loads gain. [nats]
     squares : float
         Mean square of what is left. [N2 or N2.m2]
+    share : float
+        Of the felt force's mean square that is explained.
     damping, damping_std : float
         The water's load as fitted over that of the model, along the log.
     hull : (n,) array
@@ -59,6 +61,7 @@ class AxisFit:
     std: np.ndarray
     support: float
     squares: float
+    share: float
     damping: float
     damping_std: float
     hull: np.ndarray
@@ -185,7 +188,9 @@ class Axis:
         without = self._without
         support = 0.5 * min(found.independent, without.independent) * np.log(without.squares / found.squares)
         hull, damping, std = self._water(found, k)
-        return AxisFit(found.coefficients[:k], found.std[:k], float(support), found.squares, damping, std, hull)
+        gains, deviations = found.coefficients[:k], found.std[:k]
+        share = 1.0 - found.squares / self.felt_unit**2
+        return AxisFit(gains, deviations, float(support), found.squares, share, damping, std, hull)
 
     @cached_property
     def _prior(self) -> np.ndarray:

@@ -14,6 +14,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     MENTIONED,
     REMAINS,
     SURE_OF_GAIN,
+    TOLD,
 )
 from shipcosim.diagnose.result import Discrepancy
 
@@ -48,7 +49,7 @@ def discrepancies_of(labels: Labels, gains: Sequence[AxisGain], ratio: CommonRat
         text = f"thrust over inertia {ratio.ratio:.2f} of the model's"
         found.append(Discrepancy(text, None, None, ratio.ratio, ratio.std, "1", share))
     else:
-        found += [one for gain in gains if gain.is_off for one in _weak(gain)]
+        found += [one for gain in gains if gain.is_off and gain.is_told for one in _weak(gain)]
     if all(one.is_common for one in off):  # else what one thruster lacks passes for damping
         found += [one for gain in off for one in _damping(gain)]
     if labels.used.is_late:
@@ -68,7 +69,7 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         before = axis.total(labels.logged.commanded)
         fit = axis.compared(before[None])
         gain, std = float(fit.gains[0]), float(fit.std[0])
-        if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT:
+        if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT or fit.share < TOLD:
             continue
         because = bool(why) and bool(np.abs(before - axis.total(labels.best.commanded)).max() > 0.1 * axis.size)
         told |= because

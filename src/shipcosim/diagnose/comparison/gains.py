@@ -15,6 +15,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     SURE_OF_GAIN,
     SURE_OF_RATIO,
     THRUSTER_SPREAD,
+    TOLD,
 )
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ class AxisGain:
         By thruster.
     support_of_each : float
         Log-likelihood that the thrusters gain, each with a gain of its own. [nats]
+    share_of_each : float
+        Of the felt force's mean square that they then explain, with the water.
     correlation : float
         Of what is commanded with what is felt less the model's other loads.
     error : float
@@ -56,6 +59,7 @@ class AxisGain:
     each: dict[str, float]
     each_std: dict[str, float]
     support_of_each: float
+    share_of_each: float
     correlation: float
     error: float
 
@@ -65,9 +69,14 @@ class AxisGain:
         return self.error > OFF
 
     @property
+    def is_told(self) -> bool:
+        """Whether thrusters and water explain most of what is felt."""
+        return self.share_of_each > TOLD
+
+    @property
     def is_known(self) -> bool:
         """Whether the log tells the gain."""
-        return self.fit.support > LEAST_SUPPORT and self.gain > SURE_OF_GAIN * self.std
+        return self.is_told and self.fit.support > LEAST_SUPPORT and self.gain > SURE_OF_GAIN * self.std
 
     @property
     def is_common(self) -> bool:
@@ -115,7 +124,7 @@ def _gain(axis: Axis, commanded: Commanded) -> AxisGain:
     error = float(np.sqrt(((other - total) ** 2).mean())) / size
     each = dict(zip(names, map(float, apart.gains), strict=True))
     each_std = dict(zip(names, map(float, apart.std), strict=True))
-    return AxisGain(axis, total, fit, gain, std, each, each_std, apart.support, correlation, error)
+    return AxisGain(axis, total, fit, gain, std, each, each_std, apart.support, apart.share, correlation, error)
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     OPPOSITE,
     RIVAL,
     SURELY_WRONG,
+    TOLD,
 )
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.surrogate import with_surrogates
@@ -113,16 +114,20 @@ class Labels:
     best : Reading
     rivals : tuple of Reading
         Other readings that cannot be told from the best.
+    explained : float
+        Largest share of the felt force that the best reading explains on an axis where it differs from the logged one.
     """
 
     logged: Reading
     best: Reading
     rivals: tuple[Reading, ...]
+    explained: float = 0.0
 
     @property
     def is_wrong(self) -> bool:
         """Whether the labels are wrong beyond doubt, in one way or another."""
-        return self.best.score > self.logged.score + SURELY_WRONG and self.logged not in self.rivals
+        better = self.best.score > self.logged.score + SURELY_WRONG and self.logged not in self.rivals
+        return better and self.explained > TOLD
 
     @property
     def is_sure(self) -> bool:
@@ -164,17 +169,32 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     found = [logged, *(read(one) for one in singles), *(read(*several) for several in _together(singles))]
     found.sort(key=lambda one: -one.score)
     rivals = tuple(one for one in found[1:] if one.score > found[0].score - RIVAL)
-    return Labels(logged, found[0], rivals)
+    return Labels(logged, found[0], rivals, _explained(found[0], logged, axes))
+
+
+def _explained(best: Reading, logged: Reading, axes: Sequence[Axis]) -> float:
+    """Largest share of the felt force that a reading explains on an axis where it differs from the logged one."""
+    shares = [0.0]
+    for axis in axes:
+        differs = np.abs(axis.total(best.commanded) - axis.total(logged.commanded)).max() > 0.1 * axis.size
+        if differs and axis.is_driven(best.commanded):
+            shares.append(axis.explained(_each(axis, best.commanded)).share)
+    return max(shares)
 
 
 def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
     """Whether the thrusters together surely do on an axis what they are commanded, and none the opposite."""
     if not axis.is_driven(commanded):
         return True
-    each = np.stack([axis.smoothed(load) for load in commanded.thrusters.values() if np.any(load[axis.number])])
+    each = _each(axis, commanded)
     together, apart = axis.compared(each.sum(0)[None]), axis.compared(each)
     opposite = bool(np.any(apart.gains < -OPPOSITE * np.maximum(apart.std, 1e-9)))
     return not opposite and together.gains[0] > max(OPPOSITE * together.std[0], LEAST_GAIN)
+
+
+def _each(axis: Axis, commanded: Commanded) -> np.ndarray:
+    """What each thruster that acts on an axis is commanded, (k, n) array."""
+    return np.stack([axis.smoothed(load) for load in commanded.thrusters.values() if np.any(load[axis.number])])
 
 
 def _single_changes(record: Record, model: ShipModel) -> list[Change]:
