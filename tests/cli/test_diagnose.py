@@ -41,6 +41,7 @@ class Candidate(Strict):
 
 class Finding(Candidate):
     kind: Literal["data", "physics"]
+    alternatives: list[str] | None = None
     parameters: dict[str, Estimate]
     segments: list[tuple[float, float]] | None = None
     channels: list[str] | None = None
@@ -70,12 +71,23 @@ class Gain(Strict):
     ci95: tuple[float, float] | None
 
 
+class Discrepancy(Strict):
+    what: str
+    component: str | None
+    axis: Literal["surge", "sway", "yaw"] | None
+    estimate: float
+    std: float
+    unit: str
+    share: float
+
+
 class Schema(Strict):
     """diagnosis.json, version 1."""
 
     version: Literal["shipcosim-diagnosis/1"] = Field(alias="schema")
     verdict: Literal["consistent", "named", "ambiguous", "unknown"]
     findings: list[Finding]
+    discrepancies: list[Discrepancy]
     candidates: list[Candidate]
     indistinguishable: list[Candidate]
     not_testable: list[str]
@@ -89,12 +101,12 @@ EXAMPLE = """{
   "findings": [{"cause": "current", "component": null, "kind": "physics", "probability": 0.97, "parameters":
     {"north": {"estimate": 0.21, "std": 0.02, "unit": "m/s"},
      "east": {"estimate": -0.10, "std": 0.02, "unit": "m/s"}}}],
-  "candidates": [{"cause": "current", "component": null, "probability": 0.97}],
+  "discrepancies": [], "candidates": [{"cause": "current", "component": null, "probability": 0.97}],
   "indistinguishable": [], "not_testable": ["mass", "reverse_loss"], "prescription": null,
   "baseline": {"horizon_s": [10, 30, 60], "position_error_m": [0.3, 1.1, 3.2], "heading_error_deg": [0.2, 0.7, 1.6]},
   "gain": {"horizon_s": 60, "before_m": 3.2, "bias_observer_m": 1.9, "after_m": 0.9, "noise_floor_m": 0.6,
     "share_of_explainable": 0.88, "ci95": [0.80, 0.93]}
-}"""  # of contracts.md
+}"""  # of contracts.md, and what the log shows by itself
 
 
 @pytest.fixture(scope="module")
@@ -223,7 +235,7 @@ def test_summary_of_a_healthy_log_says_what_it_could_not_have_shown(healthy):
 def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(lossy, like_the_root, call, monkeypatch, error):
     """At the last moment, when the extended system is there and the page is written."""
 
-    def known(*_, out):
+    def known(*_, out, **__):
         (out / "extended.ssp").write_bytes(b"new")
         return lossy.diagnosis
 
@@ -256,7 +268,7 @@ def table(head, rows=300):
         (table(HEAD.replace("north [m],east [m],", "")), ["log.csv:", "no channel north, east", "needs north, east"]),
         (table(HEAD.replace("time [s]", "clock")), ["log.csv:", "has no column 'time'", "--channels"]),
         (table(HEAD.replace("[m/s]", "[kg]")), ["log.csv, surge:", "log.csv, wind_speed:", "'kg' into 'm/s'"]),
-        (table(HEAD, rows=60), ["log.csv:", "60 rows", "at least two minutes"]),
+        (table(HEAD, rows=60), ["log.csv:", "60 rows over 59 s", "at the least"]),
     ],
     ids=["empty", "only a header", "no position", "no time", "other units", "too short"],
 )

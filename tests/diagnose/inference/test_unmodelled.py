@@ -85,7 +85,9 @@ def test_what_a_p_value_can_say_at_most_is_bounded():
 
 def fit_of_numbers(theta, covariance):
     """A fit without a cause whose known numbers are off by `theta` tolerances."""
-    return SimpleNamespace(hypotheses=(), columns=[None] * len(theta), theta=np.array(theta), covariance=covariance)
+    return SimpleNamespace(
+        hypotheses=(), columns=[SimpleNamespace(prior=1.0)] * len(theta), theta=np.array(theta), covariance=covariance
+    )
 
 
 def test_numbers_off_as_their_tolerances_say_are_no_surprise():
