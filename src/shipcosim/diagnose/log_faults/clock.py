@@ -133,7 +133,10 @@ def is_testable(problem: IdentificationProblem) -> bool:
     blocks = _blocks(problem, _edges(problem), problem.known(()))
     count = len(blocks.edges) - 1
     span = max(int(TYPICAL_SEGMENT / (blocks.edges[1] - blocks.edges[0])), 1)
-    energy = np.median(np.diagonal(blocks.of_runs()[1], offset=span))
+    energies = np.diagonal(blocks.of_runs()[1], offset=span)
+    if not energies.size:  # the log is shorter than a typical segment
+        return False
+    energy = np.median(energies)
     return bool(_nats(TYPICAL_RATE * energy, energy) - 2.0 * np.log(count) > CLOCK_GAIN)
 
 

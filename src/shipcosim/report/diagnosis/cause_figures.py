@@ -94,7 +94,8 @@ def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
 def whiteness_figures(evidence: Evidence) -> tuple[Figure, ...]:
     """Autocorrelation of the innovations before and after, to one scale."""
     every = np.stack(list(evidence.whiteness.values()))
-    between = (min(-0.2, 1.05 * float(np.nanmin(every))), max(0.2, 1.05 * float(np.nanmax(every))))
+    every = every[np.isfinite(every)]
+    between = (1.05 * float(every.min(initial=-0.19)), 1.05 * float(every.max(initial=0.19)))
     return tuple(
         _whiteness_figure(WHITENESS[name], values, evidence.step, evidence.rows, between)
         for name, values in evidence.whiteness.items()
