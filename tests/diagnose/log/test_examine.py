@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from diagnose.logs import measured, table
 
+from shipcosim.diagnose.log.checks import examine as examining
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
+from shipcosim.diagnose.result import Finding
 
 
 def only(log):
@@ -374,3 +376,12 @@ def test_a_ship_moored_with_a_channel_at_zero_gives_no_finding():
     log |= {role: np.zeros(len(log["time"])) for role in ("surge", "sway", "yaw_rate")}
     log = {role: values for role, values in log.items() if not role.startswith("wind")}
     assert examine(table(log)) == []
+
+
+def test_segments_of_a_wrong_clock_that_lie_in_each_other_contradict_and_none_is_named():
+    def clock(*segments):
+        return [Finding("clock", kind="data", segments=(segment,), channels=("time",)) for segment in segments]
+
+    assert examining._agreeing(clock((89.0, 166.0), (111.0, 144.0))) == []
+    beside = clock((0.0, 100.0), (98.0, 200.0))
+    assert examining._agreeing(beside) == beside

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -85,7 +86,16 @@ def _in_parts(table, stated):
         for label in kept:
             right = undone(right, mislabel_in(label), label.segments)
         clock = wrong_clock(right)
-    return [*quiet, *kept, *(mislabelled_wind(right) or jumping_wind(right)), *clock]
+    return [*quiet, *kept, *(mislabelled_wind(right) or jumping_wind(right)), *_agreeing(clock)]
+
+
+def _agreeing(clock):
+    """Segments of a wrong clock; none where one lies in another, as they contradict each other."""
+    segments = sorted(segment for finding in clock for segment in finding.segments)
+    for (first, end), (start, later) in pairwise(segments):
+        if min(end, later) - start > 0.5 * min(end - first, later - start):
+            return []
+    return clock
 
 
 def _as_logged(segment, start, rate):
