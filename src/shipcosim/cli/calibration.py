@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, shown_progress
-from shipcosim.cli.project import build_stale, find_project, find_system
+from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -46,24 +46,19 @@ def calibrate_ship(
     ShipcosimError
         Input that cannot be used; nothing is written then.
     """
+    from shipcosim.cli.requests import system_of
     from shipcosim.cli.results import check_targets, staged
     from shipcosim.diagnose.calibration_pipeline import calibrate
     from shipcosim.report.calibration.page import write_calibration
-    from shipcosim.ssp import read_system
 
     check_inputs(logs, channels, effects)
-    given = find_system(system or DEFAULT_SYSTEM, "--system")
-    project = find_project(Path(given.partition("#")[0]))
-    ship = read_system(given, fmus=[build_stale(project)] if project else [])
+    ship = system_of(find_system(system or DEFAULT_SYSTEM, "--system"))
     folder = out or Path("results") / f"calibrated-{ship.name}"
     check_targets(folder)
-    with shown_progress("") as show, staged(folder) as stage:
+    with shown_progress("") as show, staged(folder, FILES) as stage:
         found = calibrate(list(logs), ship, channels, effects, show, out=stage)
         show("writing the page")
         write_calibration(found, stage / "report.html")
-        written = {path.name for path in stage.iterdir()}
-    for name in set(FILES) - written:  # of an earlier calibration
-        (folder / name).unlink(missing_ok=True)
     return found, folder
 
 

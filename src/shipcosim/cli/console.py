@@ -24,7 +24,12 @@ if TYPE_CHECKING:
 
 WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
 STYLES = {"error": "bold red", "remark": "yellow"}
-VERDICTS = {"passed": "bold green", "failed": "bold red", "partial": "bold yellow"}
+VERDICTS = {"passed": "bold green", "consistent": "bold green", "named": "bold blue", "partial": "bold yellow"}
+
+
+def style_of(verdict: str) -> str:
+    """Style of a verdict on the terminal; red is what failed or was not understood."""
+    return VERDICTS.get(verdict, "bold red")
 
 
 def print_problems(problems: Iterable[Problem]) -> None:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.cli.project import build_stale, find_project, find_system
+from shipcosim.cli.project import find_system
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -26,15 +26,17 @@ STEPS = {
 LAST_STEP = "5 of 5: writing the page"
 
 
-def default_folder(data: str | Path) -> Path:
-    """Where results go without --out.
+def default_folder(data: str | os.PathLike, ending: str = "") -> Path:
+    """Where the results of a log go without --out.
 
     Examples
     --------
     >>> default_folder("logs/monday.csv.gz").as_posix()
     'results/monday'
+    >>> default_folder("logs/monday.csv.gz", "-replay").as_posix()
+    'results/monday-replay'
     """
-    return Path("results") / Path(Path(data).name.removesuffix(".gz")).stem
+    return Path("results") / f"{Path(Path(data).name.removesuffix('.gz')).stem}{ending}"
 
 
 def diagnose_log(
@@ -69,26 +71,21 @@ def diagnose_log(
     ShipcosimError
         Input that cannot be used; nothing is written then.
     """
+    from shipcosim.cli.requests import system_of
     from shipcosim.cli.results import staged
     from shipcosim.diagnose.pipeline import diagnose
     from shipcosim.diagnose.reference.reference import read_reference
     from shipcosim.report.diagnosis.page import write_diagnosis
-    from shipcosim.ssp import read_system
 
     check_inputs([data], channels, effects)
     known = None if reference is None else read_reference(reference)
-    given = find_system(system or DEFAULT_SYSTEM, "--system")
-    project = find_project(Path(given.partition("#")[0]))
-    ship = read_system(given, fmus=[build_stale(project)] if project else [])
-    with shown_progress() as show, staged(folder) as stage:
+    ship = system_of(find_system(system or DEFAULT_SYSTEM, "--system"))
+    with shown_progress() as show, staged(folder, FILES) as stage:
         diagnosis = diagnose(data, ship, channels, effects, show, out=stage, reference=known)
         show(LAST_STEP)
         text = json.dumps(diagnosis.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
         (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
         write_diagnosis(diagnosis, stage / "report.html")
-        written = {path.name for path in stage.iterdir()}
-    for name in set(FILES) - written:  # of an earlier diagnosis
-        (folder / name).unlink(missing_ok=True)
     if diagnosis.extension is None:
         return diagnosis
     at_home = {kind: folder / f"extended.{kind}" for kind in ("ssp", "ssv")}
@@ -96,7 +93,7 @@ def diagnose_log(
 
 
 def check_inputs(
-    logs: Iterable[str | os.PathLike], channels: str | os.PathLike | None, effects: str | os.PathLike | None
+    logs: Iterable[str | os.PathLike], channels: str | os.PathLike | None, effects: str | os.PathLike | None = None
 ) -> None:
     """Raise ShipcosimError where a file or folder that was given is not there."""
     problems = []
@@ -135,7 +132,7 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    from shipcosim.cli.console import shown_path
+    from shipcosim.cli.console import shown_path, style_of
     from shipcosim.report.diagnosis.words import outcome
 
     if as_json:
@@ -143,8 +140,7 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
         return
     console = Console(highlight=False, soft_wrap=True)
     verdict = outcome(diagnosis, diagnosis.causes)
-    style = {"consistent": "bold green", "named": "bold blue"}.get(diagnosis.verdict, "bold red")
-    console.print(Text(verdict.word, style=style), Text(verdict.sentence))
+    console.print(Text(verdict.word, style=style_of(diagnosis.verdict)), Text(verdict.sentence))
     for heading, content in _sections(diagnosis):
         if content is not None:
             console.print()

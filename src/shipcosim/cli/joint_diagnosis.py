@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, FILES, check_inputs, finding_table, shown_progress
-from shipcosim.cli.project import build_stale, find_project, find_system
+from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.joint_pipeline import JointDiagnosis
@@ -43,22 +43,18 @@ def diagnose_logs(
     ShipcosimError
         Input that cannot be used; nothing is written then.
     """
+    from shipcosim.cli.requests import system_of
     from shipcosim.cli.results import staged
     from shipcosim.diagnose.joint_pipeline import find_common_causes
     from shipcosim.diagnose.reference.reference import read_reference
-    from shipcosim.ssp import read_system
 
     check_inputs(logs, channels, effects)
     known = None if reference is None else read_reference(reference)
-    given = find_system(system or DEFAULT_SYSTEM, "--system")
-    project = find_project(Path(given.partition("#")[0]))
-    ship = read_system(given, fmus=[build_stale(project)] if project else [])
-    with shown_progress("") as show, staged(folder) as stage:
+    ship = system_of(find_system(system or DEFAULT_SYSTEM, "--system"))
+    with shown_progress("") as show, staged(folder, FILES) as stage:
         found = find_common_causes(list(logs), ship, channels, effects, show, known)
         text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
         (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
-    for name in set(FILES) - {"diagnosis.json"}:  # of an earlier diagnosis
-        (folder / name).unlink(missing_ok=True)
     return found
 
 
@@ -67,14 +63,13 @@ def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    from shipcosim.cli.console import shown_path
+    from shipcosim.cli.console import shown_path, style_of
 
     if as_json:
         print(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
         return
     console = Console(highlight=False, soft_wrap=True)
-    style = {"consistent": "bold green", "named": "bold blue"}.get(found.verdict, "bold red")
-    console.print(Text(found.verdict, style=style), Text(f"by {len(found.logs)} logs together"))
+    console.print(Text(found.verdict, style=style_of(found.verdict)), Text(f"by {len(found.logs)} logs together"))
     for heading, findings in (("All logs", found.findings), *((n, one.findings) for n, one in found.logs.items())):
         console.print()
         console.print(Text(heading if heading == "All logs" else f"{heading} by itself", style="bold"))

@@ -27,6 +27,16 @@ OspEvents = Annotated[
     Path | None,
     typer.Option("--scenario", metavar="FILE", help="Scenario file of OSP (.json, .yaml): what happens in the run."),
 ]
+Channels = Annotated[
+    Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
+]
+Ship = Annotated[
+    str | None,
+    typer.Option("--system", metavar="SSP", help="The ship: a path, or its name in ssp/. [default: gunnerus_open]"),
+]
+Effects = Annotated[
+    Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
+]
 SystemsStopTime = Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the system's.")]
 SystemsStepSize = Annotated[float | None, typer.Option("--step-size", help="[s] Default: the system's.")]
 ScenariosStopTime = Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the scenario's.")]

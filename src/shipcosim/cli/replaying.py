@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.console import print_problems, progress_of, shown_path
-from shipcosim.cli.project import build_stale, find_project, find_system
+from shipcosim.cli.diagnosis import check_inputs
+from shipcosim.cli.project import find_system
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -48,11 +49,9 @@ def systems_of(given: str, before: str | None, parameters: Sequence[Path]) -> di
 
 
 def _read(given: str, option: str) -> System:
-    from shipcosim.ssp import read_system
+    from shipcosim.cli.requests import system_of
 
-    path = find_system(given, option)
-    project = find_project(Path(path.partition("#")[0]))
-    return read_system(path, fmus=[build_stale(project)] if project else [])
+    return system_of(find_system(given, option))
 
 
 def _extended_from(system: System, given: str) -> str:
@@ -73,9 +72,7 @@ def replay_and_save(
     from shipcosim.diagnose.validation.tracks import errors_of
     from shipcosim.report.diagnosis.replay_page import write_replay
 
-    for path, what in ((log, "file of measured data"), (channels, "channel file")):
-        if path is not None and not path.is_file():
-            raise ShipcosimError(Problem(str(path), f"There is no such {what}.", "Give the path of one."))
+    check_inputs([log], channels)
     check_targets(folder)
     with progress_of(f"replaying {log.name}") as show:
         found = replay_log(log, systems, channels, horizon=horizon, progress=show)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -57,13 +57,10 @@ def save(
     from shipcosim.series import write_table
 
     page = "report.html" if stem == "result" else f"{stem}.html"
-    with staged(Path(folder)) as stage:
+    with staged(Path(folder), PARTIAL if stem == "result" else ()) as stage:
         for suffix in (".nc", ".csv"):
             write_table(table, stage / f"{stem}{suffix}")
         write_report(table, stage / page, scenario=scenario, verdicts=verdicts, system=system)
-    if stem == "result":
-        for name in PARTIAL:
-            (Path(folder) / name).unlink(missing_ok=True)
     return Path(folder) / page
 
 
@@ -100,8 +97,16 @@ def _complaints(folder: Path, must_exist: bool = False) -> list[str]:
 
 
 @contextmanager
-def staged(folder: Path) -> Iterator[Path]:
-    """A folder whose files move into `folder` at the end, unless something fails."""
+def staged(folder: Path, replaced: Iterable[str] = ()) -> Iterator[Path]:
+    """A folder whose files move into `folder` at the end, unless something fails.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if needed.
+    replaced : iterable of str
+        Names of files that an earlier run may have left: those that are not written again are removed.
+    """
     was_there = folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -111,8 +116,11 @@ def staged(folder: Path) -> Iterator[Path]:
                 yield stage
             except ShipcosimError as error:
                 raise ShipcosimError([_at_home(problem, stage, folder) for problem in error.problems]) from error
-            for file in stage.iterdir():
+            written = list(stage.iterdir())
+            for file in written:
                 os.replace(file, folder / file.name)
+        for name in set(replaced) - {file.name for file in written}:
+            (folder / name).unlink(missing_ok=True)
     except BaseException as error:
         if not was_there:
             with suppress(OSError):

@@ -7,15 +7,14 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, default_folder
-from shipcosim.cli.project import build_stale, find_project, find_system
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, default_folder
+from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 
-FILE = "sea_trials.json"
-EXTENDED = ("extended.ssp", "extended.ssv")
+FILES = ("sea_trials.json", "extended.ssp", "extended.ssv")
 
 
 def study_log(
@@ -51,26 +50,23 @@ def study_log(
     ShipcosimError
         Input that cannot be used; nothing is written then.
     """
+    from shipcosim.cli.requests import system_of
     from shipcosim.cli.results import check_targets, staged
     from shipcosim.diagnose.extension.extend import extend
     from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
     from shipcosim.diagnose.sea_trials.study import study
-    from shipcosim.ssp import read, read_system
+    from shipcosim.ssp import read
 
-    folder = out or default_folder(Path(data))
+    check_inputs([data], channels, effects)
+    folder = out or default_folder(data)
     check_targets(folder)
     given = find_system(system or DEFAULT_SYSTEM, "--system")
-    project = find_project(Path(given.partition("#")[0]))
-    fmus = [build_stale(project)] if project else []
-    found = study(data, read_system(given, fmus=fmus), channels, effects, orders=orders)
-    with staged(folder) as stage:
+    found = study(data, system_of(given), channels, effects, orders=orders)
+    with staged(folder, FILES) as stage:
         text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
-        (stage / FILE).write_text(text + "\n", encoding="utf-8")
+        (stage / FILES[0]).write_text(text + "\n", encoding="utf-8")
         if found.findings:
             extend(read(given), found.findings, stage, catalogue=read_catalogue(effects))
-        written = {path.name for path in stage.iterdir()}
-    for name in set(EXTENDED) - written:  # of an earlier study
-        (folder / name).unlink(missing_ok=True)
     return found, folder
 
 
@@ -79,7 +75,7 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    from shipcosim.cli.console import shown_path
+    from shipcosim.cli.console import shown_path, style_of
 
     if as_json:
         print(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
@@ -87,8 +83,7 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
     console = Console(highlight=False, soft_wrap=True)
     kinds = [trial.kind for trial in found.trials]
     console.print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in dict.fromkeys(kinds)))
-    style = {"consistent": "bold green", "named": "bold blue"}.get(found.verdict, "bold red")
-    console.print(Text(found.verdict, style=style), Text(_sentence(found)))
+    console.print(Text(found.verdict, style=style_of(found.verdict)), Text(_sentence(found)))
     for row in _causes(found.best):
         console.print(f"  {row}", markup=False)
     for one in found.rivals:
@@ -98,7 +93,7 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
         for name in one.before:
             unit = "deg" if name.endswith("drift") else "%"
             console.print(f"  {name:<28} {one.before[name]:6.1f} {one.after[name]:6.1f} {unit}", markup=False)
-    console.print(f"Numbers: {shown_path(folder / FILE)}", markup=False)
+    console.print(f"Numbers: {shown_path(folder / FILES[0])}", markup=False)
 
 
 def _sentence(found: SeaTrialStudy) -> str:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Debug
+from shipcosim.cli.options import Channels, Debug, Effects, Ship
 
 
 def calibrate(
@@ -14,16 +14,9 @@ def calibrate(
         list[Path],
         typer.Argument(metavar="LOG...", help="Logs of one ship that is well: .csv, .csv.gz, .parquet, .nc."),
     ],
-    channels: Annotated[
-        Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
-    ] = None,
-    system: Annotated[
-        str | None,
-        typer.Option("--system", metavar="SSP", help="The ship: a path, or its name in ssp/. [default: gunnerus_open]"),
-    ] = None,
-    effects: Annotated[
-        Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
-    ] = None,
+    channels: Channels = None,
+    system: Ship = None,
+    effects: Effects = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/calibrated-SYSTEM]"),

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, finite
+from shipcosim.cli.options import Channels, Debug, finite
 
 
 def replay(
@@ -22,9 +22,7 @@ def replay(
             "--before", metavar="SSP", help="The system to compare with. [default: the one that was extended]"
         ),
     ] = None,
-    channels: Annotated[
-        Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
-    ] = None,
+    channels: Channels = None,
     parameters: Annotated[
         list[Path] | None,
         typer.Option("--parameters", metavar="X.SSV", help="A set over the system's own, for 'after'; repeatable."),
@@ -43,10 +41,10 @@ def replay(
     The system is started again and again from the measured state and driven by what the log says of its thrusters.
     Leaves report.html, errors.csv and replay.nc.
     """
-    from shipcosim.cli.diagnosis import DEFAULT_SYSTEM
+    from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, default_folder
     from shipcosim.cli.replaying import print_replay, replay_and_save, systems_of
 
     systems = systems_of(system or DEFAULT_SYSTEM, before, parameters or [])
-    folder = out or Path("results") / f"{Path(log.name.removesuffix('.gz')).stem}-replay"
+    folder = out or default_folder(log, "-replay")
     replayed = replay_and_save(log, systems, channels, horizon, folder)
     print_replay(replayed, folder)

@@ -6,21 +6,14 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Debug
+from shipcosim.cli.options import Channels, Debug, Effects, Ship
 
 
 def sea_trials(
     data: Annotated[Path, typer.Argument(metavar="DATA", help="Measured data: .csv, .csv.gz, .parquet or .nc.")],
-    channels: Annotated[
-        Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
-    ] = None,
-    system: Annotated[
-        str | None,
-        typer.Option("--system", metavar="SSP", help="The ship: a path, or its name in ssp/. [default: gunnerus_open]"),
-    ] = None,
-    effects: Annotated[
-        Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
-    ] = None,
+    channels: Channels = None,
+    system: Ship = None,
+    effects: Effects = None,
     orders: Annotated[
         bool, typer.Option("--orders", help="Thruster channels are orders, which the units follow, not feedback.")
     ] = False,
