@@ -88,6 +88,8 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
         console.print(f"  {row}", markup=False)
     for one in found.rivals:
         console.print(f"  as likely: {'; '.join(_causes(one))}", markup=False)
+    for row in _what_separates(found):
+        console.print(row, markup=False)
     for side, one in found.held_out.items():
         console.print(f"Fitted on circles to {side}: {one.best.label}. Errors on the others, before and after:")
         for name in one.before:
@@ -102,6 +104,19 @@ def _sentence(found: SeaTrialStudy) -> str:
         return "the model sails these trials as the ship did"
     alike = "" if found.verdict == "named" else "; these trials do not tell it from the sets below"
     return f"{found.best.label} explains them best{alike}"
+
+
+def _what_separates(found: SeaTrialStudy) -> list[str]:
+    """What to sail next, and for comparison what the manoeuvres of these trials would tell."""
+    if not found.separations:
+        return []
+    rows = []
+    for one in found.prescriptions:
+        rows.append(f"Sail next: {one.manoeuvre}, to both sides, {one.minutes:.0f} minutes.")
+        rows += [f"  tells {a} from {b}" for a, b in one.separates]
+    told = {pair for one in found.prescriptions for pair in one.separates}
+    rows += [f"No manoeuvre of the catalogue tells {a} from {b}." for a, b in found.pairs if (a, b) not in told]
+    return rows
 
 
 def _causes(one: SetOfCauses) -> list[str]:

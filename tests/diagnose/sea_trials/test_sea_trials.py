@@ -11,7 +11,7 @@ from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
-from shipcosim.diagnose.sea_trials.features import FEATURES, features_of
+from shipcosim.diagnose.sea_trials.features import SOUGHT, features_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, estimates, rivals_of, study
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
@@ -58,7 +58,7 @@ def test_every_manoeuvre_that_was_sailed_is_found(logs):
     assert [one.steering for one in circles] == pytest.approx(
         [np.sin(np.radians(abs(a))) for a, _ in trials.LEGS], 0.02
     )
-    assert {one.kind for one in found} == set(FEATURES)
+    assert {one.kind for one in found} == set(SOUGHT)
 
 
 def test_a_motion_tells_the_time_that_a_wrong_clock_does_not():

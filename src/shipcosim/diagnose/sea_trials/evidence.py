@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,18 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["SetOfCauses", "TrialEvidence", "changes_of", "predicted", "ranked", "trial_evidence"]
+__all__ = [
+    "SetOfCauses",
+    "TrialEvidence",
+    "allowed_for",
+    "blocks",
+    "changes_of",
+    "known_numbers",
+    "predicted",
+    "ranked",
+    "slopes_of",
+    "trial_evidence",
+]
 
 _PART = 0.3  # of the typical size, by which a cause is moved for its first derivative
 
@@ -86,6 +97,8 @@ class TrialEvidence:
         By what is known within a tolerance or allowed for, over its standard deviation.
     noise : (f, f) array
         How well the features repeat, at the scale of most evidence.
+    scale : float
+        That scale: how well they repeat over what is assumed. [1]
     """
 
     trials: tuple[SeaTrial, ...]
@@ -97,6 +110,7 @@ class TrialEvidence:
     slopes: np.ndarray
     known: np.ndarray
     noise: np.ndarray
+    scale: float = 1.0
 
     @property
     def covariance(self) -> np.ndarray:
@@ -123,28 +137,27 @@ def trial_evidence(
     TrialEvidence
     """
     causes = [(parameter, _PART * parameter.typical) for one in hypotheses for parameter in one.parameters]
-    known = _known(model)
+    known = known_numbers(model)
     both = [{path: sign * size for path in p.paths} for sign in (1.0, -1.0) for p, size in causes]
     found = predicted(trials, model, [{}, *both, *({path: size} for path, size in known)], orders=orders)
     slopes = (found[1 : 1 + len(causes)] - found[1 + len(causes) : 1 + 2 * len(causes)]) / (2.0 * _PART)
     beside = found[1 + 2 * len(causes) :] - found[0]
     length = model.parts["hull"].length
-    noise = _blocks([covariance_of(trial, length) for trial in trials])
+    noise = blocks([covariance_of(trial, length) for trial in trials])
     measured = np.concatenate([features_of(trial, trial.measured) for trial in trials])
     first = TrialEvidence(tuple(trials), model, orders, tuple(hypotheses), measured, found[0], slopes, beside, noise)
-    scaled = [_with_noise(first, scale**2 * noise) for scale in thresholds.SCALES]
+    scaled = [replace(first, noise=scale**2 * noise, scale=scale) for scale in thresholds.SCALES]
     return max(scaled, key=lambda one: max(value for value, _ in _linear(one, 2)))
 
 
-def _with_noise(found, noise):
-    return TrialEvidence(
-        found.trials, found.model, found.orders, found.hypotheses, found.measured, found.predicted, found.slopes,
-        found.known, noise,
-    )  # fmt: skip
+def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
+    """What is uncertain whatever the cause: tolerances of hull and thrusters, current, compass and antenna.
 
-
-def _known(model):
-    """What is uncertain whatever the cause: tolerances of hull and thrusters, current, compass and antenna."""
+    Returns
+    -------
+    list of (str, float)
+        Number of the ship and standard deviation; compass and antenna, `MOUNTING`, last.
+    """
     places = (model.vessel, *model.thrusters)
     found = [(path, size) for path, size in model.tolerances.items() if path.rpartition(".")[0] in places]
     found = [(path, size) for path, size in found if isinstance(model.get(path), float) and "wind" not in path]
@@ -166,7 +179,25 @@ def predicted(
     )
 
 
-def _blocks(matrices):
+def slopes_of(
+    trials: Sequence[SeaTrial], model: ShipModel, sets: Sequence[SetOfCauses], *, orders: bool
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Features of trials by fitted sets, (f,) array, and their slopes by parameter, (p, f), over a typical size."""
+    changes = [_changes(one.hypotheses, one.values + step) for one in sets for step in _steps(one)]
+    features = iter(predicted(trials, model, changes, orders=orders))
+    found = []
+    for one in sets:
+        here = next(features)
+        found.append((here, np.array([(next(features) - here) / _PART for _ in one.values]).reshape(-1, here.size)))
+    return found
+
+
+def _steps(one):
+    return np.vstack((np.zeros(len(one.values)), _PART * np.eye(len(one.values))))
+
+
+def blocks(matrices: Sequence[np.ndarray]) -> np.ndarray:
+    """A matrix of square matrices along its diagonal."""
     size = sum(len(one) for one in matrices)
     found, at = np.zeros((size, size)), 0
     for one in matrices:
@@ -178,6 +209,17 @@ def _blocks(matrices):
 def changes_of(found: SetOfCauses) -> dict[str, float]:
     """What a fitted set adds to the numbers of the ship."""
     return _changes(found.hypotheses, found.values)
+
+
+def allowed_for(found: TrialEvidence, one: SetOfCauses) -> dict[str, float]:
+    """What compass and antenna are most likely off, beside a fitted set: numbers of the ship and what is added."""
+    here = predicted(found.trials, found.model, [changes_of(one)], orders=found.orders)[0]
+    shares = found.known @ np.linalg.solve(found.covariance, found.measured - here)
+    return {
+        path: float(share) * size
+        for share, (path, size) in zip(shares, known_numbers(found.model), strict=True)
+        if path in MOUNTING
+    }
 
 
 def _changes(hypotheses, values):
@@ -247,17 +289,11 @@ def _fitted(found, sets):
         _solved(found, causes, s, found.predicted, np.zeros(len(s))) for causes, s in zip(sets, slopes, strict=True)
     ]
     for _ in range(thresholds.ROUNDS):
-        changes = []
-        for fit in fits:
-            steps = np.vstack((np.zeros(len(fit.values)), _PART * np.eye(len(fit.values))))
-            changes += [_changes(fit.hypotheses, fit.values + step) for step in steps]
-        features = iter(predicted(found.trials, found.model, changes, orders=found.orders))
-        again = []
-        for fit in fits:
-            here = next(features)
-            s = np.array([(next(features) - here) / _PART for _ in fit.values]).reshape(-1, here.size)
-            again.append(_solved(found, fit.hypotheses, s, here, fit.values))
-        fits = again
+        about = slopes_of(found.trials, found.model, fits, orders=found.orders)
+        fits = [
+            _solved(found, fit.hypotheses, slopes, here, fit.values)
+            for fit, (here, slopes) in zip(fits, about, strict=True)
+        ]
     return fits
 
 

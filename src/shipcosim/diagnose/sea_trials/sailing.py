@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["sailed"]
+__all__ = ["sailed", "settled", "steered"]
 
 
 def sailed(
@@ -50,14 +50,97 @@ def sailed(
     state = true_motion(seen, ships)._replace(v=0.0 * seen.v)
     h, many = float(trials[0].time[1]), (len(changes), len(trials))
     state = Motion(*(np.broadcast_to(value, many).copy() for value in state))
-    actual, shown = _at_first(units), [_shown(state, ships)]
-    for k in range(most - 1):
-        after = _followed(actual, units, k + 1, ships, h) if orders else _at(units, k + 1)
-        state = _stepped(state, actual, after, ships, h)
-        actual = after
-        shown.append(_shown(state, ships))
-    table = np.stack(shown, axis=-2)  # ships, trials, rows, channels
-    return [table[:, i, :n] for i, n in enumerate(lengths)]
+    table = np.stack([_shown(now, ships) for now in _way(state, units, ships, most, h, orders)], axis=-2)
+    return [table[:, i, :n] for i, n in enumerate(lengths)]  # ships, trials, rows, channels
+
+
+def _way(state, units, ships, rows, h, follows):
+    """Motions row by row, of units that do or follow what the series say; these may be written while it runs."""
+    actual = _at(units, 0)
+    yield state
+    for k in range(1, rows):
+        after = _followed(actual, units, k, ships, h) if follows else _at(units, k)
+        state, actual = _stepped(state, actual, after, ships, h), after
+        yield state
+
+
+def settled(
+    orders: Sequence[Mapping[str, tuple[float, float]]], model: ShipModel, changes: Mapping[str, float], h: float
+) -> list[float]:
+    """Speed straight ahead at constant orders.
+
+    Parameters
+    ----------
+    orders : sequence of mappings of str to tuple of two floats
+        Speed or thrust and direction of each thruster. [rev/s or N, rad]
+    model : ShipModel
+    changes : mapping of str to float
+        What is added to her numbers.
+    h : float
+        Step. [s]
+
+    Returns
+    -------
+    list of float
+        [m/s]
+    """
+    length = model.parts["hull"].length
+    ships, zero = _side_by_side(model, [changes]), np.zeros((1, len(orders)))
+    speed = thresholds.FROUDE * np.sqrt(9.81 * length)
+    rows = int(thresholds.RUN * length / speed / h) + 2
+    units = {
+        name: tuple(np.tile([one[name][i] for one in orders], (rows, 1)) for i in (0, 1)) for name in model.thrusters
+    }
+    state = Motion(zero, zero, zero, zero + speed, zero, zero)
+    *_, last = _way(state, units, ships, rows, h, False)
+    return [float(u) for u in last.u[0]]
+
+
+def steered(
+    pilots: Sequence[Callable[[float, float, float], Mapping[str, tuple[float, float]]]],
+    start: Sequence[tuple[float, float, float, float]],
+    rows: int,
+    model: ShipModel,
+    changes: Mapping[str, float],
+    h: float,
+) -> tuple[np.ndarray, dict[str, tuple[np.ndarray, np.ndarray]]]:
+    """Runs of a ship whose units follow what pilots order.
+
+    Parameters
+    ----------
+    pilots : sequence of callable
+        By run: orders of all thrusters from time [s], heading [rad] and rate of turn [rad/s].
+    start : sequence of (float, float, float, float)
+        North, east, heading and speed ahead. [m, m, rad, m/s]
+    rows : int
+    model : ShipModel
+    changes : mapping of str to float
+        What is added to her numbers.
+    h : float
+        Step. [s]
+
+    Returns
+    -------
+    (r, n, 6) array, dict of str to tuple of two (n, r) arrays
+        What her instruments show, and the orders of each thruster.
+    """
+    ships = _side_by_side(model, [changes])
+    x, y, psi, u = (np.array([values]) for values in np.array(start).T)
+    state = Motion(x, y, psi, u, 0.0 * u, 0.0 * u)
+    units = {name: (np.zeros((rows, len(pilots))), np.zeros((rows, len(pilots)))) for name in model.thrusters}
+
+    def order(k, motion):
+        for i, pilot in enumerate(pilots):
+            for name, pair in pilot(k * h, float(motion.psi[0, i]), float(motion.r[0, i])).items():
+                units[name][0][k:, i], units[name][1][k:, i] = pair  # until the next row
+
+    order(0, state)
+    shown = []
+    for k, now in enumerate(_way(state, units, ships, rows, h, True)):
+        shown.append(_shown(now, ships)[0])
+        if k + 1 < rows:
+            order(k + 1, now)
+    return np.stack(shown, axis=1), units
 
 
 def _shown(state, ships):
@@ -89,10 +172,6 @@ def _padded(series, rows):
 
 def _at(units, k):
     return {name: (speed[k], direction[k]) for name, (speed, direction) in units.items()}
-
-
-def _at_first(units):
-    return _at(units, 0)
 
 
 def _followed(actual, units, k, ships, h):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,10 +12,19 @@ import numpy as np
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.result import Estimate, ExperimentDesign, Finding
 from shipcosim.diagnose.sea_trials import thresholds
-from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, changes_of, predicted, ranked, trial_evidence
-from shipcosim.diagnose.sea_trials.features import FEATURES, features_of
+from shipcosim.diagnose.sea_trials.evidence import (
+    SetOfCauses,
+    TrialEvidence,
+    allowed_for,
+    changes_of,
+    predicted,
+    ranked,
+    trial_evidence,
+)
+from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, features_of
+from shipcosim.diagnose.sea_trials.separation import MOST_SETS, Separation, designed, differing, separations
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
@@ -45,6 +55,8 @@ class HeldOut:
     before, after : dict of str to float
         Root mean square error of each feature on the trials judged on, in per cent (drift in deg), of the ship as
         modelled and with the best set.
+    fitted : dict of str to float
+        What the best set adds to the numbers of the ship, and what the trials fitted on say of compass and antenna.
     """
 
     fitted_on: tuple[str, ...]
@@ -52,6 +64,7 @@ class HeldOut:
     ranking: tuple[SetOfCauses, ...]
     before: dict[str, float]
     after: dict[str, float]
+    fitted: dict[str, float]
 
     @property
     def best(self) -> SetOfCauses:
@@ -65,20 +78,48 @@ class SeaTrialStudy:
 
     Attributes
     ----------
-    trials : tuple of SeaTrial
-    model : ShipModel
-    orders : bool
+    evidence : TrialEvidence
+        Of all trials.
     held_out : dict of str to HeldOut
         By what was fitted on: ``"port"``, ``"starboard"``; empty where only one side was turned to.
     ranking : tuple of SetOfCauses
         On all trials, best first.
+    after : (f,) array
+        Features of all trials by the best set, with the compass and the antenna as the trials tell them.
+    separations : tuple of Separation
+        What each manoeuvre of the catalogue would tell of the best set and its rivals; empty without rivals.
     """
 
-    trials: tuple[SeaTrial, ...]
-    model: ShipModel
-    orders: bool
+    evidence: TrialEvidence
     held_out: dict[str, HeldOut]
     ranking: tuple[SetOfCauses, ...]
+    after: np.ndarray
+    separations: tuple[Separation, ...] = ()
+
+    @property
+    def trials(self) -> tuple[SeaTrial, ...]:
+        """All manoeuvres."""
+        return self.evidence.trials
+
+    @property
+    def model(self) -> ShipModel:
+        """The ship as modelled."""
+        return self.evidence.model
+
+    @property
+    def prescriptions(self) -> tuple[ExperimentDesign, ...]:
+        """Manoeuvres that are expected to tell the best set from its rivals."""
+        return designed(self.separations, self.compared)
+
+    @property
+    def pairs(self) -> list[tuple[str, str]]:
+        """What each two of the compared sets do not share."""
+        return [differing(one, other) for one, other in combinations(self.compared, 2)]
+
+    @property
+    def compared(self) -> list[SetOfCauses]:
+        """The best set and its rivals, as many as manoeuvres are compared for."""
+        return [self.best, *self.rivals][:MOST_SETS]
 
     @property
     def best(self) -> SetOfCauses:
@@ -119,6 +160,8 @@ class SeaTrialStudy:
             "trials": [trial.name for trial in self.trials],
             "causes": _as_json(self.best),
             "indistinguishable": [_as_json(one) for one in self.rivals],
+            "prescriptions": [asdict(one) for one in self.prescriptions],
+            "manoeuvres": [_separation_as_json(one, self.compared) for one in self.separations],
             "held_out": {
                 name: {
                     "causes": _as_json(one.best),
@@ -129,6 +172,14 @@ class SeaTrialStudy:
                 for name, one in self.held_out.items()
             },
         }
+
+
+def _separation_as_json(one, sets):
+    pairs = [
+        {"between": differing(sets[a], sets[b]), "nats": round(nats, 1), "telling": one.telling[a, b]._asdict()}
+        for (a, b), nats in one.nats.items()
+    ]
+    return {"manoeuvre": one.manoeuvre, "minutes": one.minutes, "read_from_logs": one.read, "pairs": pairs}
 
 
 def _as_json(found):
@@ -247,7 +298,11 @@ def studied(
             straight = [trial for trial in trials if trial.kind == "straight run"]
             held_out[name] = _judged([*straight, *own], others, model, hypotheses, orders)
     whole = trial_evidence(trials, model, hypotheses, orders=orders)
-    return SeaTrialStudy(tuple(trials), model, orders, held_out, tuple(ranked(whole)))
+    ranking = ranked(whole)
+    best, rivals = best_of(ranking), rivals_of(ranking)
+    (after,) = predicted(trials, model, [changes_of(best) | allowed_for(whole, best)], orders=orders)
+    separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
+    return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
 
 
 def _turns(trial, side):
@@ -256,10 +311,13 @@ def _turns(trial, side):
 
 def _judged(train, others, model, hypotheses, orders):
     both_sides = [one for one in hypotheses if one.component is None]  # one unit alone: told by comparing both sides
-    ranking = tuple(ranked(trial_evidence(train, model, both_sides, orders=orders)))
-    before, after = (errors(others, model, changes, orders=orders) for changes in ({}, changes_of(best_of(ranking))))
+    found = trial_evidence(train, model, both_sides, orders=orders)
+    ranking = tuple(ranked(found))
+    best = best_of(ranking)
+    fitted = changes_of(best) | allowed_for(found, best)
+    before, after = (errors(others, model, changes, orders=orders) for changes in ({}, fitted))
     fitted_on, judged_on = (tuple(trial.name for trial in some) for some in (train, others))
-    return HeldOut(fitted_on, judged_on, ranking, before, after)
+    return HeldOut(fitted_on, judged_on, ranking, before, after, fitted)
 
 
 def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:
@@ -312,7 +370,7 @@ def errors(
     found, at = {}, 0
     for trial, own in zip(trials, measured, strict=True):
         for name, off in zip(FEATURES[trial.kind], sailed[at : at + own.size] - own, strict=True):
-            size = np.degrees(off) if name == "drift" else 100.0 * np.expm1(off)
+            size = np.degrees(off) if name in ANGLES else 100.0 * np.expm1(off)
             found.setdefault(f"{trial.kind}: {name}", []).append(size)
         at += own.size
     return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in found.items()}

@@ -13,6 +13,8 @@ CIRCLE = 330.0
 """Heading turned by a circle that can be used, from the start of the order. [deg]"""
 HALF_A_CIRCLE = 180.0
 """Heading turned from which on a circle is steady: speeds of the trials of 2022 change little after it. [deg]"""
+DRIFT_TOLD = 270.0
+"""Heading turned in steady state from which on the drift of a circle's centre tells the current. [deg]"""
 CIRCLES = 540.0
 """Heading turned up to which a circle is used. [deg]"""
 SWINGS = 3
@@ -31,10 +33,10 @@ REST = 10.0
 """Time over which a helmsman's corrections average out, and orders are held. [s]"""
 CLIPPED = 0.98
 """Order over the largest speed of a shaft, above which it says nothing of the speed that the shaft had. [1]"""
-CLIPPED = 0.98
-"""Order over the largest speed of a shaft, above which it says nothing of the speed that the shaft had. [1]"""
 RUN = 40.0
 """Way over which the model settles to its own speed. [ship lengths]"""
+FROUDE = 0.2
+"""Froude number from which a run to settled speed starts. [1]"""
 LONGEST_HOLE = 6
 """Rows without a value that are bridged. [1]"""
 CLOCK_WINDOW = 1.4
@@ -59,10 +61,15 @@ TIMES = (0.10, 0.06, 0.05, 0.04)
 """The same of the times to `HEADINGS`, assumed. [1]"""
 SPEEDS = 0.05
 """The same of the speeds at `HEADINGS_OF_SPEED`, assumed. [1]"""
+WAYS = (0.04, 0.06, 0.04)
+"""The same of advance, transfer and tactical diameter, assumed. [1]"""
 STRAIGHT_SPEED = 0.015
 """The same of the speed of a straight run, beside the current, assumed. [1]"""
 PEAK_RATE, SWING, ZIG_ZAG_SPEED = 0.04, 0.08, 0.03
 """The same of a zig-zag's mean largest rate, mean heading change of a swing, and mean speed, assumed. [1]"""
+PULL_OUT_RATE, SPIRAL_RATE, CHANGED_SPEED, TURNED = 0.04, 0.03, 0.025, 0.1
+"""The same of the rates of a pull-out and a spiral over the first, of a changing speed over the first (shares), and of
+the change of heading while a course is held (rad), assumed."""
 START = 0.12
 """How well the start of a circle's order is known, times the root of the length in m: 0.7 s for 34 m. [s/m^0.5]"""
 COMMON = 0.02
@@ -77,6 +84,9 @@ HEADING_BIAS = 0.052
 LEVER = 0.118
 """Prior of how far the antenna is off the origin ahead, as a share of the length. [1]"""
 
+UNTOLD = 0.5
+"""Squared size of a cause's typical effect in the features' standard deviations, below which trials say nothing of
+it: its spread falls by less than a fifth. [1]"""
 MOST_CAUSES = 3
 """Causes that are sought at once. [1]"""
 RELINEARISED = 8

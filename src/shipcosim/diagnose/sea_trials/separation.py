@@ -1,0 +1,223 @@
+"""Which manoeuvre tells sets of causes apart that the trials cannot: computed, for every manoeuvre of the catalogue."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from shipcosim.diagnose.experiment.design import CLEAR
+from shipcosim.diagnose.result import ExperimentDesign
+from shipcosim.diagnose.sea_trials import thresholds
+from shipcosim.diagnose.sea_trials.evidence import blocks, changes_of, known_numbers, predicted, slopes_of
+from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, SOUGHT, covariance_of
+from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
+from shipcosim.diagnose.ship.model import ShipModel
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, TrialEvidence
+    from shipcosim.diagnose.sea_trials.windows import SeaTrial
+
+__all__ = ["MOST_SETS", "Separation", "TellingFeature", "designed", "differing", "separations"]
+
+_PART = 0.3  # of a standard deviation, by which known numbers are moved
+MOST_SETS = 4
+"""Sets that are compared. [1]"""
+
+
+class TellingFeature(NamedTuple):
+    """The feature of a manoeuvre that tells two sets apart best.
+
+    Attributes
+    ----------
+    name : str
+        With the side that it is sailed to.
+    difference : float
+        By the second set less by the first, in `unit`.
+    spread : float
+        Standard deviation with which it is predicted and repeats, in `unit`.
+    unit : str
+        ``"%"`` or ``"deg"``.
+    """
+
+    name: str
+    difference: float
+    spread: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Separation:
+    """What a manoeuvre would tell of sets of causes.
+
+    Attributes
+    ----------
+    manoeuvre : str
+    minutes : float
+        To both sides, with their approaches.
+    read : bool
+        Whether manoeuvres of this kind are sought in logs.
+    nats : dict of (int, int) to float
+        By places of two sets: log-evidence by which the right one is expected to lead. [nats]
+    telling : dict of (int, int) to TellingFeature
+    """
+
+    manoeuvre: str
+    minutes: float
+    read: bool
+    nats: dict[tuple[int, int], float]
+    telling: dict[tuple[int, int], TellingFeature]
+
+    @property
+    def least(self) -> float:
+        """Of the closest pair. [nats]"""
+        return min(self.nats.values())
+
+
+def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separation]:
+    """What each manoeuvre of the catalogue would tell of sets of causes that fit sea trials alike.
+
+    The first set's ship sails them; the ships of all sets are simulated on the same orders. Their parameters and the
+    known numbers are as free as the trials left them, and so are causes that the trials said nothing of. The current,
+    the compass and the antenna are those of another day. Of both sets being true the smaller difference counts.
+
+    Parameters
+    ----------
+    found : TrialEvidence
+        Of the trials that were sailed.
+    sets : sequence of SetOfCauses
+        Those to tell apart, the best first; no more than four are compared.
+
+    Returns
+    -------
+    list of Separation
+        Best first: by the log-evidence of the closest pair.
+    """
+    sets, model = list(sets)[:MOST_SETS], found.model
+    planned = as_trials(catalogue(model), model, _shafts(found.trials, model), changes_of(sets[0]))
+    trials = [trial for _, pair in planned for trial in pair]
+    there = slopes_of(trials, model, sets, orders=True)
+    numbers, untold = known_numbers(model), _untold(found, sets)
+    sizes = [{path: size} for path, size in numbers] + [dict.fromkeys(p.paths, p.typical) for _, p in untold]
+    first = changes_of(sets[0])
+    moved = [first | {path: first.get(path, 0.0) + _PART * size for path, size in one.items()} for one in sizes]
+    beside = (predicted(trials, model, moved, orders=True) - there[0][0]) / _PART
+    known = replace(found, known=np.vstack((found.known, *(found.slopes[i] for i, _ in untold))))
+    spread = found.scale**2 * blocks([covariance_of(trial, model.parts["hull"].length) for trial in trials])
+    of_day = np.array([ShipModel.is_of_day(path) for one in sizes for path in list(one)[:1]])
+    priors = [
+        _prediction(known, at_trials, here, beside, of_day, spread)
+        for at_trials, here in zip(slopes_of(found.trials, model, sets, orders=found.orders), there, strict=True)
+    ]
+    results, at = [], 0
+    for one, pair in planned:
+        names = [(trial.kind, trial.side, name) for trial in pair for name in FEATURES[trial.kind]]
+        part = slice(at, at + len(names))
+        at += len(names)
+        pairs = {(a, b): _apart(priors[a], priors[b], part, names) for a, b in combinations(range(len(sets)), 2)}
+        minutes = float(sum(trial.logged[1] + _approach(trial, model) for trial in pair)) / 60.0
+        results.append(
+            Separation(
+                one.name,
+                round(minutes, 1),
+                one.kind in SOUGHT,
+                {key: nats for key, (nats, _) in pairs.items()},
+                {key: telling for key, (_, telling) in pairs.items()},
+            )
+        )
+    return sorted(results, key=lambda result: -result.least)
+
+
+def _untold(found, sets):
+    """Parameters of causes in no set that the trials said next to nothing of: allowed for at their typical size."""
+    held = {cause.label for one in sets for cause in one.hypotheses}
+    pairs = [(cause, parameter) for cause in found.hypotheses for parameter in cause.parameters]
+    white = np.linalg.solve(np.linalg.cholesky(found.covariance), found.slopes.T)
+    said = np.sum(white**2, axis=0)
+    return [
+        (i, parameter)
+        for i, (cause, parameter) in enumerate(pairs)
+        if cause.label not in held and said[i] < thresholds.UNTOLD
+    ]
+
+
+def _approach(trial, model):
+    """Time of the straight run before a manoeuvre. [s]"""
+    return thresholds.SETTLED * model.parts["hull"].length / np.hypot(*trial.measured[0, 3:5])
+
+
+def _shafts(trials: Sequence[SeaTrial], model: ShipModel) -> dict[str, float]:
+    """Largest shaft speed of each thruster in the trials, as the median of a trial. [rev/s]"""
+    return {name: max(float(np.median(abs(trial.units[name][0]))) for trial in trials) for name in model.thrusters}
+
+
+def _prediction(found, at_trials, here, known, of_day, spread):
+    """Features of new trials by a set, and their covariance: by the posterior of the trials that were sailed."""
+    features, slopes = at_trials
+    columns = np.vstack((slopes, found.known))
+    weighted = columns @ np.linalg.inv(found.noise)
+    P = np.linalg.inv(np.eye(len(columns)) + weighted @ columns.T)
+    mean = (P @ weighted @ (found.measured - features))[len(slopes) :]
+    lasting = np.concatenate((np.ones(len(slopes), bool), ~of_day))
+    new = np.vstack((here[1], known))[lasting]
+    C = spread + new.T @ P[np.ix_(lasting, lasting)] @ new + known[of_day].T @ known[of_day]
+    return here[0] + (mean * ~of_day) @ known, C
+
+
+def _apart(one, other, part, names):
+    """Log-evidence by which the right one of two is expected to lead, and the feature that says most."""
+    (a, C_a), (b, C_b) = one, other
+    d, found = (b - a)[part], []
+    for C in (C_a[part, part], C_b[part, part]):
+        found.append((0.5 * float(d @ np.linalg.solve(C, d)), np.sqrt(np.diag(C))))
+    nats, sigma = min(found, key=lambda pair: pair[0])
+    best = int(np.argmax(abs(d) / sigma))
+    kind, side, name = names[best]
+    factor, unit = (float(np.degrees(1.0)), "deg") if name in ANGLES else (100.0, "%")
+    to = "to starboard" if side > 0 else "to port"
+    told = TellingFeature(f"{name} {to}", factor * float(d[best]), factor * float(sigma[best]), unit)
+    return nats, told
+
+
+def designed(found: Sequence[Separation], sets: Sequence[SetOfCauses]) -> tuple[ExperimentDesign, ...]:
+    """The manoeuvres to be sailed next, as few as will do: each tells as many pairs apart as any that the ones before
+    it do not, clearly.
+
+    Among those of equal use one that is sought in logs comes first, then the one with most nats per minute.
+
+    Parameters
+    ----------
+    found : sequence of Separation
+    sets : sequence of SetOfCauses
+        As given to `separations`.
+
+    Returns
+    -------
+    tuple of ExperimentDesign
+        Empty where no manoeuvre separates any pair.
+    """
+    left, chosen = set(found[0].nats) if found else set(), []
+
+    def worth(one):
+        clear = [nats for pair, nats in one.nats.items() if pair in left and nats >= CLEAR]
+        return len(clear), one.read, min(clear, default=0.0) / one.minutes
+
+    while left:
+        best = max(found, key=worth)
+        told = [pair for pair, nats in best.nats.items() if pair in left and nats >= CLEAR]
+        if not told:
+            break
+        left -= set(told)
+        separates = tuple(differing(sets[a], sets[b]) for a, b in told)
+        chosen.append(ExperimentDesign(best.manoeuvre, best.minutes, separates))
+    return tuple(chosen)
+
+
+def differing(one: SetOfCauses, other: SetOfCauses) -> tuple[str, str]:
+    """What two sets of causes do not share."""
+    a, b = ([cause.label for cause in each.hypotheses] for each in (one, other))
+    only_a, only_b = (" + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a)))
+    return only_a or "nothing more", only_b or "nothing more"

@@ -1,0 +1,89 @@
+"""What to sail next is computed, and sailing it tells the right causes from those that fitted alike."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from diagnose import twin
+from diagnose.sea_trials import trials
+
+from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, ranked, trial_evidence
+from shipcosim.diagnose.sea_trials.features import SOUGHT
+from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
+from shipcosim.diagnose.sea_trials.separation import Separation, designed, separations
+from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, rivals_of
+from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
+from shipcosim.diagnose.ship.inputs import record_of
+from shipcosim.diagnose.stages import ReadLog
+
+PLANTED = {"vessel.mmg_X_vv": -0.7, "instruments.order_lag": 2.5}
+SHAFTS = {"port": 170.0 / 60.0, "starboard": 170.0 / 60.0}
+
+
+@pytest.fixture(scope="module")
+def found():
+    (log,) = trials.logs({"slowed in turns": {"vessel.mmg_X_vv": -0.7, "lag": 2.5}}, seed=3).values()
+    read = checked(ReadLog(log, twin.model(), {}))
+    record = as_ordered(record_of(read.repaired, read.ship), read.repaired, read.ship)
+    drags = {"drift_drag", "turn_drag", "sway_momentum", "late_orders"}
+    causes = [one for one in causes_of_trials(twin.model(), read_catalogue(), orders=True) if one.cause in drags]
+    return trial_evidence(sea_trials_of(record, read.ship, orders=True), twin.model(), causes, orders=True)
+
+
+@pytest.fixture(scope="module")
+def sets(found):
+    ranking = ranked(found)
+    return [best_of(ranking), *rivals_of(ranking)]
+
+
+@pytest.fixture(scope="module")
+def separated(found, sets):
+    return separations(found, sets)
+
+
+def test_a_ship_sails_every_manoeuvre_of_the_catalogue_to_both_sides():
+    model = twin.model()
+    sailed = as_trials(catalogue(model), model, SHAFTS, {})
+    for one, (starboard, port) in sailed:
+        assert (starboard.side, port.side) == (1, -1)
+        turned = [trial.measured[-1, 2] - trial.measured[0, 2] for trial in (starboard, port)]
+        assert turned[0] == pytest.approx(-turned[1], abs=1e-6), one.name
+        if one.kind == "turning circle":
+            assert turned[0] > np.radians(540.0)
+    swings = next(pair[0] for one, pair in sailed if one.name == "zig-zag 20/20 at full speed").measured[:, 2]
+    assert 20.0 < np.degrees(swings.max()) < 45.0 and -45.0 < np.degrees(swings.min()) < -20.0
+
+
+def test_as_few_manoeuvres_are_prescribed_as_tell_all_pairs_apart():
+    def separation(name, minutes, read, *nats):
+        pairs = dict(zip(((0, 1), (0, 2), (1, 2)), nats, strict=True))
+        return Separation(name, minutes, read, pairs, {})
+
+    sets = [SetOfCauses((SimpleNamespace(label=name),), np.zeros(1), np.zeros(1), 0.0) for name in "abc"]
+    half, other = separation("half", 10.0, True, 5.0, 30.0, 40.0), separation("other", 8.0, True, 12.0, 3.0, 2.0)
+    quick = separation("quick, not read from logs", 4.0, False, 50.0, 0.0, 0.0)
+    (first, second) = designed([half, other, quick], sets)
+    assert first.manoeuvre == "half" and first.separates == (("a", "c"), ("b", "c"))
+    assert second.manoeuvre == "other" and second.separates == (("a", "b"),)
+    assert designed([separation("nothing", 5.0, True, 9.0, 9.0, 9.0)], sets) == ()
+
+
+@pytest.mark.slow
+def test_what_was_sailed_already_separates_nothing(separated):
+    """The trials held circles with 10, 20 and 32 deg: sailing such again tells no more, by whatever is computed."""
+    again = [one for one in separated if one.manoeuvre == "turning circle with 20 deg at full speed"]
+    assert all(max(one.nats.values()) < 3.0 for one in again) and again
+
+
+@pytest.mark.slow
+def test_sailing_what_is_prescribed_tells_the_planted_drag_from_the_others(found, sets, separated):
+    assert len(sets) > 1
+    designs = designed(separated, sets)
+    chosen = [one for one in catalogue(found.model) if one.name in {design.manoeuvre for design in designs}]
+    assert chosen and all(one.kind in SOUGHT for one in chosen)
+    more = [trial for _, pair in as_trials(chosen, found.model, SHAFTS, PLANTED) for trial in pair]
+    ranking = ranked(trial_evidence([*found.trials, *more], found.model, found.hypotheses, orders=True))
+    assert {cause.cause for cause in best_of(ranking).hypotheses} == {"drift_drag", "late_orders"}
+    assert not rivals_of(ranking)
