@@ -199,7 +199,7 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
     log = checked(read)
     progress("which causes explain it?")
     held = compared(log)
-    if not held.comparison.is_resolved:
+    if held.comparison.obstacles:
         return judged(with_causes(identified(held)))
     identification = with_learnt_form(corrected(identified(held)))
     explained = with_settled_form(with_causes(identification))
@@ -245,7 +245,7 @@ def completed(
         identification.log,
         identification.repaired,
         problem.record.step,
-        tuple(problem.record.remarks),
+        (*problem.record.remarks, *(identification.comparison.obstacles if identification.comparison else ())),
         tuple(handled(identification.log)),
     )
     complete = replace(

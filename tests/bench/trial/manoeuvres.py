@@ -6,9 +6,8 @@ from pathlib import Path
 
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.ship.model import ship_model_of
-from trial.runs import TOOL, add, answered, key, pool_of, read_results
+from trial.runs import TOOL, add, answered, drawn, key, pool_of, read_results
 from trial.tools import system
-from truth import draw
 
 AFTER = "{} sailed"
 """Name of a set after the manoeuvre."""
@@ -86,4 +85,4 @@ def sail(kinds, sets, into, *, tool=TOOL, jobs=1, minutes=None, progress=print):
 def longer(result):
     """The ship of a result after the manoeuvre that it prescribes: her log, its set and its options."""
     options = result["options"] | {"after": orders()[prescribed(result)]}
-    return draw(result["kind"], result["seed"], **options), AFTER.format(result["set"]), options
+    return drawn(result["kind"], [result["seed"]], options)[0], AFTER.format(result["set"]), options

@@ -8,11 +8,12 @@ import subprocess
 import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
-from functools import cache
+from functools import cache, lru_cache
 from multiprocessing import get_context
 from pathlib import Path
 
 import shipcosim
+from trial.poor import poorer
 from trial.scoring import DATA_FAULTS
 from trial.tools import twin_of
 from truth import draw_many
@@ -23,6 +24,20 @@ TOOL = "trial.tools:ours"
 TOOLS = {"drift": "trial.tools:with_drift"}  # of the sets that others are for
 BATCH = 16
 DRIFT = {"legs": [[30, 0, 0, 0], [300, 0, 0, 0]], "free": [[30, 330]]}  # five minutes without power
+POOR = {
+    "slow_2s": {"every": 2},
+    "slow_3s": {"every": 3},
+    "slow_5s": {"every": 5},
+    "slow_10s": {"every": 10},
+    "brief_20s": {"seconds": 20},
+    "brief_45s": {"seconds": 45},
+    "brief_120s": {"seconds": 120},
+    "position": {"channels": "position"},
+    "no_velocity": {"channels": "no_velocity"},
+    "no_velocity_no_wind": {"channels": "no_velocity_no_wind"},
+    "half_channels": {"channels": "half"},
+}
+"""What is left of a log in the sets of poor ones, as the arguments of `poorer`."""
 SETS = {
     "one": {},
     "healthy": {"causes": 0},
@@ -39,6 +54,8 @@ SETS = {
     "healthy_rough": {"causes": 0, "rough": True},
     "healthy_form": {"causes": 0, "form": 1.0},
     "drift": {"among": [cause for cause in CAUSES if cause not in DATA_FAULTS], "after": DRIFT},
+    **{name: {"poor": poor} for name, poor in POOR.items()},
+    **{f"healthy_{name}": {"causes": 0, "poor": poor} for name, poor in POOR.items()},
 }
 
 
@@ -97,21 +114,35 @@ def diagnosed(kind, name, seeds, *, tool=TOOL, pool=None):
         `kind`, `set`, `options`, `seed`, `answer` (what is hidden), `span` of the log [s], `tool`, `diagnosis` (None
         after an error), `error`, `seconds`.
     """
-    cases = draw_many(kind, seeds, **SETS[name])
+    cases = drawn(kind, seeds, SETS[name])
     yield from answered([(case, name, SETS[name]) for case in cases], tool=tool, pool=pool)
 
 
-def answered(drawn, *, tool=TOOL, pool=None):
+def drawn(kind, seeds, options):
+    """Logs of a kind by the options of a set: those of `truth.draw_many`, and what is left of a poor log."""
+    poor = options.get("poor")
+    if poor is None:
+        return draw_many(kind, seeds, **options)
+    return [poorer(case, **poor) for case in _whole(kind, tuple(seeds), options.get("causes", 1))]
+
+
+@lru_cache(maxsize=2)
+def _whole(kind, seeds, causes):
+    """The logs of which the sets of poor ones are parts; each set of one kind is of the same."""
+    return draw_many(kind, seeds, causes=causes)
+
+
+def answered(cases, *, tool=TOOL, pool=None):
     """Diagnose drawn logs, each with its set and the options that it was drawn with; yields as `diagnosed`."""
     with tempfile.TemporaryDirectory() as folder:
-        paths = [str(Path(folder) / f"{case.kind}-{name}-{case.seed}.csv") for case, name, _ in drawn]
-        for (case, name, _), path in zip(drawn, paths, strict=True):
+        paths = [str(Path(folder) / f"{case.kind}-{name}-{case.seed}.csv") for case, name, _ in cases]
+        for (case, name, _), path in zip(cases, paths, strict=True):
             case.save(path)
             if name in TOOLS:
                 case.twin().save(twin_of(path))
         each = pool.map if pool else map
         outcomes = each(outcome_of, paths, itertools.repeat(tool))
-        for (case, name, options), outcome in zip(drawn, outcomes, strict=True):
+        for (case, name, options), outcome in zip(cases, outcomes, strict=True):
             times = case.log["time [s]"]
             yield {
                 "kind": case.kind,

@@ -93,7 +93,18 @@ def test_horizons_follow_the_size_of_the_craft():
 
 def test_rows_too_far_apart_for_the_craft_are_said_to_be():
     log = sailed(11).isel(time=slice(None, None, 4))
-    assert not held(log).comparison.is_resolved
+    (obstacle,) = held(log).comparison.obstacles
+    assert "no cause is named" in obstacle
+
+
+def test_without_what_drives_a_thruster_nothing_is_said_of_sides_signs_and_sizes():
+    """A thruster that the log lacks was taken to stand still: the other one then seemed to push twice as much."""
+    found = held(sailed(13, 0.6, 0.6).drop_vars("left_rpm"))
+    (obstacle,) = found.comparison.obstacles
+    assert "left_rpm" in obstacle and "zeros" in obstacle
+    assert not found.comparison.findings and not found.comparison.discrepancies and not found.faults
+    assert found.comparison.errors["position_error_m"][-1] > 0.0
+    assert held(sailed(13).assign(left_rpm=lambda log: 0.0 * log["right_rpm"])).comparison.obstacles == ()
 
 
 @pytest.mark.parametrize("seed", [704, 705])

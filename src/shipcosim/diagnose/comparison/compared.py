@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
     from shipcosim.diagnose.comparison.labels import Change, Labels
     from shipcosim.diagnose.hypotheses.catalogue import Cause
+    from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["LogComparison", "compared"]
 
@@ -54,8 +55,8 @@ class LogComparison:
         Of thrust to inertia.
     findings : tuple of Finding
         Of the physics, beyond doubt: the ship is started with them.
-    is_resolved : bool
-        Whether rows are close enough for the ship's answers.
+    obstacles : tuple of str
+        Why no cause can be named from the log, whatever it shows, and what would do.
     """
 
     errors: dict[str, list[float]]
@@ -64,7 +65,7 @@ class LogComparison:
     labels: Labels | None = None
     ratio: CommonRatio | None = None
     findings: tuple[Finding, ...] = ()
-    is_resolved: bool = True
+    obstacles: tuple[str, ...] = ()
 
     def found_without(self, causes: dict[str, Cause]) -> tuple[Finding, ...]:
         """What may be named where no cause of the catalogue explains the log: a common ratio that is not gross."""
@@ -85,9 +86,9 @@ def compared(log: CheckedLog) -> ComparedLog:
     felt = felt_by(record, length)
     ship = with_surrogates(ship, record, first_motion(record, ship))
     errors = errors_of(record, felt, ship)
-    is_resolved = float(np.diff(log.repaired["time"].values[:2])[0]) <= RESOLVED * froude_time(length)
-    if not is_resolved or felt.usable.sum() < FEWEST_USABLE:
-        return _stage(log, LogComparison(errors, (), is_resolved=is_resolved))
+    obstacles = _obstacles(log.repaired, ship)
+    if obstacles or felt.usable.sum() < FEWEST_USABLE:
+        return _stage(log, LogComparison(errors, (), obstacles=obstacles))
     axes = axes_of(felt, commanded_by(record, felt, ship), ship)
     labels = read_labels(record, felt, axes, ship)
     gains = gains_of(axes, labels.used.commanded)
@@ -102,6 +103,22 @@ def compared(log: CheckedLog) -> ComparedLog:
     if ratio is not None and findings:
         found = replace(found, ship=with_thrust(found.ship, ratio.ratio, ratio.std))
     return found
+
+
+def _obstacles(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
+    """What keeps a log from telling causes: rows too far apart for the ship's answers, thrusters that it lacks."""
+    step, most = float(np.diff(repaired["time"].values[:2])[0]), RESOLVED * froude_time(ship.parts["hull"].length)
+    found = []
+    if step > most:
+        found.append(f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would.")
+    for name in ship.thrusters:
+        lacking = [f"{name}_{kind}" for kind in ship.drives(name) if f"{name}_{kind}" not in repaired]
+        if lacking:
+            found.append(
+                f"No {' and '.join(lacking)} in the log: what '{name}' does to the ship is not known, and no cause is"
+                " named. Log it; if it stood still, give a column of zeros."
+            )
+    return tuple(found)
 
 
 def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:

@@ -63,7 +63,7 @@ class Judgement:
 def judged(explained: ExplainedLog) -> JudgedLog:
     """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
     problem, fits, comparison = explained.identification.problem, explained.fits, explained.identification.comparison
-    if comparison is not None and not comparison.is_resolved:
+    if comparison is not None and comparison.obstacles:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
     unmodelled, without_wind = {}, problem.record.wind is None
 

@@ -220,12 +220,10 @@ def _unit(log, name, model, rows, remarks):
         speed = _column(log, f"{name}_thrust", rows)
     elif f"{name}_rpm" not in log:
         if "rpm" in model.drives(name):
-            remarks.append(
-                f"No speed of '{name}' in the log: taken to stand still; nothing about it can be identified."
-            )
+            remarks.append(f"No speed of '{name}' in the log: taken to stand still in simulations.")
         speed = np.zeros(rows)
     if name in model.azimuths and f"{name}_azimuth" not in log:
-        remarks.append(f"No direction of '{name}' in the log: taken to point ahead.")
+        remarks.append(f"No direction of '{name}' in the log: taken to point ahead in simulations.")
     if name not in model.azimuths or f"{name}_azimuth" not in log:
         direction = np.full(rows, model.fixed.get(name, 0.0))
     whole = np.isfinite(speed) & np.isfinite(direction)
