@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -164,10 +164,10 @@ def _sections(diagnosis):
     extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
     steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended, diagnosis.causes))
     return [
-        ("Wrong, largest first", _table(discrepancy_rows(diagnosis))),
+        ("Wrong, largest first", table(discrepancy_rows(diagnosis))),
         ("Found", finding_table(diagnosis.findings)),
-        ("This log cannot tell apart", _table(alike)),
-        ("Errors", _table(key_figures(diagnosis))),
+        ("This log cannot tell apart", table(alike)),
+        ("Errors", table(key_figures(diagnosis))),
         ("This log could not have shown", Text(silent) if silent else None),
         ("Remarks", Text("\n".join(diagnosis.notes), style="yellow") if diagnosis.notes else None),
         ("What to do next", Text(steps)),
@@ -176,7 +176,7 @@ def _sections(diagnosis):
 
 def finding_table(findings: Iterable[Finding]) -> Any:
     """Findings as a table, their parameters row by row; None without one."""
-    return _table(row for finding in findings for row in _rows(finding))
+    return table(row for finding in findings for row in _rows(finding))
 
 
 def _rows(finding):
@@ -192,8 +192,8 @@ def _rows(finding):
         yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)
 
 
-def _table(rows):
-    """Rows as a table without a head; None without rows."""
+def table(rows: Iterable[Sequence[str]]) -> Any:
+    """Rows of texts as a table without a head; None without rows."""
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False, show_header=False)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, FILES, check_inputs, finding_table, shown_progress
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, FILES, check_inputs, shown_progress, table
 from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
@@ -24,13 +25,14 @@ def diagnose_logs(
     effects: str | os.PathLike | None = None,
     reference: str | os.PathLike | None = None,
 ) -> JointDiagnosis:
-    """Diagnose several logs of one ship together, and write diagnosis.json.
+    """Diagnose several logs of one ship together, and write all that there is to say of them.
 
     Parameters
     ----------
     logs : sequence of Path
     folder : Path
-        Gets diagnosis.json.
+        Gets diagnosis.json and report.html, and where a common cause in the model was named extended.ssp and
+        extended.ssv.
     system, channels, effects, reference : optional
         As for `diagnose_log`.
 
@@ -45,17 +47,23 @@ def diagnose_logs(
     """
     from shipcosim.cli.requests import system_of
     from shipcosim.cli.results import staged
-    from shipcosim.diagnose.joint_pipeline import find_common_causes
+    from shipcosim.diagnose.joint_pipeline import diagnose_jointly
     from shipcosim.diagnose.reference.reference import read_reference
+    from shipcosim.report.joint.page import write_joint
 
     check_inputs(logs, channels, effects)
     known = None if reference is None else read_reference(reference)
     ship = system_of(find_system(system or DEFAULT_SYSTEM, "--system"))
     with shown_progress("") as show, staged(folder, FILES) as stage:
-        found = find_common_causes(list(logs), ship, channels, effects, show, known)
+        found = diagnose_jointly(list(logs), ship, channels, effects, show, out=stage, reference=known)
+        show("writing the page")
         text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
         (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
-    return found
+        write_joint(found, stage / "report.html")
+    if found.extension is None:
+        return found
+    at_home = {kind: folder / f"extended.{kind}" for kind in ("ssp", "ssv")}
+    return replace(found, extension=replace(found.extension, **at_home))
 
 
 def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
@@ -64,15 +72,50 @@ def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path, style_of
+    from shipcosim.report.joint.words import outcome
 
     if as_json:
         print(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
         return
     console = Console(highlight=False, soft_wrap=True)
-    console.print(Text(found.verdict, style=style_of(found.verdict)), Text(f"by {len(found.logs)} logs together"))
-    for heading, findings in (("All logs", found.findings), *((n, one.findings) for n, one in found.logs.items())):
-        console.print()
-        console.print(Text(heading if heading == "All logs" else f"{heading} by itself", style="bold"))
-        console.print(finding_table(findings) or Text("nothing"))
+    verdict = outcome(found)
+    console.print(Text(verdict.word, style=style_of(found.verdict)), Text(verdict.sentence))
+    for heading, content in _sections(found):
+        if content is not None:
+            console.print()
+            console.print(Text(heading, style="bold"))
+            console.print(content)
     console.print()
-    console.print(f"All of it: {shown_path(folder / 'diagnosis.json')}", markup=False)
+    console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
+
+
+def _sections(found):
+    """Headings of the summary with their content; None where there is none."""
+    from rich.text import Text
+
+    from shipcosim.cli.console import shown_path
+    from shipcosim.report.diagnosis.words import title
+    from shipcosim.report.joint.words import (
+        cause_rows,
+        discrepancy_rows,
+        error_rows,
+        fault_rows,
+        log_rows,
+        next_steps,
+    )
+
+    extension = found.extension
+    extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
+    silent = ", ".join(title(name).lower() for name in found.not_testable)
+    head = ("log", "after", "position", "with causes", "heading", "with causes", "")
+    errors = error_rows(found)
+    return [
+        ("Wrong, largest first", table(discrepancy_rows(found))),
+        ("Faults of the data in common", table(fault_rows(found))),
+        ("Causes in common", table(cause_rows(found))),
+        ("Errors by log", table([head, *errors] if errors else [])),
+        ("Each log by itself: verdict, own faults, causes", table(row[:4] for row in log_rows(found))),
+        ("All logs together could not have shown", Text(silent) if silent else None),
+        ("Remarks", Text("\n".join(found.remarks), style="yellow") if found.remarks else None),
+        ("What to do next", Text("\n".join(f"- {step}" for step in next_steps(found, extended)))),
+    ]

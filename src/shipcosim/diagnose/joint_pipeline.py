@@ -1,81 +1,148 @@
-"""Several logs of one ship in one diagnosis: common causes by the evidence of all logs, weather by that of each."""
+"""Several logs of one ship in one diagnosis: common causes by the evidence of all logs, weather by that of each.
+
+From the logs to their common verdict, `find_common_causes`:
+
+    find_causes        Diagnosis       each log by itself
+    common_faults      Shared          faults of the data that the logs have in common
+    ratio_of_logs      RatioOfLogs     one ratio of thrust to inertia, unless the logs contradict each other
+    about_common       Identification  each log with what is common put right, where it was not by itself
+    judged_jointly     JointVerdict    causes by the evidence of all logs
+
+From the verdict to the gain, `diagnose_jointly`: the system with the common causes in it, and each log co-simulated
+with what the other logs say of them.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.calibration_pipeline import log_names
-from shipcosim.diagnose.pipeline import Progress, find_causes
-from shipcosim.diagnose.reference.joint_verdict import JointVerdict, judged_jointly, untestable_jointly
-from shipcosim.diagnose.reference.several_logs import SeveralLogs
-from shipcosim.diagnose.result import SCHEMA, Candidate, Diagnosis, Estimate, Finding
+from shipcosim.diagnose.comparison.compared import compared, ratio_finding
+from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
+from shipcosim.diagnose.experiment.design import design_experiment
+from shipcosim.diagnose.extension.extended_system import extended_by
+from shipcosim.diagnose.inference.form import of_scale, with_learnt_form
+from shipcosim.diagnose.inference.problem import identified
+from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.log_faults.corrections import corrected
+from shipcosim.diagnose.pipeline import Progress, find_causes, given_system
+from shipcosim.diagnose.reference.common import (
+    Shared,
+    common_discrepancies,
+    common_faults,
+    is_of_thrusters,
+    leans_to,
+    ratio_of_logs,
+    with_right_labels,
+)
+from shipcosim.diagnose.reference.held_out import errors_by_log, sizes_by_log, sizes_without, weather_of
+from shipcosim.diagnose.reference.joint_fit import JointFit
+from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
+from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestable_jointly
+from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
+from shipcosim.diagnose.reference.reference import read_reference, with_reference
+from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
+from shipcosim.diagnose.result import Diagnosis, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
+from shipcosim.diagnose.ship.thrusters import with_thrust
+from shipcosim.diagnose.stages import Identification, ReadLog
 
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.diagnose.comparison.gains import CommonRatio
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+    from shipcosim.diagnose.inference.fitting import IdentificationProblem
     from shipcosim.diagnose.reference.reference import Reference
-    from shipcosim.ssp import System
+    from shipcosim.ssp import System, SystemStructure
 
-__all__ = ["JointDiagnosis", "combined", "find_common_causes"]
+__all__ = ["JointDiagnosis", "diagnose_jointly", "find_common_causes"]
 
 
-@dataclass(frozen=True)
-class JointDiagnosis:
-    """What several logs of one ship say together, and each by itself.
+def diagnose_jointly(
+    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    system: str | os.PathLike | SystemStructure | System,
+    channels: str | os.PathLike | None = None,
+    causes: str | os.PathLike | None = None,
+    progress: Progress | None = None,
+    *,
+    out: str | os.PathLike | None = None,
+    reference: str | os.PathLike | Reference | None = None,
+) -> JointDiagnosis:
+    """Diagnose several logs of one ship together: what they have in common, the system with it, what that gains.
 
-    Attributes
+    Parameters
     ----------
-    verdict : str
-        As of one log.
-    findings : tuple of Finding
-        Causes in the ship; weather has the log's name as its component.
-    candidates, indistinguishable : tuple of Candidate
-    not_testable : tuple of str
-        Causes that all logs together could not have shown.
-    logs : dict of str to Diagnosis
-        Each log by itself: its faults, its errors, its own verdict.
+    logs, system, channels, causes, progress, reference
+        As for `find_common_causes`; the system as for `diagnose`, too.
+    out : path, optional
+        Folder that gets extended.ssp and extended.ssv, where a common cause of the physics is named; a temporary one
+        that is there as long as the diagnosis if not given.
+
+    Returns
+    -------
+    JointDiagnosis
+
+    Raises
+    ------
+    ShipcosimError
+        Data, system or causes that cannot be used.
     """
+    say = progress or (lambda *_: None)
+    folder = None
+    if out is None:
+        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+        out = folder.name
+    given = given_system(system)
+    if reference is not None:
+        reference = read_reference(reference)
+        given = with_calibrated_numbers(given, reference, out)
+    found = find_common_causes(logs, given.given, channels, causes, say, reference)
+    say("extending the system")
+    of_ship = [shared.what for shared in found.findings if shared.what.component not in found.logs]
+    about = {"source": ", ".join(found.logs), "sha256": ""}
+    extended = extended_by(given, of_ship, about, found.causes, out)
+    errors = {}
+    if found.basis:
+        errors = errors_by_log(
+            found.basis.verdict.logs,
+            given,
+            lambda name: _findings_without(found, name),
+            found.causes,
+            lambda name, *done: say(f"{name} again, by co-simulation", *done),
+        )
+    remarks = (*found.remarks, *extended.remarks, *(one.remark for one in errors.values() if one.remark))
+    return replace(
+        found,
+        errors=errors,
+        system=given.given,
+        extension=extended.extension,
+        changes=extended.changes,
+        remarks=remarks,
+        folder=folder,
+    )
 
-    verdict: str
-    findings: tuple[Finding, ...]
-    candidates: tuple[Candidate, ...]
-    indistinguishable: tuple[Candidate, ...]
-    not_testable: tuple[str, ...]
-    logs: dict[str, Diagnosis]
 
-    def as_json(self) -> dict:
-        """The content of diagnosis.json, with an entry for each log under `logs`."""
-        return {
-            "schema": SCHEMA,
-            "verdict": self.verdict,
-            "findings": [self._entry(finding.as_json()) for finding in self.findings],
-            "candidates": [self._entry(asdict(candidate)) for candidate in self.candidates],
-            "indistinguishable": [self._entry(asdict(candidate)) for candidate in self.indistinguishable],
-            "not_testable": list(self.not_testable),
-            "prescription": None,
-            "discrepancies": [],
-            "baseline": None,
-            "gain": None,
-            "logs": [{"name": name, **_of_log(one)} for name, one in self.logs.items()],
-        }
-
-    def _entry(self, entry: dict) -> dict:
-        """An entry in which a cause of the day has its log by name, instead of a component."""
-        if entry["component"] in self.logs:
-            return entry | {"component": None, "log": entry["component"]}
-        return entry
-
-
-def _of_log(diagnosis: Diagnosis) -> dict:
-    """What diagnosis.json has of one of several logs."""
-    content = diagnosis.as_json()
-    return {key: content[key] for key in ("verdict", "findings", "discrepancies", "baseline", "not_testable")}
+def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], list[Finding]]:
+    """Causes in the ship with their sizes by the other logs, and those of a log's own weather."""
+    basis = found.basis
+    if basis is None or len(basis.verdict.logs.problems) < 2:
+        return [], []
+    crude, judgement = [], basis.verdict.judgement
+    if basis.has_ratio and (ratio := basis.ratios.without(name)):
+        crude = list(ratio_finding(ratio, found.causes))
+    said = {shared.what.label for shared in found.findings}
+    named = [one for one in judgement.fit.hypotheses if one.label in said]
+    if not named:
+        return crude, []
+    of_ship = sizes_without(basis.verdict.logs, name, named, judgement.fit.values)
+    return [*crude, *of_ship], weather_of(cast(JointFit, judgement.fit), name, named)
 
 
 def find_common_causes(
@@ -105,6 +172,7 @@ def find_common_causes(
     Returns
     -------
     JointDiagnosis
+        Without the errors of predictions and the extended system, which `diagnose_jointly` adds.
 
     Raises
     ------
@@ -116,76 +184,189 @@ def find_common_causes(
     for name, log in zip(log_names(logs), logs, strict=True):
         say(f"{name} by itself")
         alone[name] = find_causes(log, system, channels, causes, reference=reference)
-    say("all logs together")
-    identified = {name: one.basis.explained.identification for name, one in alone.items() if one.basis}
-    widest = max(one.problem.model.form_scale for one in identified.values())
-    problems = {name: _with_form(one.problem, widest) for name, one in identified.items()}
+    say("what the logs have in common")
+    known = {name: _identification(one) for name, one in alone.items()}
+    left_out = {name: why for name, one in alone.items() if (why := _unusable(one))}
+    found = JointDiagnosis(
+        "ambiguous" if any(one.verdict == "ambiguous" for one in alone.values()) else "unknown",
+        tuple(common_faults({name: one.findings for name, one in alone.items()})),
+        logs=alone,
+        discrepancies=tuple(common_discrepancies({name: one.discrepancies for name, one in alone.items()})),
+        left_out=left_out,
+        causes=next(iter(known.values())).causes,
+    )
+    usable = {name: one for name, one in known.items() if name not in left_out}
+    if not usable:
+        return replace(found, remarks=tuple(remarks_on(found)))
+    ship = ship_model_of(system)
+    ship = ship if reference is None else with_reference(ship, read_reference(reference))
     with threadpool_limits(1):
-        found = judged_jointly(SeveralLogs(problems))
-        untestable = untestable_jointly(found)
-    unknown = found.judgement.verdict == "unknown"
-    crude = {
-        name: (*one.comparison.findings, *(one.comparison.found_without(one.causes) if unknown else ()))
-        for name, one in identified.items()
-        if one.comparison
-    }
-    return _stated(found, combined(crude, len(alone)), untestable, alone)
+        return _together(found, usable, ship, say)
 
 
-def _with_form(problem, scale):
-    """The problem of a ship whose form may differ by some scale, as in the log that says most of it."""
-    from shipcosim.diagnose.inference.form import of_scale
+def _identification(one: Diagnosis) -> Identification:
+    if one.basis is None:
+        raise ValueError("a diagnosis that does not know its log")
+    return one.basis.explained.identification
 
-    return problem if problem.model.form_scale == scale or problem.model.directions else of_scale(problem, scale)
+
+def _unusable(one: Diagnosis) -> str:
+    """Why a log says nothing of the ship; empty where it does."""
+    if any(finding.alternatives for finding in one.findings):
+        return "its channels may be misread, and it does not tell which"
+    comparison = _identification(one).comparison
+    if comparison is not None and not comparison.is_resolved:
+        return "its rows are too far apart for the ship's answers"
+    return ""
 
 
-def _stated(
-    found: JointVerdict, crude: Sequence[Finding], untestable: Sequence[str], alone: dict[str, Diagnosis]
+def _together(
+    found: JointDiagnosis, usable: dict[str, Identification], ship: ShipModel, say: Progress
 ) -> JointDiagnosis:
-    judgement = found.judgement
-    of_data = any(finding.kind == "data" for one in alone.values() for finding in one.findings)
-    verdict = "named" if (crude or of_data) and judgement.verdict == "consistent" else judgement.verdict
-    seen = {one.label for one in (*judgement.candidates, *judgement.findings)} | {one.cause for one in crude}
-    return JointDiagnosis(
-        verdict,
-        (*crude, *judgement.findings),
-        judgement.candidates,
-        judgement.indistinguishable,
-        tuple(name for name in untestable if name not in seen),
-        alone,
+    """What the usable logs say together."""
+    relabelled = _relabelled(found.findings, usable)
+    read = {
+        name: replace(_as_read(usable[name], ship), log=with_right_labels(usable[name].log, faults))
+        for name, faults in relabelled.items()
+    }
+    comparisons = {name: one.comparison for name, one in usable.items()}
+    comparisons |= {name: compared(checked(one)).comparison for name, one in read.items()}
+    ratios = ratio_of_logs({name: one.ratio for name, one in comparisons.items() if one is not None and one.ratio})
+    start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
+    about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
+    say("all logs together")
+    verdict = judged_jointly(SeveralLogs(_of_one_form({name: one.problem for name, one in about.items()})))
+    basis = JointBasis(verdict, ratios, _has_ratio(ratios.common, verdict.judgement.verdict))
+    said = replace(found, basis=basis, relabelled={name: tuple(faults) for name, faults in relabelled.items()})
+    return _stated(said)
+
+
+def _relabelled(faults: Sequence[Shared[Finding]], usable: Mapping[str, Identification]) -> dict[str, list[Finding]]:
+    """Faults of the thrusters' labels that other logs show, by the logs that are put right after them."""
+    found: dict[str, list[Finding]] = {}
+    for fault in (one for one in faults if is_of_thrusters(one.what)):
+        for name in (name for name in usable if name not in fault.logs):
+            comparison = usable[name].comparison
+            if leans_to(comparison.labels if comparison else None, fault.what):
+                found.setdefault(name, []).append(fault.what)
+    return found
+
+
+def _as_read(one: Identification, ship: ShipModel) -> ReadLog:
+    """A log as it was read, to be diagnosed anew."""
+    return ReadLog(one.log, ship, one.causes)
+
+
+def _about_common(
+    one: Identification, read: ReadLog | None, ship: ShipModel, ratio: CommonRatio | None
+) -> Identification:
+    """A log as an identification problem about what all logs have in common: labels, and thrust over inertia."""
+    if read is None and ratio is None:
+        return one
+    read = read or _as_read(one, ship)
+    if ratio is not None:
+        read = replace(read, ship=with_thrust(ship, ratio.ratio, ratio.std))
+    return with_learnt_form(corrected(identified(compared(checked(read)))))
+
+
+def _of_one_form(problems: dict[str, IdentificationProblem]) -> dict[str, IdentificationProblem]:
+    """The problems of a ship whose form may differ by one scale: that of the log that says most of it."""
+    widest = max(problem.model.form_scale for problem in problems.values())
+    return {
+        name: problem if problem.model.form_scale == widest or problem.model.directions else of_scale(problem, widest)
+        for name, problem in problems.items()
+    }
+
+
+def _has_ratio(ratio: CommonRatio | None, verdict: str) -> bool:
+    """Whether a common ratio is named: where it is gross, or where no cause explains the logs."""
+    return ratio is not None and ratio.differs(GROSS if verdict != "unknown" else PLAIN)
+
+
+def _stated(found: JointDiagnosis) -> JointDiagnosis:
+    """What is said of the logs together."""
+    basis = found.basis
+    if basis is None:
+        return found
+    judgement, ratios = basis.verdict.judgement, basis.ratios
+    is_split = ratios.common is None and any(one.differs(GROSS) for one in ratios.each.values())
+    crude = ratio_finding(ratios.common, found.causes) if basis.has_ratio and ratios.common else ()
+    causes = () if is_split else judgement.findings
+    logs = basis.verdict.logs
+    labels = {one.label: one for one in logs.hypotheses}
+    findings = (
+        *(_with_relabelled(one, found.relabelled) for one in found.findings),
+        *(Shared(one, tuple(ratios.each)) for one in crude),
+        *(Shared(one, _telling(logs, labels[one.label])) for one in causes),
+    )
+    seen = {one.label for one in (*judgement.candidates, *causes)} | {one.cause for one in crude}
+    verdict = "unknown" if is_split else judgement.verdict
+    of_data = found.findings or any(one.kind == "data" for log in found.logs.values() for one in log.findings)
+    return replace(
+        found,
+        verdict="named" if (crude or of_data) and verdict == "consistent" else verdict,
+        findings=findings,
+        sizes=_sizes(basis, crude, causes),
+        candidates=judgement.candidates,
+        indistinguishable=() if is_split else judgement.indistinguishable,
+        not_testable=tuple(name for name in untestable_jointly(basis.verdict) if name not in seen),
+        prescription=None if is_split else _prescription(basis),
+        remarks=(*found.remarks, *remarks_on(found)),
     )
 
 
-def combined(findings: Mapping[str, Iterable[Finding]], logs: int) -> tuple[Finding, ...]:
-    """Findings that stand beyond doubt in single logs, as one of all: those of half of the logs at least.
-
-    Parameters
-    ----------
-    findings : mapping of str to iterable of Finding
-        By name of the log.
-    logs : int
-        How many logs there are.
-
-    Returns
-    -------
-    tuple of Finding
-        Each parameter is the mean weighted by information; its standard deviation is at least what the logs differ by.
-    """
-    by_label: dict[str, list[Finding]] = {}
-    for own in findings.values():
-        for finding in own:
-            by_label.setdefault(finding.label, []).append(finding)
-    shared = [same for same in by_label.values() if 2 * len(same) >= logs]
-    return tuple(replace(same[0], parameters=_together([one.parameters for one in same])) for same in shared)
+def _sizes(
+    basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding]
+) -> dict[str, dict[str, dict[str, Estimate]]]:
+    """How large each log by itself would have what is common."""
+    each = basis.ratios.each
+    sizes = {
+        one.label: {name: dict.fromkeys(one.parameters, Estimate(of.ratio, of.std, "1")) for name, of in each.items()}
+        for one in crude
+    }
+    if not causes:
+        return sizes
+    fit, said = basis.verdict.judgement.fit, {one.label for one in causes}
+    named = [one for one in fit.hypotheses if one.label in said]
+    return sizes | sizes_by_log(basis.verdict.logs, named, fit.values)
 
 
-def _together(parameters: Sequence[Mapping[str, Estimate]]) -> dict[str, Estimate]:
-    found = {}
-    for name, first in parameters[0].items():
-        values = np.array([one[name].estimate for one in parameters])
-        weights = 1.0 / np.maximum([one[name].std for one in parameters], 1e-12) ** 2
-        mean = float((weights * values).sum() / weights.sum())
-        within = 1.0 / weights.sum()
-        between = (weights * (values - mean) ** 2).sum() / weights.sum() / max(values.size - 1, 1)
-        found[name] = Estimate(mean, float(np.sqrt(max(within, between))), first.unit)
-    return found
+def _with_relabelled(one: Shared[Finding], relabelled: Mapping[str, Sequence[Finding]]) -> Shared[Finding]:
+    return replace(one, put_right=tuple(name for name, faults in relabelled.items() if one.what in faults))
+
+
+def _telling(logs: SeveralLogs, hypothesis: Hypothesis) -> tuple[str, ...]:
+    """Logs that have something to say of a cause."""
+    return tuple(name for name in logs.problems if logs.within(name, hypothesis) is not None)
+
+
+def _prescription(basis: JointBasis) -> ExperimentDesign | None:
+    """A manoeuvre that tells apart what all logs together cannot, planned about the longest of them."""
+    judgement, problems = basis.verdict.judgement, basis.verdict.logs.problems
+    name = max(problems, key=lambda name: problems[name].record.time.size)
+    if not judgement.rivals or problems[name].model.third_party:  # with those no manoeuvre can be prescribed
+        return None
+    of_ship = [fit for fit in judgement.rivals if not all(map(is_in_one_log, fit.hypotheses))]
+    best = cast(JointFit, judgement.fit)
+    parts = [cast(JointFit, fit).parts[name] for fit in of_ship]
+    return design_experiment(problems[name], best.parts[name], parts) if parts else None
+
+
+def remarks_on(found: JointDiagnosis) -> list[str]:
+    """What to know of logs that differ from the others, or say nothing of the ship."""
+    basis = found.basis
+    remarks = [f"{name} says nothing of the ship: {why}." for name, why in found.left_out.items()]
+    for name, faults in found.relabelled.items():
+        what = "; ".join(fault.sentence for fault in faults)
+        remarks.append(f"{name} is read as the other logs show ({what}): by itself it does not tell.")
+    if basis is None:
+        return remarks
+    if basis.ratios.contradiction:
+        remarks.append(basis.ratios.contradiction)
+    for name in basis.ratios.apart if basis.has_ratio else ():
+        own = basis.ratios.each[name]
+        remarks.append(
+            f"{name} by itself says {own.ratio:.2f} ± {own.std:.2f} of thrust over inertia, away from all others: "
+            "the common ratio is that much less certain."
+        )
+    return remarks

@@ -1,38 +1,189 @@
-"""What several logs say together: findings in single logs combined, entries of diagnosis.json."""
+"""A diagnosis of several logs: causes by all, sizes judged on the logs that did not give them, file and page."""
 
 import json
+from dataclasses import replace
+from typing import Literal
 
 import pytest
+from diagnose import twin
+from pydantic import BaseModel, ConfigDict, Field
 
-from shipcosim.diagnose.joint_pipeline import JointDiagnosis, combined
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
+from shipcosim.cli.joint_diagnosis import print_joint
+from shipcosim.diagnose.joint_pipeline import JointDiagnosis, diagnose_jointly
+from shipcosim.diagnose.reference.common import Shared
+from shipcosim.diagnose.result import Candidate, Diagnosis, Finding
+from shipcosim.report.joint.page import render, write_joint
+from shipcosim.report.joint.words import outcome
+from truth import draw
 
-
-def ratio(value, std):
-    return Finding("lost", None, parameters={"ratio": Estimate(value, std, "1")})
-
-
-def test_findings_of_single_logs_are_weighed_by_what_they_know():
-    (found,) = combined({"a": [ratio(0.4, 0.01)], "b": [ratio(0.5, 0.1)]}, 2)
-    assert found.parameters["ratio"].estimate == pytest.approx(0.401, abs=0.001)
-    assert 0.0099 < found.parameters["ratio"].std < 0.0101
-
-
-def test_logs_that_disagree_widen_what_they_say_together():
-    (found,) = combined({"a": [ratio(0.3, 0.01)], "b": [ratio(0.5, 0.01)]}, 2)
-    assert found.parameters["ratio"].std == pytest.approx(0.1)
+LOST = 0.345
+"""Of the starboard thruster's thrust, in the log that is drawn."""
 
 
-def test_what_fewer_than_half_of_the_logs_show_is_not_common():
-    assert combined({"a": [ratio(0.4, 0.01)]}, 3) == ()
+class Strict(BaseModel):
+    """What must be there and nothing else."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class Size(Strict):
+    estimate: float
+    std: float
+    unit: str
+
+
+class JointCandidate(Strict):
+    cause: str
+    component: str | None
+    probability: float
+    log: str | None = None
+
+
+class JointFinding(JointCandidate):
+    kind: Literal["data", "physics"]
+    parameters: dict[str, Size]
+    logs: list[str]
+    by_log: dict[str, dict[str, Size]] | None = None
+    put_right_in: list[str] | None = None
+    segments: list[tuple[float, float]] | None = None
+    channels: list[str] | None = None
+    onset: float | None = None
+    note: str | None = None
+
+
+class LogErrors(Strict):
+    horizon_s: list[float]
+    before_m: list[float]
+    after_m: list[float] | None
+    before_deg: list[float]
+    after_deg: list[float] | None
+    fitted_on: list[str]
+    own_weather: list[str]
+
+
+class JointDiscrepancy(Strict):
+    what: str
+    component: str | None
+    axis: str | None
+    estimate: float
+    std: float
+    unit: str
+    share: float
+    logs: list[str]
+
+
+class OneLog(Strict):
+    name: str
+    verdict: Literal["consistent", "named", "ambiguous", "unknown"]
+    findings: list[dict]
+    discrepancies: list[dict]
+    baseline: dict | None
+    not_testable: list[str]
+    errors: LogErrors | None
+    left_out: str | None
+
+
+class Schema(Strict):
+    """diagnosis.json of several logs, version 1: the entries of one log, and more."""
+
+    version: Literal["shipcosim-diagnosis/1"] = Field(alias="schema")
+    verdict: Literal["consistent", "named", "ambiguous", "unknown"]
+    findings: list[JointFinding]
+    discrepancies: list[JointDiscrepancy]
+    candidates: list[JointCandidate]
+    indistinguishable: list[JointCandidate]
+    not_testable: list[str]
+    prescription: dict | None
+    baseline: None
+    gain: None
+    remarks: list[str]
+    logs: list[OneLog]
+
+
+def schema_of(found):
+    """diagnosis.json as the schema reads it."""
+    return Schema.model_validate(json.loads(json.dumps(found.as_json(), allow_nan=False)))
+
+
+@pytest.fixture(scope="module")
+def lost(tmp_path_factory):
+    """Two days of a ship of the independent truth that has lost a third of a thruster's thrust, and the folder."""
+    folder, logs = tmp_path_factory.mktemp("joint"), tmp_path_factory.mktemp("logs")
+    for day in (0, 1):
+        draw("trial", 3000, among=["thrust_loss"], minutes=10, day=day).save(logs / f"day{day}.csv")
+    return diagnose_jointly(sorted(logs.iterdir()), twin.system(), out=folder), folder
+
+
+def test_a_loss_in_both_logs_is_named_once_with_what_each_log_says_of_it(lost):
+    found = schema_of(lost[0])
+    assert found.verdict == "named" and [(one.cause, one.component) for one in found.findings] == [
+        ("thrust_loss", "starboard")
+    ]
+    (finding,) = found.findings
+    assert finding.logs == ["day0", "day1"] and set(finding.by_log) == {"day0", "day1"}
+    assert finding.parameters["loss"].estimate == pytest.approx(LOST, abs=3.0 * finding.parameters["loss"].std)
+    assert all(size["loss"].std > finding.parameters["loss"].std for size in finding.by_log.values())
+
+
+def test_each_log_is_predicted_better_by_the_size_that_the_other_says(lost):
+    for entry in schema_of(lost[0]).logs:
+        assert entry.errors.fitted_on == [name for name in ("day0", "day1") if name != entry.name]
+        assert entry.errors.after_m[-1] < 0.9 * entry.errors.before_m[-1]
+
+
+def test_the_common_cause_and_nothing_else_is_in_the_extended_system(lost):
+    found, folder = lost
+    assert {path.name for path in folder.iterdir()} == {"extended.ssp", "extended.ssv"}
+    assert list(found.extension.values) == ["starboard.thrust_loss"]
+    said = found.findings[0].what.parameters["loss"].estimate
+    assert found.extension.values["starboard.thrust_loss"] == pytest.approx(said)
+
+
+def test_the_page_says_the_cause_its_sizes_and_the_errors_of_each_log(lost, tmp_path, capsys):
+    found, _ = lost
+    write_joint(found, tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    for text in (
+        "the starboard thruster delivers",
+        "day0 alone",
+        "Track, day1",
+        "sizes by day0",
+        "starboard",
+        "extended.ssv",
+    ):
+        assert (text in page) is (text != "starboard" or "starboard.thrust_loss" in page)
+    print_joint(found, tmp_path, as_json=False)
+    said = capsys.readouterr().out
+    assert "NAMED" in said and "Causes in common" in said and "report.html" in said
+
+
+def test_without_a_cause_the_page_still_says_how_far_the_simulation_is_off(lost):
+    found = lost[0]
+    bare = {
+        name: replace(
+            one, fitted_on=(), position={"before": one.position["before"]}, heading={"before": one.heading["before"]}
+        )
+        for name, one in found.errors.items()
+    }
+    text = render(replace(found, verdict="consistent", findings=(), sizes={}, errors=bare, extension=None, changes=()))
+    assert "CONSISTENT" in text and "the system stays as it is" in text and "Position error by log" in text
 
 
 def test_weather_has_its_log_in_diagnosis_json_and_a_thruster_her_component():
-    findings = (Finding("current", "monday"), Finding("thrust_loss", "port"))
+    findings = (Shared(Finding("current", "monday"), ("monday",)), Shared(Finding("thrust_loss", "port"), ("friday",)))
     candidates = (Candidate("current", "monday", 0.9),)
     logs = {"monday": Diagnosis("consistent"), "friday": Diagnosis("named", (Finding("gap", kind="data"),))}
-    content = json.loads(json.dumps(JointDiagnosis("named", findings, candidates, (), ("mass",), logs).as_json()))
-    assert [(one["component"], one.get("log")) for one in content["findings"]] == [(None, "monday"), ("port", None)]
-    assert content["candidates"][0]["log"] == "monday"
-    assert [(one["name"], one["verdict"]) for one in content["logs"]] == [("monday", "consistent"), ("friday", "named")]
-    assert content["logs"][1]["findings"][0]["cause"] == "gap"
+    content = schema_of(JointDiagnosis("named", findings, candidates, (), ("mass",), logs))
+    assert [(one.component, one.log) for one in content.findings] == [(None, "monday"), ("port", None)]
+    assert content.candidates[0].log == "monday"
+    assert [(one.name, one.verdict) for one in content.logs] == [("monday", "consistent"), ("friday", "named")]
+    assert content.logs[1].findings[0]["cause"] == "gap"
+
+
+def test_a_fault_that_logs_share_is_common_and_another_is_its_logs_own():
+    shared = Finding("frame", kind="data", channels=("wind_speed",), note="wind_speed is in kn, not m/s")
+    own = Finding("gap", kind="data", segments=((1.0, 9.0),))
+    logs = {"a": Diagnosis("named", (shared,)), "b": Diagnosis("named", (shared, own))}
+    found = JointDiagnosis("named", (Shared(shared, ("a", "b")),), logs=logs)
+    assert found.own_faults("a") == [] and found.own_faults("b") == [own]
+    assert "wind_speed is in kn" in outcome(found).sentence

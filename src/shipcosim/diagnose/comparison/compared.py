@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["LogComparison", "compared"]
+__all__ = ["LogComparison", "compared", "ratio_finding"]
 
 _ONLY_RATIO = "Thrust and inertia cannot be told apart: only their ratio is known."
 
@@ -71,7 +71,7 @@ class LogComparison:
         """What may be named where no cause of the catalogue explains the log: a common ratio that is not gross."""
         if self.findings or self.ratio is None or not self.ratio.differs(PLAIN):
             return ()
-        return _ratio_finding(self.ratio, causes)
+        return ratio_finding(self.ratio, causes)
 
 
 def compared(log: CheckedLog) -> ComparedLog:
@@ -95,7 +95,7 @@ def compared(log: CheckedLog) -> ComparedLog:
     ratio = common_ratio(gains)
     told = tuple(discrepancies_of(labels, gains, ratio))
     gross = ratio is not None and ratio.differs(GROSS)
-    findings = _ratio_finding(ratio, log.causes) if ratio is not None and gross else ()
+    findings = ratio_finding(ratio, log.causes) if ratio is not None and gross else ()
     comparison = LogComparison(errors, told, tuple(gains), labels, ratio, findings)
     found = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
@@ -146,7 +146,7 @@ def _drives(name: str, log: xarray.Dataset) -> list[str]:
     return [f"{name}_{kind}" for kind in ("rpm", "thrust", "azimuth") if f"{name}_{kind}" in log]
 
 
-def _ratio_finding(ratio: CommonRatio, causes: dict[str, Cause]) -> tuple[Finding, ...]:
+def ratio_finding(ratio: CommonRatio, causes: dict[str, Cause]) -> tuple[Finding, ...]:
     """The finding of a common ratio, by the cause that says so; none without one in the catalogue."""
     cause = next((one for one in causes.values() if one.sought_in == "comparison"), None)
     if cause is None:

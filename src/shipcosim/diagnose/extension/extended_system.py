@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.result import Finding
@@ -13,7 +14,10 @@ from shipcosim.diagnose.stages import ExtendedSystem, Identification
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
 
-__all__ = ["Change", "with_findings"]
+if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.cause import Cause
+
+__all__ = ["Change", "extended_by", "with_findings"]
 
 
 @dataclass(frozen=True)
@@ -46,14 +50,34 @@ def with_findings(
     ExtendedSystem
         With a remark where the system cannot be extended.
     """
+    time, source = log.repaired["time"].values, log.log.encoding.get("source", "")
+    about = {"source": Path(source).name, "sha256": log.log.encoding.get("sha256", "")}
+    return extended_by(given, findings, about | {"span": (float(time[0]), float(time[-1]))}, log.causes, folder)
+
+
+def extended_by(
+    given: ExtendedSystem,
+    findings: Iterable[Finding],
+    about: Mapping[str, Any],
+    causes: Mapping[str, Cause],
+    folder: str | os.PathLike,
+) -> ExtendedSystem:
+    """The same by findings of several logs.
+
+    Parameters
+    ----------
+    given, findings, folder
+        As for `with_findings`.
+    about : mapping
+        Of the logs, as `extend` takes it: ``source``, ``sha256``, ``span``.
+    causes : mapping of str to Cause
+        The catalogue.
+    """
     findings = [finding for finding in findings if finding.kind == "physics"]
     if not findings:
         return given
-    time, source = log.repaired["time"].values, log.log.encoding.get("source", "")
-    about = {"source": Path(source).name, "sha256": log.log.encoding.get("sha256", "")}
-    about |= {"span": (float(time[0]), float(time[-1]))}
     try:
-        extension = extend(given.source, findings, folder, log_attributes=about, catalogue=log.causes)
+        extension = extend(given.source, findings, folder, log_attributes=about, catalogue=causes)
         system = read_system(str(extension.ssp))
     except ShipcosimError as error:
         said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)

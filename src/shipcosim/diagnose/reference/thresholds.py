@@ -27,3 +27,10 @@ MOST_WEIGHT = 100.0
 """Information of a part of a log about a column, in units of its prior, from which on more does not count more."""
 BEYOND = 3.0
 """Standard deviations by which a number would have to leave its bounds for the logs to be refused. Assumed."""
+SAME_RATIO = 0.01
+"""Chance of as large a difference between logs of one ratio of thrust to inertia, below which they are said to
+contradict each other. Assumed."""
+APART = 2.5
+"""Standard deviations by which a log's own ratio must be away from that of all others to be remarked upon. Assumed."""
+MOST_PIECES = 24
+"""Predictions of a log that are co-simulated, as many as for the gain of a single log."""

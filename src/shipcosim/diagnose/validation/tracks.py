@@ -104,6 +104,7 @@ def tracks_by_systems(
     systems: Mapping[str, Replayed],
     horizon: float,
     progress: Callable[[int, int], None] | None = None,
+    most: int | None = None,
 ) -> Tracks:
     """Predictions of systems, by co-simulation.
 
@@ -118,6 +119,8 @@ def tracks_by_systems(
         [s]
     progress : callable, optional
         Called with (segments done, segments in all).
+    most : int, optional
+        Segments, evenly spread over the log; all if not given.
 
     Raises
     ------
@@ -125,6 +128,7 @@ def tracks_by_systems(
         If a system has no inputs for what the log says of its thrusters, or a run fails.
     """
     rows, _ = _segments(record, horizon)
+    rows = rows if most is None else rows[np.unique(np.linspace(0, rows.size - 1, most).round().astype(int))]
     found, total = {}, rows.size * len(systems)
     for number, (name, one) in enumerate(systems.items()):
         each = None if progress is None else lambda n, _, done=number: progress(done * rows.size + n, total)

@@ -1,8 +1,11 @@
 """Section 4 of the page: what was changed in the system?"""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from shipcosim.diagnose.extension.extend import Extension
+from shipcosim.diagnose.extension.extended_system import Change
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.views import Table
@@ -38,13 +41,23 @@ class ExtensionSection:
 
 def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     """The section as the template fills it in."""
-    extension = diagnosis.extension
+    return section_of(diagnosis.extension, diagnosis.changes, any(f.kind == "physics" for f in diagnosis.findings))
+
+
+def section_of(extension: Extension | None, changes: Sequence[Change], is_found: bool) -> ExtensionSection:
+    """The section of an extended system.
+
+    Parameters
+    ----------
+    extension : Extension or None
+    changes : sequence of Change
+    is_found : bool
+        Whether a cause of the physics was found, that could have gone into the system.
+    """
     if extension is None:
-        found = any(f.kind == "physics" for f in diagnosis.findings)
-        return ExtensionSection("none", "failed" if found else "no cause")
+        return ExtensionSection("none", "failed" if is_found else "no cause")
     rows = tuple(
-        (of.name, "–" if of.before is None else plain(of.before, 5), plain(of.after, 5), of.unit)
-        for of in diagnosis.changes
+        (of.name, "–" if of.before is None else plain(of.before, 5), plain(of.after, 5), of.unit) for of in changes
     )
     return ExtensionSection(
         found="extended.ssp",

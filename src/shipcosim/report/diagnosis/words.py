@@ -83,30 +83,30 @@ def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> 
 def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[str, str]:
     data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
     physics = [told(f, causes) for f in diagnosis.findings if f.kind == "physics"]
-    log = f" The log itself is faulty: {_listed(data)}." if data else ""
+    log = f" The log itself is faulty: {listed(data)}." if data else ""
     if diagnosis.verdict == "unknown":
         return "UNKNOWN", _unknown(diagnosis, physics) + log
     if misread := [f.sentence for f in diagnosis.findings if f.alternatives]:
-        return "AMBIGUOUS", f"The log is misread, and its own channels cannot tell where: {_listed(misread)}.{log}"
+        return "AMBIGUOUS", f"The log is misread, and its own channels cannot tell where: {listed(misread)}.{log}"
     if diagnosis.verdict == "ambiguous":
         names = [title(c.cause, c.component).lower() for c in diagnosis.indistinguishable]
-        besides = f" Certain is: {_listed(physics)}." if physics else ""
-        return "AMBIGUOUS", f"Something is wrong, and this log cannot tell which: {_listed(names, 'or')}.{besides}{log}"
+        besides = f" Certain is: {listed(physics)}." if physics else ""
+        return "AMBIGUOUS", f"Something is wrong, and this log cannot tell which: {listed(names, 'or')}.{besides}{log}"
     if physics:
         many = f"{len(physics)} things are" if len(physics) > 1 else "One thing is"
-        return "NAMED", f"{many} not as modelled: {_listed(physics)}.{log}"
+        return "NAMED", f"{many} not as modelled: {listed(physics)}.{log}"
     if data:
-        return "NAMED", f"The log is faulty: {_listed(data)}. Apart from that, simulation and log agree."
+        return "NAMED", f"The log is faulty: {listed(data)}. Apart from that, simulation and log agree."
     return "CONSISTENT", "Simulation and log agree, within noise and the tolerances of the model."
 
 
 def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
     """What an answer without a name does know: the largest discrepancy, and what is beyond doubt."""
     if not diagnosis.discrepancies:
-        certain = f" Certain is: {_listed(physics)}." if physics else ""
+        certain = f" Certain is: {listed(physics)}." if physics else ""
         return f"The simulation is wrong by more than noise, and none of the known causes explains it.{certain}"
     first = diagnosis.discrepancies[0].what
-    certain = f" Certain is: {_listed(physics)}." if physics else ""
+    certain = f" Certain is: {listed(physics)}." if physics else ""
     return f"The simulation is wrong, first of all: {first}.{certain} None of the known causes explains all of it."
 
 
@@ -120,12 +120,12 @@ def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
     return rows
 
 
-def _listed(texts: Sequence[str], last: str = "and") -> str:
+def listed(texts: Sequence[str], last: str = "and") -> str:
     """Several texts as one.
 
     Examples
     --------
-    >>> _listed(["a current", "a tow", "waves"])
+    >>> listed(["a current", "a tow", "waves"])
     'a current, a tow and waves'
     """
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} {last} {texts[-1]}"
@@ -160,23 +160,24 @@ def next_steps(
     wanted = [(causes[f.cause].next_step, f.component) for f in physics if f.cause in causes]
     steps += [step.format(component=component) for step, component in wanted if step]
     if diagnosis.verdict == "ambiguous" and not misread:
-        steps.append(_manoeuvre(diagnosis.prescription))
+        steps.append(manoeuvre_step(diagnosis.prescription))
     if diagnosis.verdict == "unknown":
         steps.append("Look on the page how the missing force goes with time, heading and wind.")
         steps.append("If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md).")
     if extended:
         steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable:
-        names = _listed([title(name).lower() for name in diagnosis.not_testable], "or")
+        names = listed([title(name).lower() for name in diagnosis.not_testable], "or")
         steps.append(f"This log says nothing about {names}, present or not.")
     return steps or ["Nothing needs to be done."]
 
 
-def _manoeuvre(prescription: ExperimentDesign | None) -> str:
+def manoeuvre_step(prescription: ExperimentDesign | None) -> str:
+    """What to sail, where causes cannot be told apart."""
     if prescription is None:
         return "Log more, with larger moves, turns and thrust ahead and astern: what is alike here differs there."
     name = prescription.manoeuvre.replace("_", " ")
-    pairs = _listed([f"{a} from {b}".replace("_", " ") for a, b in prescription.separates] or ["them"])
+    pairs = listed([f"{a} from {b}".replace("_", " ") for a, b in prescription.separates] or ["them"])
     return f"Sail this and log it: {name}, {prescription.minutes:.0f} minutes. It tells {pairs} apart."
 
 

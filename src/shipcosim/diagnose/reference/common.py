@@ -1,0 +1,243 @@
+"""What several logs of one ship have in common before any cause is sought: faults of the data, ratio, discrepancies."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+import numpy as np
+from scipy.stats import chi2
+
+from shipcosim.diagnose.comparison.gains import CommonRatio
+from shipcosim.diagnose.comparison.thresholds import COMMON_SPREAD
+from shipcosim.diagnose.log.mislabels import DRIVES, mislabel_in, undone
+from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
+from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.comparison.labels import Labels
+
+__all__ = [
+    "RatioOfLogs",
+    "Shared",
+    "common_discrepancies",
+    "common_faults",
+    "is_of_thrusters",
+    "leans_to",
+    "ratio_of_logs",
+    "together",
+    "with_right_labels",
+]
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_What = TypeVar("_What", Finding, Discrepancy)
+
+
+@dataclass(frozen=True)
+class Shared(Generic[_What]):
+    """A finding or a discrepancy of several logs.
+
+    Attributes
+    ----------
+    what : Finding or Discrepancy
+    logs : tuple of str
+        Names of those that show it.
+    put_right : tuple of str
+        Names of those that do not tell, and are put right all the same.
+    """
+
+    what: _What
+    logs: tuple[str, ...]
+    put_right: tuple[str, ...] = ()
+
+
+def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Shared[Finding]]:
+    """Faults of the data that are the same, throughout, in half of the logs at least.
+
+    Parameters
+    ----------
+    faults : mapping of str to sequence of Finding
+        By name of the log.
+    """
+    by_key: dict[tuple, dict[str, Finding]] = {}
+    for name, own in faults.items():
+        for fault in own:
+            if fault.kind == "data" and not fault.segments and not fault.alternatives:
+                key = fault.cause, fault.component, fault.channels, _NUMBER.sub("#", fault.note)
+                by_key.setdefault(key, {})[name] = fault
+    return [
+        Shared(_as_one(list(same.values())), tuple(same))
+        for same in by_key.values()
+        if len(same) > 1 and 2 * len(same) >= len(faults)
+    ]
+
+
+def _as_one(same: Sequence[Finding]) -> Finding:
+    """Findings of several logs as one: parameters together, and as sure as the surest."""
+    sure = max(one.probability for one in same)
+    return replace(same[0], probability=sure, parameters=together([one.parameters for one in same]))
+
+
+def together(parameters: Sequence[Mapping[str, Estimate]]) -> dict[str, Estimate]:
+    """Estimates of several logs as one: means weighted by information, deviations at least what the logs differ by."""
+    found = {}
+    for name, first in parameters[0].items():
+        values = np.array([one[name].estimate for one in parameters])
+        stds = np.array([one[name].std for one in parameters])
+        mean, std, _ = _weighted(values, np.maximum(stds, 1e-12))
+        found[name] = Estimate(mean, std, first.unit)
+    return found
+
+
+def _weighted(values: np.ndarray, stds: np.ndarray) -> tuple[float, float, float]:
+    """Mean weighted by information, its standard deviation widened to what the values differ by, and χ²."""
+    weights = stds**-2.0
+    mean = float(weights @ values / weights.sum())
+    squares = float(weights @ (values - mean) ** 2)
+    wider = max(squares / max(values.size - 1, 1), 1.0)
+    return mean, float(np.sqrt(wider / weights.sum())), squares
+
+
+def is_of_thrusters(fault: Finding) -> bool:
+    """Whether a fault is one of the labels of what drives the thrusters."""
+    return bool(fault.channels) and all(role.endswith(DRIVES) for role in fault.channels)
+
+
+def leans_to(labels: Labels | None, fault: Finding) -> bool:
+    """Whether a log that does not show a fault of the thrusters' labels leans to it all the same, or cannot tell."""
+    if labels is None:
+        return True
+    wanted = {role.rpartition("_")[0] for role in fault.channels}
+    readings = (labels.best, *labels.rivals)
+    return any(wanted in [set(change.thrusters) for change in reading.changes] for reading in readings)
+
+
+def with_right_labels(log: xarray.Dataset, faults: Sequence[Finding]) -> xarray.Dataset:
+    """A log as read, with faults of labels that hold throughout put right.
+
+    Parameters
+    ----------
+    log : xarray.Dataset
+    faults : sequence of Finding
+        Mislabels, as `mislabel_in` takes them.
+    """
+    columns = {str(name): log[name].values for name in ("time", *log.data_vars)}
+    for fault in faults:
+        columns = undone(columns, mislabel_in(fault), ())
+    changed = log.copy()
+    for role in {role for fault in faults for role in fault.channels}:
+        changed[role] = log[role].copy(data=columns[role])
+    changed.encoding |= log.encoding
+    return changed
+
+
+@dataclass(frozen=True)
+class RatioOfLogs:
+    """Thrust over inertia by several logs.
+
+    Attributes
+    ----------
+    each : dict of str to CommonRatio
+        By name of the log; those that tell it.
+    common : CommonRatio or None
+        Of all; None where they contradict each other, or none tells it.
+    chance : float
+        That logs of one ratio differ as much as these do.
+    """
+
+    each: dict[str, CommonRatio]
+    common: CommonRatio | None
+    chance: float
+
+    @property
+    def apart(self) -> tuple[str, ...]:
+        """Logs that are far from all others, in their own standard deviations."""
+        return tuple(name for name in self.each if len(self.each) > 2 and self._is_apart(name))
+
+    def _is_apart(self, name: str) -> bool:
+        rest = ratio_of_logs({other: one for other, one in self.each.items() if other != name})
+        own, others = self.each[name], rest.common
+        if others is None:
+            return False
+        return abs(np.log(own.ratio / others.ratio)) > APART * np.hypot(own.std / own.ratio, others.std / others.ratio)
+
+    def without(self, name: str) -> CommonRatio | None:
+        """The ratio by the other logs."""
+        return ratio_of_logs({other: one for other, one in self.each.items() if other != name}).common
+
+    @property
+    def contradiction(self) -> str:
+        """That the logs contradict each other, in a sentence; empty where they do not."""
+        if self.common is not None or not self.each:
+            return ""
+        sizes = ", ".join(f"{name} {one.ratio:.2f} ± {one.std:.2f}" for name, one in self.each.items())
+        return f"Thrust over inertia differs from log to log by more than their errors, so none is common: {sizes}."
+
+
+def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
+    """One ratio of thrust to inertia for all logs, unless they differ by more than their errors.
+
+    Parameters
+    ----------
+    each : mapping of str to CommonRatio
+        By name of the log.
+    """
+    if not each:
+        return RatioOfLogs({}, None, 1.0)
+    logs = np.log([one.ratio for one in each.values()])
+    mean, std, squares = _weighted(logs, np.array([one.std / one.ratio for one in each.values()]))
+    chance = float(chi2.sf(squares, logs.size - 1)) if logs.size > 1 else 1.0
+    axes = tuple(dict.fromkeys(axis for one in each.values() for axis in one.axes))
+    std = float(max(std, COMMON_SPREAD / np.sqrt(max(len(axes), 1))))  # forms of a hull differ alike in all logs
+    ratio = float(np.exp(mean))
+    common = CommonRatio(ratio, ratio * std, axes) if chance > SAME_RATIO else None
+    return RatioOfLogs(dict(each), common, chance)
+
+
+def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shared[Discrepancy]]:
+    """Discrepancies of half of the logs at least, signs first, then by the share of the error that they explain.
+
+    Parameters
+    ----------
+    each : mapping of str to sequence of Discrepancy
+        By name of the log.
+
+    Returns
+    -------
+    list of Shared
+        In words with the range of their sizes; the share is the mean over all logs.
+    """
+    by_key: dict[tuple, dict[str, Discrepancy]] = {}
+    for name, own in each.items():
+        for one in own:
+            key = one.component, one.axis, one.unit, _NUMBER.sub("#", one.what)
+            by_key.setdefault(key, {})[name] = one
+    found = [
+        Shared(_ranging(list(same.values()), len(each)), tuple(same))
+        for same in by_key.values()
+        if 2 * len(same) >= len(each)
+    ]
+    return sorted(found, key=lambda one: (one.what.estimate > 0.0, -one.what.share))
+
+
+def _ranging(same: Sequence[Discrepancy], logs: int) -> Discrepancy:
+    """Discrepancies of several logs as one, the numbers in its words from smallest to largest."""
+    numbers = list(zip(*(_NUMBER.findall(one.what) for one in same), strict=True))
+    ranges = iter([_range(texts) for texts in numbers])
+    what = _NUMBER.sub(lambda _: next(ranges), same[0].what)
+    values = np.array([one.estimate for one in same])
+    stds = np.array([one.std for one in same])
+    mean, std = float(values.mean()), 0.0
+    if (stds > 0.0).all():
+        mean, std, _ = _weighted(values, stds)
+    share = sum(one.share for one in same) / logs
+    return replace(same[0], what=what, estimate=mean, std=std, share=share)
+
+
+def _range(texts: Sequence[str]) -> str:
+    low, high = min(texts, key=float), max(texts, key=float)
+    return low if low == high else f"{low} to {high}"

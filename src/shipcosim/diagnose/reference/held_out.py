@@ -1,0 +1,192 @@
+"""What common causes gain in each log: the system extended by what the other logs say, co-simulated over this one."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
+from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log, values_in
+from shipcosim.diagnose.reference.thresholds import MOST_PIECES
+from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.validation.cosimulation import Replayed
+from shipcosim.diagnose.validation.replays import findings_of
+from shipcosim.diagnose.validation.tracks import (
+    Tracks,
+    errors_of,
+    fitting_horizon,
+    tracks_by_models,
+    tracks_by_systems,
+)
+from shipcosim.errors import ShipcosimError
+from shipcosim.ssp import read_system
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+    from shipcosim.diagnose.hypotheses.cause import Cause
+    from shipcosim.diagnose.stages import ExtendedSystem
+
+__all__ = ["LogErrors", "errors_by_log", "sizes_by_log", "sizes_without", "weather_of"]
+
+
+@dataclass(frozen=True)
+class LogErrors:
+    """Errors of the simulation of one log, before and, where there is an extended system, after.
+
+    Attributes
+    ----------
+    horizon : tuple of float
+        Lengths of the predictions, that fit the craft's own time scales. [s]
+    position, heading : dict of str to tuple of float
+        Root mean square errors after each, ``"before"`` and ``"after"``. [m], [deg]
+    fitted_on : tuple of str
+        Logs that say how large the causes are; empty where there is no extended system.
+    own : tuple of str
+        Causes of this log's own weather, which were fitted in it.
+    tracks : Tracks
+    remark : str
+        What did not work.
+    """
+
+    horizon: tuple[float, ...]
+    position: dict[str, tuple[float, ...]]
+    heading: dict[str, tuple[float, ...]]
+    fitted_on: tuple[str, ...]
+    own: tuple[str, ...]
+    tracks: Tracks
+    remark: str = ""
+
+    @property
+    def is_held_out(self) -> bool:
+        """Whether the causes' sizes are by other logs alone."""
+        return bool(self.fitted_on) and not self.own
+
+    def as_json(self) -> dict:
+        """The entry ``errors`` of a log in diagnosis.json."""
+        after = "after" in self.position
+        return {
+            "horizon_s": list(self.horizon),
+            "before_m": list(self.position["before"]),
+            "after_m": list(self.position["after"]) if after else None,
+            "before_deg": list(self.heading["before"]),
+            "after_deg": list(self.heading["after"]) if after else None,
+            "fitted_on": list(self.fitted_on),
+            "own_weather": list(self.own),
+        }
+
+
+def sizes_without(
+    logs: SeveralLogs, name: str, hypotheses: Sequence[Hypothesis], values: Mapping[str, float]
+) -> list[Finding]:
+    """Causes in the ship with their sizes by all logs but one, as findings."""
+    others = SeveralLogs({other: problem for other, problem in logs.problems.items() if other != name})
+    known = [one for one in hypotheses if not is_in_one_log(one) or one.component in others.problems]
+    fit = fitted_jointly(others, known, {path: value for path, value in values.items() if _in(path, known)}, rounds=3)
+    of_ship = {hypothesis.label for hypothesis in known if not is_in_one_log(hypothesis)}
+    return [finding for finding in findings_of(fit) if finding.label in of_ship]
+
+
+def _in(path: str, hypotheses: Sequence[Hypothesis]) -> bool:
+    return any(path in parameter.paths for one in hypotheses for parameter in one.parameters)
+
+
+def sizes_by_log(
+    logs: SeveralLogs, hypotheses: Sequence[Hypothesis], values: Mapping[str, float]
+) -> dict[str, dict[str, dict[str, Estimate]]]:
+    """How large each log by itself would have the causes in the ship: by label, log and parameter.
+
+    Parameters
+    ----------
+    logs : SeveralLogs
+    hypotheses : sequence of Hypothesis
+        Named, those of the weather among them.
+    values : mapping of str to float
+        By all logs, to start from.
+    """
+    found: dict[str, dict[str, dict[str, Estimate]]] = {}
+    for name, problem in logs.problems.items():
+        own = [one for _, one in logs.all_within(name, hypotheses)]
+        fit = fitted(problem, own, {p: v for p, v in values_in(name, values).items() if _in(p, own)}, rounds=3)
+        for finding, one in zip(findings_of(fit), own, strict=True):
+            known = {of.name: of.tolerance * of.factor for of in one.parameters}
+            found.setdefault(finding.label, {})[name] = {
+                key: replace(size, std=float(np.hypot(size.std, known[key])))  # as of a finding
+                for key, size in finding.parameters.items()
+            }
+    of_ship = {one.label for one in hypotheses if not is_in_one_log(one)}
+    return {label: sizes for label, sizes in found.items() if label in of_ship}
+
+
+def weather_of(fit: JointFit, name: str, hypotheses: Sequence[Hypothesis]) -> list[Finding]:
+    """Those of some causes that are of the day of one log, as all logs together have them."""
+    own = {hypothesis.cause for hypothesis in hypotheses if hypothesis.component == name}
+    return [finding for finding in findings_of(fit.parts[name]) if finding.cause in own and finding.component is None]
+
+
+def errors_by_log(
+    logs: SeveralLogs,
+    given: ExtendedSystem,
+    findings: Callable[[str], tuple[list[Finding], list[Finding]]],
+    causes: Mapping[str, Cause],
+    progress: Callable[[str, int, int], None],
+) -> dict[str, LogErrors]:
+    """The errors of each log by co-simulation, before and after.
+
+    Parameters
+    ----------
+    logs : SeveralLogs
+    given : ExtendedSystem
+        Not extended yet.
+    findings : callable
+        From the name of a log to causes in the ship, sized without that log, and those of its own weather.
+    causes : mapping of str to Cause
+    progress : callable
+        Called with the name of a log, how many pieces of it are done, and of how many.
+    """
+    found = {}
+    for name in logs.problems:
+        of_ship, own = findings(name)
+        others = tuple(other for other in logs.problems if other != name) if of_ship else ()
+        found[name] = _log_errors(logs, name, given, (of_ship, own), causes, others, progress)
+    return {name: one for name, one in found.items() if one is not None}
+
+
+def _log_errors(logs, name, given, findings, causes, others, progress) -> LogErrors | None:
+    """The errors of one log; None where no stretch of it is whole."""
+    problem, (of_ship, own) = logs.problems[name], findings
+    record, model, remark = problem.record, problem.model, ""
+    horizon = fitting_horizon(record, model)
+    systems = {"before": Replayed(given.given)}
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        try:
+            if of_ship or own:
+                about = {"span": model.span, "source": ", ".join(others)}
+                made = extend(given.source, [*of_ship, *own], folder, log_attributes=about, catalogue=causes)
+                systems["after"] = Replayed(read_system(str(made.ssp)), made.signals)
+            each = lambda done, of: progress(name, done, of)  # noqa: E731
+            tracks = tracks_by_systems(record, model, systems, horizon, each, MOST_PIECES)
+        except ShipcosimError as error:
+            remark = "; ".join(f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
+            remark = f"{name} was not co-simulated: {remark}"
+            others, own = (), []
+            try:
+                tracks = tracks_by_models(record, {"before": model}, horizon)
+            except ShipcosimError:
+                return None
+    errors = errors_of(tracks)
+    shown = {str(one): errors.sel(simulation=one) for one in errors["simulation"].values}
+    return LogErrors(
+        tuple(map(float, errors["after"].values)),
+        {one: tuple(map(float, np.atleast_1d(of["position"].values))) for one, of in shown.items()},
+        {one: tuple(map(float, np.atleast_1d(of["heading"].values))) for one, of in shown.items()},
+        others,
+        tuple(finding.cause for finding in own),
+        tracks,
+        remark,
+    )
