@@ -89,7 +89,7 @@ def hull_load(u_r, v_r, r, coefficients, knobs):
     drag = coefficients.drag * knobs.drag * speed ** (coefficients.drag_power - 1) * u_r
     lift = coefficients.lift * speed * v_r
     flow = v_r + X * r
-    strips = coefficients.strips * np.abs(flow) * flow
+    strips = coefficients.strips * np.abs(flow) ** (coefficients.cross_flow_power - 1) * flow
     y = -knobs.crossflow * strips.sum(axis=0) - lift - knobs.damping * v_r
     n = -knobs.crossflow * (X * strips).sum(axis=0) - LIFT_X * lift
     linear = coefficients.damping

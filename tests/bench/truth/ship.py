@@ -25,6 +25,7 @@ TUNNEL_THRUST = 6.83e-3
 AZIMUTH_RPM_MAX, TUNNEL_RPM_MAX = 203.0, 1780.0
 
 DRAG_SPEED = 1.2  # at which resistance by another power is the same [m/s]
+CROSS_SPEED = 0.3  # and the load of cross flow [m/s]
 
 N_STRIPS = 21
 STRIP_X = (np.arange(N_STRIPS) + 0.5) / N_STRIPS * LENGTH - LENGTH / 2
@@ -130,6 +131,7 @@ class Coefficients:
     drag: np.ndarray  # at the power's reference speed [N s2/m2]
     drag_power: np.ndarray  # of the speed [1]
     strips: np.ndarray  # (strips, n) load of a strip over its sway speed squared [N s2/m2]
+    cross_flow_power: np.ndarray  # of the sway speed [1]
     lift: np.ndarray  # [N s2/m2]
     side_spin: np.ndarray  # (2, n) side force of the units by propeller speed [1]
     side_flow: np.ndarray  # (2, n) and by speed of the water [1]
@@ -140,6 +142,7 @@ class Coefficients:
     unit_y: np.ndarray  # (2, n) [m]
     tunnel_x: np.ndarray  # [m]
     wind: np.ndarray  # (3, 37, n) as WIND_LOAD, round the full circle
+    hull_loss: np.ndarray  # (2, 37, n) share of the units' thrust that the hull takes, round the full circle [1]
     azimuth_error: np.ndarray  # (2, n) real minus logged [rad]
     rpm_error: np.ndarray  # (3, n) logged minus real [rpm]
     drive_time: np.ndarray  # (3, n) lag of the propeller speeds [s]
@@ -187,6 +190,7 @@ def draw_coefficients(rng, mismatch=1.0, rough=False, form=None):
         drag=1645.0 * near("drag") * (DRAG_SPEED**0.15 if rough else 1.0),
         drag_power=np.array(1.85 if rough else 2.0),
         strips=0.5 * WATER_DENSITY * DRAUGHT * LENGTH / N_STRIPS * strip_coefficients(rough) * near("crossflow"),
+        cross_flow_power=np.array(2.0),
         lift=30e3 * near("lift"),
         side_spin=0.8 * near("side_force", 2),
         side_flow=0.8 * near("side_force", 2),
@@ -197,6 +201,7 @@ def draw_coefficients(rng, mismatch=1.0, rough=False, form=None):
         unit_y=np.array(UNIT_Y) + error("position", 2),
         tunnel_x=TUNNEL_X + error("position"),
         wind=wind_table(near("wind", 3), rough),
+        hull_loss=np.zeros((2, 37)),
         azimuth_error=error("azimuth", 2),
         rpm_error=np.append(error("azimuth_rpm", 2), error("tunnel_rpm")),
         drive_time=rng.uniform(1.0, 2.0, 3),
@@ -216,7 +221,9 @@ def formed(ship, form):
         ship,
         drag=ship.drag * DRAG_SPEED ** (2.0 - form.drag_power),
         drag_power=np.array(form.drag_power),
-        strips=strips,
+        strips=strips * CROSS_SPEED ** (2.0 - form.cross_flow_power),
+        cross_flow_power=np.array(form.cross_flow_power),
+        hull_loss=form.hull_loss,
         tunnel_fading=np.array(form.tunnel_fading),
         wind=ship.wind * form.wind,
         rolls=np.array(form.rolls),

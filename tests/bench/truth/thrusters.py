@@ -36,6 +36,15 @@ def slipstream_factor(thrust, azimuth, knobs):
     return 1 - knobs.interaction * hit[::-1]
 
 
+def lost_at_hull(thrust, azimuth, coefficients):
+    """Share of each unit's thrust that the hull takes, (2, n), by the direction that it pushes to."""
+    place = np.mod(azimuth + np.pi * (thrust < 0), 2 * np.pi) * (18 / np.pi)
+    left = np.minimum(place.astype(int), 35)
+    ships = np.arange(azimuth.shape[1])
+    low = coefficients.hull_loss[UNITS, left, ships]
+    return low + (coefficients.hull_loss[UNITS, left + 1, ships] - low) * (place - left)
+
+
 def unit_loads(u_r, v_r, r, rpm, azimuth, coefficients, knobs):
     """Load of both units on ships that move through the water, (3 tuple of (n,)). [N, N, N m]"""
     x, y = coefficients.unit_x, coefficients.unit_y
@@ -44,6 +53,8 @@ def unit_loads(u_r, v_r, r, rpm, azimuth, coefficients, knobs):
     along, across = c * u + s * v, c * v - s * u
     thrust = axial_thrust(rpm[:2], along, coefficients) * knobs.thrust[:2]
     thrust = thrust * np.where(rpm[:2] < 0, knobs.reverse_thrust, 1.0)
+    if coefficients.hull_loss.any():
+        thrust = thrust * (1 - lost_at_hull(thrust, azimuth, coefficients))
     if knobs.interaction.any():
         thrust = thrust * slipstream_factor(thrust, azimuth, knobs)
     side = side_force(rpm[:2], along, across, coefficients)

@@ -1,10 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from truth import draw, plant
-from truth.form import DRAG_ALONG, EXPONENT, SPEEDS, WIND_ROUND, draw_form
+from truth.form import DRAG_ALONG, EXPONENT, HULL_LOSS, SPEEDS, WIND_ROUND, draw_form
 from truth.knobs import Knobs
-from truth.ship import DRAG_SPEED, STRIP_X, Coefficients, draw_coefficients
+from truth.ship import CROSS_SPEED, DRAG_SPEED, STRIP_X, Coefficients, draw_coefficients
+from truth.thrusters import lost_at_hull
 
 KNOBS = Knobs(1)
 
@@ -22,7 +25,8 @@ def loads(coefficients, u=0.0, v=0.0, r=0.0):
 
 def test_a_form_of_no_size_is_the_model_s():
     _, plain, formed = ship(size=0.0)
-    for name in ("drag", "drag_power", "strips", "wind", "tunnel_fading", "rolls", "damping", "memory"):
+    names = ("drag", "drag_power", "strips", "cross_flow_power", "wind", "tunnel_fading", "rolls", "damping", "memory")
+    for name in (*names, "hull_loss"):
         np.testing.assert_allclose(getattr(formed, name), getattr(plain, name), rtol=1e-12, atol=0.0)
 
 
@@ -35,6 +39,10 @@ def test_forms_stay_about_within_what_is_said_of_them():
     assert np.percentile(np.abs(round_ship - 1.0), 99) < 1.1 * WIND_ROUND  # splines swing over in between
     np.testing.assert_allclose(round_ship[..., 0], round_ship[..., -1])
     assert max(abs(form.drag_power - 2.0) for form in forms) <= EXPONENT
+    assert max(abs(form.cross_flow_power - 2.0) for form in forms) <= EXPONENT
+    lost = np.array([form.hull_loss for form in forms])
+    assert np.percentile(np.abs(lost), 99) < 1.1 * HULL_LOSS
+    assert lost.mean() == pytest.approx(0.5 * HULL_LOSS * 7 / 8, rel=0.1)
 
 
 def test_drag_of_another_power_is_the_same_at_one_speed():
@@ -43,17 +51,35 @@ def test_drag_of_another_power_is_the_same_at_one_speed():
     assert loads(formed, u=DRAG_SPEED)[0] == pytest.approx(loads(plain, u=DRAG_SPEED)[0] - linear * DRAG_SPEED)
 
 
+def test_cross_flow_of_another_power_is_the_same_at_one_speed():
+    form, plain, _ = ship()
+    other = replace(plain, cross_flow_power=plain.cross_flow_power - 0.1)
+    other = replace(other, strips=plain.strips * CROSS_SPEED**0.1)
+    assert loads(other, v=CROSS_SPEED)[1] == pytest.approx(loads(plain, v=CROSS_SPEED)[1])
+    assert loads(other, v=0.1)[1] < loads(plain, v=0.1)[1] < 0.0  # more drag where it is slower
+    assert form.cross_flow_power != 2.0
+
+
+def test_the_hull_takes_thrust_by_its_direction_and_none_ahead():
+    form, _, formed = ship()
+    for degrees, thrust in ((90.0, 1e4), (0.0, 1e4), (180.0, -1e4)):
+        azimuth = np.radians(np.full((2, 1), degrees))
+        lost = lost_at_hull(np.full((2, 1), thrust), azimuth, formed)
+        np.testing.assert_allclose(lost[:, 0], form.hull_loss[:, 9] if degrees == 90.0 else 0.0, atol=1e-12)
+    assert form.hull_loss[:, 9].min() > 0.0
+
+
 def test_linear_damping_is_its_share_of_the_quadratic_one():
     form, plain, formed = ship()
     linear = loads(formed, v=1e-6)[1] / -1e-6
-    quadratic = formed.strips.sum() * SPEEDS[1]
+    quadratic = formed.strips.sum() * SPEEDS[1] ** (form.cross_flow_power - 1.0)
     assert linear == pytest.approx(form.damping[1] * quadratic, rel=1e-3)
     assert form.damping[1] > 0.01 and loads(plain, v=1e-6)[1] / -1e-6 < 1.0
 
 
 def test_drag_that_is_larger_forward_turns_a_ship_that_moves_sideways():
-    _, plain, formed = ship()
-    wanted = -(STRIP_X * formed.strips[:, 0]).sum() * 0.25
+    form, plain, formed = ship()
+    wanted = -(STRIP_X * formed.strips[:, 0]).sum() * 0.5**form.cross_flow_power
     assert loads(formed, v=0.5)[2] == pytest.approx(wanted)
     assert abs(loads(plain, v=0.5)[2]) < 1e-9 < abs(wanted)
 
