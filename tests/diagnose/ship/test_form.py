@@ -7,7 +7,16 @@ import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.ship.dynamics import loads, rate_difference
-from shipcosim.diagnose.ship.form import HullForm, WindForm, cross_flow_form, form_sizes, wind_factors
+from shipcosim.diagnose.ship.form import (
+    FROUDE_UNDER_WAY,
+    HullForm,
+    ThrusterForm,
+    WindForm,
+    cross_flow_form,
+    form_sizes,
+    thrust_kept,
+    wind_factors,
+)
 from shipcosim.diagnose.ship.inputs import Inputs
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship.hull import HullParameters
@@ -16,6 +25,7 @@ MOTION = Motion(*np.array([[0.0, 1.0], [0.0, 2.0], [0.3, 2.0], [0.8, -0.4], [0.2
 UNITS = {"port": (1.5, 0.4), "starboard": (1.0, -0.5), "tunnel": (8.0, 0.0)}
 INPUTS = Inputs(0.0, UNITS, np.array([8.0, 6.0]), np.array([0.7, -2.0]))
 EACH = [f"hull_form.cross_flow_{k}" for k in (1, 2, 3)] + ["wind_form.X_mean", "wind_form.Y_cos_1", "wind_form.N_sin_2"]
+EACH += ["port.form.across", "starboard.form.under_way"]
 
 
 def strength(hull):
@@ -51,6 +61,24 @@ def test_wind_that_is_stronger_on_all_axes_is_a_scale_of_the_wind():
     form = {f"wind_form.{axis}_mean": 0.1 for axis in "XYN"}
     one, other = (loads(MOTION, INPUTS, ship.with_values(v)) for v in (form, {"vessel.wind_load_scale": 1.1}))
     np.testing.assert_allclose(np.stack(one["wind"]), np.stack(other["wind"]))
+
+
+def test_the_hull_takes_thrust_by_where_a_unit_pushes_to():
+    """Astern is where a unit that is turned round pushes to, and one that runs backwards alike."""
+    form = ThrusterForm(across=0.1, to_starboard=0.02, astern=0.06)
+    rpm, degrees = np.array([1.0, 1.0, 1.0, 1.0, -1.0]), np.array([0.0, 90.0, -90.0, 180.0, 0.0])
+    kept = thrust_kept(rpm, np.radians(degrees), np.zeros(5), 30.0, form)
+    np.testing.assert_allclose(kept, [1.0, 1.0 - 0.15, 1.0 - 0.11, 1.0 - 0.06, 1.0 - 0.06])
+    fast = FROUDE_UNDER_WAY * np.sqrt(9.81 * 30.0)
+    assert thrust_kept(1.0, 0.0, fast, 30.0, ThrusterForm(under_way=0.1)) == pytest.approx(0.9)
+
+
+def test_a_thruster_that_the_hull_takes_from_loads_the_ship_as_much_less():
+    ship = twin.model()
+    taken = ship.with_values({"port.form.across": 0.2})
+    lost = 0.2 * np.sin(UNITS["port"][1]) ** 2
+    plain, less = (np.stack(np.broadcast_arrays(*loads(MOTION, INPUTS, one)["port"])) for one in (ship, taken))
+    np.testing.assert_allclose(less, (1.0 - lost) * plain)
 
 
 @pytest.mark.parametrize("path", EACH)

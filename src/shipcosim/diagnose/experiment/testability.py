@@ -13,6 +13,7 @@ from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.thresholds import TESTABLE
+from shipcosim.diagnose.inference.verdict import usual_gain
 from shipcosim.diagnose.log_faults.clock import is_testable
 from shipcosim.diagnose.stages import JudgedLog
 
@@ -28,7 +29,7 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
             groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
             columns.extend(group)
     products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
-    weak = not_testable(products, columns, groups)
+    weak = not_testable(products, columns, groups, TESTABLE + usual_gain(problem.model))
     clock = () if is_testable(problem) else ("clock",)
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
@@ -36,7 +37,10 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
 
 
 def not_testable(
-    products: np.ndarray, columns: Sequence[Regressor], groups: Sequence[tuple[Hypothesis, list[int]]]
+    products: np.ndarray,
+    columns: Sequence[Regressor],
+    groups: Sequence[tuple[Hypothesis, list[int]]],
+    least: float = TESTABLE,
 ) -> tuple[str, ...]:
     """Causes that would have gained too little to be seen in a log, had they had their typical size.
 
@@ -46,6 +50,8 @@ def not_testable(
         Inner products of the log, of the known numbers and of all hypotheses' first columns.
     columns : sequence of p Regressor
     groups : sequence of (Hypothesis, indices)
+    least : float
+        That it would have to gain. [nats]
 
     Returns
     -------
@@ -67,7 +73,7 @@ def not_testable(
         information = float(np.max(0.5 * (1.0 / np.diag(covariance) - 1.0)))
         gain = information - 0.5 * float(np.log1p(2.0 * information))
         gains[hypothesis.cause] = max(gains.get(hypothesis.cause, -np.inf), gain)
-    return tuple(cause for cause, gain in sorted(gains.items()) if gain < TESTABLE)
+    return tuple(cause for cause, gain in sorted(gains.items()) if gain < least)
 
 
 def log_facts(problem: IdentificationProblem) -> dict[str, float | None]:

@@ -48,6 +48,9 @@ one gained 24, the next 15; ten of another form gained 25 to 240 where the ship 
 
 NULL_GAIN_WITHOUT_WIND = 40.0
 """More that a cause has to gain where the log has no wind, which could be it. [nats] Assumed."""
+NULL_GAIN_OF_FORM = 5.0
+"""More that a cause has to gain on a ship of another form than the model's, of which no reference tells: the form has
+a few smooth functions, and what they leave looks like causes. [nats] Assumed, as much as `ENOUGH`."""
 NULL_GAIN_UNKNOWN = 25.0
 """Gain that a healthy log may reach where no simulated ship keeps to the log's track, as a craft that cannot go
 sideways. [nats] Assumed."""

@@ -19,6 +19,7 @@ from shipcosim.diagnose.inference.thresholds import (
     ENOUGH,
     FAR_ABOVE_NULL,
     MOST_CAUSES,
+    NULL_GAIN_OF_FORM,
     NULL_GAIN_UNKNOWN,
     NULL_GAIN_WITHOUT_WIND,
     SHAPE_CHANCE,
@@ -28,10 +29,10 @@ from shipcosim.diagnose.inference.thresholds import (
 )
 from shipcosim.diagnose.inference.unmodelled import FORCES, unmodelled_gains
 from shipcosim.diagnose.result import Candidate, Estimate, Finding
-from shipcosim.diagnose.ship.model import ANY_CAUSE
+from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
 from shipcosim.diagnose.stages import ExplainedLog, JudgedLog
 
-__all__ = ["Judgement", "admissible", "gained", "judge", "judged", "labels"]
+__all__ = ["Judgement", "admissible", "gained", "judge", "judged", "labels", "usual_gain"]
 
 _BY_PART = "from part to part"
 _AS_THEY_ARE = (_BY_PART, "beyond tolerances")  # unmodelled errors whose evidence does not grow with the causes' gain
@@ -73,7 +74,7 @@ def judged(explained: ExplainedLog) -> JudgedLog:
         # where nobody knows the wind, a force that nobody explains is no surprise
         return {kind: gain for kind, gain in unmodelled[fit].items() if kind not in FORCES or not without_wind}
 
-    usual = problem.model.ordinary_errors.get(ANY_CAUSE, 0.0) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
+    usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
     null = {hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {}
     judgement = judge(fits, unmodelled_beside, null)
     if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
@@ -83,6 +84,13 @@ def judged(explained: ExplainedLog) -> JudgedLog:
         null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
         judgement = judge(fits, unmodelled_beside, null)
     return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)
+
+
+def usual_gain(model: ShipModel) -> float:
+    """What a cause gains where the ship's form is another than all that is known: as a reference says, or assumed."""
+    if model.directions or not model.form_scale:
+        return model.ordinary_errors.get(ANY_CAUSE, 0.0)
+    return NULL_GAIN_OF_FORM
 
 
 def _largest_null_gains(problem, fit, fits):

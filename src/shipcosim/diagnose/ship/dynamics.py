@@ -9,7 +9,7 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.diagnose.ship.environment import share_of, swell_of
-from shipcosim.diagnose.ship.form import cross_flow_form, wind_factors
+from shipcosim.diagnose.ship.form import cross_flow_form, form_of, thrust_kept, wind_factors
 from shipcosim.diagnose.ship.third_party_fmu import drives_of
 from shipcosim.diagnose.ship.thrusters import thruster_loads
 from shipcosim.models.core.kinematics import to_body, to_ned
@@ -84,10 +84,14 @@ def loads(motion: Motion, inputs: Inputs, model: ShipModel, like: Alike | None =
     u_c, v_c = _body_current(motion.psi, inputs.time, model)
     u_r, v_r, r = motion.u - u_c, motion.v - v_c, motion.r
     same = _alike(model, *like) if like else {}
+
+    def kept(name, load):
+        return _kept_at_hull(name, load, u_r, inputs, model)
+
     for name in [name for name in parts if isinstance(parts[name], (AzimuthParameters, TunnelParameters))]:
-        found[name] = same.get(name) or thruster_loads(name, inputs, u_r, v_r, r, model)
+        found[name] = same.get(name) or kept(name, thruster_loads(name, inputs, u_r, v_r, r, model))
     for name in model.third_party:
-        found[name] = same.get(name) or _third_party_loads(name, motion, inputs, (u_r, v_r), model)
+        found[name] = same.get(name) or kept(name, _third_party_loads(name, motion, inputs, (u_r, v_r), model))
     if inputs.wind_speed is not None:
         found["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
     if parts["hull_form"].acts:
@@ -106,7 +110,8 @@ def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[s
     """Those of another ship's loads that this one has too."""
 
     def alike(name):
-        return all(model.parts.get(part) is other.parts.get(part, 0) for part in _MADE_OF.get(name, (name,)))
+        made_of = _MADE_OF.get(name, (name, form_of(name)))
+        return all(model.parts.get(part) is other.parts.get(part) for part in made_of)
 
     names = found if _same_current(model, other) else {"wind"} & set(found)
     return {name: found[name] for name in names if alike(name)}
@@ -115,6 +120,15 @@ def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[s
 def _same_current(model: ShipModel, other: ShipModel) -> bool:
     one, two = model.parts["water"], other.parts["water"]
     return one is two or all(getattr(one, name) == getattr(two, name) for name in _CURRENT)
+
+
+def _kept_at_hull(name: str, load: Load, u_r: Arithmetic, inputs: Inputs, model: ShipModel) -> Load:
+    """What is left of the load of a thruster at a hull that takes more of its thrust than modelled."""
+    form = model.parts.get(form_of(name))
+    if form is None or not form.acts:
+        return load
+    kept = thrust_kept(*inputs.units[name], u_r, model.parts["hull"].length, form)
+    return tuple(kept * axis for axis in load)
 
 
 def _third_party_loads(

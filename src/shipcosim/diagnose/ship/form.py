@@ -1,8 +1,9 @@
 """How the form of a ship's loads may differ from her model's: functions around it, each a handful of numbers.
 
-Drag along the hull and the wind load over the angle are the model's times one plus a few smooth functions, with numbers
-of their own here. Damping over speed, added mass and thrust under way are numbers that the model has, less well known
-than their tolerances say. The sizes here are those of scale 1; how far the form of one ship differs is learnt.
+Drag along the hull, the wind load over the angle, and the thrust that the hull takes are the model's times one plus a
+few smooth functions, with numbers of their own here. Damping over speed, added mass and a tunnel's thrust under way are
+numbers that the model has, less well known than their tolerances say. The sizes here are those of scale 1; how far the
+form of one ship differs is learnt.
 """
 
 from __future__ import annotations
@@ -21,13 +22,23 @@ from shipcosim.models.ship.hull import HullParameters
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["HullForm", "WindForm", "cross_flow_form", "form_sizes", "wind_factors"]
+__all__ = [
+    "HullForm",
+    "ThrusterForm",
+    "WindForm",
+    "cross_flow_form",
+    "form_of",
+    "form_sizes",
+    "thrust_kept",
+    "wind_factors",
+]
 
 _NEUTRAL = "neutral"
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(12)  # along the hull, over half its length
 _DEGREES = (1, 2, 3)
 _SHAPES = np.polynomial.legendre.legvander(_PLACES, max(_DEGREES))
 _HARMONICS = (0, 1, 2)
+FROUDE_UNDER_WAY = 0.25
 
 
 def _along(degree: int) -> float:
@@ -71,14 +82,38 @@ WindForm = make_dataclass(
 )
 """Wind load over the angle, over the model's, for each of X, Y and N."""
 
+
+def _lost(where: str) -> float:
+    return quantity(0.0, "1", f"share of the thrust lost at the hull {where}", _NEUTRAL)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThrusterForm(_Form):
+    """Thrust that a thruster loses at the hull beyond the model's, by where it pushes to, whoever made it."""
+
+    across: float = _lost("by one that pushes athwartships; goes with the squared sine")
+    to_starboard: float = _lost("by one that pushes to starboard, gained to port; goes with the sine")
+    astern: float = _lost("by one that pushes astern; none ahead, half of it athwartships")
+    under_way: float = _lost(f"at Froude number {FROUDE_UNDER_WAY}; goes with the speed")
+
+
+def form_of(thruster: str) -> str:
+    """Place of the numbers of a thruster's form."""
+    return f"{thruster}.form"
+
+
 ALONG = {1: 0.15, 2: 0.15, 3: 0.10}  # of the drag coefficient, by degree; assumed: sections of ships differ by +-30 %
-LEVEL = 0.12  # of cross flow and of resistance as a whole; assumed
+CROSS_FLOW_LEVEL = 0.09  # of all sections together: the mean of five independent ones of +-30 %
+LEVEL = 0.12  # of resistance and of other damping as a whole; assumed
 ROUND = {0: 0.05, 1: 0.05, 2: 0.045}  # of the wind load, by order; Blendermann 1994: +-15 % between similar ships
 WIND_LEVEL = 0.05  # of X, Y and N alike
 ADDED_MASS = 0.15  # water that remembers is, in slow motion, an added mass; assumed
 LIFT = 0.2  # of its size and of its arm; assumed
 LINEAR = 0.2  # linear damping over the quadratic one at these speeds; assumed
 FROUDE_AHEAD, FROUDE_ACROSS = 0.06, 0.018
+LOST = {"across": 0.06, "to_starboard": 0.03, "astern": 0.05}  # of a unit that turns; Dang and Laheij 2004: to 10 %
+DEDUCTION = 0.03  # of the thrust of any thruster but a tunnel's, whatever its direction: thrust deduction; assumed
+UNDER_WAY = 0.1  # of the thrust, at FROUDE_UNDER_WAY: wake and thrust deduction; assumed
 SPEED_LOSS = 0.1  # s2/m2 on a ship of 33.9 m, of a tunnel's thrust; half of (1/2.2)^2
 _OF_LENGTH, _GRAVITY = 33.9, 9.81
 
@@ -100,8 +135,14 @@ def form_sizes(model: ShipModel) -> dict[str, float]:
     found |= {f"wind_form.{axis}_{name}": ROUND[order] for axis in "XYN" for name, order, _ in _harmonics()}
     found |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
     found[f"{vessel}.wind_load_scale"] = WIND_LEVEL
-    tunnels = [name for name, part in model.parts.items() if isinstance(part, TunnelParameters)]
-    return found | {f"{name}.speed_loss": SPEED_LOSS * _OF_LENGTH / hull.length for name in tunnels}
+    for name in model.thrusters:
+        if isinstance(model.parts[name], TunnelParameters):
+            found[f"{name}.speed_loss"] = SPEED_LOSS * _OF_LENGTH / hull.length
+            continue
+        found[f"{name}.thrust_loss"] = DEDUCTION
+        lost = LOST if "azimuth" in model.drives(name) else {}
+        found |= {f"{form_of(name)}.{where}": size for where, size in (lost | {"under_way": UNDER_WAY}).items()}
+    return found
 
 
 def _hull_sizes(hull: HullParameters) -> dict[str, float]:
@@ -109,7 +150,8 @@ def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     found = {name: ADDED_MASS * abs(getattr(hull, name)) for name in ("A11", "A22", "A26", "A62", "A66")}
     found |= {name: LIFT * abs(getattr(hull, name)) for name in ("lift", "lift_x")}
     coefficients = [item.name for item in fields(hull) if item.name[:2] in ("X_", "Y_", "N_")]
-    found |= {name: LEVEL * abs(getattr(hull, name)) for name in ("cross_flow_drag", *coefficients)}
+    found |= {name: LEVEL * abs(getattr(hull, name)) for name in coefficients}
+    found["cross_flow_drag"] = CROSS_FLOW_LEVEL * abs(hull.cross_flow_drag)
     speed, side = (froude * np.sqrt(_GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS))
     half, strength = 0.5 * hull.length, _strength(hull)
     found["X_u"] += LINEAR * speed * abs(hull.X_uu)
@@ -175,3 +217,28 @@ def wind_factors(wind_from: Arithmetic, form: object) -> Load:
                 factor = factor + share * (cos if function == "cos" else sin)(order * wind_from)
         factors.append(factor)
     return tuple(factors)
+
+
+def thrust_kept(rpm: Arithmetic, azimuth: Arithmetic, u_r: Arithmetic, length: float, form: ThrusterForm) -> Arithmetic:
+    """Factor on the model's load of a thruster, by where it pushes to and how fast the ship goes.
+
+    Parameters
+    ----------
+    rpm, azimuth : (...) array
+        Of the thruster; of the first only the sign counts, as one that runs astern pushes the other way. [-, rad]
+    u_r : (...) array
+        Surge velocity through the water. [m/s]
+    length : float
+        Of the ship. [m]
+    form : ThrusterForm
+
+    Returns
+    -------
+    like u_r
+        [1]
+    """
+    way = np.sign(rpm)
+    ahead, starboard = way * cos(azimuth), way * sin(azimuth)
+    lost = form.across * starboard * starboard + form.to_starboard * starboard + 0.5 * form.astern * (1.0 - ahead)
+    fast = FROUDE_UNDER_WAY * np.sqrt(_GRAVITY * length)
+    return 1.0 - lost - form.under_way * abs(u_r) / fast

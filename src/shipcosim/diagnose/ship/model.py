@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.diagnose.ship.environment import water_of
-from shipcosim.diagnose.ship.form import HullForm, WindForm, form_sizes
+from shipcosim.diagnose.ship.form import HullForm, ThrusterForm, WindForm, form_of, form_sizes
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu, part_of, problem_of, third_party_fmu_of
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed
@@ -44,7 +44,8 @@ class ShipModel:
     ----------
     parts : dict of str to dataclass
         Parameter sets by place: ``vessel``'s hull and wind under ``hull`` and ``wind``, thrusters by component,
-        ``water``, ``instruments``, and ``hull_form`` and ``wind_form``, how the loads differ from the model's form.
+        ``water``, ``instruments``, and ``hull_form``, ``wind_form`` and, say, ``port.form``, how the loads differ from
+        the model's form.
     vessel : str
         Name of the ship's component.
     tolerances : dict of str to float
@@ -203,7 +204,8 @@ def ship_model_of(system: System) -> ShipModel:
     ours, water = [name for name in parts if isinstance(parts[name], _OURS)], water_of(parts["hull"].length)
     neighbours = neighbours_of(system, parts)
     parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
-    parts |= {"hull_form": HullForm(), "wind_form": WindForm()}
+    driven = [*ours, *(name for name, one in third_party.items() if one.drives)]
+    parts |= {"hull_form": HullForm(), "wind_form": WindForm()} | {form_of(name): ThrusterForm() for name in driven}
     found = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
     found |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
     return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **found)
