@@ -19,7 +19,7 @@ COLUMNS_TO_REACH, LEVELS_TO_REACH = 3.0, 3.0
 class Log:
     """What the filter asks of a record."""
 
-    step, known = 1.0, np.ones(ROWS, bool)
+    step, known, is_last = 1.0, np.ones(ROWS, bool), np.arange(ROWS) == ROWS - 1
 
 
 @pytest.mark.slow

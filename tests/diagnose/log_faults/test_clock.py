@@ -38,7 +38,7 @@ def test_a_clock_that_is_slow_for_a_while_is_found_with_its_rate():
     ((first, last),) = finding.segments
     assert abs(first - FIRST) < 20.0 and abs(last - LAST) < 20.0
     right = repaired(log, [finding])
-    settled = with_rate(twin.ready(right), finding, right["logged_time"].values).parameters["rate"]
+    settled = with_rate(twin.ready(right), finding, right).parameters["rate"]
     assert settled.estimate == pytest.approx(RATE, abs=0.05)
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.ship import inputs
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table
@@ -195,12 +194,3 @@ def test_a_speed_that_swings_is_averaged_by_its_push():
     before = 0.25 * swings[:-2] + 0.5 * swings[1:-1] + 0.25 * swings[2:]  # what no reader could tell from noise
     np.testing.assert_allclose(port, np.sqrt(np.mean(before**2)), rtol=1e-9)
     np.testing.assert_allclose(tunnel, 0.0, atol=1e-9)
-
-
-def test_a_very_long_log_is_averaged_further_as_far_as_the_ship_answers_slowly(monkeypatch):
-    monkeypatch.setattr(inputs, "_MANY_ROWS", 100)
-    heading = ("time", np.full(1200, 10.0), {"units": "deg", "long_name": ""})
-    record = record_of(fast(1.0, 1200).assign(heading=heading), twin.model())
-    assert 1.0 < record.step <= inputs._LONGEST_ROW * inputs._SLOW_ENOUGH * np.sqrt(33.9)
-    assert record.step * record.rate <= inputs._SHARE_OF_ANSWER
-    assert any("this long log" in remark for remark in record.remarks)

@@ -21,6 +21,7 @@ from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.smoothing import froude_time
+from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.surrogate import with_surrogates
 from shipcosim.diagnose.ship.thrusters import with_thrust
 from shipcosim.diagnose.stages import CheckedLog, ComparedLog
@@ -80,9 +81,10 @@ def compared(log: CheckedLog) -> ComparedLog:
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
     that is far off is in the ship from here on.
     """
+    length = log.ship.parts["hull"].length
+    log = replace(log, repaired=in_stretches(log.repaired, length))
     ship = as_logged(log.ship, log.repaired)
     record = record_of(log.repaired, ship)
-    length = ship.parts["hull"].length
     felt = felt_by(record, length)
     ship = with_surrogates(ship, record, first_motion(record, ship))
     errors = errors_of(record, felt, ship)
@@ -130,7 +132,8 @@ def _relabelled(log: ComparedLog, labels: Labels) -> ComparedLog:
     sure = float(1.0 - np.exp(-min(labels.best.score - labels.logged.score, 4.6)))
     faults = [finding_of(_label(change, log.log), sure) for change in labels.best.changes]
     faults = (*log.faults, *faults)
-    return replace(log, faults=faults, repaired=repaired(log.log, faults))
+    right = in_stretches(repaired(log.log, faults), log.ship.parts["hull"].length)
+    return replace(log, faults=faults, repaired=right)
 
 
 def _label(change: Change, log: xarray.Dataset):

@@ -15,6 +15,7 @@ from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.thresholds import TESTABLE
 from shipcosim.diagnose.inference.verdict import usual_gain
 from shipcosim.diagnose.log_faults.clock import is_testable
+from shipcosim.diagnose.ship.inputs import rate_of
 from shipcosim.diagnose.stages import JudgedLog
 
 __all__ = ["log_facts", "not_testable", "untestable_causes"]
@@ -88,7 +89,7 @@ def log_facts(problem: IdentificationProblem) -> dict[str, float | None]:
         "astern_share": max(astern, default=0.0),
         "speed": _rms(np.hypot(motion.u, motion.v)),
         "surge": _rms(motion.u),
-        "surge_acceleration": _rms(np.gradient(motion.u, record.step)),
+        "surge_acceleration": _rms(rate_of(motion.u, record)),
         "sway": _rms(motion.v),
         "wind_speed": None if record.wind is None else float(np.mean(record.wind[0])),
         "yaw_rate": _rms(np.degrees(motion.r)),

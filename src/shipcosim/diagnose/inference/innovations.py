@@ -149,7 +149,7 @@ def smoothed(linear: Linear | InParts, noise: Noise, record: Record, motion: Mot
         passing.state = state
         one = passing.over(rows, keep=True)
         pull = np.zeros(one.states.shape[1:]) if pull is None else pull
-        of_filter = one.gain, one.root, one.states, one.covariances
+        of_filter = one.gain, one.root, one.states, one.covariances, record.is_last[rows]
         found.append(kalman.smoothed(one.A, passing.steady, one.H, one.white[..., 0].copy(), *of_filter, pull))
     states = np.moveaxis(passing.by_log(np.concatenate(found[::-1])), 0, -2)
     return Motion(*(value + states[..., i] for i, value in enumerate(motion))), states[..., 6:]
@@ -178,6 +178,8 @@ class _Filter:
         Covariance and state of each column at the row after the last part; None before the first.
     steady : (m, 18, 18) array
         What of the transition does not change from row to row.
+    uncertain : (m, 18, 18) array
+        Covariance where a stretch of the log begins.
     """
 
     def __init__(self, linear: InParts, noise: Noise, record: Record):
@@ -193,10 +195,10 @@ class _Filter:
         white = np.asarray(noise.white).reshape(1, -1, 6)
         R = np.where(_by_log(linear.whole, self.lead, 1), white**2, np.inf)
         R = np.require(np.broadcast_to(R, (len(R), len(C), 6)), requirements=["C", "W"])
-        known = np.asarray(record.known)[rows]
-        weights = kalman.weights(A, self.steady, H, R, self.process, C, known, _lost(), keep)
+        known, is_last = np.asarray(record.known)[rows], record.is_last[rows]
+        weights = kalman.weights(A, self.steady, H, R, self.process, C, known, _lost(), is_last, self.uncertain, keep)
         gain, root, log_determinant, covariances = weights
-        found = kalman.whitened(A, self.steady, B, H, Z, gain, root, x)
+        found = kalman.whitened(A, self.steady, B, H, Z, gain, root, is_last, x)
         self.state = C, x
         return _Passed(A, H, gain, root, log_determinant, covariances, *found)
 
@@ -205,8 +207,8 @@ class _Filter:
         noise, step = self.noise, self.record.step
         self.lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
         of_noise = _steady(noise, step), _process(noise, step), _uncertain(noise)
-        self.steady, self.process, uncertain = (_of_logs(values, self.lead) for values in of_noise)
-        return uncertain, np.zeros((len(uncertain), STATES, linear.seen.shape[-1]))
+        self.steady, self.process, self.uncertain = (_of_logs(values, self.lead) for values in of_noise)
+        return self.uncertain, np.zeros((len(self.uncertain), STATES, linear.seen.shape[-1]))
 
     def by_log(self, values: np.ndarray) -> np.ndarray:
         """(k, m, ...) array with the axes of the logs."""
@@ -231,8 +233,8 @@ def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray
     W, Q, P = (np.ascontiguousarray(np.moveaxis(values, 0, -1)) for values in of_noise)
     R = np.ascontiguousarray(noises.white.T) ** 2
     b, z = (np.ascontiguousarray(values[..., 0]) for values in (linear.driven, linear.seen))
-    known = np.asarray(record.known)
-    return kalman.log_likelihoods(linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, known, _lost())
+    rows = np.asarray(record.known), _lost(), record.is_last
+    return kalman.log_likelihoods(linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, *rows)
 
 
 def _by_log(values: np.ndarray, lead: tuple[int, ...], tail: int) -> np.ndarray:

@@ -23,6 +23,8 @@ def weights(
     C: np.ndarray,
     known: np.ndarray,
     lost: np.ndarray,
+    is_last: np.ndarray,
+    begun: np.ndarray,
     keep: bool,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Gains of the filter over some rows.
@@ -43,6 +45,9 @@ def weights(
     known : (k,) bool array
         Whether what drives the ship over the step that follows is known; where not, `lost` is added too.
     lost : (s, s) array
+    is_last : (n,) bool array
+        Whether a row is the last of a stretch: the next one begins as the first did, with the covariance of `begun`.
+    begun : (m, s, s) array
     keep : bool
         Whether the covariances are wanted.
 
@@ -81,6 +86,8 @@ def weights(
                 _add(T, A[k, log % A.shape[1]], Tt, 1.0)
                 _add(T, W[log], Tt, 1.0)
                 _symmetric(T, V)
+                if is_last[k]:
+                    V[:] = begun[log]
     return gain, root, logdet, covariances
 
 
@@ -93,6 +100,7 @@ def whitened(
     Z: np.ndarray,
     gain: np.ndarray,
     root: np.ndarray,
+    is_last: np.ndarray,
     x: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Whitened innovations of every column over some rows, and the state of the first.
@@ -107,6 +115,8 @@ def whitened(
         Outputs.
     gain, root
         As `weights` gives them.
+    is_last
+        As for `weights`; the next row begins without a deviation.
     x : (m, s, c) array
         State at the first row before its measurement. Changed: into that of the row after the last one.
 
@@ -133,6 +143,8 @@ def whitened(
                 _add(ahead, A[k, log % A.shape[1]], y, 1.0)
                 _add(ahead, W[log], y, 1.0)
                 y[:] = ahead
+                if is_last[k]:
+                    y[:] = 0.0
     return white, states
 
 
@@ -146,6 +158,7 @@ def smoothed(
     root: np.ndarray,
     states: np.ndarray,
     covariances: np.ndarray,
+    is_last: np.ndarray,
     pull: np.ndarray,
 ) -> np.ndarray:
     """Smoothed state of one column over some rows, by the adjoint form of Bryson and Frazier (1963).
@@ -159,6 +172,8 @@ def smoothed(
     white : (n, m, o) array
     gain, root, states, covariances
         As `weights` and `whitened` give them.
+    is_last
+        As for `weights`.
     pull : (m, s) array
         Of what is measured after these rows on the state of the row after the last; 0 at the end of a log. Changed:
         into that on the state of the first row.
@@ -177,6 +192,8 @@ def smoothed(
                 _add_product(moved, A[k, log % A.shape[1]], p)
                 _add_product(moved, W[log], p)
                 p[:] = moved
+                if is_last[k]:
+                    p[:] = 0.0
             found[k, log] = states[k, log] + covariances[k, log] @ p
             left = white[k, log] - gain[k, log] @ p
             h, r = H[k, log % H.shape[1]], root[k, log]
@@ -202,6 +219,7 @@ def log_likelihoods(
     P: np.ndarray,
     known: np.ndarray,
     lost: np.ndarray,
+    is_last: np.ndarray,
 ) -> np.ndarray:
     """Log-likelihood of one log under several noises, side by side, up to a constant.
 
@@ -222,7 +240,7 @@ def log_likelihoods(
     R : (o, m) array
         Variance of the outputs.
     Q, P : (s, s, m) array
-    known, lost
+    known, lost, is_last
         As for `weights`.
 
     Returns
@@ -255,6 +273,9 @@ def log_likelihoods(
             _add(rows_ahead, A[k], rows, 1.0)
             _add_each(rows_ahead, W, rows)
             _symmetric(T, C)  # else what rounding makes of it grows over a long log
+            if is_last[k]:
+                x[:] = 0.0
+                C[:] = P
     return found
 
 

@@ -7,6 +7,7 @@ Each block of a log has a column for its own ρ; where a run of blocks agrees on
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import chi2
@@ -37,6 +38,9 @@ from shipcosim.diagnose.log_faults.thresholds import (
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["clock_by_response", "is_testable", "with_rate"]
 
@@ -108,7 +112,7 @@ def _all_aspects_agree(problem, finding, known):
     return bool(rest @ weight @ rest < chi2.isf(ASPECT_CHANCE, len(ASPECTS) - 1))
 
 
-def with_rate(problem: IdentificationProblem, finding: Finding, logged: np.ndarray) -> Finding:
+def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Dataset) -> Finding:
     """A finding on the clock with its rate settled: the first is about a motion that the wrong clock has distorted.
 
     Parameters
@@ -116,11 +120,11 @@ def with_rate(problem: IdentificationProblem, finding: Finding, logged: np.ndarr
     problem : IdentificationProblem
         Of the log with the finding repaired.
     finding : Finding
-    logged : (n,) array
-        Time as logged of each row. [s]
+    log : xarray.Dataset
+        That log.
     """
     time = problem.record.time
-    inner = np.interp(np.ravel(finding.segments), logged, np.linspace(time[0], time[-1], len(logged)))
+    inner = np.interp(np.ravel(finding.segments), log["logged_time"].values, log["time"].values)
     blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.known(()))
     own = np.arange(1, len(inner), 2)
     more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + CLOCK_SLAB**-2)

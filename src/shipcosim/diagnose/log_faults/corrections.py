@@ -28,6 +28,7 @@ from shipcosim.diagnose.log_faults.navigation_labels import relabelled
 from shipcosim.diagnose.log_faults.thresholds import FAULT, MOST_INPUT_FAULTS, MOST_TRIED, ROUNDS_OF_SEGMENT, UNIT
 from shipcosim.diagnose.result import Finding
 from shipcosim.diagnose.ship.inputs import record_of
+from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.wiring import put_right
 from shipcosim.diagnose.stages import ExplainedLog, Identification
 
@@ -73,7 +74,7 @@ def with_right_clock(found: Identification) -> Identification:
     if clock is None:
         return found
     first = _repaired(found, (*others, clock))
-    clock = with_rate(first.problem, clock, first.repaired["logged_time"].values)
+    clock = with_rate(first.problem, clock, first.repaired)
     return _repaired(found, (*others, clock), first.problem.noise)
 
 
@@ -88,7 +89,7 @@ def with_right_wind(found: Identification) -> Identification:
 def _with_right_wind_label(found, place):
     """The log with one fault of the wind's labels, by its place among the faults, settled."""
     before, after = found.faults[:place], found.faults[place + 1 :]
-    as_logged = replace(found, repaired=repaired(found.log, (*before, *after)))
+    as_logged = replace(found, repaired=_without(found, (*before, *after)))
     fault, problem = _likeliest_direction(as_logged, found.faults[place])
     fault, right = _with_settled_segment(replace(as_logged, problem=problem), mislabel_of(fault), fault)
     return replace(right, faults=(*before, fault, *after))
@@ -173,9 +174,14 @@ def _with_right_input(explained):
 
 def _repaired(found, faults, noise=None):
     """An identification anew, of the log as read with some faults put right."""
-    log = repaired(found.log, faults)
+    log = _without(found, faults)
     problem = identification_problem(log, found.ship, found.causes, noise)
     return replace(found, faults=tuple(faults), repaired=log, problem=problem)
+
+
+def _without(found, faults):
+    """The log as read with some faults put right; a long one in stretches."""
+    return in_stretches(repaired(found.log, faults), found.ship.parts["hull"].length)
 
 
 def _relabelled(found, mislabel, fault):

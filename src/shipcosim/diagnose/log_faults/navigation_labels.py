@@ -29,6 +29,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     SHORTEST_LABEL,
 )
 from shipcosim.diagnose.ship.inputs import CHANNELS, first_motion, record_of
+from shipcosim.diagnose.ship.stretches import in_stretches
 
 if TYPE_CHECKING:
     import xarray
@@ -77,7 +78,7 @@ def relabelled(log: xarray.Dataset, faults: Sequence[Finding], problem: Identifi
     """
     found = [fault for fault in faults if mislabel_of(fault) in LABELS]
     others = [fault for fault in faults if fault not in found]
-    plain = repaired(log, others)
+    plain = in_stretches(repaired(log, others), problem.model.parts["hull"].length)
     if len(found) > 1 or (not found and _is_clear(plain)):
         return []
     if found:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.maths import Arithmetic
@@ -19,17 +21,14 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 
-__all__ = ["CHANNELS", "Inputs", "Record", "averaged", "first_motion", "record_of"]
+__all__ = ["CHANNELS", "Inputs", "Record", "averaged", "first_motion", "rate_of", "record_of"]
 
-_SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s for 33.9 m
-_MANY_ROWS = 20_000  # of which more are averaged further: five and a half hours at 1 Hz
-_LONGEST_ROW = 4  # times that long, and
-_SHARE_OF_ANSWER = 0.25  # of the time of the ship's fastest answer
 _SHORTEST = 18.0  # s over the root of the length in m: 105 s for 33.9 m, 20 s for 1.2 m
 _FEWEST_ROWS = 60
 _ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
 _RATE_OF_A_STEP = 1.0  # 1, of the fastest answer times the step: Runge-Kutta of fourth order diverges beyond 2.8
 _MOST_STEPS = 64  # from row to row; a model or a log that asks for more is wrong
+_LATE = 10.0  # s before and after a hole between stretches, within which a late channel is not known
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
@@ -60,7 +59,7 @@ class Record:
     Attributes
     ----------
     time : (n,) array
-        Even. [s]
+        Even, but for holes between the stretches of a long log. [s]
     measured : (..., n, 6) array
         `CHANNELS` in SI, heading unwrapped, NaN where there is none.
     units : dict of str to tuple of two (..., n) arrays
@@ -85,6 +84,18 @@ class Record:
     def step(self) -> float:
         """Time from row to row. [s]"""
         return float(self.time[1] - self.time[0])
+
+    @cached_property
+    def stretches(self) -> list[slice]:
+        """Rows that follow each other; all of them but in a long log."""
+        return stretches_of(self.time)
+
+    @cached_property
+    def is_last(self) -> np.ndarray:
+        """Which rows are the last of a stretch, (n,) bool array."""
+        found = np.zeros(self.time.size, bool)
+        found[[rows.stop - 1 for rows in self.stretches]] = True
+        return found
 
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
@@ -135,7 +146,7 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     ShipcosimError
         Too little to diagnose.
     """
-    rows = log.sizes["time"]
+    rows, time = log.sizes["time"], log["time"].values.astype(float)
     missing = [role for role in ("north", "east", "heading") if role not in log]
     if missing:
         found, right = f"no channel {', '.join(missing)}.", "A diagnosis needs north, east and heading."
@@ -151,29 +162,41 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     known &= whole
     remarks += [_about_third_party(name, one) for name, one in model.third_party.items()]
     known[:-1] &= known[1:]
-    record = Record(log["time"].values.astype(float), measured, units, wind, known, tuple(remarks))
+    known &= ~_near_holes(time)
+    record = Record(time, measured, units, wind, known, (*_about_stretches(time), *remarks))
     thinned = _thinned_for(model, record)
     _check_length(log, model, first_motion(thinned, model))
     return thinned
 
 
+def _near_holes(time: np.ndarray) -> np.ndarray:
+    """Rows beside the holes between stretches, (n,) bool array."""
+    inner, late = [rows.stop for rows in stretches_of(time)[:-1]], int(np.ceil(_LATE / (time[1] - time[0])))
+    found = np.zeros(time.size, bool)
+    for row in inner:
+        found[max(row - late, 0) : row + late] = True
+    return found
+
+
+def _about_stretches(time: np.ndarray) -> list[str]:
+    """What of a long log is used."""
+    parts, step = stretches_of(time), time[1] - time[0]
+    if len(parts) == 1:
+        return []
+    used, span = time.size * step / 60.0, (time[-1] - time[0]) / 3600.0
+    what = f"{len(parts)} stretches, {used:.0f} min together, spread evenly over its rows"
+    return [f"Of this log of {span:.1f} h {what}, are held against the ship; all of it was checked for faults."]
+
+
 def _thinned_for(model: ShipModel, record: Record) -> Record:
-    """The record at the rate that a ship's answer needs, and at less than that where it is very long."""
-    slow = _SLOW_ENOUGH * np.sqrt(model.parts["hull"].length)
-    rows = max(round(slow / record.step), 1)
+    """The record at the rate that a ship's answer needs."""
+    rows = rows_averaged(model.parts["hull"].length, record.step)
     thinned = _thinned(record, rows, model)
-    rate = fastest_rate(model, first_motion(thinned, model))
-    longest = min(_LONGEST_ROW * slow, _SHARE_OF_ANSWER / max(rate, 1e-9))
-    further = min(int(np.ceil(thinned.time.size / _MANY_ROWS)), int(longest / thinned.step + 1e-6))
-    if further > 1:
-        rows *= further
-        thinned = _thinned(record, rows, model)
-        rate = fastest_rate(model, first_motion(thinned, model))
+    thinned = replace(thinned, rate=fastest_rate(model, first_motion(thinned, model)))
     if rows == 1:
-        return replace(record, rate=rate)
-    why = "this long log" if further > 1 else "this ship's answer"
-    remark = f"Rows {record.step:.3g} s apart are averaged over {thinned.step:.3g} s, which resolves {why}."
-    return replace(thinned, rate=rate, remarks=(*record.remarks, remark))
+        return thinned
+    far = f"Rows {record.step:.3g} s apart are averaged over {thinned.step:.3g} s"
+    return replace(thinned, remarks=(*record.remarks, f"{far}, which resolves this ship's answer."))
 
 
 def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None:
@@ -192,9 +215,10 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
     """The record with every so many rows averaged into one; of speeds, which push by their square, as that."""
     if rows == 1:
         return record
+    used = np.concatenate([np.arange(one.start, one.stop - (one.stop - one.start) % rows) for one in record.stretches])
 
     def mean(series):
-        whole = series[: len(series) // rows * rows].reshape(-1, rows, *series.shape[1:])
+        whole = series[used].reshape(-1, rows, *series.shape[1:])
         count = np.isfinite(whole).sum(1)
         return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
 
@@ -294,12 +318,18 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
     for one, into in zip(flat, out, strict=True):
         for channel in range(6):
             whole = np.isfinite(one[:, channel])
-            series = np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else None
-            into[:, channel] = np.nan if series is None else gaussian_filter1d(series, width, mode="nearest")
+            into[:, channel] = np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else np.nan
+            for part in record.stretches if whole.any() else ():
+                into[part, channel] = gaussian_filter1d(into[part, channel], width, mode="nearest")
     x, y, psi, u, v, r = np.moveaxis(out.reshape(record.measured.shape), -1, 0)
     if np.isnan(r).any():
-        r = np.gradient(psi, record.step, axis=-1)
+        r = rate_of(psi, record)
     if np.isnan(u).any() or np.isnan(v).any():
-        north, east = np.gradient(x, record.step, axis=-1), np.gradient(y, record.step, axis=-1)
+        north, east = rate_of(x, record), rate_of(y, record)
         u, v = np.cos(psi) * north + np.sin(psi) * east, np.cos(psi) * east - np.sin(psi) * north
     return Motion(x, y, psi, u, v, r)
+
+
+def rate_of(series: np.ndarray, record: Record) -> np.ndarray:
+    """Rate of a series over the rows of a record, (..., n) arrays. [per s]"""
+    return np.concatenate([np.gradient(series[..., rows], record.step, axis=-1) for rows in record.stretches], axis=-1)

@@ -50,9 +50,13 @@ class Kernel:
 
     def clear_of(self, bad: np.ndarray) -> np.ndarray:
         """Rows as far from bad ones, and from both ends, as the kernel reaches."""
-        reach = int(np.ceil(_REACH * self.width / self.step))
-        ends = np.pad(bad, reach, constant_values=True)
-        return np.convolve(ends, np.ones(2 * reach + 1), "valid") < 0.5
+        ends = np.pad(bad, self.reach, constant_values=True)
+        return np.convolve(ends, np.ones(2 * self.reach + 1), "valid") < 0.5
+
+    @property
+    def reach(self) -> int:
+        """Rows to either side on which a value counts."""
+        return int(np.ceil(_REACH * self.width / self.step))
 
 
 def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
@@ -76,6 +80,8 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
             bad |= ~whole & _is_long(~whole, kernel)
             series = np.interp(rows, rows[whole], series[whole])
         columns.append(series)
+    for part in record.stretches[:-1]:
+        bad[max(part.stop - 2 * kernel.reach, 0) : part.stop + 2 * kernel.reach] = True
     x, y, psi, u, v, r = columns
     if not is_measured(record, 3) or not is_measured(record, 4):
         u, v = to_body(kernel.smooth(psi), kernel.rate(x), kernel.rate(y))

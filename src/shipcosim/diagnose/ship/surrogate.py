@@ -79,7 +79,7 @@ class Surrogate:
     Attributes
     ----------
     time : (k,) array
-        Even. [s]
+        Even; holes of the log are left out. [s]
     about : dict of str to (k,) array
         What the FMU was fed with, by quantity. [rpm, N, rad, m, m/s, rad/s]
     nominal : dict of str to float
@@ -89,6 +89,8 @@ class Surrogate:
     thrust : QuadraticThrust
     rpm_max : float
         Largest speed, the FMU's or the log's. [rpm]
+    rows : (n,) array
+        Times of the log's rows. [s]
     """
 
     time: np.ndarray
@@ -97,6 +99,7 @@ class Surrogate:
     rest: np.ndarray
     thrust: QuadraticThrust
     rpm_max: float
+    rows: np.ndarray
 
     def loads(self, time: np.ndarray, given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> Load:
         """Loads on the ship.
@@ -114,7 +117,8 @@ class Surrogate:
         tuple of three arrays
             X, Y, N. [N, N, N.m]
         """
-        at = np.clip((time - self.time[0]) / (self.time[1] - self.time[0]), 0.0, self.time.size - 1.0)
+        at = (_without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
+        at = np.clip(at, 0.0, self.time.size - 1.0)
         low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
         share = at - low
         rest = self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share
@@ -134,11 +138,12 @@ class Surrogate:
 
     def fits(self, record: Record, units: Mapping[str, np.ndarray]) -> bool:
         """Whether the surrogate was built for these times and similar inputs."""
-        inside = self.time[0] <= record.time[0] and record.time[-1] <= self.time[-1] + 1e-6
+        inside = self.rows[0] <= record.time[0] and record.time[-1] <= self.rows[-1] + 1e-6
+        clock = _without_holes(self.rows, record.time)
         near = {kind: _NEAR * max(np.abs(self.about.get(kind, 0.0)).max(), 1.0) for kind in ("rpm", "thrust")}
         near["azimuth"] = _NEAR
         return inside and all(
-            np.sqrt(np.mean((units[kind] - np.interp(record.time, self.time, values)) ** 2)) < near[kind]
+            np.sqrt(np.mean((units[kind] - np.interp(clock, self.time, values)) ** 2)) < near[kind]
             for kind, values in self.about.items()
             if kind in DRIVES
         )
@@ -196,7 +201,7 @@ def surrogates_of(
     ----------
     third_party : dict of str to ThirdPartyFmu
     time : (n,) array
-        Even. [s]
+        Even, but for holes between stretches. [s]
     units : dict of str to dict of str to (n,) array
         By third-party FMU: what drives it, as `drives_of` gives it.
     motion : Motion
@@ -209,11 +214,12 @@ def surrogates_of(
     moved = dict(zip(MOTION, (*motion, motion.u, motion.v), strict=True))
     given = {name: {**moved, **units.get(name, {})} for name in third_party}
     runs = [run for name, one in third_party.items() for run in _runs(name, one, given[name])]
-    fine = _fine(time, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0))
-    fed = {name: {q: np.interp(fine, time, values) for q, values in each.items()} for name, each in given.items()}
+    clock = _without_holes(time, time)
+    fine = _fine(clock, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0))
+    fed = {name: {q: np.interp(fine, clock, values) for q, values in each.items()} for name, each in given.items()}
     table = _simulated(runs, third_party, fed, fine)
     return {
-        name: _surrogate(one, [run for run in runs if run.of == name], table, fine, fed[name])
+        name: _surrogate(one, [run for run in runs if run.of == name], table, fine, fed[name], time)
         for name, one in third_party.items()
     }
 
@@ -237,6 +243,11 @@ def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Ite
     for number, variable in one.parameters.items():
         by = _CHANGE_OF_PARAMETER * one.component.tolerances[variable]
         yield _Run(name, f"{name} with another {variable}", number=number, by=by)
+
+
+def _without_holes(rows: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Times of a log as if its stretches followed each other at the even times of their rows."""
+    return rows[0] + (rows[1] - rows[0]) * np.interp(time, rows, np.arange(rows.size))
 
 
 def _fine(time: np.ndarray, runs: int, step: float) -> np.ndarray:
@@ -282,6 +293,7 @@ def _surrogate(
     table: xarray.Dataset,
     fine: np.ndarray,
     fed: Mapping[str, np.ndarray],
+    rows: np.ndarray,
 ) -> Surrogate:
     """The surrogate of a third-party FMU from the runs of its copies."""
     base, *others = (_on_ship(one, run.name, table) for run in runs)
@@ -300,7 +312,7 @@ def _surrogate(
         for quantity, slopes in zip(("rpm", "azimuth"), ideal[1:], strict=True):
             if quantity in about:
                 rest[1 + quantities.index(quantity)] -= slopes
-    return Surrogate(fine, about, nominal, rest, thrust, most)
+    return Surrogate(fine, about, nominal, rest, thrust, most, rows)
 
 
 def _on_ship(one: ThirdPartyFmu, name: str, table: xarray.Dataset) -> np.ndarray:

@@ -87,6 +87,9 @@ def kept_on_track(
             if jolts is not None:
                 ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
             ship = dp.bounded(ship)
+            if k < n - 1 and record.is_last[k]:
+                ship = Motion(*(np.zeros(count) + value[..., k + 1] for value in track))
+                told, integral, rates = 0.0 * told, 0.0 * integral, Motion(*np.zeros((6, count)))
     motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
     series = {}
     for name, pairs in units.items():

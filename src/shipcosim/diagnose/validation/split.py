@@ -78,6 +78,8 @@ def starts(record: Record) -> np.ndarray:
     measured = np.isfinite(record.measured[:, :3]).all(-1)
     near = np.convolve(measured, np.ones(2 * round(MEASURED_WITHIN / h) + 1), "same") > 0.0
     sound = (lost[rows + horizons[-1]] == lost[rows]) & near[rows]
+    stretch = np.cumsum(record.is_last)
+    sound &= stretch[rows] == stretch[np.maximum(rows - round(SETTLED / h), 0)]
     for k in horizons:
         sound &= near[rows + k]
     return rows[sound]
