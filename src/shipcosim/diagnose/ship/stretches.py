@@ -61,7 +61,8 @@ def in_stretches(log: xarray.Dataset, length: float) -> xarray.Dataset:
         rows = rows[(first[:, None] + np.arange(part)).ravel()]
     ends = np.flatnonzero(np.diff(rows, append=np.inf) > _SHORT * part)
     begins = np.concatenate([[0], ends[:-1] + 1])
-    wanted = [np.arange(rows[a], rows[b] + 1) for a, b in zip(begins, ends, strict=True) if b - a >= _SHORT * part]
+    pairs = [(a, b) for a, b in zip(begins, ends, strict=True) if b - a >= _SHORT * part]
+    wanted = [np.arange(int(rows[a]), int(rows[b]) + 1) for a, b in pairs]
     return log.isel(time=np.concatenate(wanted)) if wanted else log
 
 
