@@ -47,6 +47,7 @@ class Finding(Candidate):
     channels: list[str] | None = None
     onset: float | None = None
     note: str | None = None
+    at_reference: dict[str, Estimate] | None = None
 
 
 class ExperimentDesign(Strict):

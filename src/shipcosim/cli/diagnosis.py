@@ -181,12 +181,12 @@ def finding_table(findings: Iterable[Finding]) -> Any:
 
 def _rows(finding):
     """Rows of a finding: its parameters, or where in the log it is."""
-    from shipcosim.report.diagnosis.words import estimate_rows, title, where
+    from shipcosim.report.diagnosis.words import size_rows, title, where
 
     name, sure = title(finding.cause, finding.component), f"{100 * finding.probability:.0f} %"
-    rows = estimate_rows(finding) if finding.kind == "physics" else []
-    for parameter, value, std, unit in rows:
-        yield name, sure, parameter, f"{value} ± {std} {unit}".rstrip()
+    rows = size_rows(finding) if finding.kind == "physics" else []
+    for parameter, size in rows:
+        yield name, sure, parameter, size
         name = sure = ""
     if not rows:
         yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)

@@ -48,6 +48,7 @@ from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestabl
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import read_reference, with_reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
+from shipcosim.diagnose.reference.since import with_sizes_at_reference
 from shipcosim.diagnose.result import Diagnosis, Estimate, ExperimentDesign, Finding
 from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
 from shipcosim.diagnose.ship.thrusters import with_thrust
@@ -198,10 +199,16 @@ def find_common_causes(
     usable = {name: one for name, one in known.items() if name not in left_out}
     if not usable:
         return replace(found, remarks=tuple(remarks_on(found)))
-    ship = ship_model_of(system)
-    ship = ship if reference is None else with_reference(ship, read_reference(reference))
+    ship, known_well = ship_model_of(system), None if reference is None else read_reference(reference)
+    ship = ship if known_well is None else with_reference(ship, known_well)
     with threadpool_limits(1):
-        return _together(found, usable, ship, say)
+        found = _together(found, usable, ship, say)
+    if known_well is None:
+        return found
+    since = with_sizes_at_reference((one.what for one in found.findings), ship, known_well, found.causes)
+    return replace(
+        found, findings=tuple(replace(one, what=what) for one, what in zip(found.findings, since, strict=True))
+    )
 
 
 def _identification(one: Diagnosis) -> Identification:
@@ -213,11 +220,9 @@ def _identification(one: Diagnosis) -> Identification:
 def _unusable(one: Diagnosis) -> str:
     """Why a log says nothing of the ship; empty where it does."""
     if any(finding.alternatives for finding in one.findings):
-        return "its channels may be misread, and it does not tell which"
+        return "Its channels may be misread, and it does not tell which."
     comparison = _identification(one).comparison
-    if comparison is not None and not comparison.is_resolved:
-        return "its rows are too far apart for the ship's answers"
-    return ""
+    return " ".join(comparison.obstacles) if comparison is not None else ""
 
 
 def _together(
@@ -355,7 +360,7 @@ def _prescription(basis: JointBasis) -> ExperimentDesign | None:
 def remarks_on(found: JointDiagnosis) -> list[str]:
     """What to know of logs that differ from the others, or say nothing of the ship."""
     basis = found.basis
-    remarks = [f"{name} says nothing of the ship: {why}." for name, why in found.left_out.items()]
+    remarks = [f"{name} says nothing of the ship. {why}" for name, why in found.left_out.items()]
     for name, faults in found.relabelled.items():
         what = "; ".join(fault.sentence for fault in faults)
         remarks.append(f"{name} is read as the other logs show ({what}): by itself it does not tell.")

@@ -52,6 +52,7 @@ from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
+from shipcosim.diagnose.reference.since import with_sizes_at_reference
 from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, ReadLog, SimulatedLog
@@ -177,7 +178,11 @@ def find_causes(
         say = progress or (lambda *_: None)
         say("is the log right?")
         read = read_measurements(log, system, channels, causes, reference)
-        return stated(verdict_on(read, say))
+        found = stated(verdict_on(read, say))
+        if reference is None:
+            return found
+        known = read_reference(reference)
+        return replace(found, findings=with_sizes_at_reference(found.findings, read.ship, known, read.causes))
 
 
 def read_measurements(

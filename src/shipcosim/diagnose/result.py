@@ -75,6 +75,8 @@ class Finding:
     alternatives : tuple of str
         Other readings that explain the log alike, one sentence each. Where there are any, `note` is only the likeliest
         of them, and nothing was put right.
+    at_reference : dict of str to Estimate
+        What the parameters were when a reference was made; empty without one, and of what it does not hold.
     """
 
     cause: str
@@ -87,6 +89,7 @@ class Finding:
     onset: float | None = None
     note: str = ""
     alternatives: tuple[str, ...] = ()
+    at_reference: dict[str, Estimate] = field(default_factory=dict)
 
     @property
     def label(self) -> str:
@@ -104,6 +107,8 @@ class Finding:
         """The finding as an entry of diagnosis.json; what does not apply is left out."""
         entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}
         entry["parameters"] = {name: asdict(value) for name, value in self.parameters.items()}
+        if self.at_reference:
+            entry["at_reference"] = {name: asdict(value) for name, value in self.at_reference.items()}
         if self.kind == "data":
             entry["segments"] = [list(segment) for segment in self.segments]
             entry["channels"] = list(self.channels)

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Literal
 
 import pytest
@@ -9,7 +10,7 @@ from diagnose import twin
 from pydantic import BaseModel, ConfigDict, Field
 
 from shipcosim.cli.joint_diagnosis import print_joint
-from shipcosim.diagnose.joint_pipeline import JointDiagnosis, diagnose_jointly
+from shipcosim.diagnose.joint_pipeline import JointDiagnosis, _unusable, diagnose_jointly
 from shipcosim.diagnose.reference.common import Shared
 from shipcosim.diagnose.result import Candidate, Diagnosis, Finding
 from shipcosim.report.joint.page import render, write_joint
@@ -49,6 +50,7 @@ class JointFinding(JointCandidate):
     channels: list[str] | None = None
     onset: float | None = None
     note: str | None = None
+    at_reference: dict[str, Size] | None = None
 
 
 class LogErrors(Strict):
@@ -187,3 +189,13 @@ def test_a_fault_that_logs_share_is_common_and_another_is_its_logs_own():
     found = JointDiagnosis("named", (Shared(shared, ("a", "b")),), logs=logs)
     assert found.own_faults("a") == [] and found.own_faults("b") == [own]
     assert "wind_speed is in kn" in outcome(found).sentence
+
+
+def test_a_log_that_may_be_misread_or_lacks_a_thruster_says_nothing_of_the_ship():
+    open_ = Finding("frame", kind="data", channels=("north",), note="one", alternatives=("two",))
+    poor = SimpleNamespace(comparison=SimpleNamespace(obstacles=("No port_rpm in the log.",)))
+    basis = SimpleNamespace(explained=SimpleNamespace(identification=poor))
+    assert "misread" in _unusable(Diagnosis("ambiguous", (open_,), basis=basis))
+    assert _unusable(Diagnosis("unknown", basis=basis)) == "No port_rpm in the log."
+    poor.comparison.obstacles = ()
+    assert _unusable(Diagnosis("named", basis=basis)) == ""

@@ -13,7 +13,7 @@ from shipcosim.report.diagnosis.cause_figures import (
 )
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
 from shipcosim.report.diagnosis.testability import not_testable_rows
-from shipcosim.report.diagnosis.words import estimate_rows, title
+from shipcosim.report.diagnosis.words import estimate_rows, size_rows, title
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Figure, Table
 
@@ -94,10 +94,13 @@ def _found(diagnosis: Diagnosis) -> str:
 
 
 def _estimates(diagnosis: Diagnosis) -> Table:
+    physics = [finding for finding in diagnosis.findings if finding.kind == "physics"]
+    if any(finding.at_reference for finding in physics):
+        rows = [(title(f.cause, f.component), *row, percent(f.probability)) for f in physics for row in size_rows(f)]
+        return Table(tuple(rows), head=("Cause", "Parameter", "At the reference → now", "Probability"), tight=(1, 2, 3))
     rows = [
         (title(f.cause, f.component), name, value, f"± {std}", unit, percent(f.probability))
-        for f in diagnosis.findings
-        if f.kind == "physics"
+        for f in physics
         for name, value, std, unit in estimate_rows(f)
     ]
     head = ("Cause", "Parameter", "Estimate", "Std", "Unit", "Probability")

@@ -40,6 +40,7 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
         return _fault(finding)
     cause = (read_catalogue() if causes is None else causes).get(finding.cause)
     since = f", from {finding.onset:.0f} s on" if finding.onset is not None else ""
+    since += f" (at the reference: {_at_reference(finding)})" if finding.at_reference else ""
     try:
         if cause and cause.statement:
             return filled(cause.statement, finding.parameters, finding.component) + since
@@ -49,6 +50,11 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     numbers = ", ".join(f"{name} {plus_minus(e)}" for name, e in finding.parameters.items())
     place = f" ({finding.component})" if finding.component else ""
     return f"{sentence[:1].lower()}{sentence[1:]}{place}" + (f": {numbers}" if numbers else "") + since
+
+
+def _at_reference(finding: Finding) -> str:
+    """What a cause was when the reference was made, by parameter."""
+    return ", ".join(f"{name.replace('_', ' ')} {plus_minus(size)}" for name, size in finding.at_reference.items())
 
 
 def _fault(finding: Finding) -> str:
@@ -187,6 +193,23 @@ def estimate_rows(finding: Finding) -> list[tuple[str, str, str, str]]:
     for estimate in finding.parameters.values():
         largest[estimate.unit] = max(abs(estimate.estimate), largest.get(estimate.unit, 0.0))
     return [(n.replace("_", " "), *amount(e, largest=largest[e.unit])) for n, e in finding.parameters.items()]
+
+
+def size_rows(finding: Finding) -> list[tuple[str, str]]:
+    """Name and size of each parameter, as texts; of one that a reference holds what it was, an arrow, and what it is.
+
+    Examples
+    --------
+    >>> from shipcosim.diagnose.result import Estimate
+    >>> lost, before = Estimate(0.152, 0.012, "1"), Estimate(0.03, 0.02, "1")
+    >>> size_rows(Finding("thrust_loss", "port", parameters={"loss": lost}, at_reference={"loss": before}))
+    [('loss', '0.03 ± 0.02 → 0.152 ± 0.012')]
+    """
+    before = {name.replace("_", " "): plus_minus(size) for name, size in finding.at_reference.items()}
+    return [
+        (name, (f"{before[name]} → " if name in before else "") + f"{value} ± {std} {unit}".rstrip())
+        for name, value, std, unit in estimate_rows(finding)
+    ]
 
 
 def where(finding: Finding) -> str:

@@ -7,7 +7,7 @@ from shipcosim.diagnose.reference.common import Shared
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Finding
-from shipcosim.report.diagnosis.words import estimate_rows, listed, manoeuvre_step, title, told
+from shipcosim.report.diagnosis.words import listed, manoeuvre_step, size_rows, title, told
 from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import Outcome
 
@@ -112,8 +112,7 @@ def cause_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
 
 def _sizes(finding: Finding) -> list[tuple[str, str]]:
     """Parameters of a finding with their sizes; one empty row without any."""
-    rows = [(name, f"{value} ± {std} {unit}".rstrip()) for name, value, std, unit in estimate_rows(finding)]
-    return rows or [("", finding.note)]
+    return size_rows(finding) or [("", finding.note)]
 
 
 def error_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:

@@ -1,0 +1,48 @@
+"""What has changed since a reference: the size of a cause at the reference beside what it is now."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
+from shipcosim.diagnose.hypotheses.cause import Cause
+from shipcosim.diagnose.reference.reference import Reference, with_reference
+from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["with_sizes_at_reference"]
+
+
+def with_sizes_at_reference(
+    findings: Iterable[Finding], ship: ShipModel, reference: Reference, causes: Mapping[str, Cause]
+) -> tuple[Finding, ...]:
+    """Findings with the size that each cause in the ship had when the reference was made.
+
+    Parameters
+    ----------
+    findings : iterable of Finding
+    ship : ShipModel
+        Of the system, or of the reference.
+    reference : Reference
+    causes : mapping of str to Cause
+        The catalogue.
+
+    Returns
+    -------
+    tuple of Finding
+        Those of the data, and of what no number of the reference holds, are as they were: a current is the day's.
+    """
+    known = {number.name: number for number in reference.numbers}
+    hypotheses = {one.label: one for one in hypotheses_of(dict(causes), with_reference(ship, reference))}
+    found = []
+    for finding in findings:
+        hypothesis = hypotheses.get(finding.label) if finding.kind == "physics" else None
+        before = {
+            of.name: Estimate(known[path].estimate * of.factor, known[path].std * abs(of.factor), of.unit)
+            for of in (hypothesis.parameters if hypothesis else ())
+            for path in of.paths[:1]
+            if path in known
+        }
+        found.append(replace(finding, at_reference=before) if before else finding)
+    return tuple(found)
