@@ -1,7 +1,7 @@
-"""Memory of a long log that is linearised and filtered part by part, beside the same in one piece; and side by side.
+"""Time and memory of long logs: a whole diagnosis, beside that of 40 minutes; a fit in parts, beside one in one piece.
 
-Each measurement of memory is that of a process of its own: its largest resident size. The log is four hours at 1 Hz,
-drawn from the independent truth; the ship model takes it as it is. CPU time is counted, as the machine may be shared.
+Each measurement of memory is that of a process of its own: its largest resident size. CPU time is counted, as the
+machine may be shared. Logs are drawn from the independent truth; the fits take four hours at 1 Hz as they are.
 """
 
 import os
@@ -15,6 +15,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 MINUTES, SEED = 240, 5900
 LESS_MEMORY, MOST_MEMORY, MOST_TIME = 1.3, 600.0, 1.8  # 1, MB, 1
+LONG_MINUTES, LONG_MEMORY, LONG_TIME = 1667, 1000.0, 240.0  # 100 020 rows; MB, s of CPU: two minutes of two cores
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +37,21 @@ def test_parts_need_less_memory(log):
 
 
 @pytest.mark.slow
+def test_a_hundred_thousand_rows_are_diagnosed_in_a_gigabyte_and_four_minutes_of_processor(tmp_path):
+    """Forty times as many rows as in 40 minutes; what is computed for the ship grows by no more than 2.5."""
+    from truth import draw
+
+    figures = []
+    for minutes in (40, LONG_MINUTES):
+        path = tmp_path / f"{minutes}.csv"
+        draw("trial", SEED, minutes=minutes, causes=0).save(path)
+        figures.append(measured(path, "whole"))
+    (_, short, _), (memory, seconds, _) = figures
+    print(f"\n{LONG_MINUTES * 60} rows: {memory:.0f} MB, {seconds:.0f} s CPU, {seconds / short:.1f} times 40 minutes'")
+    assert memory <= LONG_MEMORY and seconds <= LONG_TIME
+
+
+@pytest.mark.slow
 def test_fits_side_by_side_cost_no_more_processor_time():
     """Up to a fifth: threads wait for each other. The results are equal, which a test beside the sources holds."""
     from diagnose import twin
@@ -54,7 +70,10 @@ def test_fits_side_by_side_cost_no_more_processor_time():
 
 
 def measured(log, part):
-    """Memory [MB], CPU time [s] and score of a fit to a log, in a process of its own, in parts of so many rows."""
+    """Memory [MB], CPU time [s] and score of a fit to a log, in a process of its own, in parts of so many rows.
+
+    Or of a ``"whole"`` diagnosis of it; its score is the number of findings.
+    """
     environment = os.environ | {"OMP_NUM_THREADS": "1"}
     command = [sys.executable, __file__, str(log), str(part)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
@@ -69,11 +88,10 @@ def main(log, part):
     from shipcosim.diagnose.inference.screening import screened
     from shipcosim.diagnose.log.repair import repaired
     from shipcosim.diagnose.pipeline import read_measurements
-    from shipcosim.diagnose.ship import inputs
     from shipcosim.ssp import read_system
     from speed.measure import cpu_seconds
 
-    parts.PART, parts._ENTRIES, inputs._MANY_ROWS = part, part * 64, 10**9
+    parts.PART, parts._ENTRIES = part, part * 64
     parts._KEPT = parts._KEPT if part < 10**6 else 10**12
     read = read_measurements(log, read_system(ROOT / "ssp" / "gunnerus_open", fmus=[ROOT / "build" / "fmus"]))
     table = repaired(read.log)
@@ -86,6 +104,22 @@ def main(log, part):
     print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, seconds, found[0].score)
 
 
+def whole(log):
+    """A whole diagnosis; the process's memory, its CPU time and the number of findings, printed."""
+    from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.ssp import read_system
+    from speed.measure import cpu_seconds
+
+    found = []
+    system = read_system(ROOT / "ssp" / "gunnerus_open", fmus=[ROOT / "build" / "fmus"])
+    seconds = cpu_seconds(lambda: found.append(diagnose(log, system)))
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    print(memory, seconds, len(found[0].findings))
+
+
 if __name__ == "__main__":
     sys.path[:0] = [str(Path(__file__).resolve().parents[1])]
-    main(*sys.argv[1:2], int(sys.argv[2]))
+    if sys.argv[2] == "whole":
+        whole(sys.argv[1])
+    else:
+        main(sys.argv[1], int(sys.argv[2]))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import sparse
 
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
@@ -39,12 +40,16 @@ from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["wrong_clock"]
 
-_AT_ONCE = 8  # columns that are whitened together: of a long log all of them, several times over, would fill the memory
+_AT_ONCE = 8  # columns that are whitened together, over the rows in which any of them is not nothing
+_FORGOTTEN = 37.0  # nats: what is left after them is lost in rounding
 
 
 @dataclass(frozen=True)
 class _Side:
-    """One comparison, of positions or of headings: its motion, filter and whitened rest (n, a)."""
+    """One comparison, of positions or of headings: its motion, filter and whitened rest (n, a).
+
+    Until a row the filter has `forgotten` so many nats of what was before the first one.
+    """
 
     motion: Motion
     whitener: Filter
@@ -52,16 +57,35 @@ class _Side:
     scale: np.ndarray
     steps: np.ndarray
     rough: float
+    forgotten: np.ndarray
 
     def column(self, first, last):
-        """Whitened change (n * a, k) of the level by a clock that is wrong by 1 in each of k segments."""
-        time, found = self.motion.time, np.empty((self.rest.size, len(first)))
-        for some in range(0, len(first), _AT_ONCE):
-            part = slice(some, some + _AT_ONCE)
-            inner = (time[:, None] > np.asarray(first[part])) & (time[:, None] <= np.asarray(last[part]))
-            ways = np.cumsum(self.steps[:, :, None] * inner[:, None, :], axis=0)
-            found[:, part] = self.whitener(ways).reshape(self.rest.size, -1)
-        return found
+        """Whitened change (n * a, k) of the level by a clock that is wrong by 1 in each of k segments.
+
+        It begins with the segment, and soon after it the filter has forgotten it; so it is sparse.
+        """
+        return sparse.hstack(
+            [
+                self._columns(np.asarray(first[k : k + _AT_ONCE]), np.asarray(last[k : k + _AT_ONCE]))
+                for k in range(0, len(first), _AT_ONCE)
+            ],
+            format="csc",
+        )
+
+    def _columns(self, first, last):
+        """Columns of some segments that are near each other."""
+        time, axes = self.motion.time, self.rest.shape[1]
+        begin = max(int(np.searchsorted(time, first.min(), side="right")) - 1, 0)
+        over = min(int(np.searchsorted(time, last.max(), side="right")), time.size - 1)
+        rows = slice(begin, int(np.searchsorted(self.forgotten, self.forgotten[over] + _FORGOTTEN)) + 1)
+        inner = (time[rows, None] > first) & (time[rows, None] <= last)
+        ways = np.cumsum(self.steps[rows, :, None] * inner[:, None, :], axis=0)
+        whitener = replace(self.whitener, gains=self.whitener.gains[rows], scale=self.whitener.scale[rows])
+        white = whitener(ways).reshape(-1, first.size)
+        places = np.arange(len(white)) + begin * axes
+        ends = len(white) * np.arange(first.size + 1)
+        shape = (self.rest.size, first.size)
+        return sparse.csc_array((white.T.ravel(), np.tile(places, first.size), ends), shape=shape)
 
     def match(self, columns):
         """Match of columns with the rest, beside the scale of the whole log, (k,)."""
@@ -72,12 +96,12 @@ class _Side:
     def gram(self, columns):
         """Gram matrix of columns, beside the scale of the whole log, (k, k)."""
         shared = self.scale.ravel() @ columns
-        return (columns.T @ columns - np.outer(shared, shared) / self._scale_energy()) / self.rough
+        return ((columns.T @ columns).toarray() - np.outer(shared, shared) / self._scale_energy()) / self.rough
 
     def energy(self, columns):
         """Diagonal of the Gram matrix, (k,)."""
         shared = self.scale.ravel() @ columns
-        return (np.sum(columns**2, axis=0) - shared**2 / self._scale_energy()) / self.rough
+        return (columns.power(2).sum(axis=0) - shared**2 / self._scale_energy()) / self.rough
 
     def _scale_energy(self):
         return float(np.sum(self.scale**2)) + 1.0 / SCALE_SLAB[self.rest.shape[1]] ** 2
@@ -134,14 +158,16 @@ def _side(motion):
     whitener = filter_for(motion)[0]
     rest = np.clip(whitener(motion.level), -CLOCK_CLIP, CLOCK_CLIP)
     way = motion.way(motion.slow(motion.velocity))
-    return _Side(motion, whitener, rest, whitener(way), np.diff(way, axis=0, prepend=way[:1]), whiteness(rest))
+    forgotten = np.cumsum(-np.log(np.maximum(1.0 - whitener.gains, np.exp(-_FORGOTTEN))))
+    steps = np.diff(way, axis=0, prepend=way[:1])
+    return _Side(motion, whitener, rest, whitener(way), steps, whiteness(rest), forgotten)
 
 
 def _explained(side, segment):
     """The side without what the segment explains."""
     column = side.column([segment.first], [segment.last])
     value = side.match(column)[0] / max(side.energy(column)[0], 1e-9)
-    return replace(side, rest=side.rest - value * column.reshape(side.rest.shape))
+    return replace(side, rest=side.rest - value * column.toarray().reshape(side.rest.shape))
 
 
 def _best(sides, blocks, gram, edges):
