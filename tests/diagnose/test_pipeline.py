@@ -84,6 +84,16 @@ def test_a_thruster_without_a_command_in_the_log_is_said_and_not_blamed():
     assert not any(hypothesis.label == "thrust_loss of tunnel" for hypothesis in fits[0].hypotheses)
 
 
+@pytest.mark.parametrize("absent", [["tunnel_rpm"], ["port_rpm", "starboard_azimuth"]])
+def test_a_log_that_lacks_what_drives_a_thruster_names_no_cause_and_says_what_would_do(absent):
+    """Of such logs of the trial six in sixteen were given a wrong name: other thrusters, a current, a sign, a ratio."""
+    diagnosis = find_causes(twin.logs()["current"].drop_vars(absent), twin.system())
+    assert (diagnosis.verdict, diagnosis.findings, diagnosis.candidates) == ("unknown", (), ())
+    obstacles = diagnosis.basis.explained.identification.comparison.obstacles
+    assert len(obstacles) == len(absent) and all(name in said for name, said in zip(absent, obstacles, strict=True))
+    assert [fit.hypotheses for fit in diagnosis.basis.fits] == [()]
+
+
 def test_a_parked_ship_can_show_little(tmp_path):
     """Six minutes at rest, by a log that is noise: nothing is named, and most causes are not testable."""
     random, log = np.random.default_rng(0), twin.logs()["healthy"]

@@ -11,7 +11,7 @@ LEFT_OUT = {"no_velocity": VELOCITY, "no_velocity_no_wind": (*VELOCITY, *WIND)}
 STREAM = 7919  # keeps what is drawn here apart from what the truth draws
 
 
-def poorer(case, *, every=1, seconds=None, channels=None):
+def poorer(case, *, every=1, seconds=None, since=None, channels=None):
     """A drawn log of which less was recorded, and what of its answer is left in it.
 
     Parameters
@@ -21,6 +21,8 @@ def poorer(case, *, every=1, seconds=None, channels=None):
         Rows from one that is kept to the next.
     seconds : float, optional
         Length of the part that is kept, from a drawn row on. [s]
+    since : float, optional
+        First time that is kept: what the ship sails after the log is kept too. [s]
     channels : "position", "no_velocity", "no_velocity_no_wind" or "half", optional
         Keeps time, position and heading alone; these with thrusters and wind; with thrusters; with a drawn half of all
         other channels.
@@ -31,7 +33,7 @@ def poorer(case, *, every=1, seconds=None, channels=None):
         Faults of rows or channels that are not kept are no longer in the answer.
     """
     rng = np.random.default_rng([STREAM, case.seed, *case.kind.encode()])
-    rows = _rows(case.log["time [s]"].to_numpy(), every, seconds, rng)
+    rows = _rows(case.log["time [s]"].to_numpy(), every, seconds, since, rng)
     kept = _channels(list(case.log), channels, rng)
     log = case.log.loc[rows, kept].reset_index(drop=True)
     span, roles = (log["time [s]"].min(), log["time [s]"].max()), {_role(name) for name in kept}
@@ -39,9 +41,11 @@ def poorer(case, *, every=1, seconds=None, channels=None):
     return replace(case, log=log, answer=answer, truth=case.truth.iloc[: len(log)], healthy=None)
 
 
-def _rows(time, every, seconds, rng):
+def _rows(time, every, seconds, since, rng):
     """Which rows are kept: every so many, of a part of the log."""
     rows = np.arange(rng.integers(every), len(time), every)
+    if since is not None:
+        rows = rows[time[rows] >= since]
     if seconds is None:
         return rows
     start = rng.uniform(time[0], time[-1] - seconds)

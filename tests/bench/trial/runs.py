@@ -24,6 +24,8 @@ TOOL = "trial.tools:ours"
 TOOLS = {"drift": "trial.tools:with_drift"}  # of the sets that others are for
 BATCH = 16
 DRIFT = {"legs": [[30, 0, 0, 0], [300, 0, 0, 0]], "free": [[30, 330]]}  # five minutes without power
+ALIKE = ("current", "tow", "wave_drift", "thrust_loss", "rpm_offset", "azimuth_offset", "reverse_loss", "wind_scale")
+"""Causes that look like another one in a few minutes in which a ship does little."""
 POOR = {
     "slow_2s": {"every": 2},
     "slow_3s": {"every": 3},
@@ -44,6 +46,9 @@ SETS = {
     "unknown": {"causes": "unknown"},
     "two": {"causes": 2},
     "data": {"among": list(DATA_FAULTS)},
+    "clock": {"causes": 2, "always": "clock"},
+    "clock_alone": {"among": ["clock"]},
+    "alike": {"among": list(ALIKE), "minutes": 10, "poor": {"since": 360}},
     "half": {"size": 0.5},
     "short": {"minutes": 20},
     "onset": {"onset": True},
@@ -120,16 +125,16 @@ def diagnosed(kind, name, seeds, *, tool=TOOL, pool=None):
 
 def drawn(kind, seeds, options):
     """Logs of a kind by the options of a set: those of `truth.draw_many`, and what is left of a poor log."""
-    poor = options.get("poor")
-    if poor is None:
+    if "poor" not in options:
         return draw_many(kind, seeds, **options)
-    return [poorer(case, **poor) for case in _whole(kind, tuple(seeds), options.get("causes", 1))]
+    rest = {key: value for key, value in options.items() if key != "poor"}
+    return [poorer(case, **options["poor"]) for case in _whole(kind, tuple(seeds), json.dumps(rest))]
 
 
 @lru_cache(maxsize=2)
-def _whole(kind, seeds, causes):
-    """The logs of which the sets of poor ones are parts; each set of one kind is of the same."""
-    return draw_many(kind, seeds, causes=causes)
+def _whole(kind, seeds, options):
+    """The logs of which those of the sets of poor ones are parts; each such set of one kind is of the same."""
+    return draw_many(kind, seeds, **json.loads(options))
 
 
 def answered(cases, *, tool=TOOL, pool=None):

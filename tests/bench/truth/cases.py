@@ -94,6 +94,8 @@ def draw_many(kind, seeds, **options):
         Causes (or names of unknown effects) to draw from; all if not given.
     onset : bool
         Effects on the ship or its sensors begin within the log (default no).
+    always : str, optional
+        A cause that is hidden in every log, alone or beside what is drawn.
     after : dict, optional
         A manoeuvre or a loss of power that the ship sails when the log is over, as the fields of `orders.Orders`; its
         rows are added at the end, the others are the same bytes as without it. The weather and the effect go on.
@@ -139,6 +141,7 @@ def set_up(
     form=0.0,
     among=None,
     onset=False,
+    always=None,
     after=None,
     day=0,
     ship=None,
@@ -148,7 +151,7 @@ def set_up(
     def of_day(name):
         return stream(kind, seed, name_of(name, day))
 
-    hidden = set_effects(kind, seed, causes, size, minutes, among, onset)
+    hidden = set_effects(kind, seed, causes, size, minutes, among, onset, always)
     names = {e.answer.cause for e in hidden} | {e.answer.note for e in hidden}
     weather = draw_weather(of_day("weather"))
     if names & {"wind_scale", "wind_direction", "wind_shadow"}:
@@ -214,7 +217,7 @@ def modes_for(hidden):
     return ALL_MODES
 
 
-def set_effects(kind, seed, causes=1, size=1.0, minutes=40, among=None, onset=False):
+def set_effects(kind, seed, causes=1, size=1.0, minutes=40, among=None, onset=False, always=None):
     """Effects of one log: none, one or two of the catalogue, or one outside it; see `draw_many`."""
     rng = stream(kind, seed, "effect")
     if causes == "unknown":
@@ -222,6 +225,7 @@ def set_effects(kind, seed, causes=1, size=1.0, minutes=40, among=None, onset=Fa
         return [unknowns.draw_unknown(rng, kind, size, (0.0, 0.0), name)]
     names = list(CAUSES if among is None else among)
     groups = [group for group in combinations(names, causes) if go_together(group)]
+    groups = [group for group in groups if always is None or always in group]
     if not groups:
         raise ValueError(f"no {causes} of {names} go together")
     return [draw_effect(name, rng, size, minutes, onset) for name in groups[rng.integers(len(groups))]]
