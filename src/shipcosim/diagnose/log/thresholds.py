@@ -41,9 +41,21 @@ FEWEST_LEAPS = 3
 # Readings of the channels of a whole log
 
 FEWEST_INCREMENTS = 6
-"""Independent increments of a log that a relation needs. Assumed."""
-MOST_INCREMENTS = 40
-"""That count as evidence: what a form leaves unexplained is not white. Assumed."""
+"""Half the rows of a log that a relation needs. Assumed."""
+FEWEST_FITTED = 24
+"""Rows that can be compared with the one before, that a relation needs. Assumed."""
+MOST_FITTED = 6000
+"""Rows that a relation is fitted to; of longer logs every so many are taken."""
+FIT_CLIP = 4.0
+"""Standard deviations beyond which a row counts no more."""
+NOISIER = 2.0
+"""Variance of what is left in a part of a log over that in its calm parts, from which on it is more than noise.
+Assumed."""
+CALM_SHARE = 0.25
+"""Share of the parts of a log that are calm."""
+HEARD = 12.0
+"""What the best form of a relation must gain over none, to be heard. [nats] Assumed; of 36 forms without any relation
+the best one gains 5."""
 LARGEST_TURN = 75.0
 """From row to row, beyond which rows are too far apart to follow the motion. [deg] Assumed."""
 TURNED_TOO_FAR = 0.05
@@ -51,10 +63,6 @@ TURNED_TOO_FAR = 0.05
 ALONGSIDE = 30.0
 """By how much nine in ten headings may be off what the yaw rate tells from row to row, to count turns by it. [deg]
 Assumed."""
-LITTLE_EXPLAINED = 0.5
-"""What the best form may leave unexplained of a relation that is heard. Assumed."""
-CLEARLY_APART = 20.0
-"""Evidence between two forms that is enough. [nats]"""
 RELATION_WINDOWS = 16
 """Windows of a log that are compared with each other."""
 ROBUST_SHARE = 0.8
@@ -80,10 +88,8 @@ STEADINESS_COUNT = 10.0
 """Most quarter turns of a ship that count in the steadiness of the wind. Assumed."""
 STEADINESS_FLOOR = 0.1
 """What gusts take from the steadiness of a wind. Assumed."""
-EXPLAINED = 0.3
-"""What a relation may leave unexplained, to be asked whether it holds throughout. Assumed."""
 THROUGHOUT = 0.75
-"""Share of a log in which a reading holds that is one of all of it. Assumed."""
+"""Share of a log, by what its parts say, in which a reading holds that is one of all of it. Assumed."""
 READING_SURE = 0.95
 """Probability from which on a change is named."""
 MOST_SURE = 0.998

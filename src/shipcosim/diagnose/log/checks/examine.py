@@ -16,9 +16,10 @@ from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_in, undone
-from shipcosim.diagnose.log.readings.reading import is_as_labelled, misread
+from shipcosim.diagnose.log.readings.reading import explained, is_as_labelled, misread
 from shipcosim.diagnose.log.repair import rate_of, read_anew, repaired
 from shipcosim.diagnose.log.rows import inside, usable_rows
+from shipcosim.diagnose.log.thresholds import SEGMENT_COST
 from shipcosim.diagnose.stages import CheckedLog, ReadLog
 
 if TYPE_CHECKING:
@@ -61,10 +62,11 @@ def examine(log: xarray.Dataset) -> list[Finding]:
 
 
 def _unless_in_part(throughout, table, stated):
-    """Mistakes throughout a log; none where wrong labels in a part of it explain all of it."""
+    """Mistakes throughout a log; none where wrong labels in parts of it explain more, and all of it."""
     if throughout:
         labels, right = mislabelled(_with_even_heading(table))
-        if labels and is_as_labelled(right, stated):
+        more = labels and explained(right) > explained(table) + SEGMENT_COST * len(labels)
+        if more and is_as_labelled(right, stated):
             return []
     return throughout
 

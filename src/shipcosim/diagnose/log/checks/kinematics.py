@@ -16,7 +16,17 @@ from scipy.ndimage import gaussian_filter1d
 
 from shipcosim.diagnose.log.thresholds import CLEAR_MOTION, LONGEST_BRIDGE, NOISE_WINDOWS, SLOW_MOTION, WHITENESS_LAGS
 
-__all__ = ["Filter", "Motion", "filter_for", "heading_motion", "is_clear", "position_motion", "whiteness"]
+__all__ = [
+    "RATIOS",
+    "Filter",
+    "Motion",
+    "filter_for",
+    "filters",
+    "heading_motion",
+    "is_clear",
+    "position_motion",
+    "whiteness",
+]
 
 RATIOS = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 0.8, 1.6, 6.0, 50.0)  # variance of wander over noise
 
@@ -140,7 +150,7 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     The noise is taken from the calmer windows, so that a fault in a part of the log does not count as noise.
     """
     levels = motion.level[:, :, None] if levels is None else levels
-    drafts = _filters(motion)
+    drafts = filters(motion.time, motion.starts)
     stds, scores = np.zeros((len(drafts), levels.shape[2])), np.zeros((len(drafts), levels.shape[2]))
     for number, draft in enumerate(drafts):
         known = draft.gains < 1.0
@@ -150,13 +160,20 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     return [Filter(drafts[b].gains, drafts[b].scale, stds[b, k]) for k, b in enumerate(best)]
 
 
-def _filters(motion):
-    """A filter for each of the ratios."""
-    steps = np.diff(motion.time, prepend=motion.time[0])
+def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
+    """A filter for each of RATIOS.
+
+    Parameters
+    ----------
+    time : (n,) array
+    starts : (n,) array of bool
+        Rows that cannot be compared with the one before.
+    """
+    steps = np.diff(time, prepend=time[0])
     steps = steps / np.median(steps[1:])
     ratios, variance = np.array(RATIOS), np.ones(len(RATIOS))
     gains, scale = np.ones((len(steps), len(RATIOS))), np.ones((len(steps), len(RATIOS)))
-    for row, (step, anew) in enumerate(zip(steps.tolist(), motion.starts.tolist(), strict=True)):
+    for row, (step, anew) in enumerate(zip(steps.tolist(), starts.tolist(), strict=True)):
         if row == 0 or anew:
             variance = np.ones(len(RATIOS))
             continue

@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from shipcosim.diagnose.log.readings.changes import Change, Reading
-from shipcosim.diagnose.log.readings.relations import Relation
+from shipcosim.diagnose.log.readings.fit import Relation
 from shipcosim.diagnose.log.thresholds import (
     ANGLE_TOLERANCE,
     FAR_SHARE,
@@ -104,7 +104,7 @@ def _combinations(changes) -> Iterator[tuple[Change, ...]]:
 def _best_forms(evidence):
     """What the likeliest forms say, whatever their factors."""
     position = max((r.evidence for forms in evidence.position.values() for r in forms.values()), default=0.0)
-    rate = max((0.5 * r.evidence for r in evidence.rate.values()), default=0.0)
+    rate = max((r.evidence for r in evidence.rate.values()), default=0.0)
     usual = _usual(evidence.speed, 1.0, USUAL_SPEED) + _usual(evidence.step, 1.0, USUAL_STEP)
     return position + rate + max(evidence.turning.values(), default=0.0) + usual
 
@@ -147,7 +147,7 @@ def _angle(relation, reading):
 def _direction(rate, reading):
     """Whether heading and yaw rate go the same way, as evidence."""
     agrees = (math.cos(rate.factor.imag) > 0.0) == (reading.rate_factor > 0.0)
-    return 0.5 * rate.evidence if agrees else 0.0
+    return rate.evidence if agrees else 0.0
 
 
 def _off_position(relation, reading, slabs):

@@ -12,7 +12,6 @@ from shipcosim.diagnose.log.readings.changes import CLOCK, Change, changes
 from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, reading_of
 from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations, steadiness
 from shipcosim.diagnose.log.thresholds import (
-    EXPLAINED,
     LEFT_OPEN,
     MOST_ALTERNATIVES,
     MOST_SURE,
@@ -24,7 +23,7 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.result import Estimate, Finding
 
-__all__ = ["is_as_labelled", "misread"]
+__all__ = ["explained", "is_as_labelled", "misread"]
 
 DEGREE = float(np.degrees(1.0))
 
@@ -47,6 +46,19 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
     evidence = evidence_of(log)
     readings, unexplained = judged(evidence, changes(stated))
     return _findings(readings, unexplained) if _holds_throughout(readings[0], evidence) else []
+
+
+def explained(log: dict) -> float:
+    """How much likelier the relations are than none, each read in the way that suits it best. [nats]
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        As in `misread`.
+    """
+    evidence = evidence_of(log)
+    position = [relation.evidence for forms in evidence.position.values() for relation in forms.values()]
+    return max(position, default=0.0) + max((relation.evidence for relation in evidence.rate.values()), default=0.0)
 
 
 def is_as_labelled(log: dict, stated: dict[str, str]) -> bool:
@@ -110,12 +122,11 @@ def _turning(log):
 
 
 def _holds_throughout(best, evidence):
-    """Whether a reading explains the whole log, not the larger part of it."""
+    """Whether a reading holds in the whole log, not in the larger part of it."""
     reading = reading_of(best.changes)
     forms = evidence.position.get((reading.heading_unit, reading.degrees), {})
     relations = [forms.get(reading.form), evidence.rate.get(reading.heading_unit)]
-    shares = [r.throughout for r in relations if r is not None and r.unexplained < EXPLAINED]
-    return all(share > THROUGHOUT for share in shares)
+    return all(relation.throughout > THROUGHOUT for relation in relations if relation is not None)
 
 
 def _findings(readings: list[Judged], unexplained: float) -> list[Finding]:

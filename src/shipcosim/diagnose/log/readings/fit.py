@@ -1,0 +1,186 @@
+"""What is seen to change fitted by what is told of it: a factor, its deviation, and how likely it is.
+
+What is left between both wanders as the noise of what is told adds up, and is seen through noise of its own. Under a
+Kalman filter of such a level what is left is white, so that all motion counts that stands out of the noise, the slow
+and the fast, and a ship on her station is judged as one under way. Rows take the place of time: a time base that is
+wrong by a thousand does no harm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from shipcosim.diagnose.log.checks.kinematics import RATIOS, Filter, filters, whiteness
+from shipcosim.diagnose.log.thresholds import (
+    CALM_SHARE,
+    FEWEST_FITTED,
+    FIT_CLIP,
+    HEARD,
+    LONGEST_BRIDGE,
+    MOST_FITTED,
+    NOISIER,
+    RELATION_WINDOWS,
+    ROBUST_ROUNDS,
+    ROBUST_SHARE,
+)
+
+__all__ = ["Relation", "fitted"]
+
+
+_Key = TypeVar("_Key", bound=Hashable)
+
+
+@dataclass(frozen=True)
+class Relation:
+    """One relation in one form: seen = c * told.
+
+    Attributes
+    ----------
+    factor : complex
+        Logarithm of c: of its size, and i times its angle. [1, rad]
+    std : (float, float)
+        Of both parts.
+    evidence : float
+        How much likelier what is seen is with what is told than by itself. [nats]
+    throughout : float
+        Share of the log, by how much is explained in its parts or left beyond noise, in which the relation holds.
+    """
+
+    factor: complex
+    std: tuple[float, float]
+    evidence: float
+    throughout: float
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """A relation with what is needed to weigh it against others: white rows, and how likely what is left is."""
+
+    seen: np.ndarray
+    told: np.ndarray
+    factor: complex
+    variance: float
+    likelihood: float
+    noise: float
+
+    @property
+    def rest(self) -> np.ndarray:
+        return self.seen - self.factor * self.told
+
+
+def fitted(time: np.ndarray, pairs: dict[_Key, tuple[np.ndarray, np.ndarray]], axes: int = 2) -> dict[_Key, Relation]:
+    """The relation of each pair of what is seen and told; none where no pair tells anything.
+
+    Parameters
+    ----------
+    time : (n,) array
+    pairs : dict of two (n,) complex arrays
+    axes : int
+        2, or 1 where both are real.
+    """
+    pairs = {key: pair for key, pair in pairs.items() if all(np.ptp(np.abs(np.diff(one))) for one in pair)}
+    if not pairs:
+        return {}
+    rows = _rows(len(time), [seen for seen, _ in pairs.values()])
+    thinned = {id(one): one[rows] for pair in pairs.values() for one in pair}
+    time, pairs = time[rows], {key: (thinned[id(seen)], thinned[id(told)]) for key, (seen, told) in pairs.items()}
+    steps = np.diff(time, prepend=-np.inf)
+    starts = steps > LONGEST_BRIDGE * np.median(steps[1:])
+    if (~starts).sum() < FEWEST_FITTED:
+        return {}
+    fits, alone = _fits(filters(time, starts), pairs, axes)
+    best = max(fits, key=lambda key: fits[key].likelihood - alone[key])
+    rough = whiteness(np.column_stack([fits[best].rest.real, fits[best].rest.imag][:axes]))
+    found = {key: _relation(fit, (fit.likelihood - alone[key]) / rough, rough) for key, fit in fits.items()}
+    return found if found[best].evidence > HEARD else {}
+
+
+def _rows(count, series):
+    """Every so many rows that there are not too many, and that a position of coarse resolution changes between them."""
+    stride = max(1, math.ceil(count / MOST_FITTED))
+    while count / stride > 4 * FEWEST_FITTED and min(np.mean(np.diff(one[::stride]) != 0.0) for one in series) < 0.5:
+        stride *= 2
+    return slice(None, None, stride)
+
+
+def _fits(drafts: list[Filter], pairs, axes):
+    """Of each pair the fit under the noise that suits it best, and how likely what is seen is by itself."""
+    columns = {id(one): one for pair in pairs.values() for one in pair}
+    stacked = np.stack(list(columns.values()), axis=1)
+    place = {name: number for number, name in enumerate(columns)}
+    fits: dict = {}
+    alone = dict.fromkeys((id(seen) for seen, _ in pairs.values()), -np.inf)
+    for draft, ratio in zip(drafts, RATIOS, strict=True):
+        known = draft.gains < 1.0
+        scale = draft.scale[known]
+        white = (draft(np.real(stacked)) + 1j * draft(np.imag(stacked)))[known]
+        offset = -axes * float(np.sum(np.log(scale)))
+        for name in alone:
+            alone[name] = max(alone[name], _likelihood(white[:, place[name]], axes)[0] + offset)
+        for key, (seen, told) in pairs.items():
+            fit = _fit(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
+            if key not in fits or fit.likelihood > fits[key].likelihood:
+                gain = float(np.median(draft.gains[known]))
+                wander = ratio / (gain * (2.0 - gain) * np.median(scale) ** 2)  # of white noise that adds up, whitened
+                fits[key] = replace(fit, noise=axes * wander * fit.variance)
+    return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
+
+
+def _fit(seen, told, axes, offset):
+    """The factor that leaves least, rows that it does not explain at all counting little."""
+    weights = np.ones(len(told))
+    for _ in range(ROBUST_ROUNDS):
+        factor = np.vdot(weights * told, seen) / max(np.vdot(weights * told, told).real, 1e-300)
+        off = np.abs(seen - factor * told)
+        weights = np.minimum(1.0, FIT_CLIP * _spread(off, axes) / np.maximum(off, 1e-300))
+    likelihood, variance = _likelihood(seen - factor * told, axes)
+    return _Fit(seen, told, complex(factor), variance, likelihood + offset, 0.0)
+
+
+def _spread(off, axes):
+    """Standard deviation of an axis, by what four in five rows are below."""
+    return float(np.quantile(off, 0.8)) / (1.794 if axes == 2 else 1.282) + 1e-300
+
+
+def _likelihood(rest, axes):
+    """Logarithm of the likelihood of white rows but for a constant, and their variance; single rows count so much."""
+    off = np.abs(rest)
+    variance = float(np.mean(np.minimum(off, FIT_CLIP * _spread(off, axes)) ** 2)) / axes + 1e-300
+    return -0.5 * axes * len(rest) * math.log(variance), variance
+
+
+def _relation(fit, evidence, rough):
+    """The relation of a fit. Noise of what is told makes the factor too small: by 1 - share, where all that wanders is
+    noise of what is told, and so times the factor itself; half of that is left open."""
+    windows = np.array_split(np.arange(len(fit.told)), RELATION_WINDOWS)
+    energy = np.vdot(fit.told, fit.told).real
+    size = max(abs(fit.factor), 1e-300)
+    wander = len(fit.told) * fit.noise / (size**2 * energy)  # = share / (1 - share)^2
+    low = math.log(0.5 + math.sqrt(0.25 + wander))
+    std = max(_jackknife(fit, windows), math.sqrt(rough * fit.variance / energy) / size)
+    factor = complex(math.log(size) + low, np.angle(fit.factor))
+    return Relation(factor, (math.hypot(std, 0.5 * low), std), evidence, _throughout(fit, windows))
+
+
+def _jackknife(fit, windows):
+    """Deviation of the factor by what the windows of a log say, relative to its size."""
+    sums = np.array([[np.vdot(fit.told[w], fit.told[w]).real, np.vdot(fit.told[w], fit.rest[w])] for w in windows])
+    tame = np.minimum(np.abs(sums[:, 1]), 4.0 * np.quantile(np.abs(sums[:, 1]), ROBUST_SHARE))
+    return float(np.sqrt(np.sum(tame**2)) / max(np.real(sums[:, 0]).sum() * abs(fit.factor), 1e-300))
+
+
+def _throughout(fit, windows):
+    """Share of what is explained and what is left beyond noise that is explained; no window counts for many."""
+    clip = FIT_CLIP**2 * fit.variance
+    seen, rest = (np.minimum(np.abs(one) ** 2, clip) for one in (fit.seen, fit.rest))
+    noise = float(np.quantile([rest[w].mean() for w in windows], CALM_SHARE))
+    told = np.array([seen[w].sum() - rest[w].sum() for w in windows])
+    left = np.array([rest[w].sum() - NOISIER * noise * len(w) for w in windows])
+    most = max(float(np.quantile(np.abs(told), ROBUST_SHARE)), 2.0 * FIT_CLIP**2 * noise)  # noise itself says less
+    explained, more = np.clip(told, 0.0, most).sum(), np.clip(left, 0.0, most).sum()
+    return float(explained / max(explained + more, 1e-300))
