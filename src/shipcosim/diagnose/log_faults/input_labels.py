@@ -16,11 +16,13 @@ import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.innovations import inner_products, innovations
+from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
 from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, Mislabel, exchanged, finding_of, negative, possible, undone
 from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.log_faults.thresholds import (
+    BESIDE_AN_END,
     FIRST_MOVE,
     LEAST_ROW_GAIN,
     MOST_PLACES,
@@ -30,7 +32,8 @@ from shipcosim.diagnose.log_faults.thresholds import (
     SHORTEST_INPUT,
     WHOLE,
 )
-from shipcosim.diagnose.ship.inputs import record_of
+from shipcosim.diagnose.ship.inputs import record_of, with_inputs_of
+from shipcosim.diagnose.ship.instruments import LAGS
 
 if TYPE_CHECKING:
     import xarray
@@ -86,7 +89,7 @@ def with_refined_segment(
     Finding
         The same one if no other segment gains enough.
     """
-    time, known = problem.record.time, {}
+    time, known, relabelled = problem.record.time, {}, _Relabelled(log, mislabel, problem)
     least, last = round(SHORTEST_INPUT / problem.record.step), time.size - 1
 
     def segment(ends):
@@ -96,7 +99,7 @@ def with_refined_segment(
         if not 0 <= ends[0] <= ends[1] - least <= last - least:
             return -np.inf
         if ends not in known:
-            known[ends] = likelihood(problem, record_of(with_label(log, mislabel, segment(ends)), problem.model))
+            known[ends] = relabelled.likelihood(ends, segment(ends))
         return known[ends]
 
     def likelihoods_of(many):
@@ -136,6 +139,39 @@ def likelihood(problem: IdentificationProblem, record: Record) -> float:
     """Log-likelihood of a record about the motion of a problem, up to a constant. [nats]"""
     linear = linearised_by_parts(problem.motion, record, problem.model, [])
     return float(inner_products(linear, problem.noise, record).free)
+
+
+class _Relabelled:
+    """A log with a mislabel undone in one segment or another.
+
+    The log is linearised once as it is and once with the mislabel undone throughout. Of one that is undone in a segment
+    only the rows about its ends are neither of the two.
+    """
+
+    def __init__(self, log: xarray.Dataset, mislabel: Mislabel, problem: IdentificationProblem):
+        self.log, self.mislabel, self.problem = log, mislabel, problem
+        self.logged, self.right = (self._linear(one).whole() for one in (log, with_label(log, mislabel)))
+        lags = [abs(problem.model.get(path)) for path in LAGS]
+        self.reach = BESIDE_AN_END + int(np.ceil(sum(lags) / problem.record.step))
+
+    def _linear(self, log):
+        record = with_inputs_of(self.problem.record, log, self.problem.model)
+        return linearised_by_parts(self.problem.motion, record, self.problem.model, [], kept=False)
+
+    def likelihood(self, ends: tuple[int, int], segment: Sequence[tuple[float, float]]) -> float:
+        """Log-likelihood with the mislabel undone in a segment [s] between two rows, up to a constant. [nats]"""
+        problem, steps = self.problem, len(self.right.transition)
+        log = with_label(self.log, self.mislabel, segment)
+        record = with_inputs_of(problem.record, log, problem.model)
+        transition, driven = self.logged.transition.copy(), self.logged.driven.copy()
+        transition[ends[0] : ends[1]] = self.right.transition[ends[0] : ends[1]]
+        driven[ends[0] : ends[1]] = self.right.driven[ends[0] : ends[1]]
+        for end in ends:
+            rows = slice(max(end - self.reach, 0), min(end + self.reach, steps))
+            near = linearise(problem.motion, record, problem.model, [], rows)
+            transition[rows], driven[rows] = near.transition, near.driven
+        linear = self.right._replace(transition=transition, driven=driven)
+        return float(inner_products(linear, problem.noise, record).free)
 
 
 def _mislabels(log, model):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 
-__all__ = ["CHANNELS", "Inputs", "Record", "averaged", "first_motion", "rate_of", "record_of"]
+__all__ = ["CHANNELS", "Inputs", "Record", "averaged", "first_motion", "rate_of", "record_of", "with_inputs_of"]
 
 _SHORTEST = 18.0  # s over the root of the length in m: 105 s for 33.9 m, 20 s for 1.2 m
 _FEWEST_ROWS = 60
@@ -153,20 +153,48 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
         raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
     measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
     measured[:, 2] = unwrap_series(measured[:, 2])
-    remarks, known, units = [], np.ones(rows, bool), {}
     _check_third_party(log, model)
+    record = _driven(log, model, measured)
+    remarks = [_about_third_party(name, one) for name, one in model.third_party.items()]
+    record = replace(record, remarks=(*_about_stretches(time), *record.remarks, *remarks))
+    thinned = _thinned_for(model, record)
+    _check_length(log, model, first_motion(thinned, model))
+    return thinned
+
+
+def with_inputs_of(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
+    """The record of a log with the same navigation, with thrusters and wind of this one.
+
+    Parameters
+    ----------
+    record : Record
+        As `record_of` gives it.
+    log : xarray.Dataset
+        Repaired, of the same rows.
+    model : ShipModel
+
+    Returns
+    -------
+    Record
+        As `record_of` would give it, in a fraction of its time.
+    """
+    driven = _driven(log, model, np.zeros((log.sizes["time"], 0)))
+    driven = _thinned(driven, rows_averaged(model.parts["hull"].length, driven.step), model)
+    return replace(record, units=driven.units, wind=driven.wind, known=driven.known)
+
+
+def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Record:
+    """The record of every row of a log, with what was measured of the ship."""
+    rows, time, remarks, units = log.sizes["time"], log["time"].values.astype(float), [], {}
+    known = np.ones(rows, bool)
     for name in model.thrusters:
         units[name], whole = _unit(log, name, model, rows, remarks)
         known &= whole
     wind, whole = _wind(log, rows, remarks)
     known &= whole
-    remarks += [_about_third_party(name, one) for name, one in model.third_party.items()]
     known[:-1] &= known[1:]
     known &= ~_near_holes(time)
-    record = Record(time, measured, units, wind, known, (*_about_stretches(time), *remarks))
-    thinned = _thinned_for(model, record)
-    _check_length(log, model, first_motion(thinned, model))
-    return thinned
+    return Record(time, measured, units, wind, known, tuple(remarks))
 
 
 def _near_holes(time: np.ndarray) -> np.ndarray:
@@ -218,7 +246,7 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
     used = np.concatenate([np.arange(one.start, one.stop - (one.stop - one.start) % rows) for one in record.stretches])
 
     def mean(series):
-        whole = series[used].reshape(-1, rows, *series.shape[1:])
+        whole = series[used].reshape(used.size // rows, rows, *series.shape[1:])
         count = np.isfinite(whole).sum(1)
         return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
 
