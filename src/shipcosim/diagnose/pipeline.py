@@ -224,17 +224,17 @@ def stated(log: JudgedLog) -> Diagnosis:
     of_log = (*found.faults, *found.misconnections, *beyond_doubt)
     if comparison and judgement.verdict == "unknown":
         of_log = (*of_log, *comparison.found_without(found.causes))
-    seen = {one.label for one in (*judgement.candidates, *judgement.findings)}
+    seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
     rivals = judgement.rivals if not found.ship.third_party else ()  # with those no manoeuvre can be prescribed
     return Diagnosis(
         "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
         (*of_log, *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings)),
         judgement.candidates,
         judgement.indistinguishable,
-        tuple(label for label in untestable_causes(log) if label not in seen),
+        tuple(cause for cause in untestable_causes(log) if cause not in seen),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors if comparison else None,
-        discrepancies=comparison.discrepancies if comparison else (),
+        discrepancies=comparison.told(judgement.verdict) if comparison else (),
         basis=log,
     )
 

@@ -116,3 +116,19 @@ def test_thrusters_that_answer_weather_which_nobody_knows_are_not_said_to_run_th
     assert found.comparison.labels.best.changes and not found.comparison.labels.is_wrong
     assert not found.faults
     assert not [one for one in found.comparison.discrepancies if "its command" in one.what]
+
+
+def test_a_large_error_is_said_with_axis_size_and_sense_whatever_its_cause():
+    """A steady moment that nobody logged: no thruster, no damping and no label explains it."""
+    log = sailed(11)
+    time = log["time"].values
+    drawn = np.asarray(log["yaw_rate"]) + 0.4 * time % 20.0  # deg/s: she is driven round, step by step
+    found = held(log.assign(yaw_rate=("time", drawn, log["yaw_rate"].attrs)))
+    assert any(one.axis == "yaw" for one in found.comparison.discrepancies)
+
+
+def test_where_nobody_knows_what_is_wrong_the_largest_error_is_said_in_any_case():
+    comparison = held(sailed(11)).comparison
+    (largest,) = comparison.told("unknown")
+    assert comparison.told("consistent") == () and largest.axis == comparison.missing[0].axis
+    assert largest.unit in ("N", "N.m") and largest.estimate > largest.std > 0.0

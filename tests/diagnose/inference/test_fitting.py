@@ -137,3 +137,10 @@ def test_a_fit_starts_within_the_bounds_of_its_numbers():
     )
     bound, beyond = (fitted(problem("healthy"), (hypothesis,), start) for start in starts)
     assert (beyond.score, beyond.values) == (bound.score, bound.values)
+
+
+def test_a_number_that_is_none_does_not_end_the_search():
+    """The smoothed motion of a craft that no ship of the model follows can run away, and every estimate with it."""
+    (hypothesis,) = (one for one in problem("healthy").hypotheses if one.cause == "reverse_loss")
+    lost = fitted(problem("healthy"), (hypothesis,), dict.fromkeys(hypothesis.parameters[0].paths, np.nan))
+    assert np.isfinite(lost.score) and all(np.isfinite(value) for value in lost.values.values())

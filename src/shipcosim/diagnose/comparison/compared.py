@@ -10,10 +10,11 @@ import numpy as np
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
 from shipcosim.diagnose.comparison.discrepancies import discrepancies_of
-from shipcosim.diagnose.comparison.errors import errors_of
+from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
 from shipcosim.diagnose.comparison.felt import felt_by
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
 from shipcosim.diagnose.comparison.labels import read_labels
+from shipcosim.diagnose.comparison.missing import missing_loads
 from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
 from shipcosim.diagnose.inference.problem import as_logged
 from shipcosim.diagnose.log.mislabels import exchanged, finding_of, negative
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
     from shipcosim.diagnose.comparison.labels import Change, Labels
+    from shipcosim.diagnose.comparison.missing import MissingLoad
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 
@@ -58,6 +60,8 @@ class LogComparison:
         Of the physics, beyond doubt: the ship is started with them.
     obstacles : tuple of str
         Why no cause can be named from the log, whatever it shows, and what would do.
+    missing : tuple of MissingLoad
+        What the model lacks by axis, largest first; empty where the log has too few usable rows.
     """
 
     errors: dict[str, list[float]]
@@ -67,6 +71,13 @@ class LogComparison:
     ratio: CommonRatio | None = None
     findings: tuple[Finding, ...] = ()
     obstacles: tuple[str, ...] = ()
+    missing: tuple[MissingLoad, ...] = ()
+
+    def told(self, verdict: str) -> tuple[Discrepancy, ...]:
+        """Discrepancies for a verdict: where nobody knows what is wrong, the largest error is said in any case."""
+        if self.discrepancies or verdict != "unknown" or not self.missing:
+            return self.discrepancies
+        return (self.missing[0].discrepancy,)
 
     def found_without(self, causes: dict[str, Cause]) -> tuple[Finding, ...]:
         """What may be named where no cause of the catalogue explains the log: a common ratio that is not gross."""
@@ -95,10 +106,11 @@ def compared(log: CheckedLog) -> ComparedLog:
     labels = read_labels(record, felt, axes, ship)
     gains = gains_of(axes, labels.used.commanded)
     ratio = common_ratio(gains)
-    told = tuple(discrepancies_of(labels, gains, ratio))
+    missing = missing_loads(axes, labels.used.commanded, felt, ship, errors_over_none(record, felt, errors))
+    told = tuple(discrepancies_of(labels, gains, ratio, missing))
     gross = ratio is not None and ratio.differs(GROSS)
     findings = ratio_finding(ratio, log.causes) if ratio is not None and gross else ()
-    comparison = LogComparison(errors, told, tuple(gains), labels, ratio, findings)
+    comparison = LogComparison(errors, told, tuple(gains), labels, ratio, findings, missing=tuple(missing))
     found = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
         found = _relabelled(found, labels)

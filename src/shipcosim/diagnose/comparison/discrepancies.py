@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.missing import FORCES
 from shipcosim.diagnose.comparison.regression import regressed
 from shipcosim.diagnose.comparison.thresholds import (
     LEAST_DAMPING,
@@ -21,14 +22,17 @@ from shipcosim.diagnose.result import Discrepancy
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
     from shipcosim.diagnose.comparison.labels import Change, Labels
+    from shipcosim.diagnose.comparison.missing import MissingLoad
 
 __all__ = ["discrepancies_of"]
 
-FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
 
-
-def discrepancies_of(labels: Labels, gains: Sequence[AxisGain], ratio: CommonRatio | None) -> list[Discrepancy]:
+def discrepancies_of(
+    labels: Labels, gains: Sequence[AxisGain], ratio: CommonRatio | None, missing: Sequence[MissingLoad]
+) -> list[Discrepancy]:
     """What differs between commanded and felt force: signs, then sizes, largest first, then what is left.
+
+    A large error on an axis of which nothing of this is said is said by itself, whatever its cause.
 
     Parameters
     ----------
@@ -37,6 +41,8 @@ def discrepancies_of(labels: Labels, gains: Sequence[AxisGain], ratio: CommonRat
     gains : sequence of AxisGain
         With those labels.
     ratio : CommonRatio or None
+    missing : sequence of MissingLoad
+        By axis.
 
     Returns
     -------
@@ -56,7 +62,10 @@ def discrepancies_of(labels: Labels, gains: Sequence[AxisGain], ratio: CommonRat
         text = f"thrust acts {labels.used.lag:.2g} s after its command"
         found.append(Discrepancy(text, None, None, labels.used.lag, 0.25 * labels.used.lag, "s", _of_lag(labels)))
     found = [*signs, *sorted(found, key=lambda one: -one.share)]
-    return found + [one for gain in gains if gain.is_off and found for one in _rest(gain)]
+    explained = {one.axis for one in found} | set(ratio.axes if ratio and ratio.differs(MENTIONED) else ())
+    large = [one for one in missing if one.is_large and one.axis not in explained]
+    rest = [gain for gain in gains if gain.is_off and gain.axis.name not in {one.axis for one in large}]
+    return [*found, *(one.discrepancy for one in large), *(one for gain in rest if found for one in _rest(gain))]
 
 
 def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepancy]:

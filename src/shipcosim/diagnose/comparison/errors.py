@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["errors_of", "horizons_of"]
+__all__ = ["errors_of", "errors_over_none", "horizons_of"]
 
 _LADDER = np.array([1.0, 2.0, 3.0, 6.0, 10.0])
 
@@ -87,6 +87,35 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
         "position_error_m": [float(np.sqrt(np.mean(one**2))) for one in off["position"]],
         "heading_error_deg": [float(np.sqrt(np.mean(one**2))) for one in off["heading"]],
     }
+
+
+def errors_over_none(record: Record, felt: Felt, errors: dict[str, list[float]]) -> dict[str, float]:
+    """Errors of the simulation over those of no model at all, which keeps surge, sway and yaw rate as they are.
+
+    Parameters
+    ----------
+    record : Record
+    felt : Felt
+    errors : dict
+        As from `errors_of`.
+
+    Returns
+    -------
+    dict of str to float
+        ``position`` and ``heading``: the larger of the two of the longer horizons.
+    """
+    rows, motion = _starts(record, felt, errors["horizon_s"][-1]), felt.motion
+    seen = Motion(*(felt.kernel.smooth(value) for value in motion))
+    counts = np.array([max(1, round(horizon / record.step)) for horizon in errors["horizon_s"]])[1:, None]
+    time, (x, y, psi, u, v, r) = counts * record.step, (value[rows] for value in seen)
+    turned = np.exp(1j * psi) * (u + 1j * v) * time * np.exp(0.5j * r * time) * np.sinc(0.5 * r * time / np.pi)
+    kept = Motion(x + turned.real, y + turned.imag, psi + r * time, *(value + 0.0 * time for value in (u, v, r)))
+    off = missing(kept, seen, rows + counts)
+    ratios = {}
+    for channel, name in (("position", "position_error_m"), ("heading", "heading_error_deg")):
+        none = np.sqrt((off[channel] ** 2).mean(axis=1))
+        ratios[channel] = float((np.array(errors[name])[1:] / np.maximum(none, 1e-12)).max())
+    return ratios
 
 
 def _starts(record: Record, felt: Felt, horizon: float) -> np.ndarray:

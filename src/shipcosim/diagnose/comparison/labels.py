@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.causality import causal_support
 from shipcosim.diagnose.comparison.commanded import commanded_by, late
 from shipcosim.diagnose.comparison.thresholds import (
     CHANGE_COST,
@@ -20,6 +21,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     MOST_CHANGES,
     OPPOSITE,
     RIVAL,
+    SURELY_CAUSED,
     SURELY_WRONG,
     TOLD,
 )
@@ -116,18 +118,21 @@ class Labels:
         Other readings that cannot be told from the best.
     explained : float
         Largest share of the felt force that the best reading explains on an axis where it differs from the logged one.
+    foresight : float
+        Log-likelihood by which commands read so tell the next velocities better than as logged. [nats]
     """
 
     logged: Reading
     best: Reading
     rivals: tuple[Reading, ...]
     explained: float = 0.0
+    foresight: float = 0.0
 
     @property
     def is_wrong(self) -> bool:
         """Whether the labels are wrong beyond doubt, in one way or another."""
         better = self.best.score > self.logged.score + SURELY_WRONG and self.logged not in self.rivals
-        return better and self.explained > TOLD
+        return better and self.foresight > (0.0 if self.explained > TOLD else SURELY_CAUSED)
 
     @property
     def is_sure(self) -> bool:
@@ -169,7 +174,9 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     found = [logged, *(read(one) for one in singles), *(read(*several) for several in _together(singles))]
     found.sort(key=lambda one: -one.score)
     rivals = tuple(one for one in found[1:] if one.score > found[0].score - RIVAL)
-    return Labels(logged, found[0], rivals, _explained(found[0], logged, axes))
+    readings = [one.commanded for one in (found[0], logged)]
+    best, first = causal_support(felt, readings, froude_time(model.parts["hull"].length))
+    return Labels(logged, found[0], rivals, _explained(found[0], logged, axes), float(best - first))
 
 
 def _explained(best: Reading, logged: Reading, axes: Sequence[Axis]) -> float:

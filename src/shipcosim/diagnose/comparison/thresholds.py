@@ -49,6 +49,16 @@ TOLD = 0.5
 """Least share of the felt force that the thrusters and the water explain on an axis, before it says anything of signs,
 sides and sizes. In stationkeeping thrusters answer the weather, and what they are commanded goes with the weather: of
 36 such logs with something hidden (seeds 700 to 717) three looked like wrong labels, which explained up to 0.29."""
+SURELY_CAUSED = 8.0
+"""By how much another reading must predict the next velocities better than the logged one, where the thrusters explain
+less than `TOLD`. [nats] Drawn craft of tests/bench/craft, healthy, in closed loop and weather."""
+CAUSAL_STEP = 0.4
+"""Length of a block over which velocities and commands are averaged, over the root of the ship's length over gravity.
+Assumed: shorter than a ship's fastest answer, longer than the noise."""
+CAUSAL_ORDER = 8
+"""Blocks of the past that a velocity is predicted from. Assumed: three of the times above."""
+COMMANDS_BEFORE = 6
+"""Blocks of commands before it. Assumed."""
 OPPOSITE = 4.0
 """Standard deviations by which a gain is surely positive, or surely negative. Assumed."""
 LEAST_GAIN = 0.1
@@ -87,6 +97,16 @@ MENTIONED = 1.25
 """Factor from which a gain or a damping is a discrepancy."""
 REMAINS = 0.1
 """Share of the mean square of the felt force from which what nothing explains is said."""
+
+LARGE = 0.7
+"""Root mean square of what the model lacks over that of what the motion needs, above which an error is large: half of
+the mean square is unexplained. Beyond 1 a model without any load would be nearer. Assumed."""
+ABOVE_NOISE = 3.0
+"""The same over what noise of the velocities makes of it. Assumed."""
+STEADY = 0.7
+"""Mean of what the model lacks over its root mean square, above which it is said to be steady."""
+GOES_WITH = 0.3
+"""Correlation from which what the model gives goes with what the motion needs. Assumed."""
 
 # Predictions
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 ROUNDS = 5
 _FAR = 3.0  # tolerances, beyond which nothing is linearised about
+_RUNS_AWAY = 5.0  # times the velocity of a motion, beyond which one that is smoothed about it has run away
 
 
 @dataclass(frozen=True)
@@ -166,7 +167,15 @@ def _smoothed(linear: InParts, squares: np.ndarray, problem: IdentificationProbl
     misfit = squares / np.isfinite(problem.record.measured).sum((-2, -1))
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
     noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
-    return smoothed(linear, noise, problem.record, motion)[0]
+    found = smoothed(linear, noise, problem.record, motion)[0]
+    return found if _follows(found, motion) else motion
+
+
+def _follows(found: Motion, motion: Motion) -> bool:
+    """Whether a smoothed motion is a number throughout, and no velocity of it far beyond that of the one before."""
+    fastest = [np.abs(velocity).max() for velocity in found[3:]]
+    before = [np.abs(velocity).max() for velocity in motion[3:]]
+    return bool(np.isfinite(np.stack(found)).all() and np.all(np.less(fastest, _RUNS_AWAY * np.array(before) + 0.1)))
 
 
 def _key(column: Regressor) -> tuple[tuple[str, float], ...]:
@@ -194,19 +203,33 @@ def fitted(
     -------
     Fit
     """
-    values, about, motion, last = bounded(hypotheses, values or {}), {}, problem.motion, None
+    finite = {path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()}
+    values, about, motion, last = bounded(hypotheses, finite), {}, problem.motion, None
     columns = problem.known(hypotheses) + own_columns(problem, hypotheses)
     for _ in range(rounds):
         about_it = linearised(problem, columns, values | about, motion)
         prior = np.array([column.prior for column in columns])
+        if not np.isfinite(about_it.products.products).all():
+            return last or _impossible(problem, hypotheses, values, columns, about_it)
         score, theta, covariance = evidence(about_it.products.products, prior, about_it.centre)
         score += float(about_it.products.free)
+        if not (np.isfinite(score) and np.isfinite(theta).all()):
+            return last or _impossible(problem, hypotheses, values, columns, about_it)
         fit = about_it.with_posterior(problem, hypotheses, values, score, theta, covariance)
         motion, values, about = fit.motion, next_values(fit), tolerated(fit)
         if _moved(fit, values) < 0.02 and last and abs(fit.score - last.score) < 1.0:
             break
         last = fit
     return fit
+
+
+def _impossible(problem, hypotheses, values, columns, about_it) -> Fit:
+    """The fit of a ship whose loads are no numbers along the log: infinitely unlikely."""
+    covariance = np.diag([column.prior**2 for column in columns])
+    rest = (columns, about_it.products, about_it.centre, covariance, about_it.centre)
+    spread = deviations(hypotheses, covariance)
+    about = (about_it.model, problem.motion, problem.motion, problem.record)
+    return Fit(tuple(hypotheses), dict(values), spread, -np.inf, *rest, *about)
 
 
 def _moved(fit: Fit, values: Mapping[str, float]) -> float:

@@ -1,0 +1,100 @@
+"""Whether commands come before what they do: velocities predicted from their past, with and without past commands.
+
+Where thrusters are told by a controller to answer the motion, or weather that nobody knows drives the ship, what is
+commanded goes with what is felt in either sense. But only what a thruster does comes after its command: given the past
+of the motion, past commands say more of the next velocity if they are those that the ship obeys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import nnls
+
+from shipcosim.diagnose.comparison.thresholds import CAUSAL_ORDER, CAUSAL_STEP, COMMANDS_BEFORE, HUBER
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.commanded import Commanded
+    from shipcosim.diagnose.comparison.felt import Felt
+
+__all__ = ["causal_support"]
+
+
+def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> np.ndarray:
+    """Log-likelihood that each of several readings of the commands gains by predicting the velocities, over none.
+
+    Velocities, averaged over blocks of rows, are regressed on their own past, on what couples and damps them, and on
+    the commanded loads of the blocks before, whose coefficients must not be negative. As the residuals are what nobody
+    could know before, they do not go with commands that answer the past (the prediction error method: Ljung, System
+    Identification, 2nd ed., Prentice Hall, 1999, ch. 13.4).
+
+    Parameters
+    ----------
+    felt : Felt
+    commanded : sequence of Commanded
+    unit : float
+        Root of the ship's length over gravity. [s]
+
+    Returns
+    -------
+    (k,) array
+        Summed over the axes; 0 where the log has too few blocks. [nats]
+    """
+    count = max(1, round(CAUSAL_STEP * unit / felt.kernel.step))
+    motion = felt.motion
+    speeds = _blocks(np.stack([motion.u, motion.v, motion.r]), count)
+    heading, usable = _blocks(motion.psi, count), _blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
+    rows = np.arange(CAUSAL_ORDER + 1, usable.size)
+    rows = rows[[bool(usable[row - CAUSAL_ORDER - 1 : row + 1].all()) for row in rows]]
+    found = np.zeros(len(commanded))
+    loads = [_blocks(sum(one.thrusters.values(), np.zeros_like(one.hull)), count) for one in commanded]
+    for axis in range(3):
+        past = _past(axis, speeds, heading, rows)
+        if rows.size < 3 * past.shape[1]:
+            continue
+        basis = np.linalg.qr(past)[0]
+        left = _without(basis, speeds[axis][rows])
+        for number, load in enumerate(loads):
+            before = np.stack([load[axis][rows - 1 - lag] for lag in range(COMMANDS_BEFORE)], axis=1)
+            found[number] += _gained(left, _without(basis, before))
+    return found
+
+
+def _blocks(series: np.ndarray, count: int) -> np.ndarray:
+    """Averages over blocks of rows."""
+    whole = series.shape[-1] // count
+    return series[..., : whole * count].reshape(*series.shape[:-1], whole, count).mean(-1)
+
+
+def _past(axis: int, speeds: np.ndarray, heading: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """What the motion before says of a velocity, scaled columns."""
+    u, v, r = speeds
+    own = speeds[axis]
+    columns = [speeds[one][rows - 1 - lag] for one in range(3) for lag in range(CAUSAL_ORDER if one == axis else 2)]
+    products = (u * v, u * r, v * r, u * u, r * r, own * np.abs(own), np.abs(u) * own)
+    columns += [product[rows - 1] for product in products]
+    columns += [np.ones(rows.size), np.cos(heading[rows - 1]), np.sin(heading[rows - 1])]
+    found = np.stack(columns, axis=1)
+    return found / (np.sqrt((found**2).mean(0)) + 1e-12)
+
+
+def _without(basis: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    return columns - basis @ (basis.T @ columns)
+
+
+def _gained(left: np.ndarray, columns: np.ndarray) -> float:
+    """Log-likelihood that columns with coefficients that must not be negative gain on residuals."""
+    size = np.sqrt((columns**2).sum(0))
+    if not np.any(size > 0.0) or not np.any(left):
+        return 0.0
+    unit = columns / np.maximum(size, 1e-300)
+    after = left - unit @ nnls(unit, left)[0]
+    bound = HUBER * 1.4826 * np.median(np.abs(after)) + 1e-300  # so that single jumps of a channel do not decide
+
+    def loss(series):
+        far = np.abs(series)
+        return np.where(far < bound, far**2, 2.0 * bound * far - bound**2).sum()
+
+    return float(0.5 * left.size * np.log(loss(left) / loss(after)))

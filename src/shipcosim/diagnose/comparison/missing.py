@@ -1,0 +1,168 @@
+"""What the motion needs against what the model gives on each axis, whatever the cause: no large error goes unsaid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.axes import AXES
+from shipcosim.diagnose.comparison.commanded import inertia
+from shipcosim.diagnose.comparison.thresholds import ABOVE_NOISE, GOES_WITH, LARGE, MENTIONED, OFF, STEADY
+from shipcosim.diagnose.result import Discrepancy
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.axes import Axis
+    from shipcosim.diagnose.comparison.commanded import Commanded
+    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["FORCES", "MissingLoad", "missing_loads"]
+
+FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
+_SENSES = {"surge": ("ahead", "astern"), "sway": ("to starboard", "to port"), "yaw": ("to starboard", "to port")}
+_UNITS = {"surge": "N", "sway": "N", "yaw": "N.m"}
+
+
+@dataclass(frozen=True)
+class MissingLoad:
+    """What the model lacks on one axis along a log.
+
+    Attributes
+    ----------
+    axis : str
+        Of `AXES`.
+    needed, given, missing : float
+        Root mean squares of the load that the motion needs, of what the model gives, and of the difference.
+        [N or N.m]
+    steady : float
+        Mean of the difference.
+    correlation : float
+        Of what is needed with what is given.
+    parts : float
+        Largest root mean square of what the model's load is made of: thrusters, water, wind.
+    noise : float
+        What of the needed load may be noise of the measured velocities.
+    std : float
+        Standard deviation of `missing`.
+    predicted : float
+        Error of the simulation's predictions over that of no model, in heading for yaw, in position for the others.
+    """
+
+    axis: str
+    needed: float
+    given: float
+    missing: float
+    steady: float
+    correlation: float
+    parts: float
+    noise: float
+    std: float
+    predicted: float = 0.0
+
+    @property
+    def share(self) -> float:
+        """The difference over what is needed; beyond 1 no load at all would be nearer."""
+        return self.missing / max(self.needed, 1e-30)
+
+    @property
+    def is_large(self) -> bool:
+        """Whether it is so large beside what is needed, the model's loads and the noise, and felt in predictions.
+
+        A load that nobody predicts may be that of waves, which moves the ship to and fro and is no error of the model.
+        """
+        beside = self.share > LARGE and self.missing > OFF * self.parts and self.missing > ABOVE_NOISE * self.noise
+        return beside and (self.is_steady or self.predicted > LARGE)
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether most of the difference is always the same."""
+        return abs(self.steady) > STEADY * self.missing
+
+    @property
+    def discrepancy(self) -> Discrepancy:
+        """The same in words."""
+        unit = _UNITS[self.axis]
+        text = f"{FORCES[self.axis]}: {self._sense()}"
+        return Discrepancy(text, None, self.axis, float(self.missing), float(self.std), unit, 1.0)
+
+    def _sense(self) -> str:
+        unit, sides = _UNITS[self.axis], _SENSES[self.axis]
+        if self.is_steady:
+            side = sides[0] if self.steady > 0.0 else sides[1]
+            return f"the model lacks a steady {abs(self.steady):.2g} {unit} {side}"
+        against = f"{self.given:.2g} against {self.needed:.2g} {unit} rms"
+        if self.correlation < -GOES_WITH:
+            return f"the model gives the opposite of what the motion needs ({against})"
+        if self.correlation < GOES_WITH:
+            return f"what the model gives does not go with what the motion needs ({against})"
+        if self.given > MENTIONED * self.needed:
+            return f"the model gives more than the motion needs ({against})"
+        if self.needed > MENTIONED * self.given:
+            return f"the model gives less than the motion needs ({against})"
+        return f"the model gives as much as the motion needs, but not when it does ({against})"
+
+
+def missing_loads(
+    axes: Sequence[Axis], commanded: Commanded, felt: Felt, model: ShipModel, predicted: Mapping[str, float]
+) -> list[MissingLoad]:
+    """What the model lacks on each axis, the largest beside what is needed first.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+    commanded : Commanded
+        With the labels as they are.
+    felt : Felt
+    model : ShipModel
+    predicted : mapping of str to float
+        As from `errors_over_none`.
+
+    Returns
+    -------
+    list of MissingLoad
+    """
+    noise = _noise(felt, model)
+    by_axis = [predicted["heading" if axis.name == "yaw" else "position"] for axis in axes]
+    each = zip(axes, by_axis, strict=True)
+    found = [_missing(axis, commanded, float(noise[axis.number]), off) for axis, off in each]
+    return sorted(found, key=lambda one: -one.share)
+
+
+def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -> MissingLoad:
+    thrust = axis.total(commanded)
+    given = thrust + axis.hull + axis.wind
+    off = axis.felt - given
+    parts = max(_rms(one) for one in (thrust, axis.hull, axis.wind))
+    both = _rms(axis.felt) * _rms(given)
+    correlation = float((axis.felt * given).mean() / both) if both > 0.0 else 0.0
+    blocks = max(off.size / axis.block, 1.0)
+    missing = _rms(off)
+    return MissingLoad(
+        AXES[axis.number],
+        _rms(axis.felt),
+        _rms(given),
+        missing,
+        float(off.mean()),
+        correlation,
+        parts,
+        noise,
+        missing / np.sqrt(2.0 * blocks),
+        predicted,
+    )
+
+
+def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
+    """What white noise of the velocities makes of the needed load, (3,) array: by their third differences."""
+    kernel = felt.kernel
+    third = np.diff(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), 3, axis=1)
+    white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
+    rows = kernel.width / kernel.step
+    rates = white / kernel.step / np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
+    return np.diag(inertia(model)) * rates
+
+
+def _rms(series: np.ndarray) -> float:
+    return float(np.sqrt((series**2).mean()))

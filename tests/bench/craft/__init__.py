@@ -1,0 +1,5 @@
+"""Drawn craft of other sizes and forms with gross faults, and what commanded force against felt says of them."""
+
+from craft.drawn import CHANGES, FAULTS, STYLES, Drawn, draw
+
+__all__ = ["CHANGES", "FAULTS", "STYLES", "Drawn", "draw"]
