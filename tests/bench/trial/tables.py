@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from trial.runs import KINDS
+from trial.runs import KINDS, POOR
 from trial.scoring import named_rightly, score
 
 UNJUDGED = {"verdict": "error", "findings": []}
@@ -87,8 +87,24 @@ def _precise(result, judged):
     return judged.precise if judged.named else None
 
 
+def _wrong(result, judged):
+    return judged.named and not judged.precise
+
+
+def _refused(result, judged):
+    return (result["error"] or "").startswith("ShipcosimError")
+
+
+def _crashed(result, judged):
+    return result["error"] is not None and not _refused(result, judged)
+
+
 def _alarm(result, judged):
     return judged.alarm
+
+
+def _ambiguous(result, judged):
+    return judged.verdict == "ambiguous"
 
 
 def _of_ambiguous(result, judged):
@@ -120,6 +136,17 @@ def _needlessly_worse(name):
         return worse and gain["twin_observer_m"] <= gain["bias_observer_m"]
 
     return hit
+
+
+def _poor_rows(name):
+    """Rows of a set of poor logs: what must not happen, and how often they are refused."""
+    words, none = name.replace("_", " "), ("0", "0", "0")
+    return (
+        Row(f"{words}: a wrong name", name, none, _wrong),
+        Row(f"{words}: a crash", name, none, _crashed),
+        Row(f"{words}: refused", name, ("", "", ""), _refused),
+        Row(f"{words}, healthy: a wrong name", f"healthy_{name}", none, _wrong),
+    )
 
 
 def _two_sigma(pairs):
@@ -213,6 +240,15 @@ ROWS = (
     Row("another form: right", "form", ("60", "60", ""), _right),
     Row("another form: right when it names one", "form", ("95", "95", ""), _precise),
     Row("another form: false alarm on healthy data", "healthy_form", ("5", "5", ""), _alarm),
+    Row("a wrong clock beside a cause: both named, nothing else", "clock", ("86", "60", ""), _right),
+    Row("the same, a wrong name", "clock", ("", "", ""), _wrong),
+    Row("a few minutes in which causes look alike: ambiguous", "alike", ("", "", ""), _ambiguous),
+    Row("the same, a wrong name", "alike", ("", "", ""), _wrong),
+    Row("the same, in the reported set, of ambiguous answers", "alike", ("", "", ""), _of_ambiguous),
+    Row("after the one prescribed manoeuvre: right cause named", "alike sailed", ("", "", ""), _right),
+    Row("the same, in the reported set", "alike sailed", ("95", "95", "95"), lambda r, s: s.contained),
+    Row("the same, a wrong name", "alike sailed", ("", "", ""), _wrong),
+    *(row for name in POOR for row in _poor_rows(name)),
     Row("time", "one", ("30 s", "30 s", "60 s"), cell=_seconds),
 )
 

@@ -187,3 +187,23 @@ def test_after_the_manoeuvre_the_truth_must_be_named_or_in_the_set():
         for answer in answers
     ]
     assert tables.rates(results, row.name, "hold", row.hit) == (2, 4)
+
+
+def test_a_poor_log_may_be_refused_but_not_crash_nor_get_a_wrong_name():
+    base = {
+        "kind": "work",
+        "set": "brief_45s",
+        "answer": [hidden("mass")],
+        "span": SPAN,
+        "seconds": 1.0,
+        "version": "-",
+    }
+    refused = base | {"seed": 1, "diagnosis": None, "error": "ShipcosimError: 45 rows over 44 s."}
+    crashed = base | {"seed": 2, "diagnosis": None, "error": "ValueError: zero-size array"}
+    wrong = base | {"seed": 3, "diagnosis": named(found("tow")), "error": None}
+    rows = {row.label: row for row in tables.ROWS}
+    counts = [
+        tables.rates([refused, crashed, wrong], "brief_45s", "work", rows[f"brief 45s: {what}"].hit)
+        for what in ("refused", "a crash", "a wrong name")
+    ]
+    assert counts == [(1, 3)] * 3

@@ -127,6 +127,16 @@ def test_a_clock_that_runs_wrong_for_a_while_is_named_with_its_rate_and_undone(r
     assert examine(again.drop_vars("logged_time")) == []
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("every", [5, 10])
+def test_a_wrong_clock_is_found_in_slow_rows_too(every):
+    """One end of the segment lies among the places where the other is sought: segments of no rows are none."""
+    log = {role: values[::every] for role, values in measured(seed=6, rate=1.2).items()}
+    finding = only(log)
+    assert finding.cause == "clock"
+    near(finding.segments, (400.0, 600.0), within=3.0 * every)
+
+
 def test_a_clock_that_is_wrong_for_headings_alone_is_no_clock():
     log = measured(seed=7)
     log["yaw_rate"] = np.where(inside(log, 400, 600), 0.8, 1.0) * log["yaw_rate"]

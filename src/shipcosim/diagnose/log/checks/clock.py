@@ -199,7 +199,8 @@ def _refined(sides, first, last, cost):
     for reach, stride in ((3 * CLOCK_REACH, 6), (CLOCK_REACH // 2, 1)):
         for end in (0, 1):
             near = np.abs(np.searchsorted(time, (first, last)[end]) - np.arange(len(time))) <= reach
-            places = time[near][::stride]
+            right = time < last if end == 0 else time > first  # rows may be so far apart that the other end is near
+            places = time[near & right][::stride]
             firsts, lasts = (places, np.full_like(places, last)) if end == 0 else (np.full_like(places, first), places)
             nats = _evidence(*_joint(sides, firsts, lasts))[0]
             place = float(places[np.argmax(nats)]) if stride > 1 else _middle(places, nats)

@@ -198,9 +198,9 @@ def whiteness(white: np.ndarray) -> float:
 
 
 def _togetherness(white):
-    tame = np.clip(white, -4.0, 4.0)
+    tame, lags = np.clip(white, -4.0, 4.0), range(1, min(WHITENESS_LAGS + 1, len(white)))  # a part may have few rows
     power = np.mean(tame**2) + 1e-12
-    together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in range(1, WHITENESS_LAGS + 1)]
+    together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in lags]
     return max(1.0, 1.0 + 2.0 * sum(together))
 
 
