@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 
-FILES = ("sea_trials.json", "extended.ssp", "extended.ssv")
+FILES = ("sea_trials.json", "report.html", "extended.ssp", "extended.ssv")
 
 
 def study_log(
@@ -32,7 +32,8 @@ def study_log(
     ----------
     data : path
     out : Path, optional
-        Gets sea_trials.json, and where causes were found extended.ssp and extended.ssv. Default: results/DATA.
+        Gets sea_trials.json, report.html, and where causes were found extended.ssp and extended.ssv.
+        Default: results/DATA.
     system : str, optional
         As for `find_system`; the default one without.
     channels, effects : path, optional
@@ -55,6 +56,7 @@ def study_log(
     from shipcosim.diagnose.extension.extend import extend
     from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
     from shipcosim.diagnose.sea_trials.study import study
+    from shipcosim.report.sea_trials.page import write_sea_trials
     from shipcosim.ssp import read
 
     check_inputs([data], channels, effects)
@@ -65,6 +67,8 @@ def study_log(
     with staged(folder, FILES) as stage:
         text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
         (stage / FILES[0]).write_text(text + "\n", encoding="utf-8")
+        facts = {"Log": Path(data).name, "System": Path(given).name, "Thrusters": "orders" if orders else "feedback"}
+        write_sea_trials(found, stage / FILES[1], facts)
         if found.findings:
             extend(read(given), found.findings, stage, catalogue=read_catalogue(effects))
     return found, folder
@@ -95,6 +99,7 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
         for name in one.before:
             unit = "deg" if name.endswith("drift") else "%"
             console.print(f"  {name:<28} {one.before[name]:6.1f} {one.after[name]:6.1f} {unit}", markup=False)
+    console.print(f"Page: {shown_path(folder / FILES[1])}", markup=False)
     console.print(f"Numbers: {shown_path(folder / FILES[0])}", markup=False)
 
 

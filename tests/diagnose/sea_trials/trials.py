@@ -24,26 +24,27 @@ LEGS = ((20.0, 170.0), (-20.0, 170.0), (10.0, 170.0), (-10.0, 170.0), (32.0, 110
 STRAIGHT, ROUND, SWING = 200.0, {20.0: 170.0, 10.0: 240.0, 32.0: 200.0}, 20.0  # s
 
 
-def orders(time):
-    """Azimuth [rad] and speed [rpm] of both units over time."""
+def orders(time, slow=1.0):
+    """Azimuth [rad] and speed [rpm] of the units that steer over time; all lasts longer by a factor."""
     azimuth, rpm, start = np.zeros(time.size), np.full(time.size, LEGS[0][1]), 0.0
     for angle, speed in LEGS:
-        end = start + STRAIGHT + ROUND[abs(angle)]
+        end = start + slow * (STRAIGHT + ROUND[abs(angle)])
         rpm[time >= start] = speed
-        azimuth[(time >= start + STRAIGHT) & (time < end)] = np.radians(angle)
+        azimuth[(time >= start + slow * STRAIGHT) & (time < end)] = np.radians(angle)
         start = end
-    start += STRAIGHT
+    start += slow * STRAIGHT
     for k in range(6):
-        azimuth[(time >= start + k * SWING) & (time < start + (k + 1) * SWING)] = np.radians(10.0) * (-1) ** k
+        swing = (time >= start + k * slow * SWING) & (time < start + (k + 1) * slow * SWING)
+        azimuth[swing] = np.radians(10.0) * (-1) ** k
     return azimuth, rpm
 
 
-def duration():
+def duration(slow=1.0):
     """Of all of them. [s]"""
-    return sum(STRAIGHT + ROUND[abs(angle)] for angle, _ in LEGS) + STRAIGHT + 8 * SWING
+    return slow * (sum(STRAIGHT + ROUND[abs(angle)] for angle, _ in LEGS) + STRAIGHT + 8 * SWING)
 
 
-def logs(problems, seed=0):
+def logs(problems, seed=0, model=None, slow=1.0):
     """Logs of ships with numbers changed, each also drawn within the tolerances of hull and thrusters.
 
     Parameters
@@ -51,15 +52,21 @@ def logs(problems, seed=0):
     problems : dict of str to dict of str to float
         By name, numbers of the ship and what they are; ``lag``: by how much the units answer late. [s]
     seed : int
+    model : ShipModel, optional
+        The lengthened Gunnerus without.
+    slow : float
+        Factor on all durations.
 
     Returns
     -------
     dict of str to xarray.Dataset
     """
     random, many = np.random.default_rng(seed), len(problems)
-    ship = _ships(problems, random)
-    time = np.arange(0.0, duration(), FINE)
-    azimuth, rpm = orders(time)
+    model = model or twin.model()
+    steered = [name for name in model.azimuths if model.parts[name].x < 0.0]
+    ship = model.with_values(drawn(problems, random, model))
+    time = np.arange(0.0, duration(slow), FINE)
+    azimuth, rpm = orders(time, slow)
     lags = np.array([values.get("lag", 0.0) for values in problems.values()])
     zero = np.zeros(many)
     state = Motion(zero, zero, zero, zero + 5.4, zero, zero)
@@ -69,9 +76,10 @@ def logs(problems, seed=0):
         late = np.clip(((now - lags) / FINE).astype(int), 0, time.size - 1)
         angle = turned(angle, azimuth[late], np.radians(10.0) * FINE)
         n = rpm[late] / 60.0 + (n - rpm[late] / 60.0) * np.exp(-FINE / RPM_LAG)
-        units = {name: (n, angle) for name in ("port", "starboard")} | {"tunnel": (zero, zero)}
+        units = {name: (n, zero) for name in model.azimuths} | {name: (n, angle) for name in steered}
+        units = {name: (zero, zero) for name in model.thrusters} | units
         state = _stepped(state, Inputs(now, units, None, None), ship)
-    rate = 1.0 - 0.2 * np.sin(np.cumsum(random.normal(0.0, 0.05, int(duration()))))  # true seconds a row
+    rate = 1.0 - 0.2 * np.sin(np.cumsum(random.normal(0.0, 0.05, int(duration(slow)))))  # true seconds a row
     rows = np.minimum((np.cumsum(rate) / FINE).astype(int), time.size - 1)
     rows = rows[: np.argmax(rows >= time.size - 1) or None]
     found = np.stack(shown)[rows] + WHITE * random.standard_normal((rows.size, many, 6))
@@ -82,24 +90,25 @@ def logs(problems, seed=0):
             (role, factor * values, unit, role)
             for (role, unit), factor, values in zip(ROLES.items(), TO_LOG, found[:, i].T, strict=True)
         ]
-        for unit in ("port", "starboard"):
+        for unit in model.azimuths:
             columns.append((f"{unit}_rpm", rpm[rows], "rpm", ""))
-            columns.append((f"{unit}_azimuth", np.degrees(azimuth[rows]), "deg", ""))
+            angles = azimuth[rows] if unit in steered else np.zeros(rows.size)
+            columns.append((f"{unit}_azimuth", np.degrees(angles), "deg", ""))
         tables[name] = make_table(np.arange(rows.size, dtype=float), columns)
     return tables
 
 
-def _ships(problems, random):
-    """Ships side by side, each with tolerances drawn anew and her planted numbers."""
-    model, values = twin.model(), {}
+def drawn(problems, random, model):
+    """Numbers of ships side by side: each with tolerances drawn anew and her planted numbers."""
+    values = {}
     for path, size in model.tolerances.items():
         if path.partition(".")[0] in (model.vessel, *model.thrusters) and isinstance(model.get(path), float):
             values[path] = model.get(path) + size * random.standard_normal(len(problems))
     planted = {path for changes in problems.values() for path in changes if path != "lag"}
     for path in planted:
-        drawn = values.get(path, np.full(len(problems), model.get(path)))
-        values[path] = np.array([changes.get(path, own) for changes, own in zip(problems.values(), drawn, strict=True)])
-    return model.with_values(values)
+        own = values.get(path, np.full(len(problems), model.get(path)))
+        values[path] = np.array([changes.get(path, one) for changes, one in zip(problems.values(), own, strict=True)])
+    return values
 
 
 def _stepped(state, inputs, ship):

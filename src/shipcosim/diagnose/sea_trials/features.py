@@ -19,7 +19,7 @@ from shipcosim.diagnose.sea_trials import thresholds
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
 
-__all__ = ["ANGLES", "FEATURES", "SOUGHT", "covariance_of", "features_of"]
+__all__ = ["ANGLES", "FEATURES", "SOUGHT", "covariance_of", "features_of", "is_logarithm"]
 
 _TIMES = tuple(f"t{heading:.0f}" for heading in thresholds.HEADINGS)
 _SPEEDS = tuple(f"speed at {heading:.0f}" for heading in thresholds.HEADINGS_OF_SPEED)
@@ -128,6 +128,11 @@ def _zig_zag(trial, psi, r, speed):
     peaks = [np.max(np.abs(r[swing])) for swing in swings]
     turned = [np.ptp(psi[swing]) for swing in swings]
     return np.array([np.mean(np.log(peaks)), np.mean(np.log(turned)), np.log(np.mean(speed))])
+
+
+def is_logarithm(kind: str, name: str) -> bool:
+    """Whether a feature is a natural logarithm."""
+    return name not in ANGLES and (kind in SOUGHT or " at " not in name)
 
 
 def _pull_out(trial, motion):

@@ -13,7 +13,7 @@ from shipcosim.diagnose.experiment.design import CLEAR
 from shipcosim.diagnose.result import ExperimentDesign
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import blocks, changes_of, known_numbers, predicted, slopes_of
-from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, SOUGHT, covariance_of
+from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, SOUGHT, covariance_of, is_logarithm
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
 from shipcosim.diagnose.ship.model import ShipModel
 
@@ -176,9 +176,10 @@ def _apart(one, other, part, names):
     nats, sigma = min(found, key=lambda pair: pair[0])
     best = int(np.argmax(abs(d) / sigma))
     kind, side, name = names[best]
-    factor, unit = (float(np.degrees(1.0)), "deg") if name in ANGLES else (100.0, "%")
+    unit, factor = ("deg", np.degrees(1.0)) if name in ANGLES else ("%", 100.0)
+    difference = np.expm1(d[best]) if is_logarithm(kind, name) else d[best]
     to = "to starboard" if side > 0 else "to port"
-    told = TellingFeature(f"{name} {to}", factor * float(d[best]), factor * float(sigma[best]), unit)
+    told = TellingFeature(f"{name} {to}", float(factor * difference), float(factor * sigma[best]), unit)
     return nats, told
 
 

@@ -24,6 +24,7 @@ from shipcosim.diagnose.sea_trials.evidence import (
     trial_evidence,
 )
 from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, features_of
+from shipcosim.diagnose.sea_trials.sailing import sailed
 from shipcosim.diagnose.sea_trials.separation import MOST_SETS, Separation, designed, differing, separations
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
@@ -39,7 +40,17 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
     from shipcosim.ssp import System
 
-__all__ = ["HeldOut", "SeaTrialStudy", "best_of", "causes_of_trials", "errors", "rivals_of", "studied", "study"]
+__all__ = [
+    "HeldOut",
+    "SeaTrialStudy",
+    "best_of",
+    "causes_of_trials",
+    "errors",
+    "motions_of",
+    "rivals_of",
+    "studied",
+    "study",
+]
 
 
 @dataclass(frozen=True)
@@ -257,6 +268,13 @@ def study(
     return studied(trials, read.ship, causes_of_trials(read.ship, read.causes, orders=orders), orders=orders)
 
 
+def motions_of(found: SeaTrialStudy) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Motions (n, 6) of all trials by the ship as modelled, and with the best set, compass and antenna as told."""
+    best = changes_of(found.best) | allowed_for(found.evidence, found.best)
+    motions = sailed(found.trials, found.model, [{}, best], orders=found.evidence.orders)
+    return [motion[0] for motion in motions], [motion[1] for motion in motions]
+
+
 def causes_of_trials(model: ShipModel, catalogue: Mapping[str, Cause], *, orders: bool) -> list[Hypothesis]:
     """Causes in the hull and its thrusters, and where a log has orders how late these are answered.
 
@@ -321,15 +339,20 @@ def _judged(train, others, model, hypotheses, orders):
 
 
 def best_of(ranking: Iterable[SetOfCauses]) -> SetOfCauses:
-    """The set that is named: each of its causes adds enough to what the set explains without it."""
-    everyone = [one for one in ranking if one.plausible]
+    """The set that is named: each of its causes adds enough, to any set of fewer and to what it explains without it."""
+    ranking = list(ranking)
     by_label = {frozenset(c.label for c in one.hypotheses): one for one in ranking}
-    for one in everyone:
+    for one in sorted((one for one in ranking if one.plausible), key=_worth, reverse=True):
         names = frozenset(c.label for c in one.hypotheses)
         less = [by_label[names - {name}].evidence for name in names if names - {name} in by_label]
         if all(one.evidence - value > thresholds.NAMED for value in less):
             return one
     return by_label[frozenset()]
+
+
+def _worth(one):
+    """Evidence less what is asked of each cause. [nats]"""
+    return one.evidence - thresholds.NAMED * len(one.hypotheses)
 
 
 def rivals_of(ranking: Iterable[SetOfCauses]) -> list[SetOfCauses]:
@@ -342,7 +365,7 @@ def rivals_of(ranking: Iterable[SetOfCauses]) -> list[SetOfCauses]:
         if one is not best
         and one.plausible
         and len(one.hypotheses) <= len(best.hypotheses)
-        and one.evidence > best.evidence - thresholds.RIVAL
+        and _worth(one) > _worth(best) - thresholds.RIVAL
     ]
 
 

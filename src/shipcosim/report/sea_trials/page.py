@@ -1,0 +1,114 @@
+"""The page of sea trials: tracks, features before and after, causes, and what would tell them apart."""
+
+import os
+from collections import Counter
+from dataclasses import dataclass
+
+from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, motions_of
+from shipcosim.report.sea_trials.figures import error_figure, separation_figure, track_figure
+from shipcosim.report.sea_trials.words import (
+    features_table,
+    held_out_table,
+    next_steps,
+    outcome,
+    separation_table,
+    sets_table,
+)
+from shipcosim.report.theme.pages import render
+from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
+from shipcosim.series import write_file
+
+SECTIONS = {
+    "tracks": "Tracks",
+    "features": "Features",
+    "causes": "Causes",
+    "judged": "Judged on what was not fitted",
+    "next": "What to sail next",
+}
+KEY_FEATURES = {"speed": "steady speed", "rate": "steady rate of turn", "t90": "time to 90° of heading"}
+
+
+@dataclass(frozen=True)
+class SeaTrialPage(Page):
+    """What the page of sea trials shows.
+
+    Attributes
+    ----------
+    key_figures : tuple of KeyFigure
+    figures, tracks, errors, manoeuvres : tuple of Figure
+        All figures; tracks of circles; errors of features; what manoeuvres would tell.
+    sets, held_out, features, separations : Table
+    steps : tuple of str
+        What to sail next.
+    """
+
+    key_figures: tuple[KeyFigure, ...]
+    figures: tuple[Figure, ...]
+    tracks: tuple[Figure, ...]
+    errors: tuple[Figure, ...]
+    manoeuvres: tuple[Figure, ...]
+    sets: Table
+    held_out: Table
+    features: Table
+    separations: Table
+    steps: tuple[str, ...]
+
+
+def write_sea_trials(found: SeaTrialStudy, path: str | os.PathLike[str], facts: dict[str, str]) -> None:
+    """Write the page of sea trials.
+
+    Parameters
+    ----------
+    found : SeaTrialStudy
+    path : path
+        HTML file; it is there completely or not at all.
+    facts : dict of str to str
+        Shown below the title.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be written.
+    """
+    write_file(path, render("sea_trials/templates/sea_trials.html.jinja", _page(found, facts)).encode())
+
+
+def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
+    circles = any(trial.kind == "turning circle" for trial in found.trials)
+    tracks = (track_figure(found, *motions_of(found)),) if circles else ()
+    errors = (error_figure(found),)
+    manoeuvres = (separation_figure(found),) if found.separations else ()
+    counts = Counter(trial.kind for trial in found.trials)
+    facts = facts | {"Trials": ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items())}
+    figures = (*tracks, *errors, *manoeuvres)
+    there = {"tracks": circles, "judged": bool(found.held_out), "next": bool(found.separations)}
+    return SeaTrialPage(
+        title="Sea trials",
+        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        outcome=outcome(found),
+        links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)),
+        data=tuple(figure.drawn for figure in figures),
+        key_figures=_key_figures(found),
+        figures=figures,
+        tracks=tracks,
+        errors=errors,
+        manoeuvres=manoeuvres,
+        sets=sets_table(found),
+        held_out=held_out_table(found),
+        features=features_table(found),
+        separations=separation_table(found),
+        steps=next_steps(found),
+    )
+
+
+def _key_figures(found: SeaTrialStudy) -> tuple[KeyFigure, ...]:
+    """Errors on what was not fitted, before and after, the worse of both sides."""
+    figures = []
+    for name, meaning in KEY_FEATURES.items():
+        key = f"turning circle: {name}"
+        both = [(one.before[key], one.after[key]) for one in found.held_out.values() if key in one.before]
+        if both:
+            before, after = (max(values) for values in zip(*both, strict=True))
+            text = f"{meaning}: error on circles that were not fitted, before and after, the worse of both sides"
+            figures.append(KeyFigure(f"{before:.0f} → {after:.0f} %", text))
+    return tuple(figures)

@@ -1,0 +1,138 @@
+"""What sea trials say in words and rows."""
+
+import numpy as np
+
+from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
+from shipcosim.diagnose.sea_trials.features import FEATURES
+from shipcosim.diagnose.sea_trials.separation import Separation
+from shipcosim.diagnose.sea_trials.study import SeaTrialStudy, estimates
+from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.views import Outcome, Table
+
+_SETS = 8  # in the table
+
+
+def outcome(found: SeaTrialStudy) -> Outcome:
+    """The verdict, and what it means."""
+    return Outcome(found.verdict, found.verdict.upper(), sentence(found))
+
+
+def sentence(found: SeaTrialStudy) -> str:
+    """The verdict in a sentence."""
+    if found.verdict == "consistent":
+        return "The model sails these trials as the ship did, as far as such trials repeat."
+    best = said(found.best.label)
+    if found.verdict == "named":
+        return f"{best} explains best what the model sails otherwise than the ship."
+    count = len(found.rivals)
+    others = "another set" if count == 1 else f"{count} other sets"
+    return f"{best} explains best what the model sails otherwise than the ship; {others} of causes fit alike."
+
+
+def said(label: str) -> str:
+    """Names of causes as people read them."""
+    return label.replace("_", " ")
+
+
+def sets_table(found: SeaTrialStudy) -> Table:
+    """Sets of causes, those of most evidence first: estimates, and how far each is behind."""
+    shown = [one for one in found.ranking if one.plausible and one.hypotheses][:_SETS]
+    shown += [one for one in found.ranking if not one.hypotheses]
+    first = found.best.evidence
+    rows = [(said(one.label), told(one), f"{one.evidence - first:+.1f}".replace("-", "−")) for one in shown]
+    return Table(tuple(rows), ("Causes", "Estimates", "Nats"), (2,))
+
+
+def told(one: SetOfCauses) -> str:
+    """Estimates of a set in one line."""
+    texts = []
+    for (cause, parameter), value in zip(one.parameters, estimates(one), strict=True):
+        unit = "" if value.unit == "1" else f" {value.unit}"
+        texts.append(f"{said(cause.label)} {parameter.name} {plain(value.estimate)} ± {plain(value.std, 1)}{unit}")
+    return "; ".join(texts)
+
+
+def held_out_table(found: SeaTrialStudy) -> Table:
+    """Errors on trials that were not fitted, by feature and by the side that was."""
+    sides = list(found.held_out.items())
+    names = list(dict.fromkeys(name for _, one in sides for name in one.before))
+    rows = [(name, *(_errors(one, name) for _, one in sides)) for name in names]
+    return Table(tuple(rows), ("Feature", *(f"Fitted on circles to {side}" for side, _ in sides)))
+
+
+def _errors(one, name):
+    unit = "°" if name.endswith("drift") else " %"
+    return f"{one.before[name]:.1f} → {one.after[name]:.1f}{unit}" if name in one.before else "–"
+
+
+def features_table(found: SeaTrialStudy) -> Table:
+    """Every feature of every trial: measured, as modelled, with the causes, and how well it repeats."""
+    spread, rows, at = np.sqrt(np.diag(found.evidence.noise)), [], 0
+    for trial in found.trials:
+        for name in FEATURES[trial.kind]:
+            values = (found.evidence.measured[at], found.evidence.predicted[at], found.after[at])
+            rows.append((trial.name, name, *(_read(name, value) for value in values), _spread(name, spread[at])))
+            at += 1
+    return Table(tuple(rows), ("Trial", "Feature", "Measured", "As modelled", "With causes", "Repeats to"))
+
+
+def _read(name, value):
+    """A feature in the unit that people read."""
+    if name == "drift":
+        return f"{np.degrees(value):.1f}°"
+    factor, unit = {"r": (np.degrees(1.0), "°/s"), "s": (np.degrees(1.0), "°")}.get(_kind(name), (1.0, _kind(name)))
+    return f"{plain(factor * float(np.exp(value)))} {unit}".replace(" °", "°")
+
+
+def _kind(name):
+    if name.startswith("speed"):
+        return "m/s"
+    if name in ("rate", "peak rate"):
+        return "r"
+    if name == "swing":
+        return "s"
+    return "s " if name.startswith("t") and name[1:].isdigit() else "m"
+
+
+def _spread(name, value):
+    return f"{np.degrees(value):.1f}°" if name == "drift" else f"{100.0 * value:.1f} %"
+
+
+def next_steps(found: SeaTrialStudy) -> tuple[str, ...]:
+    """What to sail, and what stays open."""
+    steps = [_step(found, one) for one in found.prescriptions]
+    told_apart = {pair for one in found.prescriptions for pair in one.separates}
+    left = [pair for pair in found.pairs if pair not in told_apart]
+    return (*steps, *(f"No manoeuvre of the catalogue tells {said(a)} from {said(b)}." for a, b in left))
+
+
+def _step(found, one):
+    record = next(each for each in found.separations if each.manoeuvre == one.manoeuvre)
+    pairs = ", ".join(f"{said(a)} from {said(b)} ({_telling(found, record, (a, b))})" for a, b in one.separates)
+    return f"{one.manoeuvre[0].upper()}{one.manoeuvre[1:]}, to both sides, {one.minutes:.0f} minutes. It tells {pairs}."
+
+
+def _telling(found, record: Separation, pair):
+    key = list(record.nats)[found.pairs.index(pair)]
+    telling = record.telling[key]
+    return (
+        f"{record.nats[key]:.0f} nats; {telling.name} differs by {abs(telling.difference):.0f} {telling.unit}, "
+        f"known to {telling.spread:.0f} {telling.unit}"
+    )
+
+
+def separation_table(found: SeaTrialStudy) -> Table:
+    """Every manoeuvre: minutes, and by pair the nats and the feature that tells most."""
+    rows = [
+        (
+            one.manoeuvre,
+            f"{one.minutes:.0f}",
+            *(f"{one.nats[pair]:.1f}: {_short(one.telling[pair])}" for pair in one.nats),
+        )
+        for one in found.separations
+    ]
+    return Table(tuple(rows), ("Manoeuvre", "Min", *(f"{said(a)} / {said(b)}" for a, b in found.pairs)), (1,))
+
+
+def _short(telling):
+    return f"{telling.name} {telling.difference:+.1f} ± {telling.spread:.1f} {telling.unit}".replace("-", "−")
