@@ -6,7 +6,7 @@ from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Experiment
 
 ENTRIES = {
     *("schema", "verdict", "findings", "candidates", "indistinguishable"),
-    *("not_testable", "prescription", "discrepancies", "baseline", "gain"),
+    *("not_testable", "prescription", "discrepancies", "form", "baseline", "gain"),
 }
 CURRENT = Finding(
     "current",

@@ -36,14 +36,14 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.comparison.compared import compared
 from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
-from shipcosim.diagnose.experiment.testability import log_facts, untestable_causes
+from shipcosim.diagnose.experiment.testability import hidden_by_form, log_facts, untestable_causes
 from shipcosim.diagnose.extension.extended_system import with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.change_point import with_change_point
 from shipcosim.diagnose.inference.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.inference.search import with_causes
-from shipcosim.diagnose.inference.summary import evidence_of
+from shipcosim.diagnose.inference.summary import evidence_of, load_form
 from shipcosim.diagnose.inference.verdict import judged
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
@@ -53,7 +53,7 @@ from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inpu
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
 from shipcosim.diagnose.reference.since import with_sizes_at_reference
-from shipcosim.diagnose.result import Diagnosis, LogSummary
+from shipcosim.diagnose.result import Diagnosis, LoadForm, LogSummary
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, ReadLog, SimulatedLog
 from shipcosim.diagnose.validation.conditions import with_predictions
@@ -235,8 +235,15 @@ def stated(log: JudgedLog) -> Diagnosis:
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors if comparison else None,
         discrepancies=comparison.told(judgement.verdict) if comparison else (),
+        form=_form_of(log),
         basis=log,
     )
+
+
+def _form_of(log: JudgedLog) -> LoadForm | None:
+    """How far the form of the ship's loads differs from the model's, with what that hides."""
+    form = load_form(log)
+    return replace(form, hides=hidden_by_form(log)) if form else None
 
 
 def completed(

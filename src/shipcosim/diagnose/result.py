@@ -27,6 +27,8 @@ __all__ = [
     "Estimate",
     "Finding",
     "ExperimentDesign",
+    "FormNumber",
+    "LoadForm",
     "LogSummary",
     "label_of",
 ]
@@ -170,6 +172,50 @@ class ExperimentDesign:
 
 
 @dataclass(frozen=True)
+class FormNumber:
+    """A number of the form of the ship's loads, which the log has moved off the model's.
+
+    Attributes
+    ----------
+    number : str
+        ``place.name``.
+    what : str
+        In words.
+    model, estimate, std : float
+    unit : str
+    """
+
+    number: str
+    what: str
+    model: float
+    estimate: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class LoadForm:
+    """How far the form of the ship's loads differs from the model's, as far as the log tells.
+
+    Attributes
+    ----------
+    scale : float
+        Over what is usual between a ship and her model; 0 is the model's form. [1]
+    differs : dict of str to float
+        By function, in words: root mean square of what it differs by, as a share of the model's. [1]
+    numbers : tuple of FormNumber
+        Those that differ by more than twice their standard deviations, most certain first.
+    hides : tuple of str
+        Causes that the log could have shown on a ship of the model's form: another form of her loads does the same.
+    """
+
+    scale: float
+    differs: dict[str, float]
+    numbers: tuple[FormNumber, ...] = ()
+    hides: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class LogSummary:
     """A log as it was read and as it was used.
 
@@ -236,6 +282,8 @@ class Diagnosis:
         What did not work.
     discrepancies : tuple of Discrepancy
         In what simulation and log differ at first sight, largest first.
+    form : LoadForm or None
+        How far the form of her loads differs from the model's; None where it is the model's, or a reference's.
     basis : JudgedLog or None
         What the findings rest on, for further work: the log, the identification problem, the fits.
     folder : TemporaryDirectory or None
@@ -264,6 +312,7 @@ class Diagnosis:
     system: System | None = field(default=None, repr=False)
     remarks: tuple[str, ...] = ()
     discrepancies: tuple[Discrepancy, ...] = ()
+    form: LoadForm | None = None
     basis: JudgedLog | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
 
@@ -288,6 +337,7 @@ class Diagnosis:
             "not_testable": list(self.not_testable),
             "prescription": asdict(self.prescription) if self.prescription else None,
             "discrepancies": [asdict(discrepancy) for discrepancy in self.discrepancies],
+            "form": asdict(self.form) if self.form else None,
             "baseline": self.baseline,
             "gain": self.gain,
         }

@@ -1,14 +1,18 @@
 """How far the form differs is learnt: not at all on a ship of the model's form, beside the cause on another."""
 
+import numpy as np
 import pytest
 import xarray
 from diagnose import twin
 from threadpoolctl import threadpool_limits
 
+from shipcosim.diagnose.experiment.testability import hidden_by_form, untestable_causes
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.form import learnt, of_scale, scores_by_scale, with_settled_form
 from shipcosim.diagnose.inference.search import explain
-from shipcosim.diagnose.stages import ExplainedLog, Identification
+from shipcosim.diagnose.inference.summary import load_form
+from shipcosim.diagnose.inference.verdict import Judgement
+from shipcosim.diagnose.stages import ExplainedLog, Identification, JudgedLog
 
 FORM = {
     "hull_form.cross_flow_1": 0.35,
@@ -43,22 +47,45 @@ def test_a_ship_of_another_form_is_healthy_once_her_form_may_differ(problems):
         assert not fits[0].hypotheses or fits[0].score < next(f.score for f in fits if not f.hypotheses) + 5.0
 
 
-def test_a_loss_of_thrust_is_found_beside_another_form(problems):
+@pytest.fixture(scope="module")
+def explained(problems):
     with threadpool_limits(1):
         formed = learnt(problems["loss"])
-        assert formed.model.form_scale > 0.0
-        best = explain(formed)[0]
+        return ExplainedLog(identification_of(formed), tuple(explain(formed)), False)
+
+
+def identification_of(problem):
+    return Identification(xarray.Dataset(), problem.model, {}, (), xarray.Dataset(), problem)
+
+
+def test_a_loss_of_thrust_is_found_beside_another_form(explained):
+    assert explained.identification.problem.model.form_scale > 0.0
+    best = explained.fits[0]
     assert best.label == "thrust_loss of port"
     assert abs(best.values["port.thrust_loss"] - 0.25) < 3.0 * best.std["port.thrust_loss"]
 
 
-def test_a_form_that_the_causes_found_do_without_is_given_up_again(problems):
+def test_how_far_the_form_differs_is_said_and_what_it_hides(explained):
+    """Mean square of what was planted along the hull: 0.35²/3 + 0.3²/5; the largest numbers are among those moved."""
+    best = explained.fits[0]
+    log = JudgedLog(explained, Judgement("named", best, (), (), ()), {}, {})
+    form = load_form(log)
+    planted = np.sqrt(FORM["hull_form.cross_flow_1"] ** 2 / 3.0 + FORM["hull_form.cross_flow_2"] ** 2 / 5.0)
+    assert form.differs["drag across the hull, along her length"] == pytest.approx(planted, rel=0.35)
+    moved = {one.number: one for one in form.numbers}
+    assert moved and set(moved) <= set(log.problem.model.uncertainties)
+    assert all(abs(one.estimate - one.model) >= 2.0 * one.std for one in moved.values())
+    assert all(abs(moved[path].estimate - size) < 4.0 * moved[path].std for path, size in FORM.items() if path in moved)
+    assert set(hidden_by_form(log)) <= set(untestable_causes(log))
+
+
+def test_a_form_that_the_causes_found_do_without_is_given_up_again(explained):
     """Of a ship of the model's form, taken for one of another; the other ship keeps hers."""
     with threadpool_limits(1):
-        for problem, expected in ((of_scale(twin.problem("thrust_loss"), 1.0), 0.0), (learnt(problems["loss"]), None)):
-            scale = problem.model.form_scale
-            found = Identification(xarray.Dataset(), problem.model, {}, (), xarray.Dataset(), problem)
-            settled = with_settled_form(ExplainedLog(found, tuple(explain(problem)), False))
-            assert settled.identification.problem.model.form_scale == (scale if expected is None else expected)
+        plain = of_scale(twin.problem("thrust_loss"), 1.0)
+        plain = ExplainedLog(identification_of(plain), tuple(explain(plain)), False)
+        for log, expected in ((plain, 0.0), (explained, explained.identification.problem.model.form_scale)):
+            settled = with_settled_form(log)
+            assert settled.identification.problem.model.form_scale == expected
             assert settled.identification.ship.form_scale == settled.identification.problem.model.form_scale
             assert settled.fits[0].label == "thrust_loss of port"

@@ -9,7 +9,7 @@ import pytest
 
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.experiment.testability import log_facts
-from shipcosim.diagnose.result import Candidate, ExperimentDesign, Finding
+from shipcosim.diagnose.result import Candidate, ExperimentDesign, Finding, FormNumber, LoadForm
 from shipcosim.diagnose.validation.gain import rms
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.report.diagnosis.page import render, write_diagnosis
@@ -32,6 +32,15 @@ def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(diagnos
     ((name, sentence, why),) = not_testable_rows(["reverse_loss"], diagnosis.causes, log_facts(problem))
     astern = max(np.mean(problem.record.units[unit][0] < 0.0) for unit in problem.model.azimuths)
     assert name == "Reverse loss" and "astern" in sentence and f"{100 * astern:.0f} %" in why
+
+
+def test_form_of_the_loads_is_told_with_what_it_hides(diagnosis):
+    number = FormNumber("vessel.cross_flow_drag", "cross-flow drag coefficient", 1.5, 1.86, 0.07, "1")
+    form = LoadForm(1.0, {"drag across the hull, along her length": 0.14}, (number,), ("crossflow",))
+    text = render(replace(diagnosis, form=form, not_testable=("crossflow", "reverse_loss")))
+    assert "The form of her loads" in text and "14 %" in text and "1.86" in text and "± 0.070" in text
+    assert text.count("would do the same, and hers have another form") == 1
+    assert "The form of her loads" not in render(diagnosis)
 
 
 def test_ambiguous_log_shows_what_to_sail(diagnosis):

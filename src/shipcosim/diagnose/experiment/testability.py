@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,26 +16,52 @@ from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.thresholds import TESTABLE
 from shipcosim.diagnose.inference.verdict import usual_gain
 from shipcosim.diagnose.log_faults.clock import is_testable
+from shipcosim.diagnose.ship.form import form_sizes
 from shipcosim.diagnose.ship.inputs import rate_of
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.stages import JudgedLog
 
-__all__ = ["log_facts", "not_testable", "untestable_causes"]
+__all__ = ["hidden_by_form", "log_facts", "not_testable", "untestable_causes"]
 
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     """Causes of the catalogue, and the clock, that a log could not have shown had they had their typical size."""
     problem, found = log.problem, log.explained.identification
-    columns, groups = list(without_causes(log.fits).columns), []
+    weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
+    clock = () if is_testable(problem) else ("clock",)
+    identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
+    everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
+    return tuple(sorted({*weak, *clock, *(everywhere - identifiable)}))
+
+
+def hidden_by_form(log: JudgedLog) -> tuple[str, ...]:
+    """Causes that a log could have shown on a ship of the model's form, and not on one whose form is uncertain."""
+    model = log.problem.model
+    if not model.form_scale or model.directions:
+        return ()
+    products, columns, groups = _of_typical_size(log)
+    known = [_as_known(column, model) for column in columns]
+    weak = not_testable(products, columns, groups, TESTABLE + usual_gain(model))
+    return tuple(sorted({*weak} - {*not_testable(products, known, groups)}))
+
+
+def _as_known(column: Regressor, model: ShipModel) -> Regressor:
+    """A column of a number that is known within its tolerance, whatever the form says."""
+    path = next(iter(column.changes))
+    if path not in form_sizes(model) or column.prior != 1.0:
+        return column
+    return replace(column, prior=model.tolerances.get(path, 0.0) / model.uncertainties[path])
+
+
+def _of_typical_size(log: JudgedLog) -> tuple[np.ndarray, list[Regressor], list[tuple[Hypothesis, list[int]]]]:
+    """Inner products of a log, its known numbers and every cause of typical size, as `not_testable` takes them."""
+    problem, columns, groups = log.problem, list(without_causes(log.fits).columns), []
     for hypothesis in problem.hypotheses:
         for group in screening_regressors(hypothesis):
             groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
             columns.extend(group)
     products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
-    weak = not_testable(products, columns, groups, TESTABLE + usual_gain(problem.model))
-    clock = () if is_testable(problem) else ("clock",)
-    identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
-    everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
-    return tuple(sorted({*weak, *clock, *(everywhere - identifiable)}))
+    return products, columns, groups
 
 
 def not_testable(

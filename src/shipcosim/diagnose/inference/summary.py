@@ -11,13 +11,18 @@ from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.verdict import gained
+from shipcosim.diagnose.result import FormNumber, LoadForm
+from shipcosim.diagnose.ship.form import form_functions, form_sizes
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+    from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.stages import JudgedLog
 
-__all__ = ["LAGS", "CauseGain", "Evidence", "SetEvidence", "SizeEstimate", "evidence_of", "whiteness"]
+__all__ = ["LAGS", "CauseGain", "Evidence", "SetEvidence", "SizeEstimate", "evidence_of", "load_form", "whiteness"]
 
+MOVED = 2.0
+"""Standard deviations, before and after the log, by which a number of the form has moved. [1]"""
 LAGS = 30
 """Lags of the autocorrelation of the innovations. [rows]"""
 
@@ -145,3 +150,34 @@ def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) 
             power = np.nanmean(values**2)
             found[:, channel] = [np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)]
     return found
+
+
+def load_form(log: JudgedLog) -> LoadForm | None:
+    """How far the form of the ship's loads differs from the model's, beside the causes of the verdict.
+
+    None where it is the model's, or where a reference says what is known of it.
+    """
+    model, fit = log.problem.model, log.fit
+    if not model.form_scale or model.directions:
+        return None
+    sizes, theta, std = form_sizes(model), fit.theta, np.sqrt(np.diag(fit.covariance))
+    found, squares = [], {}
+    for column, share, deviation in zip(fit.columns, theta, std, strict=True):
+        path, size = next(iter(column.changes.items()))
+        if len(column.changes) > 1 or path not in sizes or column.prior != 1.0 or path in fit.values:
+            continue
+        squares[path] = size**2 * (share**2 + deviation**2)
+        if abs(share) > max(1.0, MOVED * deviation):
+            found.append(
+                (abs(share) / deviation, _form_number(log.problem.model, path, size * share, size * deviation))
+            )
+    differs = {
+        name: float(np.sqrt(sum(share * squares.get(path, 0.0) for path, share in numbers.items())))
+        for name, numbers in form_functions(model).items()
+    }
+    return LoadForm(model.form_scale, differs, tuple(one for _, one in sorted(found, key=lambda pair: -pair[0])))
+
+
+def _form_number(model: ShipModel, path: str, off: float, std: float) -> FormNumber:
+    about, value = model.about(path), float(model.get(path))
+    return FormNumber(path, about["description"], value, float(value + off), float(std), about["unit"])

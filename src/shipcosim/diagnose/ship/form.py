@@ -27,6 +27,7 @@ __all__ = [
     "ThrusterForm",
     "WindForm",
     "cross_flow_form",
+    "form_functions",
     "form_of",
     "form_sizes",
     "thrust_kept",
@@ -142,6 +143,34 @@ def form_sizes(model: ShipModel) -> dict[str, float]:
         found[f"{name}.thrust_loss"] = DEDUCTION
         lost = LOST if "azimuth" in model.drives(name) else {}
         found |= {f"{form_of(name)}.{where}": size for where, size in (lost | {"under_way": UNDER_WAY}).items()}
+    return found
+
+
+def form_functions(model: ShipModel) -> dict[str, dict[str, float]]:
+    """Functions of a ship's form in words, each with its numbers and how much one adds to its mean square.
+
+    Parameters
+    ----------
+    model : ShipModel
+
+    Returns
+    -------
+    dict of str to dict of str to float
+        By function and ``place.name``: mean over the hull or round the circle of the squared share of the model's
+        function that the number makes, over the squared number. [1 over the number's unit squared]
+    """
+    level, hull = abs(model.parts["hull"].cross_flow_drag), f"{model.vessel}."
+    found = {"drag across the hull, along her length": {f"hull_form.cross_flow_{k}": 1 / (2 * k + 1) for k in _DEGREES}}
+    if level:
+        found["drag across the hull, along her length"] |= {f"{hull}cross_flow_drag": 1.0 / level**2}
+    found["wind load over the angle"] = {f"{hull}wind_load_scale": 1.0} | {
+        f"wind_form.{axis}_{name}": (0.5 if order else 1.0) / 3.0 for axis in "XYN" for name, order, _ in _harmonics()
+    }
+    for name in model.thrusters:
+        if "azimuth" in model.drives(name):
+            mean = {"across": 3 / 8, "to_starboard": 1 / 2, "astern": 3 / 8}
+            of_form = {f"{form_of(name)}.{where}": share for where, share in mean.items()}
+            found[f"thrust of {name}, over its direction"] = {f"{name}.thrust_loss": 1.0} | of_form
     return found
 
 

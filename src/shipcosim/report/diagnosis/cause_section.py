@@ -11,6 +11,7 @@ from shipcosim.report.diagnosis.cause_figures import (
     unmodelled_figure,
     whiteness_figures,
 )
+from shipcosim.report.diagnosis.form_section import FormSection, form_section
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
 from shipcosim.report.diagnosis.testability import not_testable_rows
 from shipcosim.report.diagnosis.words import estimate_rows, size_rows, title
@@ -48,6 +49,8 @@ class CauseSection:
     sail : Sail, optional
     not_testable : Table
         Causes that this log could not have shown, and why.
+    form : FormSection, optional
+        How far the form of her loads differs, where it does.
     """
 
     found: str
@@ -62,6 +65,7 @@ class CauseSection:
     is_unknown: bool
     sail: Sail | None
     not_testable: Table
+    form: FormSection | None
 
 
 def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
@@ -70,7 +74,8 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
     named = {(f.cause, f.component) for f in diagnosis.findings}
     alike = diagnosis.indistinguishable
     others = [c for c in diagnosis.candidates if (c.cause, c.component) not in named and c not in alike]
-    weak = not_testable_rows(diagnosis.not_testable, diagnosis.causes, diagnosis.facts)
+    hidden = diagnosis.form.hides if diagnosis.form else ()
+    weak = not_testable_rows(diagnosis.not_testable, diagnosis.causes, diagnosis.facts, hidden)
     figures = [evidence_figure(evidence)] if evidence.sets else []
     return CauseSection(
         found=_found(diagnosis),
@@ -85,6 +90,7 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
         is_unknown=diagnosis.verdict == "unknown",
         sail=_sail(diagnosis),
         not_testable=Table(tuple(weak), head=("Cause", "What it would be", "Why not")),
+        form=form_section(diagnosis.form) if diagnosis.form else None,
     )
 
 

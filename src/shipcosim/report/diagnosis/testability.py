@@ -1,11 +1,15 @@
 """Why a log could not have shown some causes: what it has too little of."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from shipcosim.diagnose.hypotheses.cause import Cause, placeholders
 from shipcosim.report.diagnosis.words import title
 from shipcosim.report.theme.numbers import plain
 
+BY_FORM = (
+    "loads of another form than the model's would do the same, and hers have another form; a log of the ship when she "
+    "was well, as a reference, tells"
+)
 UNITS = {
     **{"speed": "m/s", "surge": "m/s", "sway": "m/s", "wind_speed": "m/s"},
     **{"surge_acceleration": "m/s²", "yaw_rate": "°/s"},
@@ -13,7 +17,10 @@ UNITS = {
 
 
 def not_testable_rows(
-    names: Sequence[str], causes: Mapping[str, Cause], facts: Mapping[str, float | None]
+    names: Sequence[str],
+    causes: Mapping[str, Cause],
+    facts: Mapping[str, float | None],
+    hidden: Collection[str] = (),
 ) -> list[tuple[str, str, str]]:
     """Why this log could not have shown some causes: the cause, and what the log has of what would show it.
 
@@ -24,11 +31,14 @@ def not_testable_rows(
     causes : dict of str to Cause
     facts : dict of str to float or None
         What the log has, as from `log_facts`.
+    hidden : collection of str
+        Causes that another form of the ship's loads hides.
     """
     texts, rows = _texts(facts), []
     for name in names:
         cause = causes.get(name)
         reason = f"{_reason(cause, texts)}an effect of typical size would not have stood out"
+        reason = BY_FORM if name in hidden else reason
         rows.append((title(name), cause.sentence if cause else "", reason))
     return rows
 

@@ -1,0 +1,36 @@
+"""How far the form of the ship's loads differs from the model's, in words."""
+
+from dataclasses import dataclass
+
+from shipcosim.diagnose.result import FormNumber, LoadForm
+from shipcosim.report.theme.numbers import percent, plain
+from shipcosim.report.theme.views import Table
+
+SCALES = {0.5: "half as much as", 1.0: "about as much as", 2.0: "about twice as much as"}
+
+
+@dataclass(frozen=True)
+class FormSection:
+    """How far the loads differ in form: in a sentence, by function, and by the numbers that differ for sure."""
+
+    sentence: str
+    functions: Table
+    numbers: Table
+
+
+def form_section(form: LoadForm) -> FormSection:
+    """The part of the page as the template fills it in."""
+    scale = SCALES.get(form.scale, f"{form.scale:g} times")
+    functions = tuple((name[0].upper() + name[1:], percent(size)) for name, size in form.differs.items())
+    head = ("Number", "In the model", "As logged", "Std", "Unit")
+    return FormSection(
+        f"Over place, angle and speed the loads on this ship have another shape than the model's. They differ {scale} "
+        "ships usually do from their models. Causes were sought beside that.",
+        Table(functions, head=("Load", "Differs from the model's by about"), tight=(1,)),
+        Table(tuple(map(_row, form.numbers)), head, tight=(1, 2, 3, 4)),
+    )
+
+
+def _row(number: FormNumber) -> tuple[str, str, str, str, str]:
+    what, unit = number.what[0].upper() + number.what[1:], "" if number.unit == "1" else number.unit
+    return what, plain(number.model), plain(number.estimate), f"± {plain(number.std, 2)}", unit
