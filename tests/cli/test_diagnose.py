@@ -82,6 +82,22 @@ class Discrepancy(Strict):
     share: float
 
 
+class FormNumber(Strict):
+    number: str
+    what: str
+    model: float
+    estimate: float
+    std: float
+    unit: str
+
+
+class LoadForm(Strict):
+    scale: float
+    differs: dict[str, float]
+    numbers: list[FormNumber]
+    hides: list[str]
+
+
 class Schema(Strict):
     """diagnosis.json, version 1."""
 
@@ -89,6 +105,7 @@ class Schema(Strict):
     verdict: Literal["consistent", "named", "ambiguous", "unknown"]
     findings: list[Finding]
     discrepancies: list[Discrepancy]
+    form: LoadForm | None
     candidates: list[Candidate]
     indistinguishable: list[Candidate]
     not_testable: list[str]
@@ -102,7 +119,7 @@ EXAMPLE = """{
   "findings": [{"cause": "current", "component": null, "kind": "physics", "probability": 0.97, "parameters":
     {"north": {"estimate": 0.21, "std": 0.02, "unit": "m/s"},
      "east": {"estimate": -0.10, "std": 0.02, "unit": "m/s"}}}],
-  "discrepancies": [], "candidates": [{"cause": "current", "component": null, "probability": 0.97}],
+  "discrepancies": [], "form": null, "candidates": [{"cause": "current", "component": null, "probability": 0.97}],
   "indistinguishable": [], "not_testable": ["mass", "reverse_loss"], "prescription": null,
   "baseline": {"horizon_s": [10, 30, 60], "position_error_m": [0.3, 1.1, 3.2], "heading_error_deg": [0.2, 0.7, 1.6]},
   "gain": {"horizon_s": 60, "before_m": 3.2, "bias_observer_m": 1.9, "after_m": 0.9, "noise_floor_m": 0.6,

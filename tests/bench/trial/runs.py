@@ -15,13 +15,15 @@ from pathlib import Path
 import shipcosim
 from trial.poor import poorer
 from trial.scoring import DATA_FAULTS
-from trial.tools import twin_of
-from truth import draw_many
+from trial.tools import reference_of, twin_of
+from truth import draw, draw_many
 from truth.cases import CAUSES
 
 KINDS = ("trial", "work", "hold")
 TOOL = "trial.tools:ours"
+REFERENCED = ("form_reference", "healthy_form_reference")  # sets with a sea trial of another day, the ship well
 TOOLS = {"drift": "trial.tools:with_drift"}  # of the sets that others are for
+TOOLS |= dict.fromkeys(REFERENCED, "trial.tools:with_reference_log")
 BATCH = 16
 DRIFT = {"legs": [[30, 0, 0, 0], [300, 0, 0, 0]], "free": [[30, 330]]}  # five minutes without power
 ALIKE = ("current", "tow", "wave_drift", "thrust_loss", "rpm_offset", "azimuth_offset", "reverse_loss", "wind_scale")
@@ -58,6 +60,8 @@ SETS = {
     "healthy_mismatch": {"causes": 0, "mismatch": 2.0},
     "healthy_rough": {"causes": 0, "rough": True},
     "healthy_form": {"causes": 0, "form": 1.0},
+    "form_reference": {"form": 1.0},
+    "healthy_form_reference": {"causes": 0, "form": 1.0},
     "drift": {"among": [cause for cause in CAUSES if cause not in DATA_FAULTS], "after": DRIFT},
     **{name: {"poor": poor} for name, poor in POOR.items()},
     **{f"healthy_{name}": {"causes": 0, "poor": poor} for name, poor in POOR.items()},
@@ -143,8 +147,10 @@ def answered(cases, *, tool=TOOL, pool=None):
         paths = [str(Path(folder) / f"{case.kind}-{name}-{case.seed}.csv") for case, name, _ in cases]
         for (case, name, _), path in zip(cases, paths, strict=True):
             case.save(path)
-            if name in TOOLS:
+            if name == "drift":
                 case.twin().save(twin_of(path))
+            if name in REFERENCED:
+                reference_log(case).save(reference_of(path))
         each = pool.map if pool else map
         outcomes = each(outcome_of, paths, itertools.repeat(tool))
         for (case, name, options), outcome in zip(cases, outcomes, strict=True):
@@ -159,6 +165,11 @@ def answered(cases, *, tool=TOOL, pool=None):
                 "tool": tool,
                 **outcome,
             }
+
+
+def reference_log(case):
+    """A sea trial of the ship of a log on another day, on which she is well."""
+    return draw("trial", case.seed, causes=0, form=SETS[REFERENCED[0]]["form"], day=1, ship=case.kind)
 
 
 def outcome_of(path, tool=TOOL):

@@ -240,6 +240,11 @@ ROWS = (
     Row("another form: right", "form", ("60", "60", ""), _right),
     Row("another form: right when it names one", "form", ("95", "95", ""), _precise),
     Row("another form: false alarm on healthy data", "healthy_form", ("5", "5", ""), _alarm),
+    Row("another form, with a reference: right", "form_reference", ("85", "85", ""), _right),
+    Row("another form, with a reference: right when it names one", "form_reference", ("98", "98", ""), _precise),
+    Row(
+        "another form, with a reference: false alarm on healthy data", "healthy_form_reference", ("2", "2", ""), _alarm
+    ),
     Row("a wrong clock beside a cause: both named, nothing else", "clock", ("86", "60", ""), _right),
     Row("the same, a wrong name", "clock", ("", "", ""), _wrong),
     Row("a few minutes in which causes look alike: ambiguous", "alike", ("", "", ""), _ambiguous),

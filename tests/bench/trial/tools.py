@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,28 @@ def ours(path):
     from shipcosim.diagnose.pipeline import find_causes
 
     return find_causes(path, system())
+
+
+def with_reference_log(path):
+    """The diagnosis of a log against the ship as she was on another day, whose log lies beside it; see `reference_of`.
+
+    Where that log makes no reference the log is diagnosed without one.
+    """
+    from shipcosim.diagnose.calibration_pipeline import calibrate
+    from shipcosim.diagnose.pipeline import find_causes, given_system
+    from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
+
+    ship = calibrate([reference_of(path)], system())
+    if ship.refusals:
+        return find_causes(path, system())
+    with TemporaryDirectory() as folder:
+        given = with_calibrated_numbers(given_system(system()), ship.reference, folder)
+        return find_causes(path, given.given, reference=ship.reference)
+
+
+def reference_of(path):
+    """Where the log of another day of the same ship is."""
+    return Path(path).with_suffix(".reference.csv")
 
 
 @dataclass(frozen=True)
