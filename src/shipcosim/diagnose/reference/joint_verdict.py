@@ -14,10 +14,9 @@ from shipcosim.diagnose.inference.screening import gains, screening_regressors
 from shipcosim.diagnose.inference.search import explain, without_causes
 from shipcosim.diagnose.inference.thresholds import FAR_ABOVE_NULL, NULL_GAIN_UNKNOWN, NULL_GAIN_WITHOUT_WIND
 from shipcosim.diagnose.inference.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
-from shipcosim.diagnose.inference.verdict import Judgement, gained, judge
+from shipcosim.diagnose.inference.verdict import Judgement, gained, judge, usual_gain
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly, screening_layout
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
-from shipcosim.diagnose.ship.model import ANY_CAUSE
 
 __all__ = ["JointVerdict", "judged_jointly", "untestable_jointly"]
 
@@ -67,7 +66,7 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
         return {kind: gain for kind, gain in known[fit].items() if kind not in FORCES or not silent}
 
     models = [problem.model for problem in logs.problems.values()]
-    usual = max(model.ordinary_errors.get(ANY_CAUSE, 0.0) for model in models) + NULL_GAIN_WITHOUT_WIND * silent
+    usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent
     null = {one.label: usual for one in logs.hypotheses}
     judgement = judge(fits, unmodelled_beside, null)
     if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
