@@ -81,7 +81,10 @@ def print_calibration(ship: CalibratedShip, folder: Path, as_json: bool) -> None
         ("Why", ship.refusals),
         ("Remarks", ship.remarks),
         ("Moved most", ["  ".join(row) for row in moved_rows(ship)[:8]]),
-        ("Position error on rows that were not fitted", ["  ".join(row) for row in error_rows(ship)]),
+        (
+            "Position error that remains: as it is, calibrated without this log, with it",
+            ["  ".join(row) for row in error_rows(ship)],
+        ),
     ):
         if lines:
             console.print()

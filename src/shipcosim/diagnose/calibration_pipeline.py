@@ -17,22 +17,20 @@ from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import Progress, given_system, read_measurements
 from shipcosim.diagnose.reference.calibration import (
-    Calibration,
     calibrated_to,
     causes_beside,
     numbers_of,
     reference_of,
 )
-from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
+from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.parameter_set import FILE as SET
 from shipcosim.diagnose.reference.parameter_set import write_parameter_set
 from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
+from shipcosim.diagnose.reference.remaining import RemainingErrors, remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
 from shipcosim.diagnose.result import Finding
 from shipcosim.diagnose.stages import Identification
-from shipcosim.diagnose.validation.gain import compare, rms
-from shipcosim.diagnose.validation.split import HORIZONS, first_rows, trained
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -56,9 +54,8 @@ class CalibratedLog:
         Of the log, repaired before.
     weather : dict of str to float
         Current and forces of its day that were fitted beside the ship: numbers in SI, by ``place.name``.
-    errors : dict of str to tuple of float, or None
-        Root mean square errors of open-loop predictions on rows that nothing was fitted on, after `HORIZONS`: position
-        [m] before, after calibration and with all rows fitted; None where the log is too short.
+    errors : RemainingErrors or None
+        Of the calibrated ship; None where no stretch of the log is whole.
     unmodelled : dict of str to float
         Gain of unmodelled errors that are left, by kind. [nats]
     """
@@ -66,7 +63,7 @@ class CalibratedLog:
     name: str
     faults: tuple[Finding, ...]
     weather: dict[str, float]
-    errors: dict[str, tuple[float, ...]] | None
+    errors: RemainingErrors | None
     unmodelled: dict[str, float]
 
 
@@ -139,14 +136,14 @@ def calibrate(
         for name, log in zip(names, logs, strict=True):
             say(f"is {name} right?")
             found[name] = identified_log(log, given, channels, causes)
-        _check_gross(found)
+        _check_usable(found)
         several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
         say("fitting the ship's numbers")
         fitted = calibrated_to(several)
         say("is she well?")
         suspects = causes_beside(fitted)
         say("what does the calibrated ship get wrong?")
-        errors = _held_out(fitted)
+        errors = remaining_errors(fitted)
     told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
     ship = next(iter(found.values())).ship
     ordinary = {kind: max(one[kind] for one in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG}
@@ -164,20 +161,19 @@ def calibrate(
     return result
 
 
-def _check_gross(found: dict[str, Identification]) -> None:
-    """Raise ShipcosimError where a system is wrong by far: it is to be mended, not calibrated."""
-    problems = [
-        Problem(
-            name, f"{finding.label} stands beyond doubt: the system is wrong by far, or the ship is not well.", _MEND
-        )
-        for name, one in found.items()
-        for finding in (one.comparison.findings if one.comparison else ())
-    ]
+def _check_usable(found: dict[str, Identification]) -> None:
+    """Raise ShipcosimError where a log cannot show a ship that is well, or a system is wrong by far."""
+    problems = []
+    for name, one in found.items():
+        for fault in (fault for fault in one.faults if fault.alternatives):
+            problems.append(Problem(name, f"{fault.sentence}.", "Correct the channel file, and calibrate again."))
+        comparison = one.comparison
+        problems += [Problem(name, why) for why in (comparison.obstacles if comparison else ())]
+        for finding in comparison.findings if comparison else ():
+            what = f"{finding.label} stands beyond doubt: the system is wrong by far, or the ship is not well."
+            problems.append(Problem(name, what, "Diagnose the log, and calibrate the extended system."))
     if problems:
         raise ShipcosimError(problems)
-
-
-_MEND = "Diagnose the log, and calibrate the extended system."
 
 
 def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
@@ -215,23 +211,6 @@ def _about(name, one):
 def _weather(fit: JointFit, name: str) -> dict[str, float]:
     part = fit.parts[name]
     return {path: float(value) for path, value in part.values.items() if path.startswith("water.")}
-
-
-def _held_out(found: Calibration) -> dict[str, dict[str, tuple[float, ...]] | None]:
-    """Errors on rows that nothing was fitted on, by log: before and after calibration, and with all rows fitted."""
-    logs = found.logs
-    rows = {name: first_rows(problem.record) for name, problem in logs.problems.items()}
-    early = SeveralLogs({name: trained(problem, rows[name]) for name, problem in logs.problems.items()}, is_well=True)
-    part = fitted_jointly(early, found.fit.hypotheses, found.fit.values, scale=found.scale, about_all=True)
-    errors = {}
-    for name, problem in logs.problems.items():
-        compared = compare(problem, found.fit.parts[name], train=rows[name], part=part.parts[name])
-        models = {"before": "plain", "after": "calibrated", "floor": "floor"}
-        errors[name] = compared and {
-            label: tuple(rms(compared.errors, "position", model, horizon) for horizon in HORIZONS)
-            for label, model in models.items()
-        }
-    return errors
 
 
 def _judged(reference, found, suspects):

@@ -1,11 +1,16 @@
 """From logs to the files of a calibration, and from these to what has changed since."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
-from shipcosim.diagnose.calibration_pipeline import calibrate, log_names
+from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names
 from shipcosim.diagnose.pipeline import read_measurements
+from shipcosim.diagnose.reference.remaining import remaining_errors
+from shipcosim.diagnose.result import Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.report.calibration.page import write_calibration
 
@@ -27,10 +32,31 @@ def test_calibration_leaves_set_reference_and_page(made):
     assert "vessel.cross_flow_drag" in (folder / "report.html").read_text(encoding="utf-8")
 
 
-def test_rows_that_were_not_fitted_are_predicted_better(made):
+def test_a_log_is_predicted_better_by_numbers_that_the_other_log_gives(made):
     short, longer = (log.errors for log in made[0].logs)
-    assert short is None and longer is not None
-    assert longer["after"][-1] < 0.8 * longer["before"][-1]
+    assert (short.fitted_on, longer.fitted_on) == (("log-2",), ("log-1",))
+    assert longer.after[-1] < 0.8 * longer.before[-1] and short.after[-1] < short.before[-1]
+    assert longer.floor[-1] < 1.1 * longer.after[-1]
+
+
+def test_a_single_log_is_judged_on_its_last_part():
+    (errors,) = remaining_errors(ships.calibration()).values()
+    assert errors.fitted_on == () and len(errors.horizon) == 3
+    assert all(np.isfinite(sizes).all() for sizes in (errors.before, errors.after, errors.floor))
+
+
+def test_logs_that_cannot_show_a_ship_that_is_well_are_refused_with_why():
+    misread = Finding("frame", kind="data", channels=("north",), note="one", alternatives=("two",))
+    gross = Finding("thrust_to_inertia")
+    logs = {
+        "open": SimpleNamespace(faults=(misread,), comparison=None),
+        "poor": SimpleNamespace(faults=(), comparison=SimpleNamespace(obstacles=("Rows 9 s apart.",), findings=())),
+        "gross": SimpleNamespace(faults=(), comparison=SimpleNamespace(obstacles=(), findings=(gross,))),
+    }
+    with pytest.raises(ShipcosimError) as raised:
+        _check_usable(logs)
+    assert [problem.where for problem in raised.value.problems] == ["open", "poor", "gross"]
+    assert "the log does not tell" in str(raised.value) and "beyond doubt" in str(raised.value)
 
 
 def test_a_log_is_held_against_the_ship_of_the_reference(made):

@@ -4,7 +4,6 @@ import os
 from dataclasses import dataclass
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
-from shipcosim.diagnose.validation.split import HORIZONS
 from shipcosim.report.calibration.words import error_rows, log_rows, moved, moved_rows, sentence, untold
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars, rounded
@@ -80,7 +79,9 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         errors=errors,
         figures=(*what, *errors),
         numbers=Table(tuple(moved_rows(ship)), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)),
-        error_table=Table(tuple(error_rows(ship)), ("Log", "After", "Before", "Calibrated", "All rows fitted"), (1,)),
+        error_table=Table(
+            tuple(error_rows(ship)), ("Log", "After", "As it is", "Calibrated", "This log fitted too", ""), (1, 2, 3, 4)
+        ),
         logs=Table(tuple(log_rows(ship)), ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left")),
         untold=untold(ship),
     )
@@ -91,11 +92,13 @@ def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
     most = max(ship.reference.numbers, key=lambda number: abs(moved(number)))
     found = [KeyFigure(f"{moved(most):+.1f}".replace("-", "−"), f"tolerances: most that a number moved, {most.name}")]
     if errors:
-        worst = max(errors, key=lambda one: one["after"][-1])
-        labels = {"before": "before", "after": "calibrated", "floor": "with all rows fitted"}
+        worst = max(errors, key=lambda one: one.after[-1])
+        by = "by the other logs" if worst.fitted_on else "by the first part of the log"
+        after = f"position error after {worst.horizon[-1]:.2g} s"
         found += [
-            KeyFigure(metres(worst[label][-1]), f"position error after {HORIZONS[-1]:g} s, held-out rows, {text}")
-            for label, text in labels.items()
+            KeyFigure(metres(worst.before[-1]), f"{after}, as the system is"),
+            KeyFigure(metres(worst.after[-1]), f"the same, calibrated {by}: the error that remains"),
+            KeyFigure(metres(worst.floor[-1]), "the same, with this log fitted too"),
         ]
     return tuple(found)
 
@@ -131,20 +134,17 @@ def _moved_figure(ship: CalibratedShip) -> Figure:
 
 def _error_figures(ship: CalibratedShip) -> tuple[Figure, ...]:
     """Errors of each log over the horizons."""
-    looks = {
-        "before": ("before", palette.VERMILLION),
-        "after": ("calibrated", palette.BLUE),
-        "floor": ("all rows fitted", palette.FAINT),
-    }
     found = []
     for log in ship.logs:
-        if log.errors:
-            horizons = [f"{horizon:g} s" for horizon in HORIZONS]
-            traces = tuple(
-                bars(name, horizons, log.errors[label], colour, "m") for label, (name, colour) in looks.items()
-            )
-            note = (
-                "Root mean square over open-loop predictions on the last third of the log, which nothing was fitted on."
-            )
+        if one := log.errors:
+            horizons = [f"{horizon:.2g} s" for horizon in one.horizon]
+            looks = {
+                "as the system is": (one.before, palette.VERMILLION),
+                "calibrated": (one.after, palette.BLUE),
+                "with this log fitted too": (one.floor, palette.FAINT),
+            }
+            traces = tuple(bars(name, horizons, sizes, colour, "m") for name, (sizes, colour) in looks.items())
+            by = f"Calibrated by {', '.join(one.fitted_on)}" if one.fitted_on else "Calibrated by its first two thirds"
+            note = f"{by}; root mean square over open-loop predictions, noise of the log and all."
             found.append(Figure(f"Position error, {log.name}", "m", traces, {"barmode": "group"}, note))
     return tuple(found)

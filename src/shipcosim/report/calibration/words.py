@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedLog, CalibratedShip
 from shipcosim.diagnose.reference.reference import KnownNumber
-from shipcosim.diagnose.validation.split import HORIZONS
+from shipcosim.diagnose.reference.remaining import RemainingErrors
 from shipcosim.report.theme.numbers import metres, plain
 
 __all__ = ["error_rows", "log_rows", "moved", "moved_rows", "sentence", "untold"]
@@ -19,10 +19,11 @@ def sentence(ship: CalibratedShip) -> str:
     errors = [log.errors for log in ship.logs if log.errors]
     text = f"{len(ship.reference.numbers)} numbers of the ship are fitted to {logs}."
     if errors:
-        before, after = (max(one[label][-1] for one in errors) for label in ("before", "after"))
+        worst = max(errors, key=lambda one: one.after[-1])
+        judged = f"by the other log{'s' * (count > 2)}" if worst.fitted_on else "by its first part"
         text += (
-            f" On rows that were not fitted she is {metres(before)} off her log after {HORIZONS[-1]:g} s before, "
-            f"and {metres(after)} after calibration{', in the worst log' if len(errors) > 1 else ''}."
+            f" After {worst.horizon[-1]:.2g} s the simulation was {metres(worst.before[-1])} off the log, and is "
+            f"{metres(worst.after[-1])} off it calibrated {judged}{', in the worst log' if len(errors) > 1 else ''}."
         )
     return text
 
@@ -49,13 +50,18 @@ def _row(number: KnownNumber) -> tuple[str, ...]:
 
 
 def error_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
-    """Errors by log and horizon: name, horizon, before, after, with all rows fitted."""
+    """Errors by log and horizon: name, horizon, before, calibrated, with this log fitted too, and what judged it."""
     return [
-        (log.name, f"{horizon:g} s", *(metres(log.errors[label][k]) for label in ("before", "after", "floor")))
+        (log.name, f"{horizon:.2g} s", *map(metres, (one.before[k], one.after[k], one.floor[k])), _judged_by(one))
         for log in ship.logs
-        if log.errors
-        for k, horizon in enumerate(HORIZONS)
+        for one in [log.errors]
+        if one
+        for k, horizon in enumerate(one.horizon)
     ]
+
+
+def _judged_by(one: RemainingErrors) -> str:
+    return f"calibrated by {', '.join(one.fitted_on)}" if one.fitted_on else "calibrated by its first part"
 
 
 def log_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:

@@ -1,0 +1,112 @@
+"""What a calibrated ship still gets wrong, in each log: by numbers that this log did not give."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.diagnose.reference.calibration import Calibration, numbers_of
+from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
+from shipcosim.diagnose.reference.several_logs import SeveralLogs
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.validation.gain import calibrated
+from shipcosim.diagnose.validation.split import first_rows, trained
+from shipcosim.diagnose.validation.tracks import errors_of, fitting_horizon, tracks_by_models
+from shipcosim.errors import ShipcosimError
+
+__all__ = ["RemainingErrors", "remaining_errors"]
+
+
+@dataclass(frozen=True)
+class RemainingErrors:
+    """Position errors of open-loop predictions of one log, noise of the log and all.
+
+    Attributes
+    ----------
+    horizon : tuple of float
+        Lengths of the predictions, that fit the craft's own time scales. [s]
+    before, after, floor : tuple of float
+        Root mean squares after each: by the system, by the calibrated ship, and by her fitted to this log too. [m]
+    fitted_on : tuple of str
+        Logs that the calibrated ship has her numbers from; empty where it is the first part of this one, and the rest
+        of it is judged.
+    """
+
+    horizon: tuple[float, ...]
+    before: tuple[float, ...]
+    after: tuple[float, ...]
+    floor: tuple[float, ...]
+    fitted_on: tuple[str, ...]
+
+
+def remaining_errors(found: Calibration) -> dict[str, RemainingErrors | None]:
+    """The error that remains in each log of a calibration.
+
+    Each log is judged by the numbers that the other logs give; a single one by those of its first part. The weather is
+    that which was fitted in the log itself.
+
+    Parameters
+    ----------
+    found : Calibration
+
+    Returns
+    -------
+    dict of str to RemainingErrors or None
+        By name of the log; None where no stretch of it is whole.
+    """
+    problems = found.logs.problems
+    if len(problems) == 1:
+        return {name: _of_last_rows(found, name) for name in problems}
+    return {name: _by_others(found, name) for name in problems}
+
+
+def _by_others(found: Calibration, name: str) -> RemainingErrors | None:
+    others = {other: problem for other, problem in found.logs.problems.items() if other != name}
+    weather = [one for one in found.fit.hypotheses if one.component in others]
+    values = {path: v for path, v in found.fit.values.items() if path.partition("|")[0] in others}
+    logs = SeveralLogs(others, is_well=True)
+    fit = fitted_jointly(logs, weather, values, scale=found.scale, about_all=True)
+    return _errors(found, name, found.logs.problems[name].record, _with_numbers(found, name, fit), tuple(others))
+
+
+def _of_last_rows(found: Calibration, name: str) -> RemainingErrors | None:
+    problem = found.logs.problems[name]
+    rows = first_rows(problem.record)
+    early = SeveralLogs({name: trained(problem, rows)}, is_well=True)
+    fit = fitted_jointly(early, found.fit.hypotheses, found.fit.values, scale=found.scale, about_all=True)
+    return _errors(found, name, _rows_of(problem.record, ~rows), _with_numbers(found, name, fit), ())
+
+
+def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
+    """The ship of a log with the numbers of a fit to other rows, in the weather that was fitted in the log itself."""
+    model, part = found.logs.problems[name].model, found.fit.parts[name]
+    names, _, moved, _ = numbers_of(fit)
+    of_ship = {path: model.get(path) + by for path, by in zip(names, moved, strict=True) if model.has(path)}
+    of_day = {path: value for path, value in part.values.items() if ShipModel.is_of_day(path)}
+    return model.with_values(of_ship | of_day)
+
+
+def _errors(found, name, record, after, others) -> RemainingErrors | None:
+    """Errors on a record by the system, by `after`, and by the ship as all logs have her."""
+    model, part = found.logs.problems[name].model, found.fit.parts[name]
+    models = {"before": model, "after": after, "floor": calibrated(part)}
+    try:
+        errors = errors_of(tracks_by_models(record, models, fitting_horizon(record, model)))
+    except ShipcosimError:
+        return None
+    of = {one: tuple(map(float, errors["position"].sel(simulation=one).values)) for one in models}
+    return RemainingErrors(tuple(map(float, errors["after"].values)), of["before"], of["after"], of["floor"], others)
+
+
+def _rows_of(record: Record, rows: np.ndarray) -> Record:
+    """Some rows of a record that follow each other."""
+    return replace(
+        record,
+        time=record.time[rows],
+        measured=record.measured[rows],
+        units={name: tuple(series[rows] for series in pair) for name, pair in record.units.items()},
+        wind=None if record.wind is None else tuple(series[rows] for series in record.wind),
+        known=record.known[rows],
+    )
