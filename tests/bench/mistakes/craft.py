@@ -7,7 +7,7 @@ STYLES = ("spin", "circles", "zig-zag", "wander", "stop and go")
 METRES_PER_DEGREE = 111195.0
 
 
-def boat(seed, style=None, step=None, minutes=None):
+def boat(seed, style=None, step=None, minutes=None, noise=1.0):
     """Channels of a log, a dict of (n,) arrays by role in the roles' units, with `time`; half of them have a wind.
 
     Parameters
@@ -19,6 +19,8 @@ def boat(seed, style=None, step=None, minutes=None):
         Time from row to row. [s]
     minutes : float, optional
         Length of the log.
+    noise : float
+        Factor on the noise of all sensors; 0 is the same log without noise and at full resolution.
     """
     rng = np.random.default_rng([seed, 88])
     style = style or str(rng.choice(STYLES))
@@ -44,7 +46,7 @@ def boat(seed, style=None, step=None, minutes=None):
         "wind_speed": np.abs(apparent)[rows],
         "wind_from": np.degrees(np.angle(apparent))[rows],
     }
-    return _as_measured(log, rng)
+    return _as_measured(log, rng, noise)
 
 
 def _orders(rng, style, time):
@@ -80,17 +82,17 @@ def _wind(rng, time):
     return mean * (1.0 + 0.2 * (gusts[0] + 1j * gusts[1]))
 
 
-def _as_measured(log, rng):
+def _as_measured(log, rng, noise):
     """The log with noise and resolution."""
     n = len(log["time"])
     spread = {"heading": rng.uniform(0.1, 1.0), "yaw_rate": rng.uniform(0.1, 1.0), "wind_from": 3.0}
     spread["surge"] = spread["sway"] = rng.uniform(0.01, 0.05)
     spread["north"] = spread["east"] = rng.choice([0.02, 0.3])
-    log = log | {role: log[role] + std * rng.normal(size=n) for role, std in spread.items()}
-    log["wind_speed"] = log["wind_speed"] * np.abs(1.0 + 0.05 * rng.normal(size=n))
+    log = log | {role: log[role] + noise * std * rng.normal(size=n) for role, std in spread.items()}
+    log["wind_speed"] = log["wind_speed"] * np.abs(1.0 + noise * 0.05 * rng.normal(size=n))
     for role in ("north", "east") if rng.random() < 0.3 else ():
         grain = 1e-5 * METRES_PER_DEGREE  # position written with five decimals of a degree
-        log[role] = grain * np.round(log[role] / grain)
+        log[role] = grain * np.round(log[role] / grain) if noise else log[role]
     log["heading"], log["wind_from"] = (np.mod(log[role], 360.0) for role in ("heading", "wind_from"))
     if rng.random() < 0.5:
         log = {role: values for role, values in log.items() if not role.startswith("wind")}

@@ -22,12 +22,15 @@ class Answer:
     source, seed, mistakes, declared
         The log.
     outcome : str
-        "right": all mistakes are named and nothing else; "wrong": something else is named; "open": nothing wrong is
-        named, and readings are left open among which the right one is; "silent": nothing is said; "part": one of two.
+        "right": all mistakes that can be seen are named and nothing wrong; "wrong": something else is named; "among":
+        nothing wrong is named, and of the readings left open one is right; "beside": none of them is; "part": one of
+        two is named; "silent": nothing is said; "not visible": the same where no mistake can be seen in the log.
     said : tuple of (str, float, bool)
         Each finding in words, its probability, whether it is right; those left open are not among them.
     open : tuple of str
         What was left open, in words.
+    hidden : tuple of str
+        Mistakes that cannot be seen in the log.
     """
 
     source: str
@@ -37,6 +40,7 @@ class Answer:
     outcome: str
     said: tuple
     open: tuple[str, ...]
+    hidden: tuple[str, ...] = ()
 
 
 def as_table(log, declared):
@@ -46,8 +50,8 @@ def as_table(log, declared):
     return read_log(xarray.Dataset(columns, {"time": ("time", log["time"], {"units": units["time"]})}))
 
 
-def answered(log, source, seed, names, declared):
-    """The answer to a log with some mistakes."""
+def answered(log, source, seed, names, declared, hidden=()):
+    """The answer to a log with some mistakes, of which some cannot be seen."""
     with np.errstate(all="ignore"):
         found = examine(as_table(with_mistakes(log, names), declared))
     expected = [MISTAKES[name] for name in names]
@@ -58,17 +62,38 @@ def answered(log, source, seed, names, declared):
         (_words(finding), finding.probability, hit is not None) for finding, hit in zip(sure, hits, strict=True)
     )
     open_words = tuple(f"{_words(finding)} / {' / '.join(finding.alternatives)}" for finding in left_open)
-    return Answer(source, seed, tuple(names), declared, _outcome(expected, hits, left_open), said, open_words)
+    visible = [MISTAKES[name] for name in names if name not in hidden]
+    outcome = _outcome(expected, visible, hits, left_open)
+    return Answer(source, seed, tuple(names), declared, outcome, said, open_words, tuple(hidden))
 
 
-def _outcome(expected, hits, left_open):
+def _outcome(expected, visible, hits, left_open):
     if any(hit is None for hit in hits):
         return "wrong"
+    left = [mistake for mistake in expected if mistake not in hits]
     if left_open:
-        return "open"
-    if len({id(hit) for hit in hits}) == len(expected):
-        return "right"
+        return "among" if all(_is_among(finding, left, visible) for finding in left_open) else "beside"
+    if not any(mistake in left for mistake in visible):
+        return "right" if hits or not expected else "not visible"
     return "part" if hits else "silent"
+
+
+def _is_among(finding, left, visible):
+    """Whether a reading says all that is left, but for what cannot be seen."""
+    rights = {tuple(left), tuple(mistake for mistake in left if mistake in visible)}
+    for reading in (finding.note, *finding.alternatives):
+        said = {mistake for mistake in left if mistake.said in reading}
+        rest = reading
+        for mistake in said:
+            rest = rest.replace(mistake.said, "")
+        if said and any(said == set(right) for right in rights) and not _says_more(rest):
+            return True
+    return False
+
+
+def _says_more(rest):
+    """Whether there is more in the words of a reading than joints and the unit that was stated."""
+    return any(word in rest for word in (" has ", " have ", " is ", " are ", " must ", " pass ", " runs "))
 
 
 def _is(finding, mistake):

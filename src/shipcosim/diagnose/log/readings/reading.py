@@ -25,6 +25,7 @@ from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["explained", "is_as_labelled", "misread"]
 
+NOTHING_ELSE = "nothing else is wrong"
 DEGREE = float(np.degrees(1.0))
 
 
@@ -144,7 +145,7 @@ def _findings(readings: list[Judged], unexplained: float) -> list[Finding]:
         if set(sure) <= {change.sentence for change in one.changes}:
             rest = tuple(first[change.sentence] for change in one.changes if change.sentence not in sure)
             rests[rest] = rests.get(rest, 0.0) + one.probability
-    if unexplained + rests.get((), 0.0) > 1.0 - READING_SURE:
+    if unexplained + rests.get((), 0.0) > LEFT_OPEN:
         return found if unexplained < LEFT_OPEN else []
     return [*found, _left_open(rests)]
 
@@ -185,10 +186,10 @@ def _clock(change, readings):
 
 def _left_open(rests):
     """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
-    likely = sorted(rests.items(), key=lambda entry: -entry[1])
+    likely = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
     (first, share), others = likely[0], [rest for rest, p in likely[1:] if p > UNLIKELY_READING]
     beside = [said for change in first for said in change.or_else]
-    beside += [_words(rest) for rest in others if _words(rest) != _words(first)]
+    beside += [_words(rest) or NOTHING_ELSE for rest in others if _words(rest) != _words(first)]
     channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
     share = share / (1 + len(first[0].or_else))
     alternatives = tuple(dict.fromkeys(beside))[:MOST_ALTERNATIVES]
