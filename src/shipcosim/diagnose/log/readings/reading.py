@@ -45,6 +45,8 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
         What is sure; and what is left open, as one finding with `alternatives`.
     """
     evidence = evidence_of(log)
+    if not evidence.position and not evidence.rate:
+        return []  # what is usual alone says nothing
     readings, unexplained = judged(evidence, changes(stated))
     return _findings(readings, unexplained) if _holds_throughout(readings[0], evidence) else []
 
