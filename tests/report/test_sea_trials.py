@@ -16,7 +16,7 @@ from shipcosim.report.sea_trials.page import write_sea_trials
 
 @pytest.fixture(scope="module")
 def found():
-    """A ship slowed down by drift, in a circle to each side: causes of drag in a turn fit alike; few manoeuvres are compared."""
+    """A ship slowed down by drift, in a circle to each side: causes of drag in a turn fit alike."""
     model, shafts = twin.model(), {"port": 170.0 / 60.0, "starboard": 170.0 / 60.0}
     circles = [one for one in catalogue(model) if one.name == "turning circle with 35 deg at full speed"]
     ((_, pair),) = as_trials(circles, model, shafts, {"vessel.mmg_X_vv": -0.7})

@@ -73,8 +73,10 @@ def answered(log, model, right, truth):
 
 
 def verdict(sets, right):
-    """One word on a best set and its rivals."""
+    """One word on a best set and its rivals; silent where nothing is named and something is hidden."""
     named = [{cause.cause for cause in one.hypotheses} for one in sets]
+    if len(sets) == 1 and not named[0] and right:
+        return "silent"
     if len(sets) == 1:
         return "right" if named[0] == right else "wrong"
     return "ambiguous with the right one" if right in named else "ambiguous without it"
