@@ -122,3 +122,8 @@ def test_discrepancies_alike_are_one_with_the_range_of_their_sizes_signs_first()
     ]
     assert found[1].logs == ("a", "b") and found[1].what.estimate == pytest.approx(0.5)
     assert found[1].what.share == pytest.approx(1.6 / 3.0)
+
+
+def test_what_one_of_two_logs_shows_is_not_common():
+    late = Discrepancy("thrust acts 2 s after its command", None, None, 2.0, 0.5, "s", 0.1)
+    assert common_discrepancies({"a": [late], "b": []}) == []

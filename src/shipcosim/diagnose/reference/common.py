@@ -56,7 +56,7 @@ class Shared(Generic[_What]):
 
 
 def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Shared[Finding]]:
-    """Faults of the data that are the same, throughout, in half of the logs at least.
+    """Faults of the data that are the same, throughout, in half of the logs and two at least.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
 
 
 def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shared[Discrepancy]]:
-    """Discrepancies of half of the logs at least, signs first, then by the share of the error that they explain.
+    """Discrepancies of half of the logs and two at least, signs first, then by the share of the error that they explain.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shar
     found = [
         Shared(_ranging(list(same.values()), len(each)), tuple(same))
         for same in by_key.values()
-        if 2 * len(same) >= len(each)
+        if len(same) > 1 and 2 * len(same) >= len(each)
     ]
     return sorted(found, key=lambda one: (one.what.estimate > 0.0, -one.what.share))
 

@@ -54,7 +54,7 @@ class JointDiagnosis:
     logs : dict of str to Diagnosis
         Each log by itself: its faults, its errors, its own verdict.
     discrepancies : tuple of Shared
-        Those of half of the logs at least, largest first.
+        Those of half of the logs, two at least, largest first.
     prescription : ExperimentDesign or None
     left_out : dict of str to str
         Logs that say nothing of the ship, and why.

@@ -48,7 +48,7 @@ class JointPage(Page):
     ----------
     key_figures : tuple of KeyFigure
     discrepancies : Table
-        Those of half of the logs at least, largest first.
+        Those of half of the logs, two at least, largest first.
     next_steps, remarks : tuple of str
     causes, faults : Table
         What is common: causes with their sizes by all logs and by each, and faults of the data.
