@@ -199,7 +199,7 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
 
 
 def common_discrepancies(each: Mapping[str, Sequence[Discrepancy]]) -> list[Shared[Discrepancy]]:
-    """Discrepancies of half of the logs and two at least, signs first, then by the share of the error that they explain.
+    """Discrepancies of half of the logs and two at least: signs first, then by the share of the error they explain.
 
     Parameters
     ----------
