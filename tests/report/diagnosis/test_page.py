@@ -15,6 +15,7 @@ from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.report.diagnosis.page import render, write_diagnosis
 from shipcosim.report.diagnosis.prediction_errors import condition_table
 from shipcosim.report.diagnosis.testability import not_testable_rows
+from shipcosim.report.diagnosis.words import outcome
 from shipcosim.report.theme.numbers import metres
 
 SECTIONS = ("log", "error", "causes", "extension", "gain")
@@ -41,6 +42,9 @@ def test_form_of_the_loads_is_told_with_what_it_hides(diagnosis):
     assert "The form of her loads" in text and "14 %" in text and "1.86" in text and "± 0.070" in text
     assert text.count("would do the same, and hers have another form") == 1
     assert "The form of her loads" not in render(diagnosis)
+    healthy = replace(diagnosis, verdict="consistent", findings=(), form=form)
+    assert "where the loads may have another form" in outcome(healthy).sentence
+    assert "tolerances of the model" in outcome(replace(healthy, form=None)).sentence
 
 
 def test_ambiguous_log_shows_what_to_sail(diagnosis):

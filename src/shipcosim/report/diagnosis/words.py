@@ -103,6 +103,8 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
         return "NAMED", f"{many} not as modelled: {listed(physics)}.{log}"
     if data:
         return "NAMED", f"The log is faulty: {listed(data)}. Apart from that, simulation and log agree."
+    if diagnosis.form:
+        return "CONSISTENT", "Simulation and log agree, where the loads may have another form than the model's."
     return "CONSISTENT", "Simulation and log agree, within noise and the tolerances of the model."
 
 
