@@ -11,6 +11,7 @@ from shipcosim.diagnose.log_faults.input_labels import with_label
 from shipcosim.diagnose.stages import Identification
 
 FROM_NORTH, OVER_GROUND_FROM_NORTH = WIND_LABELS[1], WIND_LABELS[3]
+KNOTS = next(label for label in WIND_LABELS if "in kn," in label.sentence)
 
 
 def counted_from_north(log):
@@ -43,3 +44,13 @@ def test_a_wind_told_to_be_counted_from_north_is_over_ground_too_where_the_ship_
     assert (found.note, found.channels, found.segments) == (label.sentence, label.channels, ())
     healthy = twin.logs()["healthy"]
     np.testing.assert_allclose(right.repaired["wind_speed"], healthy["wind_speed"], atol=1e-9)
+
+
+def test_a_unit_of_the_wind_that_the_ship_answers_nowhere_is_no_fault():
+    """Told throughout a log that is right, it was settled to the last minute of the log, and named there."""
+    log = twin.logs()["healthy"]
+    told = finding_of(KNOTS, 0.97)
+    clean = with_label(log, KNOTS)
+    right = with_right_wind(Identification(log, twin.model(), read_catalogue(), (told,), clean, twin.ready(clean)))
+    assert right.faults == ()
+    np.testing.assert_array_equal(right.repaired["wind_speed"], log["wind_speed"])

@@ -25,7 +25,14 @@ from shipcosim.diagnose.log_faults.input_labels import (
     with_refined_segment,
 )
 from shipcosim.diagnose.log_faults.navigation_labels import relabelled
-from shipcosim.diagnose.log_faults.thresholds import FAULT, MOST_INPUT_FAULTS, MOST_TRIED, ROUNDS_OF_SEGMENT, UNIT
+from shipcosim.diagnose.log_faults.thresholds import (
+    FAULT,
+    MOST_INPUT_FAULTS,
+    MOST_TRIED,
+    PART_GAIN,
+    ROUNDS_OF_SEGMENT,
+    UNIT,
+)
 from shipcosim.diagnose.result import Finding
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.stretches import in_stretches
@@ -87,12 +94,24 @@ def with_right_wind(found: Identification) -> Identification:
 
 
 def _with_right_wind_label(found, place):
-    """The log with one fault of the wind's labels, by its place among the faults, settled."""
+    """The log with one fault of the wind's labels, by its place among the faults, settled.
+
+    One that the log alone told of throughout, and the ship's answer of nearly nowhere, is none.
+    """
     before, after = found.faults[:place], found.faults[place + 1 :]
     as_logged = replace(found, repaired=_without(found, (*before, *after)))
     fault, problem = _likeliest_direction(as_logged, found.faults[place])
     fault, right = _with_settled_segment(replace(as_logged, problem=problem), mislabel_of(fault), fault)
+    shrunk = fault.segments and not found.faults[place].segments
+    if shrunk and not _is_told_by_the_ship(right.problem, as_logged.repaired):
+        problem = identification_problem(as_logged.repaired, found.ship, found.causes)
+        return replace(as_logged, faults=(*before, *after), problem=problem)
     return replace(right, faults=(*before, fault, *after))
+
+
+def _is_told_by_the_ship(problem, logged):
+    """Whether the ship answers a log with a label put right, as the problem has it, and not one as logged."""
+    return likelihood(problem, problem.record) > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN
 
 
 def _likeliest_direction(as_logged, fault):
