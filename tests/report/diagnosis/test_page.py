@@ -37,9 +37,11 @@ def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(diagnos
 
 def test_form_of_the_loads_is_told_with_what_it_hides(diagnosis):
     number = FormNumber("vessel.cross_flow_drag", "cross-flow drag coefficient", 1.5, 1.86, 0.07, "1")
-    form = LoadForm(1.0, {"drag across the hull, along her length": 0.14}, (number,), ("crossflow",))
+    lost = FormNumber("port.form.across", "share of the thrust lost", 0.0, 0.06, 0.01, "1")
+    form = LoadForm(1.0, {"drag across the hull, along her length": 0.14}, (number, lost), ("crossflow",))
     text = render(replace(diagnosis, form=form, not_testable=("crossflow", "reverse_loss")))
     assert "The form of her loads" in text and "14 %" in text and "1.86" in text and "± 0.070" in text
+    assert "Port: share of the thrust lost" in text
     assert text.count("would do the same, and hers have another form") == 1
     assert "The form of her loads" not in render(diagnosis)
     healthy = replace(diagnosis, verdict="consistent", findings=(), form=form)

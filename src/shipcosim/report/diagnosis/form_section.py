@@ -11,7 +11,7 @@ SCALES = {0.5: "half as much as", 1.0: "about as much as", 2.0: "about twice as 
 
 @dataclass(frozen=True)
 class FormSection:
-    """How far the loads differ in form: in a sentence, by function, and by the numbers that differ for sure."""
+    """How far the loads differ in form: in a sentence, by function, and by the numbers that clearly differ."""
 
     sentence: str
     functions: Table
@@ -32,5 +32,6 @@ def form_section(form: LoadForm) -> FormSection:
 
 
 def _row(number: FormNumber) -> tuple[str, str, str, str, str]:
-    what, unit = number.what[0].upper() + number.what[1:], "" if number.unit == "1" else number.unit
-    return what, plain(number.model), plain(number.estimate), f"± {plain(number.std, 2)}", unit
+    thruster, of_form, _ = number.number.rpartition(".form.")
+    what, unit = f"{thruster}: {number.what}" if of_form else number.what, "" if number.unit == "1" else number.unit
+    return what[0].upper() + what[1:], plain(number.model), plain(number.estimate), f"± {plain(number.std, 2)}", unit
