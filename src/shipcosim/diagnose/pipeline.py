@@ -267,7 +267,7 @@ def completed(
         facts=log_facts(problem),
         log=summary,
         evidence=evidence_of(log),
-        tracks=tracks_of(log, found.is_named),
+        tracks=tracks_of(log, found.is_named, found.has_ratio),
         force=predicted.force,
         extension=extended.extension,
         extended=extended.system,

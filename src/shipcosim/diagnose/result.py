@@ -322,6 +322,12 @@ class Diagnosis:
         return self.verdict == "named" and any(finding.kind == "physics" for finding in self.findings)
 
     @property
+    def has_ratio(self) -> bool:
+        """Whether a cause is among the findings that only a comparison of commanded with felt force finds."""
+        causes = self.basis.explained.identification.causes if self.basis else self.causes
+        return any(one.cause in causes and causes[one.cause].sought_in == "comparison" for one in self.findings)
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What could not be known from this log, and what did not work."""
         return (*(self.log.remarks if self.log else ()), *self.remarks)

@@ -79,6 +79,16 @@ class LogComparison:
             return self.discrepancies
         return (self.missing[0].discrepancy,)
 
+    def given(self, model: ShipModel) -> ShipModel:
+        """A ship as the system has her: without the ratio that was put into her beyond doubt."""
+        if self.ratio is None or not self.findings:
+            return model
+        return with_thrust(model, 1.0 / self.ratio.ratio, 0.0)
+
+    def with_ratio(self, model: ShipModel) -> ShipModel:
+        """A ship with the ratio of thrust to inertia, beyond doubt or only where nothing else explains the log."""
+        return model if self.ratio is None or self.findings else with_thrust(model, self.ratio.ratio, 0.0)
+
     def found_without(self, causes: dict[str, Cause]) -> tuple[Finding, ...]:
         """What may be named where no cause of the catalogue explains the log: a common ratio that is not gross."""
         if self.findings or self.ratio is None or not self.ratio.differs(PLAIN):

@@ -20,6 +20,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     LEAST_SUPPORT,
     MOST_CHANGES,
     OPPOSITE,
+    PLAINLY_WRONG,
     RIVAL,
     SURELY_CAUSED,
     SURELY_WRONG,
@@ -78,6 +79,9 @@ class Reading:
         By how much they act late. [s]
     gained_by_lag : float
         Part of the support that there is only with this lag. [nats]
+    lag_cost : float
+        What the lag costs: the longer, the less likely; half a period of a manoeuvre late looks like a wrong sign.
+        [nats]
     step : float
         Time from row to row. [s]
     commanded : Commanded
@@ -90,6 +94,7 @@ class Reading:
     support: float
     lag: float
     gained_by_lag: float
+    lag_cost: float
     step: float
     commanded: Commanded
     ahead: dict[str, np.ndarray]
@@ -101,8 +106,8 @@ class Reading:
 
     @property
     def score(self) -> float:
-        """Support less what the changes cost. [nats]"""
-        return self.support - CHANGE_COST * len(self.changes)
+        """Support less what the changes and the lag cost. [nats]"""
+        return self.support - CHANGE_COST * len(self.changes) - self.lag_cost
 
 
 @dataclass(frozen=True)
@@ -120,6 +125,9 @@ class Labels:
         Largest share of the felt force that the best reading explains on an axis where it differs from the logged one.
     foresight : float
         Log-likelihood by which commands read so tell the next velocities better than as logged. [nats]
+    is_contradicted : bool
+        Whether the thrusters as logged surely do the opposite of what they are commanded, on an axis of which they and
+        the water explain most.
     """
 
     logged: Reading
@@ -127,12 +135,15 @@ class Labels:
     rivals: tuple[Reading, ...]
     explained: float = 0.0
     foresight: float = 0.0
+    is_contradicted: bool = False
 
     @property
     def is_wrong(self) -> bool:
         """Whether the labels are wrong beyond doubt, in one way or another."""
         better = self.best.score > self.logged.score + SURELY_WRONG and self.logged not in self.rivals
-        return better and self.foresight > (0.0 if self.explained > TOLD else SURELY_CAUSED)
+        plain = self.is_contradicted or self.best.score > self.logged.score + PLAINLY_WRONG
+        least = SURELY_CAUSED if self.explained <= TOLD else 0.0 if plain else RIVAL
+        return better and self.foresight > least
 
     @property
     def is_sure(self) -> bool:
@@ -176,7 +187,19 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     rivals = tuple(one for one in found[1:] if one.score > found[0].score - RIVAL)
     readings = [one.commanded for one in (found[0], logged)]
     best, first = causal_support(felt, readings, froude_time(model.parts["hull"].length))
-    return Labels(logged, found[0], rivals, _explained(found[0], logged, axes), float(best - first))
+    explained = _explained(found[0], logged, axes)
+    return Labels(logged, found[0], rivals, explained, float(best - first), _is_contradicted(found[0], logged, axes))
+
+
+def _is_contradicted(best: Reading, logged: Reading, axes: Sequence[Axis]) -> bool:
+    """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
+    for axis in axes:
+        total = axis.total(logged.commanded)
+        if axis.is_driven(logged.commanded) and np.abs(axis.total(best.commanded) - total).max() > 0.1 * axis.size:
+            fit = axis.compared(total[None])
+            if fit.gains[0] < -OPPOSITE * fit.std[0] and fit.support > LEAST_SUPPORT and fit.share > TOLD:
+                return True
+    return False
 
 
 def _explained(best: Reading, logged: Reading, axes: Sequence[Axis]) -> float:
@@ -238,8 +261,9 @@ def _reading(changes, record, felt, axes, model):
         moved = late(commanded, lag / record.step)
         support = support_of(moved, ahead, axes)
         gained = support - tries[0].support if tries else 0.0
-        tries.append(Reading(tuple(changes), support, float(lag), gained, record.step, moved, ahead))
-    return max(tries, key=lambda one: one.support - LAG_COST * (one.lag > 0.0))
+        cost = LAG_COST + lag / scale if lag else 0.0
+        tries.append(Reading(tuple(changes), support, float(lag), gained, cost, record.step, moved, ahead))
+    return max(tries, key=lambda one: one.score)
 
 
 def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequence[Axis]) -> float:

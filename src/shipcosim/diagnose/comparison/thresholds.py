@@ -43,6 +43,9 @@ MOST_CHANGES = 2
 """Changes at once."""
 SURELY_WRONG = 5.0
 """By how much another reading, after its cost, must beat the logged one to be beyond doubt. [nats] 150 to 1."""
+PLAINLY_WRONG = 20.0
+"""The same, so that commands read otherwise need only foretell the motion no worse. [nats] A drawn healthy craft in a
+zig-zag reached 17 (tests/bench/craft, seed 108), wrong labels on a simulated boat 44."""
 RIVAL = 3.0
 """Readings closer than this cannot be told apart. [nats]"""
 TOLD = 0.5
@@ -64,7 +67,7 @@ OPPOSITE = 4.0
 LEAST_GAIN = 0.1
 """Gain below which thrusters do not do what they are commanded. Assumed."""
 LAG_COST = 3.0
-"""What a lag costs beside none. [nats] Assumed."""
+"""What a lag costs beside none, and one more for each root of the ship's length over gravity. [nats] Assumed."""
 LEAST_LAG = 2.0
 """Least lag that is said. [rows]"""
 LAGS = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0)

@@ -17,6 +17,7 @@ from shipcosim.diagnose.validation.thresholds import FEWEST_PREDICTIONS, LEAST_T
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
 
 
 def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
@@ -29,9 +30,11 @@ def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
         Whether causes of the physics are named; else predictions are made with the plain model alone.
     """
     problem, fit = log.problem, log.fit if is_named else without_causes(log.fits)
-    comparison = compare(problem, fit)
+    found = log.explained.identification.comparison
+    plain = found.given(problem.model) if found and found.findings else None
+    comparison = compare(problem, fit, plain=plain)
     force = missing_forces(problem, fit if is_named else None)
-    held_out = compare_held_out(problem, fit) if is_named and comparison is not None else {}
+    held_out = compare_held_out(problem, fit, plain) if is_named and comparison is not None else {}
     return PredictedLog(log, is_named, comparison, held_out, force)
 
 
@@ -60,12 +63,12 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
     return found
 
 
-def compare_held_out(problem: IdentificationProblem, fit: Fit) -> dict[str, Comparison]:
+def compare_held_out(problem: IdentificationProblem, fit: Fit, plain: ShipModel | None = None) -> dict[str, Comparison]:
     """Comparisons on conditions that nothing was fitted on, wherever in the log they are.
 
     Parameters
     ----------
-    problem, fit : IdentificationProblem and Fit
+    problem, fit, plain : IdentificationProblem, Fit and ShipModel
         As for `compare`.
 
     Returns
@@ -76,7 +79,7 @@ def compare_held_out(problem: IdentificationProblem, fit: Fit) -> dict[str, Comp
     """
     found = {}
     for name, train in rows_without_condition(problem.record).items():
-        comparison = compare(problem, fit, train=train)
+        comparison = compare(problem, fit, train=train, plain=plain)
         if comparison is not None and name == "other headings":
             comparison = _only(comparison, ~comparison.errors["heading_known"].values)
         if comparison is not None and comparison.rows.size >= FEWEST_PREDICTIONS:

@@ -90,7 +90,12 @@ class Comparison:
 
 
 def compare(
-    problem: IdentificationProblem, fit: Fit, *, train: np.ndarray | None = None, part: Fit | None = None
+    problem: IdentificationProblem,
+    fit: Fit,
+    *,
+    train: np.ndarray | None = None,
+    part: Fit | None = None,
+    plain: ShipModel | None = None,
 ) -> Comparison | None:
     """Predict with the plain model, a bias observer, the causes of a fit, and see how far each is off.
 
@@ -104,6 +109,8 @@ def compare(
         Rows to fit on; the first 65 %.
     part : Fit, optional
         The fit to these rows, where it is known: that of several logs together.
+    plain : ShipModel, optional
+        The ship as the system has her, where the problem's has more put right than that.
 
     Returns
     -------
@@ -121,13 +128,13 @@ def compare(
     seen = reference(linear, fit.motion, problem.noise, record, fit.model)
     extended = problem.model.with_values(part.values)
     ship_models = {
-        "plain": problem.model,
+        "plain": problem.model if plain is None else plain,
         "extended": extended,
         "calibrated": calibrated(part),
         "floor": calibrated(fit),
     }
     models = _observed(problem, linear, fit.motion, seen, ship_models)
-    if not fit.hypotheses:
+    if not fit.hypotheses and plain is None:
         models["extended"] = models["plain"]
     found, observers, predictors = {}, {}, {}
     for name, held in _HELD.items():

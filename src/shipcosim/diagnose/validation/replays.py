@@ -33,9 +33,11 @@ def with_cosimulation(
     if log.comparison is None:
         return SimulatedLog(None, {}, False)
     in_array_form = {name: one.errors for name, one in log.held_out.items()}
-    if log.comparison.fit.hypotheses and extended.extension is None:
+    found = log.judged.explained.identification
+    beyond_doubt = found.comparison.findings if found.comparison else ()
+    if (log.comparison.fit.hypotheses or beyond_doubt) and extended.extension is None:
         return SimulatedLog(log.comparison.errors, in_array_form, False)
-    run = partial(_cosimulated, extended, log.judged.explained.identification.causes, progress)
+    run = partial(_cosimulated, extended, found.causes, beyond_doubt, progress)
     try:
         errors = run(log.comparison, MOST)
         held_out = {name: run(one, MOST // 2) for name, one in log.held_out.items()}
@@ -46,13 +48,13 @@ def with_cosimulation(
     return SimulatedLog(errors, held_out, True)
 
 
-def _cosimulated(extended, causes, progress, comparison, most):
+def _cosimulated(extended, causes, beyond_doubt, progress, comparison, most):
     """Errors of one comparison, by the given system and by the one extended by what the comparison was fitted with."""
-    fitted = None
+    fitted, findings = None, [*beyond_doubt, *findings_of(comparison.fit)]
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
-        if comparison.fit.hypotheses:
+        if findings:
             about = {"span": comparison.fit.model.span}
-            made = extend(extended.source, findings_of(comparison.fit), folder, log_attributes=about, catalogue=causes)
+            made = extend(extended.source, findings, folder, log_attributes=about, catalogue=causes)
             fitted = Replayed(read_system(str(made.ssp)), made.signals)
         return simulated(comparison, Replayed(extended.given), fitted, most=most, progress=progress)
 

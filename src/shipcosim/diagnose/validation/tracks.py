@@ -58,10 +58,28 @@ class Tracks:
     predicted: dict[str, xarray.Dataset]
 
 
-def tracks_of(log: JudgedLog, is_named: bool) -> Tracks | None:
-    """Tracks of a judged log, before and, where causes are named, after; None where no stretch of it is whole."""
+def tracks_of(log: JudgedLog, is_named: bool, has_ratio: bool = False) -> Tracks | None:
+    """Tracks of a judged log, before and, where something of the model is found wrong, after.
+
+    Parameters
+    ----------
+    log : JudgedLog
+    is_named : bool
+        Whether the causes of its fit are named.
+    has_ratio : bool
+        Whether a ratio of thrust to inertia is found by comparison; then it is in what is simulated after.
+
+    Returns
+    -------
+    Tracks or None
+        None where no stretch of the log is whole.
+    """
     record, model = log.problem.record, log.problem.model
-    models = {"before": model} | ({"after": model.with_values(log.fit.values)} if is_named else {})
+    comparison = log.explained.identification.comparison
+    models = {"before": comparison.given(model) if comparison else model}
+    if is_named or has_ratio:
+        after = model.with_values(log.fit.values) if is_named else model
+        models["after"] = comparison.with_ratio(after) if comparison and has_ratio else after
     try:
         return tracks_by_models(record, models, fitting_horizon(record, model))
     except ShipcosimError:
