@@ -157,7 +157,7 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
 def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
     """What white noise of the velocities makes of the needed load, (3,) array: by their third differences."""
     kernel = felt.kernel
-    third = np.diff(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), 3, axis=1)
+    third = np.asarray(np.diff(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), 3, axis=1), float)
     white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
     rows = kernel.width / kernel.step
     rates = white / kernel.step / np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
