@@ -102,7 +102,11 @@ def test_without_what_drives_a_thruster_nothing_is_said_of_sides_signs_and_sizes
     found = held(sailed(13, 0.6, 0.6).drop_vars("left_rpm"))
     (obstacle,) = found.comparison.obstacles
     assert "left_rpm" in obstacle and "zeros" in obstacle
-    assert not found.comparison.findings and not found.comparison.discrepancies and not found.faults
+    assert not found.comparison.findings and not found.faults and found.comparison.ratio is None
+    assert {one.what for one in found.comparison.discrepancies} == {
+        one.discrepancy.what for one in found.comparison.missing if one.is_large
+    }
+    assert "yaw" in {one.axis for one in found.comparison.discrepancies}
     assert found.comparison.errors["position_error_m"][-1] > 0.0
     assert held(sailed(13).assign(left_rpm=lambda log: 0.0 * log["right_rpm"])).comparison.obstacles == ()
 

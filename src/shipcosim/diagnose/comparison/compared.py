@@ -109,14 +109,19 @@ def compared(log: CheckedLog) -> ComparedLog:
     felt = felt_by(record, length)
     ship = with_surrogates(ship, record, first_motion(record, ship))
     errors = errors_of(record, felt, ship)
-    obstacles = _obstacles(log.repaired, ship)
-    if obstacles or felt.usable.sum() < FEWEST_USABLE:
-        return _stage(log, LogComparison(errors, (), obstacles=obstacles))
-    axes = axes_of(felt, commanded_by(record, felt, ship), ship)
+    too_slow, unknown = _too_slow(log.repaired, ship), _unknown_thrusters(log.repaired, ship)
+    if too_slow or felt.usable.sum() < FEWEST_USABLE:
+        return _stage(log, LogComparison(errors, (), obstacles=too_slow + unknown))
+    commanded = commanded_by(record, felt, ship)
+    axes, over_none = axes_of(felt, commanded, ship), errors_over_none(record, felt, errors)
+    if unknown:
+        missing = tuple(missing_loads(axes, commanded, felt, ship, over_none))
+        large = tuple(one.discrepancy for one in missing if one.is_large)
+        return _stage(log, LogComparison(errors, large, obstacles=unknown, missing=missing))
     labels = read_labels(record, felt, axes, ship)
     gains = gains_of(axes, labels.used.commanded)
     ratio = common_ratio(gains)
-    missing = missing_loads(axes, labels.used.commanded, felt, ship, errors_over_none(record, felt, errors))
+    missing = missing_loads(axes, labels.used.commanded, felt, ship, over_none)
     told = tuple(discrepancies_of(labels, gains, ratio, missing))
     gross = ratio is not None and ratio.differs(GROSS)
     findings = ratio_finding(ratio, log.causes) if ratio is not None and gross else ()
@@ -129,12 +134,16 @@ def compared(log: CheckedLog) -> ComparedLog:
     return found
 
 
-def _obstacles(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
-    """What keeps a log from telling causes: rows too far apart for the ship's answers, thrusters that it lacks."""
+def _too_slow(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
+    """What to say where rows are too far apart for the ship's answers."""
     step, most = float(np.diff(repaired["time"].values[:2])[0]), RESOLVED * froude_time(ship.parts["hull"].length)
+    said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
+    return (said,) if step > most else ()
+
+
+def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
+    """What to say of thrusters that a log lacks."""
     found = []
-    if step > most:
-        found.append(f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would.")
     for name in ship.thrusters:
         lacking = [f"{name}_{kind}" for kind in ship.drives(name) if f"{name}_{kind}" not in repaired]
         if lacking:
