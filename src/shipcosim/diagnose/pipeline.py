@@ -236,6 +236,7 @@ def stated(log: JudgedLog) -> Diagnosis:
         comparison.errors if comparison else None,
         discrepancies=comparison.told(judgement.verdict) if comparison else (),
         form=_form_of(log),
+        obstacles=comparison.obstacles if comparison else (),
         basis=log,
     )
 
@@ -257,7 +258,7 @@ def completed(
         identification.log,
         identification.repaired,
         problem.record.step,
-        (*problem.record.remarks, *(identification.comparison.obstacles if identification.comparison else ())),
+        problem.record.remarks,
         tuple(handled(identification.log)),
     )
     complete = replace(

@@ -284,6 +284,8 @@ class Diagnosis:
         In what simulation and log differ at first sight, largest first.
     form : LoadForm or None
         How far the form of her loads differs from the model's; None where it is the model's, or a reference's.
+    obstacles : tuple of str
+        Why no cause can be named from the log, whatever it shows, and what would do.
     basis : JudgedLog or None
         What the findings rest on, for further work: the log, the identification problem, the fits.
     folder : TemporaryDirectory or None
@@ -313,6 +315,7 @@ class Diagnosis:
     remarks: tuple[str, ...] = ()
     discrepancies: tuple[Discrepancy, ...] = ()
     form: LoadForm | None = None
+    obstacles: tuple[str, ...] = ()
     basis: JudgedLog | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
 
@@ -330,7 +333,7 @@ class Diagnosis:
     @property
     def notes(self) -> tuple[str, ...]:
         """What could not be known from this log, and what did not work."""
-        return (*(self.log.remarks if self.log else ()), *self.remarks)
+        return (*(self.log.remarks if self.log else ()), *self.obstacles, *self.remarks)
 
     def as_json(self) -> dict:
         """The diagnosis as the content of diagnosis.json."""

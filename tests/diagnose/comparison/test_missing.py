@@ -16,6 +16,7 @@ LACKS = MissingLoad("yaw", 10.0, 30.0, 28.0, 1.0, 0.6, 30.0, 0.1, 2.0, 1.2)
         ({"correlation": -0.8}, "the model gives the opposite of what the motion needs"),
         ({"correlation": 0.1}, "does not go with what the motion needs"),
         ({"steady": -25.0}, "the model lacks a steady 25 N.m to port"),
+        ({"steady": 25e3, "missing": 28e3}, "the model lacks a steady 25 kN.m to starboard"),
         ({"given": 5.0}, "the model gives less than the motion needs"),
         ({"given": 10.0}, "as much as the motion needs, but not when it does"),
     ],

@@ -139,6 +139,9 @@ def test_log_that_may_be_misread_asks_for_its_channel_file():
 
 def test_consistent_log_asks_for_nothing():
     assert next_steps(Diagnosis("consistent")) == ["Nothing needs to be done."]
+    lacking = Diagnosis("unknown", not_testable=("drag",), obstacles=("No tunnel_rpm in the log.",))
+    assert next_steps(lacking) == ["Log as the remarks ask and diagnose again: from this log no cause can be named."]
+    assert lacking.obstacles[0] in lacking.notes
 
 
 def test_place_in_the_log_and_title():

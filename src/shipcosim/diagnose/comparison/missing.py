@@ -89,11 +89,11 @@ class MissingLoad:
         return Discrepancy(text, None, self.axis, float(self.missing), float(self.std), unit, 1.0)
 
     def _sense(self) -> str:
-        unit, sides = _UNITS[self.axis], _SENSES[self.axis]
+        sides = _SENSES[self.axis]
         if self.is_steady:
             side = sides[0] if self.steady > 0.0 else sides[1]
-            return f"the model lacks a steady {abs(self.steady):.2g} {unit} {side}"
-        against = f"{self.given:.2g} against {self.needed:.2g} {unit} rms"
+            return f"the model lacks a steady {self._shown(abs(self.steady))} {side}"
+        against = f"{self._shown(self.given, self.needed)} rms"
         if self.correlation < -GOES_WITH:
             return f"the model gives the opposite of what the motion needs ({against})"
         if self.correlation < GOES_WITH:
@@ -103,6 +103,12 @@ class MissingLoad:
         if self.needed > MENTIONED * self.given:
             return f"the model gives less than the motion needs ({against})"
         return f"the model gives as much as the motion needs, but not when it does ({against})"
+
+    def _shown(self, *loads: float) -> str:
+        """Loads one against the other, to two digits, with their unit."""
+        unit, factor = (f"k{_UNITS[self.axis]}", 1e-3) if max(loads) >= 1000.0 else (_UNITS[self.axis], 1.0)
+        texts = [f"{float(f'{factor * load:.2g}'):g}" for load in loads]
+        return f"{' against '.join(texts)} {unit}"
 
 
 def missing_loads(

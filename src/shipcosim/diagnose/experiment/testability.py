@@ -25,12 +25,17 @@ __all__ = ["hidden_by_form", "log_facts", "not_testable", "untestable_causes"]
 
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
-    """Causes of the catalogue, and the clock, that a log could not have shown had they had their typical size."""
+    """Causes of the catalogue, and the clock, that a log could not have shown had they had their typical size.
+
+    All causes where something keeps the log from telling any.
+    """
     problem, found = log.problem, log.explained.identification
-    weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
     clock = () if is_testable(problem) else ("clock",)
-    identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
+    if found.comparison is not None and found.comparison.obstacles:
+        return tuple(sorted({*clock, *everywhere}))
+    weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
+    identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
     return tuple(sorted({*weak, *clock, *(everywhere - identifiable)}))
 
 

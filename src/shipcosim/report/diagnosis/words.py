@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
-from shipcosim.diagnose.result import Diagnosis, ExperimentDesign, Finding
+from shipcosim.diagnose.result import Diagnosis, Estimate, ExperimentDesign, Finding
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
 from shipcosim.report.theme.numbers import span
@@ -122,8 +122,7 @@ def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
     """What is wrong at first sight, largest first: in words, its size, and what share of the error it explains."""
     rows = []
     for one in diagnosis.discrepancies:
-        unit = "" if one.unit == "1" else f" {one.unit}"
-        size = f"{one.estimate:.2f} ± {one.std:.2f}{unit}" if one.std else ""
+        size = plus_minus(Estimate(one.estimate, one.std, one.unit)) if one.std else ""
         rows.append((one.what, size, f"{100.0 * one.share:.0f} %" if one.share else ""))
     return rows
 
@@ -169,12 +168,14 @@ def next_steps(
     steps += [step.format(component=component) for step, component in wanted if step]
     if diagnosis.verdict == "ambiguous" and not misread:
         steps.append(manoeuvre_step(diagnosis.prescription))
-    if diagnosis.verdict == "unknown":
+    if diagnosis.obstacles:
+        steps.append("Log as the remarks ask and diagnose again: from this log no cause can be named.")
+    elif diagnosis.verdict == "unknown":
         steps.append("Look on the page how the missing force goes with time, heading and wind.")
         steps.append("If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md).")
     if extended:
         steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
-    if diagnosis.not_testable:
+    if diagnosis.not_testable and not diagnosis.obstacles:
         names = listed([title(name).lower() for name in diagnosis.not_testable], "or")
         steps.append(f"This log says nothing about {names}, present or not.")
     return steps or ["Nothing needs to be done."]
