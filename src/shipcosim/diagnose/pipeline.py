@@ -29,38 +29,31 @@ import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import xarray
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.comparison.compared import compared
-from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
-from shipcosim.diagnose.experiment.testability import hidden_by_form, log_facts, untestable_causes
 from shipcosim.diagnose.extension.extended_system import with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.change_point import with_change_point
 from shipcosim.diagnose.inference.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.inference.search import with_causes
-from shipcosim.diagnose.inference.summary import evidence_of, load_form
 from shipcosim.diagnose.inference.verdict import judged
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
 from shipcosim.diagnose.reference.since import with_sizes_at_reference
-from shipcosim.diagnose.result import Diagnosis, LoadForm, LogSummary
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, ReadLog, SimulatedLog
+from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, ReadLog
+from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
-from shipcosim.diagnose.validation.gain import gain
 from shipcosim.diagnose.validation.replays import with_cosimulation
-from shipcosim.diagnose.validation.summary import prediction_errors
-from shipcosim.diagnose.validation.tracks import tracks_of
 from shipcosim.ssp import System, SystemStructure, read
 
 __all__ = ["Progress", "diagnose", "find_causes", "read_measurements", "verdict_on"]
@@ -211,81 +204,3 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
     explained = with_change_point(with_right_inputs(explained))
     progress("what do healthy ships look like?")
     return judged(explained)
-
-
-def stated(log: JudgedLog) -> Diagnosis:
-    """What is said of a log: faults, causes since when they act, what it could not have shown, what to sail next."""
-    found, judgement = log.explained.identification, log.judgement
-    comparison = found.comparison
-    if any(fault.alternatives for fault in found.faults):  # of a log that may be misread, nothing is said of the ship
-        errors = comparison.errors if comparison else None
-        return Diagnosis("ambiguous", found.faults, not_testable=untestable_causes(log), baseline=errors, basis=log)
-    beyond_doubt = comparison.findings if comparison else ()
-    of_log = (*found.faults, *found.misconnections, *beyond_doubt)
-    if comparison and judgement.verdict == "unknown":
-        of_log = (*of_log, *comparison.found_without(found.causes))
-    seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
-    rivals = judgement.rivals if not found.ship.third_party else ()  # with those no manoeuvre can be prescribed
-    return Diagnosis(
-        "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
-        (*of_log, *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings)),
-        judgement.candidates,
-        judgement.indistinguishable,
-        tuple(cause for cause in untestable_causes(log) if cause not in seen),
-        design_experiment(log.problem, log.fit, rivals) if rivals else None,
-        comparison.errors if comparison else None,
-        discrepancies=comparison.told(judgement.verdict) if comparison else (),
-        form=_form_of(log),
-        obstacles=comparison.obstacles if comparison else (),
-        basis=log,
-    )
-
-
-def _form_of(log: JudgedLog) -> LoadForm | None:
-    """How far the form of the ship's loads differs from the model's, with what that hides."""
-    form = load_form(log)
-    return replace(form, hides=hidden_by_form(log)) if form else None
-
-
-def completed(
-    found: Diagnosis, predicted: PredictedLog, extended: ExtendedSystem, simulated: SimulatedLog
-) -> Diagnosis:
-    """A diagnosis with errors, gain, the extended system, and all that the page shows."""
-    log, errors = predicted.judged, simulated.errors
-    identification, problem = log.explained.identification, log.problem
-    summary = LogSummary(
-        Path(identification.log.encoding.get("source", "log")).name,
-        identification.log,
-        identification.repaired,
-        problem.record.step,
-        problem.record.remarks,
-        tuple(handled(identification.log)),
-    )
-    complete = replace(
-        found,
-        manoeuvre=manoeuvre_of(found.prescription, problem),
-        causes=identification.causes,
-        facts=log_facts(problem),
-        log=summary,
-        evidence=evidence_of(log),
-        tracks=tracks_of(log, found.is_named, found.has_ratio),
-        force=predicted.force,
-        extension=extended.extension,
-        extended=extended.system,
-        changes=extended.changes,
-        system=extended.given,
-        remarks=(*extended.remarks, *simulated.remarks),
-    )
-    if errors is None or predicted.comparison is None:
-        return complete
-    return replace(
-        complete,
-        gain=gain(errors) if found.is_named else None,
-        predictions=prediction_errors(
-            predicted.comparison,
-            errors,
-            simulated.held_out,
-            is_named=found.is_named,
-            is_simulated=simulated.is_simulated,
-        ),
-    )

@@ -1,0 +1,96 @@
+"""What is said of a log: its diagnosis from the verdict on, and with the errors, the gain and what the page shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
+from shipcosim.diagnose.experiment.testability import hidden_by_form, log_facts, untestable_causes
+from shipcosim.diagnose.inference.summary import evidence_of, load_form
+from shipcosim.diagnose.log.remarks import handled
+from shipcosim.diagnose.result import Diagnosis, LoadForm, LogSummary
+from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, SimulatedLog
+from shipcosim.diagnose.validation.gain import gain
+from shipcosim.diagnose.validation.summary import prediction_errors
+from shipcosim.diagnose.validation.tracks import tracks_of
+
+__all__ = ["completed", "stated"]
+
+
+def stated(log: JudgedLog) -> Diagnosis:
+    """What is said of a log: faults, causes since when they act, what it could not have shown, what to sail next."""
+    found, judgement = log.explained.identification, log.judgement
+    comparison = found.comparison
+    if any(fault.alternatives for fault in found.faults):  # of a log that may be misread, nothing is said of the ship
+        errors = comparison.errors if comparison else None
+        return Diagnosis("ambiguous", found.faults, not_testable=untestable_causes(log), baseline=errors, basis=log)
+    beyond_doubt = comparison.findings if comparison else ()
+    of_log = (*found.faults, *found.misconnections, *beyond_doubt)
+    if comparison and judgement.verdict == "unknown":
+        of_log = (*of_log, *comparison.found_without(found.causes))
+    seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
+    rivals = judgement.rivals if not found.ship.third_party else ()  # with those no manoeuvre can be prescribed
+    return Diagnosis(
+        "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
+        (*of_log, *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings)),
+        judgement.candidates,
+        judgement.indistinguishable,
+        tuple(cause for cause in untestable_causes(log) if cause not in seen),
+        design_experiment(log.problem, log.fit, rivals) if rivals else None,
+        comparison.errors if comparison else None,
+        discrepancies=comparison.told(judgement.verdict) if comparison else (),
+        form=_form_of(log),
+        obstacles=comparison.obstacles if comparison else (),
+        basis=log,
+    )
+
+
+def _form_of(log: JudgedLog) -> LoadForm | None:
+    """How far the form of the ship's loads differs from the model's, with what that hides."""
+    form = load_form(log)
+    return replace(form, hides=hidden_by_form(log)) if form else None
+
+
+def completed(
+    found: Diagnosis, predicted: PredictedLog, extended: ExtendedSystem, simulated: SimulatedLog
+) -> Diagnosis:
+    """A diagnosis with errors, gain, the extended system, and all that the page shows."""
+    log, errors = predicted.judged, simulated.errors
+    identification, problem = log.explained.identification, log.problem
+    summary = LogSummary(
+        Path(identification.log.encoding.get("source", "log")).name,
+        identification.log,
+        identification.repaired,
+        problem.record.step,
+        problem.record.remarks,
+        tuple(handled(identification.log)),
+    )
+    complete = replace(
+        found,
+        manoeuvre=manoeuvre_of(found.prescription, problem),
+        causes=identification.causes,
+        facts=log_facts(problem),
+        log=summary,
+        evidence=evidence_of(log),
+        tracks=tracks_of(log, found.is_named, found.has_ratio),
+        force=predicted.force,
+        extension=extended.extension,
+        extended=extended.system,
+        changes=extended.changes,
+        system=extended.given,
+        remarks=(*extended.remarks, *simulated.remarks),
+    )
+    if errors is None or predicted.comparison is None:
+        return complete
+    return replace(
+        complete,
+        gain=gain(errors) if found.is_named else None,
+        predictions=prediction_errors(
+            predicted.comparison,
+            errors,
+            simulated.held_out,
+            is_named=found.is_named,
+            is_simulated=simulated.is_simulated,
+        ),
+    )
