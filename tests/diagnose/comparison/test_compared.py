@@ -136,3 +136,5 @@ def test_where_nobody_knows_what_is_wrong_the_largest_error_is_said_in_any_case(
     (largest,) = comparison.told("unknown")
     assert comparison.told("consistent") == () and largest.axis == comparison.missing[0].axis
     assert largest.unit in ("N", "N.m") and largest.estimate > largest.std > 0.0
+    large = replace(comparison, discrepancies=(largest,))
+    assert large.told("consistent") == () and large.told("named") == (largest,)

@@ -74,7 +74,14 @@ class LogComparison:
     missing: tuple[MissingLoad, ...] = ()
 
     def told(self, verdict: str) -> tuple[Discrepancy, ...]:
-        """Discrepancies for a verdict: where nobody knows what is wrong, the largest error is said in any case."""
+        """Discrepancies for a verdict.
+
+        Where nobody knows what is wrong the largest error is said in any case; where nothing is beyond noise and
+        tolerances no error is.
+        """
+        if verdict == "consistent":
+            errors = [one.discrepancy for one in self.missing]
+            return tuple(one for one in self.discrepancies if one not in errors)
         if self.discrepancies or verdict != "unknown" or not self.missing:
             return self.discrepancies
         return (self.missing[0].discrepancy,)
