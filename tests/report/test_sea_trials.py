@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.cli.sea_trials import print_study
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.sea_trials import separation
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
@@ -42,6 +43,15 @@ def test_the_page_says_what_is_wrong_what_fits_alike_and_what_to_sail(found, tmp
     }
     for one in found.prescriptions:
         assert one.manoeuvre[1:] in page
+
+
+def test_the_summary_says_the_same_as_the_page(found, tmp_path, capsys):
+    write_sea_trials(found, tmp_path / "report.html", {})
+    print_study(found, tmp_path, False)
+    said = capsys.readouterr().out
+    sentence = re.search(r"[A-Z][a-z ]+ drag explains best[^.]*\.", said)[0]
+    assert sentence in (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert said.count("as likely: ") == len(found.rivals) and "Sail next: " in said
 
 
 def test_a_circle_to_port_is_drawn_to_the_left(found, tmp_path):

@@ -11,7 +11,6 @@ from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, default_folder
 from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.sea_trials.evidence import SetOfCauses
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 
 FILES = ("sea_trials.json", "report.html", "extended.ssp", "extended.ssv")
@@ -80,6 +79,7 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path, style_of
+    from shipcosim.report.sea_trials.words import outcome, told
 
     if as_json:
         print(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
@@ -87,11 +87,11 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
     console = Console(highlight=False, soft_wrap=True)
     kinds = [trial.kind for trial in found.trials]
     console.print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in dict.fromkeys(kinds)))
-    console.print(Text(found.verdict, style=style_of(found.verdict)), Text(_sentence(found)))
-    for row in _causes(found.best):
-        console.print(f"  {row}", markup=False)
+    verdict = outcome(found)
+    console.print(Text(verdict.word, style=style_of(found.verdict)), Text(verdict.sentence))
+    console.print(f"  {told(found.best)}", markup=False)
     for one in found.rivals:
-        console.print(f"  as likely: {'; '.join(_causes(one))}", markup=False)
+        console.print(f"  as likely: {told(one)}", markup=False)
     for row in _what_separates(found):
         console.print(row, markup=False)
     for side, one in found.held_out.items():
@@ -101,14 +101,6 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
             console.print(f"  {name:<28} {one.before[name]:6.1f} {one.after[name]:6.1f} {unit}", markup=False)
     console.print(f"Page: {shown_path(folder / FILES[1])}", markup=False)
     console.print(f"Numbers: {shown_path(folder / FILES[0])}", markup=False)
-
-
-def _sentence(found: SeaTrialStudy) -> str:
-    """The verdict in a sentence."""
-    if found.verdict == "consistent":
-        return "the model sails these trials as the ship did"
-    alike = "" if found.verdict == "named" else "; these trials do not tell it from the sets below"
-    return f"{found.best.label} explains them best{alike}"
 
 
 def _what_separates(found: SeaTrialStudy) -> list[str]:
@@ -121,15 +113,4 @@ def _what_separates(found: SeaTrialStudy) -> list[str]:
         rows += [f"  tells {a} from {b}" for a, b in one.separates]
     told = {pair for one in found.prescriptions for pair in one.separates}
     rows += [f"No manoeuvre of the catalogue tells {a} from {b}." for a, b in found.pairs if (a, b) not in told]
-    return rows
-
-
-def _causes(one: SetOfCauses) -> list[str]:
-    """Causes of a set with their estimates."""
-    from shipcosim.diagnose.sea_trials.study import estimates
-
-    rows = []
-    for (cause, parameter), found in zip(one.parameters, estimates(one), strict=True):
-        unit = "" if found.unit == "1" else f" {found.unit}"
-        rows.append(f"{cause.label}: {parameter.name} {found.estimate:.3g} ± {found.std:.1g}{unit}")
     return rows

@@ -22,6 +22,7 @@ def sentence(found: SeaTrialStudy) -> str:
     if found.verdict == "consistent":
         return "The model sails these trials as the ship did, as far as such trials repeat."
     best = said(found.best.label)
+    best = f"{best[0].upper()}{best[1:]}"
     if found.verdict == "named":
         return f"{best} explains best what the model sails otherwise than the ship."
     count = len(found.rivals)
