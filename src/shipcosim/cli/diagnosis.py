@@ -72,7 +72,7 @@ def diagnose_log(
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.requests import system_of
-    from shipcosim.cli.results import staged
+    from shipcosim.cli.results import staged, write_json
     from shipcosim.diagnose.pipeline import diagnose
     from shipcosim.diagnose.reference.reference import read_reference
     from shipcosim.report.diagnosis.page import write_diagnosis
@@ -83,8 +83,7 @@ def diagnose_log(
     with shown_progress() as show, staged(folder, FILES) as stage:
         diagnosis = diagnose(data, ship, channels, effects, show, out=stage, reference=known)
         show(LAST_STEP)
-        text = json.dumps(diagnosis.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
-        (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
+        write_json(diagnosis.as_json(), stage / "diagnosis.json")
         write_diagnosis(diagnosis, stage / "report.html")
     if diagnosis.extension is None:
         return diagnosis

@@ -46,7 +46,7 @@ def diagnose_logs(
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.requests import system_of
-    from shipcosim.cli.results import staged
+    from shipcosim.cli.results import staged, write_json
     from shipcosim.diagnose.joint_pipeline import diagnose_jointly
     from shipcosim.diagnose.reference.reference import read_reference
     from shipcosim.report.joint.page import write_joint
@@ -57,8 +57,7 @@ def diagnose_logs(
     with shown_progress("") as show, staged(folder, FILES) as stage:
         found = diagnose_jointly(list(logs), ship, channels, effects, show, out=stage, reference=known)
         show("writing the page")
-        text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
-        (stage / "diagnosis.json").write_text(text + "\n", encoding="utf-8")
+        write_json(found.as_json(), stage / "diagnosis.json")
         write_joint(found, stage / "report.html")
     if found.extension is None:
         return found

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -94,6 +95,12 @@ def _complaints(folder: Path, must_exist: bool = False) -> list[str]:
     if must_exist and there != Path(folder):
         return ["There is no such folder to store the state in."]
     return [] if os.access(there, os.W_OK | os.X_OK) else [f"There is no permission to write in {there}."]
+
+
+def write_json(content: Mapping[str, Any], path: Path) -> None:
+    """Write what a command has found as JSON; a number that JSON does not have is an error."""
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
 
 
 @contextmanager

@@ -51,7 +51,7 @@ def study_log(
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.requests import system_of
-    from shipcosim.cli.results import check_targets, staged
+    from shipcosim.cli.results import check_targets, staged, write_json
     from shipcosim.diagnose.extension.extend import extend
     from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
     from shipcosim.diagnose.sea_trials.study import study
@@ -64,8 +64,7 @@ def study_log(
     given = find_system(system or DEFAULT_SYSTEM, "--system")
     found = study(data, system_of(given), channels, effects, orders=orders)
     with staged(folder, FILES) as stage:
-        text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False)
-        (stage / FILES[0]).write_text(text + "\n", encoding="utf-8")
+        write_json(found.as_json(), stage / FILES[0])
         facts = {"Log": Path(data).name, "System": Path(given).name, "Thrusters": "orders" if orders else "feedback"}
         write_sea_trials(found, stage / FILES[1], facts)
         if found.findings:

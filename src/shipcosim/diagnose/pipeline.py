@@ -170,11 +170,11 @@ def find_causes(
     with threadpool_limits(1):  # many small matrices: threads would only wait for each other
         say = progress or (lambda *_: None)
         say("is the log right?")
-        read = read_measurements(log, system, channels, causes, reference)
+        known = None if reference is None else read_reference(reference)
+        read = read_measurements(log, system, channels, causes, known)
         found = stated(verdict_on(read, say))
-        if reference is None:
+        if known is None:
             return found
-        known = read_reference(reference)
         return replace(found, findings=with_sizes_at_reference(found.findings, read.ship, known, read.causes))
 
 
