@@ -112,6 +112,7 @@ def diagnose_jointly(
     errors = {}
     if found.basis:
         errors = errors_by_log(
+            cast(JointFit, found.basis.verdict.judgement.fit),
             found.basis.verdict.logs,
             given,
             lambda name: _findings_without(found, name),

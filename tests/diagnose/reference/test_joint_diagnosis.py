@@ -5,6 +5,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Literal
 
+import numpy as np
 import pytest
 from diagnose import twin
 from pydantic import BaseModel, ConfigDict, Field
@@ -85,6 +86,23 @@ class OneLog(Strict):
     left_out: str | None
 
 
+class JointBaseline(Strict):
+    horizon_s: list[float]
+    position_error_m: list[float]
+    heading_error_deg: list[float]
+
+
+class JointGain(Strict):
+    horizon_s: float
+    before_m: float
+    bias_observer_m: None
+    after_m: float
+    noise_floor_m: float
+    share_of_explainable: float | None
+    ci95: tuple[float, float] | None
+    logs: list[str]
+
+
 class Schema(Strict):
     """diagnosis.json of several logs, version 1: the entries of one log, and more."""
 
@@ -96,8 +114,8 @@ class Schema(Strict):
     indistinguishable: list[JointCandidate]
     not_testable: list[str]
     prescription: dict | None
-    baseline: None
-    gain: None
+    baseline: JointBaseline | None
+    gain: JointGain | None
     remarks: list[str]
     logs: list[OneLog]
 
@@ -131,6 +149,19 @@ def test_each_log_is_predicted_better_by_the_size_that_the_other_says(lost):
     for entry in schema_of(lost[0]).logs:
         assert entry.errors.fitted_on == [name for name in ("day0", "day1") if name != entry.name]
         assert entry.errors.after_m[-1] < 0.9 * entry.errors.before_m[-1]
+
+
+def test_baseline_and_gain_are_over_both_logs_each_judged_by_the_other(lost):
+    found = schema_of(lost[0])
+    errors = [one.errors for one in found.logs]
+    assert found.baseline.horizon_s == errors[0].horizon_s == errors[1].horizon_s
+    assert found.gain.horizon_s == found.baseline.horizon_s[-1] and found.gain.logs == ["day0", "day1"]
+    over_logs = np.sqrt(np.mean([np.square([e.before_m[-1], e.after_m[-1]]) for e in errors], axis=0))
+    assert (found.baseline.position_error_m[-1], found.gain.after_m) == pytest.approx(tuple(over_logs))
+    assert found.gain.before_m == pytest.approx(over_logs[0])
+    low, high = found.gain.ci95
+    assert 0.0 < low < found.gain.share_of_explainable < high < 1.2
+    assert found.gain.noise_floor_m <= found.gain.after_m
 
 
 def test_the_common_cause_and_nothing_else_is_in_the_extended_system(lost):
@@ -167,7 +198,9 @@ def test_without_a_cause_the_page_still_says_how_far_the_simulation_is_off(lost)
         )
         for name, one in found.errors.items()
     }
-    text = render(replace(found, verdict="consistent", findings=(), sizes={}, errors=bare, extension=None, changes=()))
+    plain = replace(found, verdict="consistent", findings=(), sizes={}, errors=bare, extension=None, changes=())
+    text = render(plain)
+    assert schema_of(plain).gain is None and schema_of(plain).baseline == schema_of(found).baseline
     assert "CONSISTENT" in text and "the system stays as it is" in text and "Position error by log" in text
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,11 +16,13 @@ from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
 from shipcosim.diagnose.reference.thresholds import MOST_PIECES
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.validation.cosimulation import Replayed
+from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.replays import findings_of
 from shipcosim.diagnose.validation.tracks import (
     Tracks,
     errors_of,
     fitting_horizon,
+    misses_at_end,
     tracks_by_models,
     tracks_by_systems,
 )
@@ -30,6 +32,8 @@ from shipcosim.ssp import read_system
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.hypotheses.cause import Cause
+    from shipcosim.diagnose.inference.fitting import IdentificationProblem
+    from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.stages import ExtendedSystem
 
 __all__ = ["LogErrors", "errors_by_log", "sizes_by_log", "sizes_without", "weather_of"]
@@ -42,7 +46,7 @@ class LogErrors:
     Attributes
     ----------
     horizon : tuple of float
-        Lengths of the predictions, that fit the craft's own time scales. [s]
+        Lengths of the predictions, that fit the craft's own time scales; the same for all logs. [s]
     position, heading : dict of str to tuple of float
         Root mean square errors after each, ``"before"`` and ``"after"``. [m], [deg]
     fitted_on : tuple of str
@@ -52,6 +56,9 @@ class LogErrors:
     tracks : Tracks
     remark : str
         What did not work.
+    misses : (3, s) array or None
+        Position error of each prediction at the longest horizon: before, after, and of the ship whose every number is
+        fitted to this log too. None where there is no extended system. [m]
     """
 
     horizon: tuple[float, ...]
@@ -61,6 +68,7 @@ class LogErrors:
     own: tuple[str, ...]
     tracks: Tracks
     remark: str = ""
+    misses: np.ndarray | None = field(default=None, repr=False, compare=False)
 
     @property
     def is_held_out(self) -> bool:
@@ -130,6 +138,7 @@ def weather_of(fit: JointFit, name: str, hypotheses: Sequence[Hypothesis]) -> li
 
 
 def errors_by_log(
+    fit: JointFit,
     logs: SeveralLogs,
     given: ExtendedSystem,
     findings: Callable[[str], tuple[list[Finding], list[Finding]]],
@@ -138,8 +147,12 @@ def errors_by_log(
 ) -> dict[str, LogErrors]:
     """The errors of each log by co-simulation, before and after.
 
+    All logs are predicted over the same times: the shortest that fit one of them.
+
     Parameters
     ----------
+    fit : JointFit
+        Of the common causes to all logs.
     logs : SeveralLogs
     given : ExtendedSystem
         Not extended yet.
@@ -150,43 +163,76 @@ def errors_by_log(
         Called with the name of a log, how many pieces of it are done, and of how many.
     """
     found = {}
-    for name in logs.problems:
+    horizon = min(fitting_horizon(one.record, one.model) for one in logs.problems.values())
+    for name, problem in logs.problems.items():
         of_ship, own = findings(name)
         others = tuple(other for other in logs.problems if other != name) if of_ship else ()
-        found[name] = _log_errors(logs, name, given, (of_ship, own), causes, others, progress)
+        about = _Judged(name, problem, calibrated(fit.parts[name]), horizon, of_ship, own, others)
+        found[name] = _log_errors(about, given, causes, progress)
     return {name: one for name, one in found.items() if one is not None}
 
 
-def _log_errors(logs, name, given, findings, causes, others, progress) -> LogErrors | None:
+@dataclass(frozen=True)
+class _Judged:
+    """A log whose errors are wanted: over which horizon [s], with which causes, sized by which other logs."""
+
+    name: str
+    problem: IdentificationProblem
+    fitted_to_it: ShipModel
+    horizon: float
+    of_ship: list[Finding]
+    own: list[Finding]
+    others: tuple[str, ...]
+
+
+def _log_errors(
+    log: _Judged,
+    given: ExtendedSystem,
+    causes: Mapping[str, Cause],
+    progress: Callable[[str, int, int], None],
+) -> LogErrors | None:
     """The errors of one log; None where no stretch of it is whole."""
-    problem, (of_ship, own) = logs.problems[name], findings
-    record, model, remark = problem.record, problem.model, ""
-    horizon = fitting_horizon(record, model)
-    systems = {"before": Replayed(given.given)}
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    remark = ""
+    try:
+        tracks = _cosimulated(log, given, causes, progress)
+    except ShipcosimError as error:
+        remark = "; ".join(f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
+        remark = f"{log.name} was not co-simulated: {remark}"
+        log = replace(log, own=[], others=())
         try:
-            if of_ship or own:
-                about = {"span": model.span, "source": ", ".join(others)}
-                made = extend(given.source, [*of_ship, *own], folder, log_attributes=about, catalogue=causes)
-                systems["after"] = Replayed(read_system(str(made.ssp)), made.signals)
-            each = lambda done, of: progress(name, done, of)  # noqa: E731
-            tracks = tracks_by_systems(record, model, systems, horizon, each, MOST_PIECES)
-        except ShipcosimError as error:
-            remark = "; ".join(f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
-            remark = f"{name} was not co-simulated: {remark}"
-            others, own = (), []
-            try:
-                tracks = tracks_by_models(record, {"before": model}, horizon)
-            except ShipcosimError:
-                return None
+            tracks = tracks_by_models(log.problem.record, {"before": log.problem.model}, log.horizon)
+        except ShipcosimError:
+            return None
     errors = errors_of(tracks)
     shown = {str(one): errors.sel(simulation=one) for one in errors["simulation"].values}
     return LogErrors(
         tuple(map(float, errors["after"].values)),
         {one: tuple(map(float, np.atleast_1d(of["position"].values))) for one, of in shown.items()},
         {one: tuple(map(float, np.atleast_1d(of["heading"].values))) for one, of in shown.items()},
-        others,
-        tuple(finding.cause for finding in own),
+        log.others,
+        tuple(finding.cause for finding in log.own),
         tracks,
         remark,
+        _misses(log, tracks) if "after" in shown else None,
     )
+
+
+def _cosimulated(log, given, causes, progress) -> Tracks:
+    """Predictions by the system, and by the one with the causes in it."""
+    record, model = log.problem.record, log.problem.model
+    systems = {"before": Replayed(given.given)}
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        if log.of_ship or log.own:
+            about = {"span": model.span, "source": ", ".join(log.others)}
+            made = extend(given.source, [*log.of_ship, *log.own], folder, log_attributes=about, catalogue=causes)
+            systems["after"] = Replayed(read_system(str(made.ssp)), made.signals)
+        each = lambda done, of: progress(log.name, done, of)  # noqa: E731
+        return tracks_by_systems(record, model, systems, log.horizon, each, MOST_PIECES)
+
+
+def _misses(log: _Judged, tracks: Tracks) -> np.ndarray:
+    """Errors of each prediction: before, after, and in array form by the ship that was fitted to this log too."""
+    floor = tracks_by_models(log.problem.record, {"floor": log.fitted_to_it}, log.horizon)
+    starts, before = misses_at_end(tracks, "before")
+    all_starts, least = misses_at_end(floor, "floor")
+    return np.stack([before, misses_at_end(tracks, "after")[1], least[np.searchsorted(all_starts, starts)]])

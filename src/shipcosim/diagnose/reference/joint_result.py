@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.diagnose.reference.common import RatioOfLogs, Shared
+from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
 from shipcosim.diagnose.reference.joint_verdict import JointVerdict
 from shipcosim.diagnose.result import SCHEMA, Candidate, Diagnosis, Discrepancy, Estimate, ExperimentDesign, Finding
 
@@ -115,8 +116,8 @@ class JointDiagnosis:
             "not_testable": list(self.not_testable),
             "prescription": asdict(self.prescription) if self.prescription else None,
             "discrepancies": [asdict(one.what) | {"logs": list(one.logs)} for one in self.discrepancies],
-            "baseline": None,
-            "gain": None,
+            "baseline": joint_baseline(self.errors),
+            "gain": joint_gain(self.errors),
             "remarks": list(self.remarks),
             "logs": [self._log(name) for name in self.logs],
         }

@@ -268,8 +268,8 @@ def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, An
     """
     squares, times = _squares(errors), errors["start_time"].values
     before, rival, after, floor = _roots(squares.mean(1))
-    share = _share(before, after, floor)
-    drawn = _roots(_resampled(squares, times, seed))
+    share = share_explained(before, after, floor)
+    drawn = share_explained(*_roots(_resampled(squares, times, seed))[[0, 2, 3]])
     some = np.isfinite(share)
     sure = some and _blocks(times).max() + 1 >= fewest
     return {
@@ -279,14 +279,14 @@ def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, An
         "after_m": float(after),
         "noise_floor_m": float(floor),
         "share_of_explainable": float(share) if some else None,
-        "ci95": [float(q) for q in np.nanquantile(_share(*drawn[[0, 2, 3]]), (0.025, 0.975))] if sure else None,
+        "ci95": [float(q) for q in np.nanquantile(drawn, (0.025, 0.975))] if sure else None,
     }
 
 
 def beyond_observer(errors: xarray.Dataset) -> float:
     """Share of what the bias observer leaves of the explainable error that the cause takes away beside one; or NaN."""
     rival, after = (rms(errors, "position", model) for model in ("bias_observer", "extended_observer"))
-    return float(_share(rival, after, min(rms(errors, "position", "floor"), after)))
+    return float(share_explained(rival, after, min(rms(errors, "position", "floor"), after)))
 
 
 def chance_of_more(errors: xarray.Dataset, model: str, rival: str, seed: int = 1) -> float:
@@ -350,8 +350,8 @@ def _roots(means):
     return np.stack([before, rival, after, np.minimum(floor, after)])
 
 
-def _share(before, after, floor):
-    """(before - after) / (before - floor), NaN where that is next to nothing."""
+def share_explained(before: np.ndarray, after: np.ndarray, floor: np.ndarray) -> np.ndarray:
+    """Share of the explainable error that is gone: (before - after) / (before - floor), NaN where that is little."""
     worth = before - floor
     some = worth > 0.05 * before
     return np.where(some, (before - after) / np.where(some, worth, 1.0), np.nan)

@@ -34,7 +34,15 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.stages import JudgedLog
 
-__all__ = ["Tracks", "errors_of", "fitting_horizon", "tracks_by_models", "tracks_by_systems", "tracks_of"]
+__all__ = [
+    "Tracks",
+    "errors_of",
+    "fitting_horizon",
+    "misses_at_end",
+    "tracks_by_models",
+    "tracks_by_systems",
+    "tracks_of",
+]
 
 _TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
 
@@ -255,18 +263,36 @@ def errors_of(tracks: Tracks, shares: tuple[float, ...] = (1.0 / 6.0, 0.5, 1.0))
     )
 
 
+def misses_at_end(tracks: Tracks, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Position error of each prediction of one simulation after the whole horizon.
+
+    Returns
+    -------
+    starts, errors : (s,) array
+        When each starts [s], and its error, NaN where the log has nothing [m].
+    """
+    one = tracks.predicted[name]
+    return one["start_time"].values, _misses(tracks, one, tracks.horizon)["position"]
+
+
 def _nearest(times: np.ndarray, time: float) -> float:
     return float(times[np.argmin(np.abs(times - time))])
 
 
 def _missed(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, float]:
+    """Root mean squares over the predictions of one simulation."""
+    whole = _misses(tracks, one, end)
+    return {name: float(np.sqrt(np.nanmean(v**2))) if np.isfinite(v).any() else np.nan for name, v in whole.items()}
+
+
+def _misses(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, np.ndarray]:
+    """Errors of each prediction of one simulation after some time: distance of the positions, other channels."""
     there = one.sel(time=end, method="nearest")
     at = one["start_time"].values + float(there["time"])
     off = {role: there[role].values - _between(tracks.measured, role, at) for role in CHANNELS}
     off["heading"] = (off["heading"] + 180.0) % 360.0 - 180.0
     far = np.hypot(off.pop("north"), off.pop("east"))
-    whole = {"position": far} | off
-    return {name: float(np.sqrt(np.nanmean(v**2))) if np.isfinite(v).any() else np.nan for name, v in whole.items()}
+    return {"position": far} | off
 
 
 def _between(measured: xarray.Dataset, role: str, at: np.ndarray) -> np.ndarray:

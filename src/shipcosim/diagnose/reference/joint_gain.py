@@ -1,0 +1,99 @@
+"""The entries `baseline` and `gain` of a joint diagnosis: over all logs, each by what the other logs say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.reference.held_out import LogErrors
+from shipcosim.diagnose.validation.gain import share_explained
+from shipcosim.diagnose.validation.thresholds import DRAWS
+
+__all__ = ["joint_baseline", "joint_gain"]
+
+
+def joint_baseline(errors: Mapping[str, LogErrors]) -> dict[str, list[float]] | None:
+    """Errors of the system as it is: root mean square over the logs, each log alike.
+
+    Parameters
+    ----------
+    errors : dict of str to LogErrors
+        By log, all over the same times.
+
+    Returns
+    -------
+    dict or None
+        Horizons [s] with the errors after each, position [m] and heading [deg]; None without errors.
+    """
+    if not errors:
+        return None
+    each = list(errors.values())
+    return {
+        "horizon_s": list(each[0].horizon),
+        "position_error_m": _over_logs([one.position["before"] for one in each]),
+        "heading_error_deg": _over_logs([one.heading["before"] for one in each]),
+    }
+
+
+def _over_logs(values: list[tuple[float, ...]]) -> list[float]:
+    return [float(value) for value in np.sqrt(np.nanmean(np.square(values), axis=0))]
+
+
+def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any] | None:
+    """Position errors at the longest horizon, before and after: root mean square over the logs, each log alike.
+
+    Only logs count whose causes are sized by other logs. The noise floor is that of the ship whose every number is
+    fitted to all logs, in array form. The interval is of draws of the predictions within each log.
+
+    Parameters
+    ----------
+    errors : dict of str to LogErrors
+        By log, all over the same times.
+    seed : int
+        Of the draws.
+
+    Returns
+    -------
+    dict or None
+        As the gain of one log, `logs` besides; ``bias_observer_m`` is None: these predictions have no observer. None
+        where nothing in the ship is named, or no other log says how large it is.
+    """
+    judged = {name: one for name, one in errors.items() if one.fitted_on and one.misses is not None}
+    squares = {name: _whole(one.misses) ** 2 for name, one in judged.items() if one.misses is not None}
+    squares = {name: of for name, of in squares.items() if of.size}
+    if not squares:
+        return None
+    before, after, floor = _roots(np.mean([of.mean(axis=1) for of in squares.values()], axis=0))
+    rng = np.random.default_rng(seed)
+    drawn = _roots(np.mean([_drawn(of, rng) for of in squares.values()], axis=0))
+    share = share_explained(before, after, floor)
+    some = bool(np.isfinite(share))
+    return {
+        "horizon_s": float(next(iter(judged.values())).horizon[-1]),
+        "before_m": float(before),
+        "bias_observer_m": None,
+        "after_m": float(after),
+        "noise_floor_m": float(floor),
+        "share_of_explainable": float(share) if some else None,
+        "ci95": [float(q) for q in np.nanquantile(share_explained(*drawn), (0.025, 0.975))] if some else None,
+        "logs": list(squares),
+    }
+
+
+def _whole(misses: np.ndarray) -> np.ndarray:
+    """Predictions at whose end the log has a position."""
+    return misses[:, np.isfinite(misses).all(axis=0)]
+
+
+def _drawn(squares: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Mean squares of draws of predictions, (3, draws) array."""
+    count = squares.shape[1]
+    return squares @ rng.multinomial(count, np.full(count, 1.0 / count), size=DRAWS).T / count
+
+
+def _roots(means: np.ndarray) -> np.ndarray:
+    """Roots of mean squares; no perfect model misses more than a model that there is."""
+    before, after, floor = np.sqrt(means)
+    return np.stack([before, after, np.minimum(floor, after)])
