@@ -171,3 +171,21 @@ def test_what_a_cause_too_small_to_matter_explains_is_no_unmodelled_error():
     assert verdict(trifle, unmodelled=unmodelled).verdict == "consistent"
     assert verdict(fit(40.0, "mass", mass_scale=2.5), unmodelled=unmodelled).verdict == "unknown"
     assert verdict(trifle, unmodelled=lambda _: {"slow": 20.0}).verdict == "unknown"
+
+
+@pytest.mark.parametrize(("growth", "says"), [(0.03, "current"), (0.06, "current_varying")])
+def test_a_current_that_hardly_turns_is_a_steady_one(growth, says):
+    """0.04 m/s is a fifth of a typical current: what is less could not be found aboard."""
+    turning = fit(40.0, "current_varying", east_start=0.2, east_end=0.2 + growth)
+    assert named(verdict(turning, fit(34.0, "current"))) == [(says, None)]
+
+
+def test_what_a_current_that_hardly_turns_explains_is_no_unmodelled_error():
+    steady = fit(900.0, "current")
+    turning = fit(920.0, "current_varying", east_start=0.2, east_end=0.22)
+
+    def slow(one):
+        return {"slow": 30.0 if one is steady else 0.0}
+
+    assert named(verdict(steady, turning, unmodelled=slow)) == [("current", None)]
+    assert verdict(steady, unmodelled=slow).verdict == "unknown"

@@ -180,6 +180,7 @@ def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:
     return all(
         _is_sized(hypothesis, fit)
         and _in_shape(hypothesis, fit)
+        and _exceeds_special(hypothesis, fit, fits)
         and not gained(hypothesis, fit, fits) < ENOUGH + max(null.get(hypothesis.label, 0.0), 0.0)
         for hypothesis in fit.hypotheses
     )
@@ -191,6 +192,25 @@ def _is_sized(hypothesis, fit):
     std = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in parameters]) / np.sqrt(len(parameters))
     at_bound = any(fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in parameters)
     return not (size < hypothesis.definition.least or size < DEVIATIONS * std or at_bound)
+
+
+def _exceeds_special(hypothesis, fit, fits):
+    """Whether what a cause has beyond the simpler one that it contains is large enough to matter.
+
+    A steady current beside a model of another form seems to turn a little.
+    """
+    fitted = (one for other in fits for one in other.hypotheses)
+    special = next((one for one in fitted if _is_special(one, hypothesis)), None)
+    if special is None:
+        return True
+    sizes = [fit.values[k.paths[0]] / k.typical for k in hypothesis.parameters]
+    beyond = np.ptp(np.reshape(sizes, (-1, len(special.parameters))), axis=0)
+    return bool(np.linalg.norm(beyond) >= hypothesis.definition.least)
+
+
+def _is_special(one, general):
+    """Whether a cause is the simpler one that another contains."""
+    return one.cause == general.definition.special and one.component == general.component
 
 
 def _in_shape(hypothesis, fit):
@@ -206,12 +226,19 @@ def _size(hypothesis, fit):
 
 
 def _with_a_small_cause(best, fits):
-    """The likeliest fit with one more cause that is too small to matter, if any: it may explain an unmodelled error."""
+    """The likeliest fit with one more cause, or a more general one, that is too small to matter, if any.
+
+    It may explain an unmodelled error.
+    """
     for fit in sorted(fits, key=lambda fit: -fit.score):
         more = [hypothesis for hypothesis in fit.hypotheses if hypothesis not in best.hypotheses]
-        if len(more) == 1 and len(fit.hypotheses) == len(best.hypotheses) + 1 and fit.score > best.score + ENOUGH:
-            if _size(more[0], fit) < more[0].definition.least:
-                return [fit]
+        left = [hypothesis for hypothesis in best.hypotheses if hypothesis not in fit.hypotheses]
+        if len(more) != 1 or fit.score <= best.score + ENOUGH:
+            continue
+        if not left and _size(more[0], fit) < more[0].definition.least:
+            return [fit]
+        if len(left) == 1 and _is_special(left[0], more[0]) and not _exceeds_special(more[0], fit, fits):
+            return [fit]
     return []
 
 
