@@ -35,6 +35,12 @@ def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(diagnos
     assert name == "Reverse loss" and "astern" in sentence and f"{100 * astern:.0f} %" in why
 
 
+def test_labels_that_could_not_be_judged_are_listed_with_the_reason():
+    rows = not_testable_rows(["channel_swap", "sign"], {}, {})
+    assert [name for name, _, _ in rows] == ["Channel swap", "Sign"]
+    assert all("answers the motion" in why and sentence for _, sentence, why in rows)
+
+
 def test_form_of_the_loads_is_told_with_what_it_hides(diagnosis):
     number = FormNumber("vessel.cross_flow_drag", "cross-flow drag coefficient", 1.5, 1.86, 0.07, "1")
     lost = FormNumber("port.form.across", "share of the thrust lost", 0.0, 0.06, 0.01, "1")

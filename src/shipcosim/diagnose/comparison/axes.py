@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.felt import Felt
     from shipcosim.diagnose.comparison.regression import Regression
     from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.models.core.motion import Motion
 
-__all__ = ["AXES", "Axis", "AxisFit", "axes_of"]
+__all__ = ["AXES", "Axis", "AxisFit", "axes_of", "rest_of"]
 
 AXES = ("surge", "sway", "yaw")
 _OF_HULL = 3  # columns of the water's load: the model's, and linear and quadratic damping
@@ -228,18 +229,36 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     kernel, motion, rows = felt.kernel, felt.motion, felt.usable
     force = inertia(model) @ felt.rates + kernel.smooth(moving_mass(motion, model))
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
-    speeds, found = np.stack([motion.u, motion.v, motion.r]), []
-    thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
+    thrust, found = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull)), []
     wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
-    for i, groups in enumerate(_beside(speeds, motion.psi)):
-        drag = [commanded.hull[i], -speeds[i], -speeds[i] * np.abs(speeds[i])]
-        positive = [*drag, *([wind[i]] if np.any(wind) else []), *groups["damping"]]
-        listed = [*positive, *groups["coupling"], *groups["steady"]]
-        rest = kernel.smooth(np.stack(np.broadcast_arrays(*listed)))[:, rows].T
-        sign = np.arange(len(listed)) < len(positive)
+    for i, (listed, sign) in enumerate(rest_of(motion, commanded)):
+        rest = kernel.smooth(listed)[:, rows].T
         size = float(np.sqrt((kernel.smooth(thrust[i])[rows] ** 2).mean())) + 1e-9
         hull, air = (kernel.smooth(load[i])[rows] for load in (commanded.hull, wind))
         found.append(Axis(i, force[i][rows], hull, air, rest, sign, size, rows, felt, block))
+    return found
+
+
+def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.ndarray]]:
+    """What may act beside the thrusters, by axis: unsmoothed columns, and which coefficients must not be negative.
+
+    Parameters
+    ----------
+    motion : Motion
+    commanded : Commanded
+        Loads of the hull and of the wind.
+
+    Returns
+    -------
+    list of three pairs, (q, n) array and (q,) bool array
+    """
+    speeds, found = np.stack([motion.u, motion.v, motion.r]), []
+    wind = commanded.wind
+    for i, groups in enumerate(_beside(speeds, motion.psi)):
+        drag = [commanded.hull[i], -speeds[i], -speeds[i] * np.abs(speeds[i])]
+        positive = [*drag, *([wind[i]] if wind is not None and np.any(wind) else []), *groups["damping"]]
+        listed = [*positive, *groups["coupling"], *groups["steady"]]
+        found.append((np.stack(np.broadcast_arrays(*listed)), np.arange(len(listed)) < len(positive)))
     return found
 
 

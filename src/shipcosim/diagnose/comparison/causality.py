@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.commanded import Commanded
     from shipcosim.diagnose.comparison.felt import Felt
 
-__all__ = ["causal_support"]
+__all__ = ["blocks", "causal_support"]
 
 
 def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> np.ndarray:
@@ -44,12 +44,12 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
     """
     count = max(1, round(CAUSAL_STEP * unit / felt.kernel.step))
     motion = felt.motion
-    speeds = _blocks(np.stack([motion.u, motion.v, motion.r]), count)
-    heading, usable = _blocks(motion.psi, count), _blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
+    speeds = blocks(np.stack([motion.u, motion.v, motion.r]), count)
+    heading, usable = blocks(motion.psi, count), blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     rows = np.arange(CAUSAL_ORDER + 1, usable.size)
     rows = rows[[bool(usable[row - CAUSAL_ORDER - 1 : row + 1].all()) for row in rows]]
     found = np.zeros(len(commanded))
-    loads = [_blocks(sum(one.thrusters.values(), np.zeros_like(one.hull)), count) for one in commanded]
+    loads = [blocks(sum(one.thrusters.values(), np.zeros_like(one.hull)), count) for one in commanded]
     for axis in range(3):
         past = _past(axis, speeds, heading, rows)
         if rows.size < 3 * past.shape[1]:
@@ -62,8 +62,8 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
     return found
 
 
-def _blocks(series: np.ndarray, count: int) -> np.ndarray:
-    """Averages over blocks of rows."""
+def blocks(series: np.ndarray, count: int) -> np.ndarray:
+    """Averages over blocks of `count` rows, along the last axis."""
     whole = series.shape[-1] // count
     return series[..., : whole * count].reshape(*series.shape[:-1], whole, count).mean(-1)
 

@@ -167,7 +167,7 @@ def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:
 
 def _relabelled(log: ComparedLog, labels: Labels) -> ComparedLog:
     """The log with sides and signs of the thrusters put right."""
-    sure = float(1.0 - np.exp(-min(labels.best.score - labels.logged.score, 4.6)))
+    sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
     faults = [finding_of(_label(change, log.log), sure) for change in labels.best.changes]
     faults = (*log.faults, *faults)
     right = in_stretches(repaired(log.log, faults), log.ship.parts["hull"].length)

@@ -86,7 +86,7 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         share = float(np.clip(1.0 - fit.squares / axis.unexplained(np.zeros(before.size)), 0.0, 1.0))
         yield Discrepancy(text, None, axis.name, gain, std, "1", share)
     if why and not told:
-        gained = 1.0 - max(labels.logged.support, 0.0) / labels.best.support
+        gained = float(np.clip(1.0 - labels.logged.support / max(labels.best.support, 1e-9), 0.0, 1.0))
         yield Discrepancy(f"thrust does not go with its command, but with {why}", None, None, -1.0, 0.0, "1", gained)
 
 

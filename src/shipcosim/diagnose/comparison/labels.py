@@ -1,113 +1,52 @@
-"""Sides and signs of thrusters: which labels of their channels make what is commanded agree with what is felt."""
+"""Sides and signs of thrusters: which labels of their channels make what is commanded agree with what is felt.
+
+Three measures tell. The *fit* holds commanded against felt force, smoothed, each axis by itself. The *foresight* asks
+whether commands come before what they do. The *likelihood* takes all axes at once, with errors that are autocorrelated
+and one gain. Each is misled by something: the fit by what thrusters answer, the foresight by a steady command, the
+likelihood by noise that the controller does not see. A reading is believed that two of them prefer beyond doubt.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import combinations
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.comparison.causality import causal_support
 from shipcosim.diagnose.comparison.commanded import commanded_by, late
+from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
+from shipcosim.diagnose.comparison.readings import Change, Reading, changes_of, driven, reading
 from shipcosim.diagnose.comparison.thresholds import (
+    AGREED,
+    ALIKE,
     CHANGE_COST,
+    CONTRADICTED,
     LAG_COST,
-    LAGS,
     LEAST_GAIN,
-    LEAST_LAG,
     LEAST_SUPPORT,
-    MOST_CHANGES,
+    LIKELIHOOD_LAGS,
+    MOST_WEIGHED,
     OPPOSITE,
     PLAINLY_WRONG,
     RIVAL,
     SURELY_CAUSED,
     SURELY_WRONG,
     TOLD,
+    UNLIKELIER,
 )
 from shipcosim.diagnose.ship.smoothing import froude_time
-from shipcosim.diagnose.ship.surrogate import with_surrogates
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
     from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.likelihood import Blocks
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["Change", "Labels", "Reading", "read_labels"]
-
-
-@dataclass(frozen=True)
-class Change:
-    """One thing that is wrong with the labels: a thruster that runs the other way, or two that are exchanged.
-
-    Attributes
-    ----------
-    thrusters : tuple of one or two str
-    turns : bool
-        Whether the log has directions of the two.
-    """
-
-    thrusters: tuple[str, ...]
-    turns: bool = False
-
-    def undo(self, units: dict[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """What drives the thrusters, put right; the direction of one that does not turn stays."""
-        if len(self.thrusters) == 2:
-            one, other = self.thrusters
-            (first, ahead), (second, beside) = units[one], units[other]
-            ahead, beside = (beside, ahead) if self.turns else (ahead, beside)
-            return units | {one: (second, ahead), other: (first, beside)}
-        (name,) = self.thrusters
-        speed, direction = units[name]
-        return units | {name: (-speed, direction)}
-
-
-@dataclass(frozen=True)
-class Reading:
-    """One way to read the thrusters' channels, and how well what is commanded then agrees with what is felt.
-
-    Attributes
-    ----------
-    changes : tuple of Change
-        None is as logged.
-    support : float
-        Log-likelihood that the commanded loads gain, summed over the axes. [nats]
-    lag : float
-        By how much they act late. [s]
-    gained_by_lag : float
-        Part of the support that there is only with this lag. [nats]
-    lag_cost : float
-        What the lag costs: the longer, the less likely; half a period of a manoeuvre late looks like a wrong sign.
-        [nats]
-    step : float
-        Time from row to row. [s]
-    commanded : Commanded
-        With that lag.
-    ahead : dict of str to (n,) bool array
-        By thruster: where it runs ahead.
-    """
-
-    changes: tuple[Change, ...]
-    support: float
-    lag: float
-    gained_by_lag: float
-    lag_cost: float
-    step: float
-    commanded: Commanded
-    ahead: dict[str, np.ndarray]
-
-    @property
-    def is_late(self) -> bool:
-        """Whether the thrust surely acts late, by rows that can be told apart."""
-        return self.lag >= LEAST_LAG * self.step and self.gained_by_lag > LEAST_SUPPORT
-
-    @property
-    def score(self) -> float:
-        """Support less what the changes and the lag cost. [nats]"""
-        return self.support - CHANGE_COST * len(self.changes) - self.lag_cost
 
 
 @dataclass(frozen=True)
@@ -119,31 +58,23 @@ class Labels:
     logged : Reading
         As logged.
     best : Reading
+        That explains most; where the labels are wrong the one that is believed.
     rivals : tuple of Reading
         Other readings that cannot be told from the best.
-    explained : float
-        Largest share of the felt force that the best reading explains on an axis where it differs from the logged one.
-    foresight : float
-        Log-likelihood by which commands read so tell the next velocities better than as logged. [nats]
-    is_contradicted : bool
-        Whether the thrusters as logged surely do the opposite of what they are commanded, on an axis of which they and
-        the water explain most.
+    is_wrong : bool
+        Whether the labels are wrong beyond doubt, in one way or another.
+    is_judged : bool
+        Whether the log tells if they are.
+    margin : float
+        By how much the best reading is better than the logged one. [nats]
     """
 
     logged: Reading
     best: Reading
-    rivals: tuple[Reading, ...]
-    explained: float = 0.0
-    foresight: float = 0.0
-    is_contradicted: bool = False
-
-    @property
-    def is_wrong(self) -> bool:
-        """Whether the labels are wrong beyond doubt, in one way or another."""
-        better = self.best.score > self.logged.score + SURELY_WRONG and self.logged not in self.rivals
-        plain = self.is_contradicted or self.best.score > self.logged.score + PLAINLY_WRONG
-        least = SURELY_CAUSED if self.explained <= TOLD else 0.0 if plain else RIVAL
-        return better and self.foresight > least
+    rivals: tuple[Reading, ...] = ()
+    is_wrong: bool = False
+    is_judged: bool = True
+    margin: float = 0.0
 
     @property
     def is_sure(self) -> bool:
@@ -154,6 +85,32 @@ class Labels:
     def used(self) -> Reading:
         """The best reading where it is sure, else as logged."""
         return self.best if self.is_sure else self.logged
+
+
+@dataclass(frozen=True)
+class _Weighed:
+    """A reading with what each measure says for it, less what its changes cost. [nats]"""
+
+    reading: Reading
+    fit: float
+    foresight: float
+    likelihood: float
+
+    def over(self, other: _Weighed) -> np.ndarray:
+        """By how much it is better, (3,) array, the least first."""
+        own = self.fit, self.foresight, self.likelihood
+        return np.sort(np.subtract(own, (other.fit, other.foresight, other.likelihood)))
+
+    def beats(self, other: _Weighed, least: float) -> bool:
+        """Whether two measures prefer it by `least`, the third does not speak against it, nor all three together."""
+        worst, middle, _ = over = self.over(other)
+        return bool(middle > least and worst > -CONTRADICTED and np.minimum(over, CONTRADICTED).sum() > 2.0 * least)
+
+    def is_as(self, other: _Weighed) -> bool:
+        """Whether they do the same but for the number of changes."""
+        cost = CHANGE_COST * (len(self.reading.changes) - len(other.reading.changes))
+        own = np.array([self.fit, self.foresight, self.likelihood]) + cost
+        return bool(np.abs(own - (other.fit, other.foresight, other.likelihood)).max() < ALIKE)
 
 
 def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipModel) -> Labels:
@@ -174,21 +131,70 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     -------
     Labels
     """
-
-    def read(*changes):
-        return _reading(changes, record, felt, axes, model)
-
-    logged = read()
+    logged = reading((), record, felt, axes, model)
     if all(_does_as_told(axis, logged.commanded) for axis in axes):
-        return Labels(logged, logged, ())
-    singles = _single_changes(record, model)
-    found = [logged, *(read(one) for one in singles), *(read(*several) for several in _together(singles))]
-    found.sort(key=lambda one: -one.score)
-    rivals = tuple(one for one in found[1:] if one.score > found[0].score - RIVAL)
-    readings = [one.commanded for one in (found[0], logged)]
-    best, first = causal_support(felt, readings, froude_time(model.parts["hull"].length))
-    explained = _explained(found[0], logged, axes)
-    return Labels(logged, found[0], rivals, explained, float(best - first), _is_contradicted(found[0], logged, axes))
+        return Labels(logged, logged)
+    found = [logged, *(reading(one, record, felt, axes, model) for one in changes_of(record, model))]
+    credible = [one for one in found[1:] if one.score > logged.score - CONTRADICTED]
+    credible = sorted(credible, key=lambda one: -one.score)[:MOST_WEIGHED]
+    weighed = _weighed([logged, *credible], record, felt, model)
+    labels, agreed = _by_fit(weighed, axes), _by_agreement(weighed)
+    if labels.is_sure and agreed and agreed.is_sure and agreed.best is not labels.best:
+        return Labels(logged, labels.best, (agreed.best,), is_judged=False)
+    if agreed and (agreed.is_sure or not labels.is_wrong):
+        return agreed
+    return labels
+
+
+def _weighed(found: Sequence[Reading], record: Record, felt: Felt, model: ShipModel) -> list[_Weighed]:
+    """Readings with what the three measures say, the logged one first."""
+    unit, smooth = froude_time(model.parts["hull"].length), smoothed(felt)
+    log = blocks_of(felt, commanded_by(*driven(found[0].units, record, smooth, model)), model)
+    foresight = causal_support(felt, [one.commanded for one in found], unit)
+    weighed = []
+    for one, seen in zip(found, foresight, strict=True):
+        commanded = commanded_by(*driven(one.units, record, smooth, model))
+        cost = CHANGE_COST * len(one.changes)
+        likelihood = max(_likelihoods(log, commanded, one, unit))
+        weighed.append(_Weighed(one, one.score, float(seen) - cost, likelihood - cost))
+    return weighed
+
+
+def _likelihoods(log: Blocks, commanded: Commanded, one: Reading, unit: float) -> Iterator[float]:
+    """Of a reading with several lags, less what those cost."""
+    for lag in LIKELIHOOD_LAGS:
+        moved = late(commanded, lag * unit / one.step) if lag else commanded
+        yield likelihood_of(log, moved, one.ahead) - (LAG_COST + lag if lag else 0.0)
+
+
+def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
+    """The reading that fits best, and whether it does beyond doubt and nothing else speaks against it."""
+    first, ranked = weighed[0], sorted(weighed, key=lambda one: -one.fit)
+    best, logged = ranked[0], first.reading
+    rivals = tuple(one.reading for one in ranked[1:] if one.fit > best.fit - RIVAL)
+    gained = best.fit - first.fit
+    plain = _is_contradicted(best.reading, logged, axes) or gained > PLAINLY_WRONG
+    least = SURELY_CAUSED if _explained(best.reading, logged, axes) <= TOLD else 0.0 if plain else RIVAL
+    changes = CHANGE_COST * len(best.reading.changes)
+    is_wrong = gained > SURELY_WRONG and logged not in rivals and best.foresight - first.foresight + changes > least
+    likeliest = max(one.likelihood for one in weighed)
+    is_wrong &= best.likelihood + changes > first.likelihood - UNLIKELIER and best.likelihood > likeliest - UNLIKELIER
+    is_judged = is_wrong or all(first.beats(one, RIVAL) or one.is_as(first) for one in weighed[1:])
+    return Labels(logged, best.reading, rivals, is_wrong, is_judged, gained)
+
+
+def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
+    """A reading that two measures prefer beyond doubt to the logged one, and to all others, if there is one."""
+    first = weighed[0]
+    for one in weighed[1:]:
+        others = [other for other in weighed[1:] if other is not one]
+        twins = [other for other in others if one.is_as(other)]
+        rest = [other for other in others if other not in twins]
+        if one.beats(first, AGREED) and all(one.beats(other, RIVAL) for other in rest):
+            fewest = min(len(other.reading.changes) for other in (one, *twins))
+            alike = [other.reading for other in (one, *twins) if len(other.reading.changes) == fewest]
+            return Labels(first.reading, alike[0], tuple(alike[1:]), True, True, float(one.over(first)[1]))
+    return None
 
 
 def _is_contradicted(best: Reading, logged: Reading, axes: Sequence[Axis]) -> bool:
@@ -225,55 +231,3 @@ def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
 def _each(axis: Axis, commanded: Commanded) -> np.ndarray:
     """What each thruster that acts on an axis is commanded, (k, n) array."""
     return np.stack([axis.smoothed(load) for load in commanded.thrusters.values() if np.any(load[axis.number])])
-
-
-def _single_changes(record: Record, model: ShipModel) -> list[Change]:
-    """Each thruster that runs run the other way, and each two of a make exchanged."""
-    names = [name for name in model.thrusters if np.any(record.units[name][0])]
-    pairs = [pair for pair in combinations(names, 2) if _make(model, pair[0]) == _make(model, pair[1])]
-    return [Change(pair, pair[0] in model.azimuths) for pair in pairs] + [Change((name,)) for name in names]
-
-
-def _make(model: ShipModel, name: str) -> object:
-    """What kind of thruster it is."""
-    third_party = model.third_party.get(name)
-    return third_party.component.fmu.model_name if third_party else type(model.parts[name])
-
-
-def _together(singles: Sequence[Change]) -> list[tuple[Change, ...]]:
-    """Several changes at once, exchanges before signs."""
-    return [both for count in range(2, MOST_CHANGES + 1) for both in combinations(singles, count)]
-
-
-def _reading(changes, record, felt, axes, model):
-    """One reading, with the lag that suits it best."""
-    units = record.units
-    for change in changes:
-        units = change.undo(units)
-    record = replace(record, units=units)
-    if any("rpm" in one.drives for one in model.third_party.values()):  # one that is told its thrust is linear
-        model = with_surrogates(model, record, felt.motion)
-    commanded = commanded_by(record, felt, model)
-    ahead = {name: speed >= 0.0 for name, (speed, _) in units.items()}
-    tries = []
-    scale = froude_time(model.parts["hull"].length)
-    for lag in (0.0, *(k * scale for k in LAGS)):
-        moved = late(commanded, lag / record.step)
-        support = support_of(moved, ahead, axes)
-        gained = support - tries[0].support if tries else 0.0
-        cost = LAG_COST + lag / scale if lag else 0.0
-        tries.append(Reading(tuple(changes), support, float(lag), gained, cost, record.step, moved, ahead))
-    return max(tries, key=lambda one: one.score)
-
-
-def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequence[Axis]) -> float:
-    """Log-likelihood that commanded loads gain over none, summed over the axes that they drive. [nats]"""
-    total = 0.0
-    for axis in axes:
-        if axis.is_driven(commanded):
-            ways = [
-                sum((axis.smoothed(load * (ahead[name] == way)) for name, load in commanded.thrusters.items()), 0.0)
-                for way in (True, False)
-            ]
-            total += axis.both_ways(*map(np.asarray, ways)).support
-    return total

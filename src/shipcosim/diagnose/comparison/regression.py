@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 
 from shipcosim.diagnose.comparison.thresholds import HUBER, ROBUST_ROUNDS, SOUND
 
-__all__ = ["Regression", "regressed"]
+__all__ = ["Regression", "bounded", "regressed"]
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def regressed(
     unit, weights, pull = columns / scale, np.ones(series.size), np.zeros(scale.size)
     for _ in range(ROBUST_ROUNDS):
         heavy = unit * (weights**2)[:, None]
-        found = _bounded(unit.T @ heavy + np.diag(pull**2), heavy.T @ series, positive)
+        found = bounded(unit.T @ heavy + np.diag(pull**2), heavy.T @ series, positive)
         left = series - unit @ found
         size = np.sort(np.abs(left))[: int(SOUND * left.size)]
         spread = np.sqrt((size**2).mean()) + 1e-300  # not the median: a craft that lies idle would hide what she does
@@ -83,10 +83,22 @@ def regressed(
     return Regression(found / scale, covariance / np.outer(scale, scale), left, squares, _apart(left, block))
 
 
-def _bounded(products, with_series, positive):
+def bounded(products: np.ndarray, with_series: np.ndarray, positive: np.ndarray) -> np.ndarray:
     """Least squares, from inner products, with some coefficients that must not be negative.
 
     The free ones are differences of two that are not.
+
+    Parameters
+    ----------
+    products : (p, p) array
+        Of the columns.
+    with_series : (p,) array
+        Of the columns with the series.
+    positive : (p,) bool array
+
+    Returns
+    -------
+    (p,) array
     """
     size, turn = np.linalg.eigh(products)
     root = np.sqrt(np.maximum(size, 1e-12 * size.max() + 1e-300))

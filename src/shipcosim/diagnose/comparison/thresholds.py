@@ -62,6 +62,33 @@ CAUSAL_ORDER = 8
 """Blocks of the past that a velocity is predicted from. Assumed: three of the times above."""
 COMMANDS_BEFORE = 6
 """Blocks of commands before it. Assumed."""
+GAIN_WIDTH = 0.7
+"""Natural logarithm by which the gain of all thrusters may be off 1, standard deviation. Assumed: a factor of 2."""
+GAIN_OF_AXES = 0.3
+"""The same, that of an axis off that of all. Assumed."""
+LEAST_GAIN_STD = 0.05
+"""Standard deviation of a gain to which it is never known better, whatever the rows say. Assumed."""
+THRUSTER_WIDTH = 0.2
+"""What a thruster's gain may be off that of all. Assumed."""
+WAY_WIDTH = 0.4
+"""What the gain of all thrusters ahead may be off that astern. Assumed."""
+LEAST_OF_ALL = 0.1
+"""Share of their force that thrusters must have on an axis, before it is compared. Assumed."""
+LEAST_LEVER = 0.3
+"""The lever that makes it a moment, over the ship's length."""
+AGREED = 5.0
+"""By how much two of the fit, the foresight and the likelihood must each prefer a reading, after its cost. [nats]"""
+CONTRADICTED = 15.0
+"""By how much the third may speak against it. [nats] A controller that knows the motion better than the log does
+feigns up to 10 in likelihood and 20 in foresight (tests/bench/craft, seeds 200 to 244, right labels)."""
+LIKELIHOOD_LAGS = (0.0, 0.5, 1.0, 2.0)
+"""Lags of the thrust of which the likelihood takes the best, over the root of the ship's length over gravity."""
+ALIKE = 0.05
+"""Readings are the same within this. [nats]"""
+MOST_WEIGHED = 15
+"""Readings beside the logged one of which foresight and likelihood are computed: those that fit best."""
+UNLIKELIER = 5.0
+"""The same for the likelihood where the fit alone decides. [nats] Seeds 236 and 300, right labels."""
 OPPOSITE = 4.0
 """Standard deviations by which a gain is surely positive, or surely negative. Assumed."""
 LEAST_GAIN = 0.1

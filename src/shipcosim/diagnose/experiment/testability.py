@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,28 +16,40 @@ from shipcosim.diagnose.inference.screening import screening_regressors
 from shipcosim.diagnose.inference.search import without_causes
 from shipcosim.diagnose.inference.thresholds import TESTABLE
 from shipcosim.diagnose.inference.verdict import usual_gain
+from shipcosim.diagnose.log.mislabels import THRUSTER_LABELS
 from shipcosim.diagnose.log_faults.clock import is_testable
 from shipcosim.diagnose.ship.form import form_sizes
 from shipcosim.diagnose.ship.inputs import rate_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.stages import JudgedLog
 
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.compared import LogComparison
+
 __all__ = ["hidden_by_form", "log_facts", "not_testable", "untestable_causes"]
 
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
-    """Causes of the catalogue, and the clock, that a log could not have shown had they had their typical size.
+    """Causes of the catalogue, the clock, and labels of thrusters that a log could not have shown.
+
+    Causes as they would have shown had they had their typical size.
 
     All causes where something keeps the log from telling any.
     """
     problem, found = log.problem, log.explained.identification
-    clock = () if is_testable(problem) else ("clock",)
+    of_log = (*(() if is_testable(problem) else ("clock",)), *_labels(found.comparison))
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
     if found.comparison is not None and found.comparison.obstacles:
-        return tuple(sorted({*clock, *everywhere}))
+        return tuple(sorted({*of_log, *everywhere}))
     weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
-    return tuple(sorted({*weak, *clock, *(everywhere - identifiable)}))
+    return tuple(sorted({*weak, *of_log, *(everywhere - identifiable)}))
+
+
+def _labels(comparison: LogComparison | None) -> tuple[str, ...]:
+    """Faults of the thrusters' labels, where a log does not tell whether it has them."""
+    judged = comparison is None or comparison.labels is None or comparison.labels.is_judged
+    return () if judged else THRUSTER_LABELS
 
 
 def hidden_by_form(log: JudgedLog) -> tuple[str, ...]:

@@ -212,6 +212,8 @@ class Fault(_Strict):
         Whether it concerns all channels, whichever the finding names.
     rewires : bool
         Whether the extended system has the connections of the component as their names say.
+    why_not_testable : str
+        What keeps a log from showing it, as a clause.
     """
 
     fault: str
@@ -220,3 +222,4 @@ class Fault(_Strict):
     repair: str
     in_every_channel: bool = False
     rewires: bool = False
+    why_not_testable: str = ""

@@ -21,6 +21,7 @@ __all__ = [
     "POSITION",
     "POSITION_IN_DEGREES",
     "POSITION_LABELS",
+    "THRUSTER_LABELS",
     "VELOCITY",
     "WIND_LABELS",
     "Mislabel",
@@ -36,6 +37,8 @@ __all__ = [
     "velocity_frame",
 ]
 
+THRUSTER_LABELS = ("channel_swap", "sign")
+"""What can be wrong of the labels of what drives thrusters."""
 DRIVES = ("_rpm", "_azimuth", "_thrust")
 """How roles of what drives a thruster end."""
 KNOT = 1852.0 / 3600.0  # m/s

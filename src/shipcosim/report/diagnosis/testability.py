@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 
+from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, placeholders
 from shipcosim.report.diagnosis.words import title
 from shipcosim.report.theme.numbers import plain
@@ -34,12 +35,15 @@ def not_testable_rows(
     hidden : collection of str
         Causes that another form of the ship's loads hides.
     """
-    texts, rows = _texts(facts), []
+    texts, rows, faults = _texts(facts), [], read_faults()
     for name in names:
         cause = causes.get(name)
         reason = f"{_reason(cause, texts)}an effect of typical size would not have stood out"
         reason = BY_FORM if name in hidden else reason
-        rows.append((title(name), cause.sentence if cause else "", reason))
+        if name in faults and faults[name].why_not_testable:
+            reason = faults[name].why_not_testable
+        sentence = cause.sentence if cause else faults[name].statement.capitalize() if name in faults else ""
+        rows.append((title(name), sentence, reason))
     return rows
 
 

@@ -1,0 +1,231 @@
+"""How likely a reading of the commands makes the felt force, over all axes at once, with autocorrelated errors.
+
+All thrusters have nearly one gain, of the order of 1, on all axes. Whoever reads their labels wrongly must make the
+gain small or let the thrusters differ, and pays for both; where each axis has a gain of its own, a wrong reading only
+says that the thrusters do nothing there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.axes import rest_of
+from shipcosim.diagnose.comparison.causality import blocks
+from shipcosim.diagnose.comparison.commanded import inertia, moving_mass
+from shipcosim.diagnose.comparison.regression import bounded
+from shipcosim.diagnose.comparison.thresholds import (
+    CAUSAL_ORDER,
+    CAUSAL_STEP,
+    GAIN_OF_AXES,
+    GAIN_WIDTH,
+    HUBER,
+    LEAST_GAIN_STD,
+    LEAST_LEVER,
+    LEAST_OF_ALL,
+    STEADY_SHARE,
+    THRUSTER_WIDTH,
+    WAY_WIDTH,
+)
+from shipcosim.diagnose.ship.smoothing import froude_time
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.commanded import Commanded
+    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["Blocks", "blocks_of", "likelihood_of", "smoothed"]
+
+_ROUNDS = 5  # of coefficients and autocorrelation in turn
+_LOG_GAINS = np.linspace(np.log(0.05), np.log(8.0), 81)
+
+
+class _Axis(NamedTuple):
+    """One axis between blocks: felt force (n,), all but the thrusters (n, q), and which of it has one sign (q,)."""
+
+    felt: np.ndarray
+    rest: np.ndarray
+    positive: np.ndarray
+
+
+class _Fit(NamedTuple):
+    """Log-likelihood, prior included, gain with its standard deviation, and the errors' autoregression."""
+
+    likelihood: float
+    gain: float
+    std: float
+    filter: np.ndarray
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """A log in blocks of rows, ready for any reading of its commands.
+
+    Attributes
+    ----------
+    axes : dict of int to _Axis
+        Axes that thrusters drive.
+    alone : dict of int to _Fit
+        The same without thrusters.
+    sizes : dict of int to float
+        What the thrusters do at most, root mean square.
+    rows : (m,) array
+        Steps between blocks with enough usable ones before.
+    count : int
+        Rows of a block.
+    """
+
+    axes: dict[int, _Axis]
+    alone: dict[int, _Fit]
+    sizes: dict[int, float]
+    rows: np.ndarray
+    count: int
+
+    def between(self, series: np.ndarray) -> np.ndarray:
+        """A series of rows, as its mean over two neighbouring blocks."""
+        return _between(blocks(series, self.count))
+
+
+def smoothed(felt: Felt) -> Felt:
+    """The same with a smoothed motion, so that noise of the velocities does not go with the loads that they make."""
+    motion = felt.motion
+    return replace(felt, motion=type(motion)(*(felt.kernel.smooth(np.asarray(one, float)) for one in motion)))
+
+
+def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
+    """A log in blocks.
+
+    Parameters
+    ----------
+    felt : Felt
+    commanded : Commanded
+        As logged, along the smoothed motion.
+    model : ShipModel
+
+    Returns
+    -------
+    Blocks
+    """
+    length, motion = model.parts["hull"].length, smoothed(felt).motion
+    count = max(1, round(CAUSAL_STEP * froude_time(length) / felt.kernel.step))
+    speeds = blocks(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), count)
+    usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
+    rows = _with_past(usable[1:] & usable[:-1])
+    rates = np.diff(speeds, axis=1) / (count * felt.kernel.step)
+    force = inertia(model) @ rates + _between(blocks(moving_mass(motion, model), count))
+    listed = rest_of(motion, commanded)
+    sizes, axes = _sizes(commanded, length), {}
+    for i in sizes:
+        columns, positive = listed[i]
+        rest = np.stack([_between(blocks(one, count)) for one in columns], axis=1)
+        if rows.size > 4 * (rest.shape[1] + len(commanded.thrusters) + CAUSAL_ORDER):
+            axes[i] = _Axis(force[i], rest, positive)
+    empty = Blocks(axes, {}, sizes, rows, count)
+    return replace(empty, alone={i: _fitted(empty, i, None, np.empty((0, 0))) for i in axes})
+
+
+def _sizes(commanded: Commanded, length: float) -> dict[int, float]:
+    """What the thrusters do at most, root mean square, on axes where that is no small part of their force."""
+    most = sum((np.abs(load) for load in commanded.thrusters.values()), np.zeros_like(commanded.hull))
+    least = LEAST_OF_ALL * np.array([1.0, 1.0, LEAST_LEVER * length]) * np.sqrt(((most[0] + most[1]) ** 2).mean())
+    found = np.sqrt((most**2).mean(1))
+    return {i: float(found[i]) for i in range(3) if found[i] > max(least[i], 1e-9)}
+
+
+def _between(series: np.ndarray) -> np.ndarray:
+    return 0.5 * (series[..., 1:] + series[..., :-1])
+
+
+def _with_past(usable: np.ndarray) -> np.ndarray:
+    bad = np.cumsum(np.r_[0, ~usable])
+    rows = np.arange(CAUSAL_ORDER, usable.size)
+    return rows[bad[rows + 1] == bad[rows - CAUSAL_ORDER]]
+
+
+def likelihood_of(log: Blocks, commanded: Commanded, ahead: dict[str, np.ndarray]) -> float:
+    """Log-likelihood that commands so read gain over none, over all axes. [nats]
+
+    On each axis the felt force is explained by the commanded ones, the water, coupling and a steady force; its errors
+    are autoregressive (generalized least squares: Ljung, System Identification, 2nd ed., Prentice Hall, 1999, ch. 7).
+    The gain is averaged over its prior, common to the axes but for their own error.
+
+    Parameters
+    ----------
+    log : Blocks
+    commanded : Commanded
+        Along the smoothed motion.
+    ahead : dict of str to (n,) bool array
+        By thruster: where it runs ahead.
+
+    Returns
+    -------
+    float
+    """
+    gains = np.exp(_LOG_GAINS)
+    total = -0.5 * (_LOG_GAINS / GAIN_WIDTH) ** 2
+    total -= np.log(np.exp(total).sum())
+    near = np.exp(-0.5 * ((_LOG_GAINS[:, None] - _LOG_GAINS[None]) / GAIN_OF_AXES) ** 2)
+    near /= near.sum(1, keepdims=True)
+    for i in log.axes:
+        fit = _fitted(log, i, *_columns(log, i, commanded, ahead))
+        std = np.hypot(fit.std, LEAST_GAIN_STD)
+        own = fit.likelihood - log.alone[i].likelihood - 0.5 * ((gains - fit.gain) / std) ** 2
+        total += own.max() + np.log(near @ np.exp(own - own.max()) + 1e-300)
+    return float(total.max() + np.log(np.exp(total - total.max()).sum()))
+
+
+def _columns(log, i, commanded, ahead):
+    """The sum of the thrusters' loads, and by what they may differ from it, each with its standard deviation."""
+    loads = {name: load[i] for name, load in commanded.thrusters.items() if np.any(load[i])}
+    ways = sum((load * (ahead[name] - 0.5) for name, load in loads.items()), np.zeros(commanded.hull.shape[1]))
+    columns = [log.between(one) for one in (*loads.values(), ways)]
+    total = sum(columns[:-1], np.zeros_like(columns[-1]))
+    return total, np.stack(columns, 1), np.r_[np.full(len(loads), THRUSTER_WIDTH), WAY_WIDTH]
+
+
+def _fitted(log: Blocks, i: int, total: np.ndarray | None, apart: np.ndarray, widths: np.ndarray | None = None) -> _Fit:
+    """The felt force on an axis explained, with errors that are autoregressive."""
+    axis, rows, order = log.axes[i], log.rows, CAUSAL_ORDER
+    prior = STEADY_SHARE * log.sizes[i] / np.sqrt((axis.rest**2).mean(0) + 1e-30)
+    prior, positive, columns = np.where(axis.positive, np.inf, prior), axis.positive, axis.rest
+    starts = [np.zeros(order)]
+    if total is not None and widths is not None:
+        columns = np.concatenate([total[:, None], axis.rest, apart], axis=1)
+        prior, positive = np.r_[np.inf, prior, widths], np.r_[False, positive, np.zeros(widths.size, bool)]
+        starts.append(log.alone[i].filter)
+    felt = np.stack([axis.felt[rows - k] for k in range(order + 1)])
+    late = np.stack([columns[rows - k] for k in range(order + 1)])
+    best = max((_refined(felt, late, positive, prior, start) for start in starts), key=lambda one: one[0])
+    likelihood, found, filter_, spread = best
+    if total is None:
+        return _Fit(likelihood, 0.0, 0.0, filter_)
+    white = np.tensordot(np.r_[1.0, -filter_], late, 1)
+    free = (found != 0.0) | ~positive
+    information = white[:, free].T @ white[:, free] / spread**2 + np.diag(prior[free] ** -2.0)
+    variance = np.linalg.pinv(information, rcond=1e-12, hermitian=True)[0, 0]
+    return _Fit(likelihood, float(found[0]), float(np.sqrt(max(variance, 0.0))), filter_)
+
+
+def _refined(felt, late, positive, prior, filter_):
+    """Coefficients and autoregression in turn; the best (log-likelihood, coefficients, autoregression, spread)."""
+    best, spread = (-np.inf, np.zeros(positive.size), filter_, 1.0), float(np.std(np.r_[1.0, -filter_] @ felt))
+    for _ in range(_ROUNDS):
+        ahead = np.r_[1.0, -filter_]
+        series, white = ahead @ felt, np.tensordot(ahead, late, 1)
+        scale = np.sqrt((white**2).sum(0)) + 1e-300
+        unit, pull = white / scale, spread / (prior * scale)
+        found = bounded(unit.T @ unit + np.diag(pull**2), unit.T @ series, positive) / scale
+        errors = felt - late @ found
+        past = errors[1:].T
+        products = past.T @ past
+        filter_ = np.linalg.solve(
+            products + 1e-6 * np.trace(products) / len(products) * np.eye(len(products)) + 1e-300, past.T @ errors[0]
+        )
+        left = errors[0] - past @ filter_
+        spread = float(np.sqrt(np.minimum(left**2, (HUBER * 1.4826 * np.median(np.abs(left))) ** 2).mean())) + 1e-300
+        likelihood = float(-left.size * np.log(spread) - 0.5 * ((found / prior) ** 2).sum())
+        if likelihood > best[0]:
+            best = likelihood, found, filter_, spread
+    return best

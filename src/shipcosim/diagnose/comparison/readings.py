@@ -1,0 +1,199 @@
+"""Ways to read the channels of thrusters: as logged, reversed, exchanged, and what each makes of the commands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.commanded import commanded_by, late
+from shipcosim.diagnose.comparison.thresholds import (
+    CHANGE_COST,
+    LAG_COST,
+    LAGS,
+    LEAST_LAG,
+    LEAST_SUPPORT,
+    MOST_CHANGES,
+)
+from shipcosim.diagnose.ship.smoothing import froude_time
+from shipcosim.diagnose.ship.surrogate import with_surrogates
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.axes import Axis
+    from shipcosim.diagnose.comparison.commanded import Commanded
+    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.model import ShipModel
+
+__all__ = ["Change", "Reading", "changes_of", "driven", "reading"]
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that is wrong with the labels: a thruster that runs the other way, or two that are exchanged.
+
+    Attributes
+    ----------
+    thrusters : tuple of one or two str
+    turns : bool
+        Whether the log has directions of the two.
+    """
+
+    thrusters: tuple[str, ...]
+    turns: bool = False
+
+    def undo(self, units: dict[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """What drives the thrusters, put right; the direction of one that does not turn stays."""
+        if len(self.thrusters) == 2:
+            one, other = self.thrusters
+            (first, ahead), (second, beside) = units[one], units[other]
+            ahead, beside = (beside, ahead) if self.turns else (ahead, beside)
+            return units | {one: (second, ahead), other: (first, beside)}
+        (name,) = self.thrusters
+        speed, direction = units[name]
+        return units | {name: (-speed, direction)}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One way to read the thrusters' channels, and how well what is commanded then agrees with what is felt.
+
+    Attributes
+    ----------
+    changes : tuple of Change
+        None is as logged.
+    support : float
+        Log-likelihood that the commanded loads gain, summed over the axes. [nats]
+    lag : float
+        By how much they act late. [s]
+    gained_by_lag : float
+        Part of the support that there is only with this lag. [nats]
+    lag_cost : float
+        What the lag costs: the longer, the less likely; half a period of a manoeuvre late looks like a wrong sign.
+        [nats]
+    step : float
+        Time from row to row. [s]
+    commanded : Commanded
+        With that lag.
+    ahead : dict of str to (n,) bool array
+        By thruster: where it runs ahead.
+    units : dict of str to (n,) arrays
+        What drives the thrusters, so read.
+    """
+
+    changes: tuple[Change, ...]
+    support: float
+    lag: float
+    gained_by_lag: float
+    lag_cost: float
+    step: float
+    commanded: Commanded
+    ahead: dict[str, np.ndarray]
+    units: dict[str, tuple[np.ndarray, np.ndarray]]
+
+    @property
+    def is_late(self) -> bool:
+        """Whether the thrust surely acts late, by rows that can be told apart."""
+        return self.lag >= LEAST_LAG * self.step and self.gained_by_lag > LEAST_SUPPORT
+
+    @property
+    def score(self) -> float:
+        """Support less what the changes and the lag cost. [nats]"""
+        return self.support - CHANGE_COST * len(self.changes) - self.lag_cost
+
+
+def changes_of(record: Record, model: ShipModel) -> list[tuple[Change, ...]]:
+    """What may be wrong with the labels: thrusters that run the other way, two of a make exchanged, several of these.
+
+    Parameters
+    ----------
+    record : Record
+    model : ShipModel
+
+    Returns
+    -------
+    list of tuple of Change
+        Exchanges before signs, one change before several.
+    """
+    names = [name for name in model.thrusters if np.any(record.units[name][0])]
+    pairs = [pair for pair in combinations(names, 2) if _make(model, pair[0]) == _make(model, pair[1])]
+    singles = [Change(pair, pair[0] in model.azimuths) for pair in pairs] + [Change((name,)) for name in names]
+    return [several for count in range(1, MOST_CHANGES + 1) for several in combinations(singles, count)]
+
+
+def _make(model: ShipModel, name: str) -> object:
+    """What kind of thruster it is."""
+    third_party = model.third_party.get(name)
+    return third_party.component.fmu.model_name if third_party else type(model.parts[name])
+
+
+def reading(changes: tuple[Change, ...], record: Record, felt: Felt, axes: Sequence[Axis], model: ShipModel) -> Reading:
+    """One reading of the channels, with the lag that suits it best.
+
+    Parameters
+    ----------
+    changes : tuple of Change
+    record : Record
+        As logged.
+    felt : Felt
+    axes : sequence of Axis
+    model : ShipModel
+        With surrogates of third-party FMUs.
+
+    Returns
+    -------
+    Reading
+    """
+    units = record.units
+    for change in changes:
+        units = change.undo(units)
+    commanded = commanded_by(*driven(units, record, felt, model))
+    ahead = {name: speed >= 0.0 for name, (speed, _) in units.items()}
+    tries = []
+    scale = froude_time(model.parts["hull"].length)
+    for lag in (0.0, *(k * scale for k in LAGS)):
+        moved = late(commanded, lag / record.step)
+        support = support_of(moved, ahead, axes)
+        gained = support - tries[0].support if tries else 0.0
+        cost = LAG_COST + lag / scale if lag else 0.0
+        tries.append(Reading(changes, support, float(lag), gained, cost, record.step, moved, ahead, units))
+    return max(tries, key=lambda one: one.score)
+
+
+def driven(
+    units: dict[str, tuple[np.ndarray, np.ndarray]], record: Record, felt: Felt, model: ShipModel
+) -> tuple[Record, Felt, ShipModel]:
+    """A log and its ship with thrusters that are driven otherwise, as `commanded_by` takes them.
+
+    Parameters
+    ----------
+    units : dict of str to (n,) arrays
+        Speed and direction by thruster.
+    record : Record
+    felt : Felt
+    model : ShipModel
+
+    Returns
+    -------
+    tuple of Record, Felt, ShipModel
+    """
+    record = replace(record, units=units)
+    if any("rpm" in one.drives for one in model.third_party.values()):  # one that is told its thrust is linear
+        model = with_surrogates(model, record, felt.motion)
+    return record, felt, model
+
+
+def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequence[Axis]) -> float:
+    """Log-likelihood that commanded loads gain over none, summed over the axes that they drive. [nats]"""
+    total = 0.0
+    for axis in axes:
+        if axis.is_driven(commanded):
+            ways = [
+                sum((axis.smoothed(load * (ahead[name] == way)) for name, load in commanded.thrusters.items()), 0.0)
+                for way in (True, False)
+            ]
+            total += axis.both_ways(*map(np.asarray, ways)).support
+    return total

@@ -1,0 +1,45 @@
+"""All axes at once tell the labels of thrusters, and noise tells nothing."""
+
+import numpy as np
+import pytest
+from diagnose import usv
+
+from shipcosim.diagnose.comparison.commanded import commanded_by
+from shipcosim.diagnose.comparison.felt import felt_by
+from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
+from shipcosim.diagnose.comparison.readings import Change, driven
+from shipcosim.diagnose.inference.problem import as_logged
+from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.ship.inputs import record_of
+from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.stages import ReadLog
+
+
+@pytest.fixture(scope="module")
+def told():
+    """Function from a reading of the thrusters of a small craft to its log-likelihood."""
+    log = checked(ReadLog(read_log(usv.log(8.0, 11)), ship_model_of(usv.structure().checked()), {}))
+    ship = as_logged(log.ship, log.repaired)
+    record = record_of(log.repaired, ship)
+    felt = felt_by(record, ship.parts["hull"].length)
+    blocks = blocks_of(felt, commanded_by(record, smoothed(felt), ship), ship)
+
+    def likelihood(units):
+        commanded = commanded_by(*driven(units, record, smoothed(felt), ship))
+        return likelihood_of(blocks, commanded, {name: speed >= 0.0 for name, (speed, _) in units.items()})
+
+    return likelihood, record.units
+
+
+@pytest.mark.parametrize("change", [("left",), ("right",), ("left", "right")])
+def test_right_labels_are_likelier_than_wrong_ones(told, change):
+    likelihood, units = told
+    assert likelihood(units) > likelihood(Change(change).undo(units)) + 10.0
+
+
+def test_commands_that_do_nothing_make_nothing_likelier(told):
+    likelihood, units = told
+    rng = np.random.default_rng(6)
+    noise = {name: (rng.permutation(speed), direction) for name, (speed, direction) in units.items()}
+    assert likelihood(noise) < 3.0
