@@ -350,9 +350,9 @@ def _roots(means):
     return np.stack([before, rival, after, np.minimum(floor, after)])
 
 
-def share_explained(before: np.ndarray, after: np.ndarray, floor: np.ndarray) -> np.ndarray:
+def share_explained(before: np.ndarray | float, after: np.ndarray | float, floor: np.ndarray | float) -> np.ndarray:
     """Share of the explainable error that is gone: (before - after) / (before - floor), NaN where that is little."""
-    worth = before - floor
+    worth = np.subtract(before, floor)
     some = worth > 0.05 * before
     return np.where(some, (before - after) / np.where(some, worth, 1.0), np.nan)
 
