@@ -12,7 +12,12 @@ from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.null_distribution import healthy_products, on_track
 from shipcosim.diagnose.inference.screening import gains, screening_regressors
 from shipcosim.diagnose.inference.search import explain, without_causes
-from shipcosim.diagnose.inference.thresholds import FAR_ABOVE_NULL, NULL_GAIN_UNKNOWN, NULL_GAIN_WITHOUT_WIND
+from shipcosim.diagnose.inference.thresholds import (
+    FAR_ABOVE_NULL,
+    NULL_GAIN_UNKNOWN,
+    NULL_GAIN_WITHOUT_WIND,
+    TESTABLE,
+)
 from shipcosim.diagnose.inference.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
 from shipcosim.diagnose.inference.verdict import Judgement, gained, judge, usual_gain
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly, screening_layout
@@ -128,4 +133,5 @@ def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
         for group in screening_regressors(one):
             groups.append((one, list(range(place, place + len(group)))))
             place += len(group)
-    return not_testable(together, layout.regressors, groups)
+    usual = max(usual_gain(problem.model) for problem in logs.problems.values())
+    return not_testable(together, layout.regressors, groups, TESTABLE + usual)
