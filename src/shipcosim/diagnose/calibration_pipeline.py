@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 import shipcosim
 from shipcosim.diagnose.comparison.compared import compared
 from shipcosim.diagnose.inference.problem import identified
+from shipcosim.diagnose.inference.thresholds import FORM_COST
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import Progress, given_system, read_measurements
@@ -240,7 +241,13 @@ def _judged(reference, found, suspects):
             f"The logs are only explained with {reference.tolerance_scale:g} times the stated tolerances: the ship is "
             "of another form than the model, or her numbers are less well known than the system says."
         )
-    if reference.form_scale > 0.0:
+    if reference.form_scale > 0.0 and found.form_gain < FORM_COST:
+        remarks.append(
+            "These logs do not tell whether her loads have the form of the model's: drag along the hull, wind over the "
+            "angle, damping and added mass stay as uncertain as is usual. A log with moves, turns and thrust both ways "
+            "would tell."
+        )
+    elif reference.form_scale > 0.0:
         remarks.append(
             f"She is of another form than the model, {reference.form_scale:g} times what is usual: drag along the "
             "hull, wind over the angle, damping and added mass are fitted as functions. The reference has all of them, "

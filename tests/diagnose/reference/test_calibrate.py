@@ -9,7 +9,9 @@ from diagnose.reference import ships
 
 from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names
 from shipcosim.diagnose.pipeline import read_measurements
+from shipcosim.diagnose.reference import calibration
 from shipcosim.diagnose.reference.remaining import remaining_errors
+from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.result import Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.report.calibration.page import write_calibration
@@ -70,3 +72,20 @@ def test_logs_have_names_of_their_own():
     assert log_names(["a/x.csv", "b/x.csv.gz", "y.nc"]) == ["x-1", "x-2", "y"]
     with pytest.raises(ShipcosimError, match="at least one"):
         log_names([])
+
+
+@pytest.mark.parametrize(
+    ("scores", "says"),
+    [
+        ({0.0: 2.0, 0.5: 3.0, 1.0: 0.0, 2.0: -3.0}, 1.0),
+        ({0.0: 25.0, 0.5: 12.0, 1.0: 0.0, 2.0: -9.0}, 0.0),
+        ({0.0: -60.0, 0.5: -20.0, 1.0: 0.0, 2.0: 15.0}, 2.0),
+    ],
+)
+def test_logs_that_do_not_tell_the_form_leave_it_as_uncertain_as_usual(monkeypatch, scores, says):
+    """A log of stationkeeping says nothing of drag: the model's form is certain only where logs say so."""
+    monkeypatch.setattr(calibration, "fitted", lambda problem: None)
+    monkeypatch.setattr(calibration, "scores_by_scale", lambda *_: scores)
+    monkeypatch.setattr(calibration, "of_scale", lambda problem, scale: scale)
+    logs, gain = calibration.with_common_form(SeveralLogs({"monday": "as it is"}, is_well=True))
+    assert logs.problems["monday"] == (says or "as it is") and gain == scores[says] - scores[0.0]

@@ -21,7 +21,7 @@ from shipcosim.diagnose.inference.verdict import admissible
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly
 from shipcosim.diagnose.reference.reference import SCHEMA, KnownNumber, Reference, ReferenceLog, fingerprint
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
-from shipcosim.diagnose.reference.thresholds import MOST_SUSPECTS, MOST_WEIGHT, SCALES, WEATHER_GAIN, WIDER
+from shipcosim.diagnose.reference.thresholds import MOST_SUSPECTS, MOST_WEIGHT, SCALES, USUAL_FORM, WEATHER_GAIN, WIDER
 from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["Calibration", "calibrated_to", "causes_beside", "numbers_of", "reference_of"]
@@ -41,12 +41,15 @@ class Calibration:
         Times the stated tolerances within which her numbers were moved.
     unmodelled : dict of str to dict of str to float
         Gain of unmodelled errors that are left, by log and kind. [nats]
+    form_gain : float
+        Log-evidence of the form that she has in `logs`, over the model's own. [nats]
     """
 
     logs: SeveralLogs
     fit: JointFit
     scale: float
     unmodelled: dict[str, dict[str, float]]
+    form_gain: float
 
 
 def calibrated_to(logs: SeveralLogs) -> Calibration:
@@ -61,7 +64,7 @@ def calibrated_to(logs: SeveralLogs) -> Calibration:
     -------
     Calibration
     """
-    logs = with_common_form(logs)
+    logs, form_gain = with_common_form(logs)
     scale = likeliest_scale(fitted_jointly(logs, about_all=True))
     fit = partial(fitted_jointly, scale=scale, about_all=True)
     fits = cast(list[JointFit], explain(logs, most=2 * len(logs.problems), fitted=fit, screened=screened_jointly))
@@ -72,19 +75,30 @@ def calibrated_to(logs: SeveralLogs) -> Calibration:
         best = fitted_jointly(logs, best.hypotheses, best.values, scale=again, about_all=True)
     own = errors_of_the_fit(best)
     unmodelled = {name: unmodelled_gains(one, best.parts[name]) | own for name, one in logs.problems.items()}
-    return Calibration(logs, best, again, unmodelled)
+    return Calibration(logs, best, again, unmodelled, form_gain)
 
 
-def with_common_form(logs: SeveralLogs) -> SeveralLogs:
-    """The logs of a ship whose form may differ from the model's as far as they say together."""
+def with_common_form(logs: SeveralLogs) -> tuple[SeveralLogs, float]:
+    """The logs of a ship whose form may differ from the model's as far as they say together.
+
+    Where they do not tell, it is as uncertain as usual: a log of stationkeeping says nothing of drag, and a reference
+    that took the model's form as certain would call the ship wrong on the first day that she moves.
+
+    Returns
+    -------
+    SeveralLogs
+    float
+        Log-evidence of the form over the model's own. [nats]
+    """
     scores: dict[float, float] = {}
     for problem in logs.problems.values():
         for scale, score in scores_by_scale(problem, fitted(problem)).items():
             scores[scale] = scores.get(scale, 0.0) + score
-    best = max(scores, key=lambda scale: scores[scale] - FORM_COST * (scale > 0.0))
+    best = max(scores, key=lambda scale: scores[scale] + FORM_COST * (scale == USUAL_FORM))
     if not best:
-        return logs
-    return replace(logs, problems={name: of_scale(problem, best) for name, problem in logs.problems.items()})
+        return logs, 0.0
+    formed = {name: of_scale(problem, best) for name, problem in logs.problems.items()}
+    return replace(logs, problems=formed), scores[best] - scores[0.0]
 
 
 def causes_beside(found: Calibration) -> dict[str, float]:

@@ -13,6 +13,10 @@ WIDER = 3.0
 WEATHER_GAIN = 20.0
 """What a current or a force of the day must gain beyond what any cause must, to be fitted beside a ship that is well:
 instead of simulated healthy logs. [nats] Assumed."""
+USUAL_FORM = 1.0
+"""How far the form of a ship's loads differs from her model's unless her logs say otherwise by `FORM_COST` nats: as is
+usual. [1] On developing ship 772 a reference of stationkeeping that took the model's form as certain made two causes of
+a healthy working day."""
 ORDINARY = 2.0
 """Times the gain of an unmodelled error in the logs of a reference, up to which it is no news: of 1.4 times the size.
 Assumed."""
