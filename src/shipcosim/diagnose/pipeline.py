@@ -13,6 +13,7 @@ From a log to its verdict, `verdict_on`:
     with_right_inputs  ExplainedLog    mislabelled channels of thrusters and wind, which look like causes
     with_change_point  ExplainedLog    causes that began during the log
     judged             JudgedLog       the verdict, against unmodelled errors and what healthy ships gain
+    with_crude_model   JudgedLog       thrust and damping over inertia after all, where nothing else explains the log
 
 From the verdict to the gain, `diagnose`:
 
@@ -33,7 +34,7 @@ from dataclasses import replace
 import xarray
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.comparison.compared import compared
+from shipcosim.diagnose.comparison.compared import compared, with_crude_model
 from shipcosim.diagnose.extension.extended_system import with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.change_point import with_change_point
@@ -203,4 +204,4 @@ def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
     explained = with_settled_form(with_causes(identification))
     explained = with_change_point(with_right_inputs(explained))
     progress("what do healthy ships look like?")
-    return judged(explained)
+    return with_crude_model(judged(explained))

@@ -325,7 +325,7 @@ class Diagnosis:
         return self.verdict == "named" and any(finding.kind == "physics" for finding in self.findings)
 
     @property
-    def has_ratio(self) -> bool:
+    def has_crude(self) -> bool:
         """Whether a cause is among the findings that only a comparison of commanded with felt force finds."""
         causes = self.basis.explained.identification.causes if self.basis else self.causes
         return any(one.cause in causes and causes[one.cause].sought_in == "comparison" for one in self.findings)

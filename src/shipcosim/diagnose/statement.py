@@ -28,7 +28,7 @@ def stated(log: JudgedLog) -> Diagnosis:
     beyond_doubt = comparison.findings if comparison else ()
     of_log = (*found.faults, *found.misconnections, *beyond_doubt)
     if comparison and judgement.verdict == "unknown":
-        of_log = (*of_log, *comparison.found_without(found.causes))
+        of_log = (*of_log, *comparison.found_without())
     seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
     rivals = judgement.rivals if not found.ship.third_party else ()  # with those no manoeuvre can be prescribed
     return Diagnosis(
@@ -36,14 +36,31 @@ def stated(log: JudgedLog) -> Diagnosis:
         (*of_log, *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings)),
         judgement.candidates,
         judgement.indistinguishable,
-        tuple(cause for cause in untestable_causes(log) if cause not in seen),
+        tuple(cause for cause in untestable_causes(log) if not _is_said(cause, seen, log)),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors if comparison else None,
         discrepancies=comparison.told(judgement.verdict) if comparison else (),
         form=_form_of(log),
         obstacles=comparison.obstacles if comparison else (),
+        remarks=comparison.remarks if comparison else (),
         basis=log,
     )
+
+
+def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:
+    """Whether a cause, or all that it could say, is said in other words."""
+    found = log.explained.identification
+    if cause in seen or found.comparison is None or cause not in found.causes:
+        return cause in seen
+    return found.comparison.spoken_for(found.causes[cause], seen, found.causes)
+
+
+def _crude_gain(found: Diagnosis, log: JudgedLog) -> dict | None:
+    """What the crude model gains over the craft's own horizon, where it is named and was measured."""
+    comparison = log.explained.identification.comparison
+    if not found.has_crude or comparison is None or comparison.crude is None or comparison.crude.errors is None:
+        return None
+    return comparison.crude.errors.as_gain()
 
 
 def _form_of(log: JudgedLog) -> LoadForm | None:
@@ -73,19 +90,20 @@ def completed(
         facts=log_facts(problem),
         log=summary,
         evidence=evidence_of(log),
-        tracks=tracks_of(log, found.is_named, found.has_ratio),
+        tracks=tracks_of(log, found.is_named, found.has_crude),
         force=predicted.force,
         extension=extended.extension,
         extended=extended.system,
         changes=extended.changes,
         system=extended.given,
-        remarks=(*extended.remarks, *simulated.remarks),
+        remarks=(*found.remarks, *extended.remarks, *simulated.remarks),
+        gain=_crude_gain(found, log),
     )
     if errors is None or predicted.comparison is None:
         return complete
     return replace(
         complete,
-        gain=gain(errors) if found.is_named else None,
+        gain=gain(errors) if found.is_named else complete.gain,
         predictions=prediction_errors(
             predicted.comparison,
             errors,

@@ -14,7 +14,7 @@ from shipcosim.series import make_table
 GRAVITY = 9.81
 STYLES = ("spin", "circles", "straight", "zig-zag", "mixed", "hold")
 FAULTS = ("none", "exchanged", "one reversed", "all reversed")
-CHANGES = ("none", "ratio", "one weak", "late", "dead band", "weak astern", "damping")
+CHANGES = ("none", "ratio", "one weak", "late", "dead band", "weak astern", "damping", "ratio and damping")
 SIZES = {
     "ratio": (0.35, 0.5, 2.0),
     "one weak": (0.2, 0.4),
@@ -23,6 +23,7 @@ SIZES = {
     "weak astern": (0.2, 0.4),
     "damping": (0.35, 2.5),
 }
+BOTH = ((0.5, 0.25), (0.4, 0.5), (0.6, 2.0), (2.0, 3.0), (1.8, 0.4))  # thrust and damping over the model's
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,9 @@ class Drawn:
     model : ShipModel
     style, fault, change : str
     size : float
-        Of the change.
+        Of the change; of the thrust where damping is another too.
+    damping : float
+        Of all axes, over what it would be.
     thruster : str
         That a fault or change of one is in.
     craft : Craft
@@ -99,6 +102,7 @@ class Drawn:
     size: float
     thruster: str
     craft: Craft
+    damping: float = 1.0
 
 
 def draw(seed, style=None, fault="none", change="none", rough=0.35):
@@ -118,9 +122,12 @@ def draw(seed, style=None, fault="none", change="none", rough=0.35):
     real = _real(modelled, rng, rough)
     one = str(rng.choice(list(modelled.thrusters)))
     size = float(rng.choice(SIZES.get(change, (1.0,))))
-    log = _log(real, rng, style, change, size, one)
+    damping = size if change == "damping" else 1.0
+    if change == "ratio and damping":
+        size, damping = BOTH[seed % len(BOTH)]
+    log = _log(real, rng, style, change, size, one, damping)
     log = _relabelled(log, fault, one)
-    return Drawn(log, _model(modelled), style, fault, change, size, one, real)
+    return Drawn(log, _model(modelled), style, fault, change, size, one, real, damping)
 
 
 def _within(rng, low, high):
@@ -212,7 +219,7 @@ def _model(craft):
     return replace(model, parts=parts, fixed=fixed, neighbours={}, tolerances=wanted)
 
 
-def _log(craft, rng, style, change, size, one):
+def _log(craft, rng, style, change, size, one, damping):
     """What instruments say of a run."""
     unit = craft.unit
     fine = 0.04 * unit
@@ -221,7 +228,7 @@ def _log(craft, rng, style, change, size, one):
     time = np.arange(0.0, seconds, fine)
     orders = _orders(rng, style, time, craft)
     weather = _weather(rng, style, time, craft)
-    path, told = _sailed(craft, orders, weather, fine, (change, size, one))
+    path, told = _sailed(craft, orders, weather, fine, (change, size, one, damping))
     rows = slice(None, None, every)
     x, y, psi, u, v, r = path[rows].T
     noise = rng.standard_normal((6, x.size))
@@ -286,10 +293,9 @@ def _weather(rng, style, time, craft):
 
 def _sailed(craft, orders, weather, h, change):
     """Motion, (n, 6) array, and what the thrusters are told, (n, k) array [rev/s], step by step."""
-    what, size, one = change
+    what, size, one, damped = change
     names, units = list(craft.thrusters), list(craft.thrusters.values())
-    factor = [size if what == "ratio" or (what == "one weak" and name == one) else 1.0 for name in names]
-    damped = size if what == "damping" else 1.0
+    factor = [size if what.startswith("ratio") or (what == "one weak" and name == one) else 1.0 for name in names]
     delay = int(size * craft.unit / h) if what == "late" else 0
     dead = size * craft.most if what == "dead band" else 0.0
     m11, m22, m66 = craft.mass + craft.added[0], craft.mass + craft.added[1], craft.inertia + craft.added[2]

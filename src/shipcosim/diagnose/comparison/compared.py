@@ -9,7 +9,9 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.discrepancies import discrepancies_of
+from shipcosim.diagnose.comparison.crude import CrudeModel, CrudeNumber, crude_numbers, spoken_for
+from shipcosim.diagnose.comparison.crude_fit import crude_model
+from shipcosim.diagnose.comparison.discrepancies import discrepancies_of, is_of_damping
 from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
 from shipcosim.diagnose.comparison.felt import felt_by
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
@@ -19,13 +21,12 @@ from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN
 from shipcosim.diagnose.inference.problem import as_logged
 from shipcosim.diagnose.log.mislabels import exchanged, finding_of, negative
 from shipcosim.diagnose.log.repair import repaired
-from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
+from shipcosim.diagnose.result import Discrepancy, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.surrogate import with_surrogates
-from shipcosim.diagnose.ship.thrusters import with_thrust
-from shipcosim.diagnose.stages import CheckedLog, ComparedLog
+from shipcosim.diagnose.stages import CheckedLog, ComparedLog, JudgedLog
 
 if TYPE_CHECKING:
     import xarray
@@ -36,9 +37,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["LogComparison", "compared", "ratio_finding"]
-
-_ONLY_RATIO = "Thrust and inertia cannot be told apart: only their ratio is known."
+__all__ = ["LogComparison", "compared", "ratio_finding", "with_crude_model"]
 
 
 @dataclass(frozen=True)
@@ -56,8 +55,12 @@ class LogComparison:
     labels : Labels or None
     ratio : CommonRatio or None
         Of thrust to inertia.
-    findings : tuple of Finding
-        Of the physics, beyond doubt: the ship is started with them.
+    crude : CrudeModel or None
+        What may be said of thrust and damping over inertia.
+    is_started_with : bool
+        Whether the ship is started with it: it is beyond doubt, whatever the fits find.
+    remarks : tuple of str
+        What was not put into the ship, and why.
     obstacles : tuple of str
         Why no cause can be named from the log, whatever it shows, and what would do.
     missing : tuple of MissingLoad
@@ -69,7 +72,9 @@ class LogComparison:
     gains: tuple[AxisGain, ...] = ()
     labels: Labels | None = None
     ratio: CommonRatio | None = None
-    findings: tuple[Finding, ...] = ()
+    crude: CrudeModel | None = None
+    is_started_with: bool = False
+    remarks: tuple[str, ...] = ()
     obstacles: tuple[str, ...] = ()
     missing: tuple[MissingLoad, ...] = ()
 
@@ -86,21 +91,28 @@ class LogComparison:
             return self.discrepancies
         return (self.missing[0].discrepancy,)
 
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is named of the physics beyond doubt: the ship is started with it."""
+        return self.crude.findings if self.crude is not None and self.is_started_with else ()
+
     def given(self, model: ShipModel) -> ShipModel:
-        """A ship as the system has her: without the ratio that was put into her beyond doubt."""
-        if self.ratio is None or not self.findings:
-            return model
-        return with_thrust(model, 1.0 / self.ratio.ratio, 0.0)
+        """A ship as the system has her: without what was put into her beyond doubt."""
+        return self.crude.without(model) if self.crude is not None and self.is_started_with else model
 
-    def with_ratio(self, model: ShipModel) -> ShipModel:
-        """A ship with the ratio of thrust to inertia, beyond doubt or only where nothing else explains the log."""
-        return model if self.ratio is None or self.findings else with_thrust(model, self.ratio.ratio, 0.0)
+    def with_crude(self, model: ShipModel) -> ShipModel:
+        """A ship with the crude model, beyond doubt or only where nothing else explains the log."""
+        return model if self.crude is None or self.is_started_with else self.crude.on(model)
 
-    def found_without(self, causes: dict[str, Cause]) -> tuple[Finding, ...]:
-        """What may be named where no cause of the catalogue explains the log: a common ratio that is not gross."""
-        if self.findings or self.ratio is None or not self.ratio.differs(PLAIN):
-            return ()
-        return ratio_finding(self.ratio, causes)
+    def found_without(self) -> tuple[Finding, ...]:
+        """What may be named where no cause of the catalogue explains the log."""
+        return () if self.crude is None or self.is_started_with else self.crude.findings
+
+    def spoken_for(self, cause: Cause, named: set[str], causes: dict[str, Cause]) -> bool:
+        """Whether all that a cause could say is said, by a cause that is named or by a damping that differs."""
+        axes = {one.axis for one in self.discrepancies if is_of_damping(one)}
+        said = {one.cause for one in causes.values() if one.axis and (one.axis in axes or one.cause in named)}
+        return spoken_for(cause, said, causes)
 
 
 def compared(log: CheckedLog) -> ComparedLog:
@@ -131,14 +143,66 @@ def compared(log: CheckedLog) -> ComparedLog:
     missing = missing_loads(axes, labels.used.commanded, felt, ship, over_none)
     told = tuple(discrepancies_of(labels, gains, ratio, missing))
     gross = ratio is not None and ratio.differs(GROSS)
-    findings = ratio_finding(ratio, log.causes) if ratio is not None and gross else ()
-    comparison = LogComparison(errors, told, tuple(gains), labels, ratio, findings, missing=tuple(missing))
+    comparison = LogComparison(errors, told, tuple(gains), labels, ratio, missing=tuple(missing))
     found = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
         found = _relabelled(found, labels)
-    if ratio is not None and findings:
-        found = replace(found, ship=with_thrust(found.ship, ratio.ratio, ratio.std))
-    return found
+    return _started_with_crude_model(found) if gross else found
+
+
+def _started_with_crude_model(log: ComparedLog) -> ComparedLog:
+    """The ship with what is grossly wrong of her: thrust and damping together, or thrust alone."""
+    known = _with_crude(log, log.repaired, log.ship, log.causes)
+    if known.crude is None:
+        return replace(log, comparison=known)
+    return replace(log, comparison=replace(known, is_started_with=True), ship=known.crude.on(log.ship))
+
+
+def with_crude_model(log: JudgedLog) -> JudgedLog:
+    """A judged log, where no cause explains it, with what the comparison tells of thrust and damping nevertheless."""
+    found = log.explained.identification
+    comparison = found.comparison
+    unclear = any(fault.alternatives for fault in found.faults)
+    if comparison is None or comparison.obstacles or comparison.findings or unclear:
+        return log
+    if log.judgement.verdict != "unknown" or comparison.ratio is None:
+        return log
+    known = _with_crude(found, found.repaired, found.ship, found.causes)
+    identification = replace(found, comparison=known)
+    return replace(log, explained=replace(log.explained, identification=identification))
+
+
+def _with_crude(log, repaired, ship, causes) -> LogComparison:
+    """The comparison with the crude model where it predicts better; else with the ratio alone, where that is plain."""
+    comparison = log.comparison
+    length = ship.parts["hull"].length
+    logged = as_logged(ship, repaired)
+    record = record_of(repaired, logged)
+    felt = felt_by(record, length)
+    logged = with_surrogates(logged, record, first_motion(record, logged))
+    crude = crude_model(record, felt, logged, causes, comparison.errors["horizon_s"])
+    if crude is not None and crude.differs(PLAIN) and crude.errors is not None and crude.errors.is_better:
+        return replace(comparison, crude=crude)
+    remarks = () if crude is None or all(not one.axis for one in crude.numbers) else (_not_better(crude),)
+    alone = ratio_alone(comparison.ratio, ship, causes)
+    return replace(comparison, crude=alone if alone and alone.differs(PLAIN) else None, remarks=remarks)
+
+
+def _not_better(crude: CrudeModel) -> str:
+    """Why a damping that differs is not put into the ship."""
+    sizes = ", ".join(f"{one.axis} {one.estimate:.2f}" for one in crude.numbers if one.axis)
+    return (
+        f"The log as a whole asks for another damping ({sizes} of the model's, over inertia). Where rows are held out"
+        " that predicts no better for sure, so it is not in the extended system."
+    )
+
+
+def ratio_alone(ratio: CommonRatio | None, ship: ShipModel, causes: dict[str, Cause]) -> CrudeModel | None:
+    """The crude model of a common ratio of thrust to inertia; None without a cause in the catalogue that says so."""
+    thrust = next((one for one in crude_numbers(ship, causes) if not one.axis), None)
+    if ratio is None or thrust is None:
+        return None
+    return CrudeModel((replace(thrust, estimate=ratio.ratio, std=ratio.std),))
 
 
 def _too_slow(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
@@ -189,8 +253,8 @@ def _drives(name: str, log: xarray.Dataset) -> list[str]:
 
 def ratio_finding(ratio: CommonRatio, causes: dict[str, Cause]) -> tuple[Finding, ...]:
     """The finding of a common ratio, by the cause that says so; none without one in the catalogue."""
-    cause = next((one for one in causes.values() if one.sought_in == "comparison"), None)
+    cause = next((one for one in causes.values() if one.sought_in == "comparison" and not one.axis), None)
     if cause is None:
         return ()
-    size = {name: Estimate(ratio.ratio, ratio.std, "1") for name in cause.parameters}
-    return (Finding(cause.cause, None, "physics", 0.95, size, note=_ONLY_RATIO),)
+    number = CrudeNumber(cause.cause, next(iter(cause.parameters)), "", (), ratio.ratio, ratio.std)
+    return CrudeModel((number,)).findings

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.labels import Change, Labels
     from shipcosim.diagnose.comparison.missing import MissingLoad
 
-__all__ = ["discrepancies_of"]
+__all__ = ["discrepancies_of", "is_of_damping"]
+
+_DAMPING = "damping in"
 
 
 def discrepancies_of(
@@ -66,6 +68,11 @@ def discrepancies_of(
     large = [one for one in missing if one.is_large and one.axis not in explained]
     rest = [gain for gain in gains if gain.is_off and gain.axis.name not in {one.axis for one in large}]
     return [*found, *(one.discrepancy for one in large), *(one for gain in rest if found for one in _rest(gain))]
+
+
+def is_of_damping(one: Discrepancy) -> bool:
+    """Whether a discrepancy is one of the water's damping."""
+    return one.what.startswith(_DAMPING)
 
 
 def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepancy]:
@@ -137,7 +144,7 @@ def _damping(one: AxisGain) -> Iterator[Discrepancy]:
     support = 0.5 * left.independent * np.log(left.squares / fit.squares)
     far = abs(np.log(max(damping, 0.01))) - SURE_OF_GAIN * std / max(damping, 0.01) > np.log(MENTIONED)
     if support > LEAST_SUPPORT and far and damping > max(SURE_OF_GAIN * std, LEAST_DAMPING):
-        text = f"damping in {axis.name} over inertia {damping:.2f} of the model's"
+        text = f"{_DAMPING} {axis.name} over inertia {damping:.2f} of the model's"
         yield Discrepancy(text, None, axis.name, damping, std, "1", float(1.0 - fit.squares / left.squares))
 
 

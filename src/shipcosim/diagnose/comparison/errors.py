@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["errors_of", "errors_over_none", "horizons_of"]
+__all__ = ["errors_of", "errors_over_none", "horizons_of", "starts_of"]
 
 _LADDER = np.array([1.0, 2.0, 3.0, 6.0, 10.0])
 
@@ -74,10 +74,10 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
     """
     span = float(record.time[-1] - record.time[0])
     horizons = horizons_of(model, felt.motion, span, record.step)
-    rows = _starts(record, felt, horizons[-1])
+    rows = starts_of(record, felt, horizons[-1])
     while rows.size < FEWEST_STARTS and horizons[-1] > 6.0 * record.step:
         horizons = tuple(0.5 * horizon for horizon in horizons)
-        rows = _starts(record, felt, horizons[-1])
+        rows = starts_of(record, felt, horizons[-1])
     motion = felt.motion
     seen = Motion(*(felt.kernel.smooth(value) for value in motion))
     counts = [max(1, round(horizon / record.step)) for horizon in horizons]
@@ -104,7 +104,7 @@ def errors_over_none(record: Record, felt: Felt, errors: dict[str, list[float]])
     dict of str to float
         ``position`` and ``heading``: the larger of the two of the longer horizons.
     """
-    rows, motion = _starts(record, felt, errors["horizon_s"][-1]), felt.motion
+    rows, motion = starts_of(record, felt, errors["horizon_s"][-1]), felt.motion
     seen = Motion(*(felt.kernel.smooth(value) for value in motion))
     counts = np.array([max(1, round(horizon / record.step)) for horizon in errors["horizon_s"]])[1:, None]
     time, (x, y, psi, u, v, r) = counts * record.step, (value[rows] for value in seen)
@@ -118,7 +118,7 @@ def errors_over_none(record: Record, felt: Felt, errors: dict[str, list[float]])
     return ratios
 
 
-def _starts(record: Record, felt: Felt, horizon: float) -> np.ndarray:
+def starts_of(record: Record, felt: Felt, horizon: float) -> np.ndarray:
     """Rows from which predictions start, as many as touch no gap; else any from which one can be made."""
     reach = round(horizon / record.step)
     rows = np.arange(0, record.time.size - reach)

@@ -153,6 +153,29 @@ FEWEST_STARTS = 5
 MOST_STARTS = 300
 """Predictions that are made at most."""
 
+# Crude model
+
+ROUND_MODEL = 1.0
+"""Standard deviation of the natural logarithm of damping and thrust over inertia over the model's. Assumed: a factor of
+e either way is as usual for a model that was never measured."""
+NOT_ZERO = 2.0
+"""Standard deviations of a number's logarithm from which it is part of a crude model. Assumed."""
+CRUDE_STARTS = 100
+"""Predictions that a crude model is fitted on at most."""
+CRUDE_ROUNDS = 8
+"""Steps of its fit at most; from a fit on other rows of the same log a half does."""
+CRUDE_SETTLED = 0.01
+"""Change of the logarithms below which a fit has settled."""
+LARGEST_STEP = 0.7
+"""Change of a logarithm in one step at most: a factor of two."""
+CRUDE_FOLDS = 10
+"""Parts of a log that are held out in turn, as is usual. Each is of blocks spread over the log: a craft that lies idle
+for most of it would else have nothing to fit on."""
+CRUDE_BLOCK = 2.0
+"""Length of these blocks and of those of the bootstrap, over the horizon."""
+FEWEST_BLOCKS = 5
+"""Blocks that a log must have for any of this."""
+
 # What a log must have
 
 RESOLVED = 1.5

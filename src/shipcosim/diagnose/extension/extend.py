@@ -155,7 +155,22 @@ def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str,
         if parameter is not None and parameter.complement:
             estimate = replace(estimate, estimate=1.0 - estimate.estimate)
         for pattern in parameter.of if parameter is not None else ():
-            found |= dict.fromkeys(_paths(draft, pattern, finding), estimate)
+            paths = _paths(draft, pattern, finding)
+            is_factor = parameter is not None and parameter.factor
+            found |= _multiplied(draft, paths, estimate) if is_factor else dict.fromkeys(paths, estimate)
+    return found
+
+
+def _multiplied(draft: ExtensionDraft, paths: Iterable[str], factor: Estimate) -> dict[str, Estimate]:
+    """Numbers of the system times a factor; those that are 0, or that the system does not have, are left out."""
+    parts, found = draft.structure.checked().components, {}
+    for path in paths:
+        place, name = _place(path), path.rpartition(".")[2]
+        variable = parts[place].fmu.variables.get(name) if place in parts else None
+        value = float(parts[place].start_value(name)) if variable is not None else 0.0
+        if variable is not None and value != 0.0:
+            size = factor.estimate * value, factor.std * abs(value)
+            found[path] = Estimate(*size, variable.unit or "1")
     return found
 
 

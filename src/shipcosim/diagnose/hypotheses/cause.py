@@ -51,6 +51,8 @@ class CauseParameter(_Strict):
         Values beyond are implausible.
     complement : bool
         Whether the number is 1 minus what is reported.
+    factor : bool
+        Whether the numbers are the model's own times what is reported.
     relative_to : str, optional
         Number of the ship whose value typical, tolerance and bounds are multiplied by.
     on_connections : OnConnections, optional
@@ -63,6 +65,7 @@ class CauseParameter(_Strict):
     tolerance: float = 0.0
     bounds: tuple[float, float]
     complement: bool = False
+    factor: bool = False
     relative_to: str | None = None
     on_connections: OnConnections | None = None
 
@@ -123,8 +126,10 @@ class Cause(_Strict):
     for_each : "ship", "thruster" or "azimuth"
         Where it can sit.
     sought_in : "every log", "sea trials" or "comparison"
-        ``"sea trials"``: only by features of circles, zig-zags and straight runs at speed. ``"comparison"``: not by a
-        fit, but as the ratio of felt to commanded force that all thrusters have in common.
+        ``"sea trials"``: only by features of circles, zig-zags and straight runs at speed. ``"comparison"``: before
+        any noise is tuned, as a factor on the thrust that all thrusters have in common, or on the damping of `axis`.
+    axis : "", "surge", "sway" or "yaw"
+        Of a cause that is sought in the comparison: whose damping its one parameter is; empty of the thrust.
     law : "linear", "vector" or "turning"
         Whether small effects add up; or act by a vector's size and direction, and the cause is sought by directions
         first; or by two vectors, at the first and the last row, and it is sought by `sought_by` first.
@@ -159,6 +164,7 @@ class Cause(_Strict):
     why_not_testable: str = ""
     for_each: Literal["ship", "thruster", "azimuth"] = "ship"
     sought_in: Literal["every log", "sea trials", "comparison"] = "every log"
+    axis: Literal["", "surge", "sway", "yaw"] = ""
     law: Literal["linear", "vector", "turning"] = "linear"
     sought_by: list[str] = []
     least: float = 0.2

@@ -66,7 +66,7 @@ class Tracks:
     predicted: dict[str, xarray.Dataset]
 
 
-def tracks_of(log: JudgedLog, is_named: bool, has_ratio: bool = False) -> Tracks | None:
+def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool = False) -> Tracks | None:
     """Tracks of a judged log, before and, where something of the model is found wrong, after.
 
     Parameters
@@ -74,8 +74,8 @@ def tracks_of(log: JudgedLog, is_named: bool, has_ratio: bool = False) -> Tracks
     log : JudgedLog
     is_named : bool
         Whether the causes of its fit are named.
-    has_ratio : bool
-        Whether a ratio of thrust to inertia is found by comparison; then it is in what is simulated after.
+    has_crude : bool
+        Whether a crude model is named; then it is in what is simulated after.
 
     Returns
     -------
@@ -85,9 +85,9 @@ def tracks_of(log: JudgedLog, is_named: bool, has_ratio: bool = False) -> Tracks
     record, model = log.problem.record, log.problem.model
     comparison = log.explained.identification.comparison
     models = {"before": comparison.given(model) if comparison else model}
-    if is_named or has_ratio:
+    if is_named or has_crude:
         after = model.with_values(log.fit.values) if is_named else model
-        models["after"] = comparison.with_ratio(after) if comparison and has_ratio else after
+        models["after"] = comparison.with_crude(after) if comparison and has_crude else after
     try:
         return tracks_by_models(record, models, fitting_horizon(record, model))
     except ShipcosimError:

@@ -22,8 +22,10 @@ class GainSection:
         The result in a few words.
     is_cosimulation, is_extended : bool
         Whether predictions are co-simulations or in array form; whether the extended system was among them.
+    crude : str
+        Over which time a crude model was measured by itself, on blocks of the log that were held out; else empty.
     errors : Table
-        After 60 s, with each model.
+        After 60 s, with each model; of a crude model after the craft's own time.
     figures : tuple of Figure
         Empty if there was too little data to measure it.
     conditions : Table
@@ -39,6 +41,7 @@ class GainSection:
     found: str
     is_cosimulation: bool
     is_extended: bool
+    crude: str = ""
     errors: Table = Table(())
     figures: tuple[Figure, ...] = ()
     conditions: Table = Table(())
@@ -51,6 +54,8 @@ class GainSection:
 def gain_section(diagnosis: Diagnosis) -> GainSection:
     """The section as the template fills it in."""
     gain, errors = diagnosis.gain, diagnosis.predictions
+    if gain and "error_ratio" in gain:
+        return _of_crude_model(gain)
     models = models_to_show(tuple(MODELS), diagnosis)
     if diagnosis.extension is None or gain is None:
         models = [model for model in models if not model.startswith("extended")]
@@ -70,6 +75,18 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
         calibrated=metres(errors.calibrated) if gain else "",
         difference="" if errors.difference is None else metres(errors.difference),
     )
+
+
+def _of_crude_model(gain: Mapping[str, Any]) -> GainSection:
+    """What thrust and damping over inertia gain where no cause explains the rest."""
+    after, low, high = f"{gain['horizon_s']:g} s", *map(percent, gain["error_ratio_ci95"])
+    rows = (
+        ("Simulation as it was", metres(gain["before_m"])),
+        ("with the named causes", metres(gain["after_m"])),
+        ("Error left", f"{percent(gain['error_ratio'])} (95 % sure: {low} to {high})"),
+    )
+    table = Table(rows, head=(f"Position error after {after}", "Root mean square"))
+    return GainSection(f"{percent(1.0 - gain['error_ratio'])} of the error", False, True, after, table)
 
 
 def _found(gain: Mapping[str, Any] | None, verdict: str) -> str:

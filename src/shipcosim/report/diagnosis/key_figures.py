@@ -4,6 +4,13 @@ from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import KeyFigure
 
+_GAIN = {
+    "before_m": "position error of the simulation after {:g} s",
+    "bias_observer_m": "the same with a bias observer, as DP systems have",
+    "after_m": "the same with the cause in the model",
+    "noise_floor_m": "what a perfect model would still miss",
+}
+
 
 def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
     """The numbers that matter most.
@@ -26,10 +33,9 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
     gain, base = diagnosis.gain, diagnosis.baseline
     if gain:
         found = [
-            KeyFigure(metres(gain["before_m"]), f"position error of the simulation after {gain['horizon_s']:g} s"),
-            KeyFigure(metres(gain["bias_observer_m"]), "the same with a bias observer, as DP systems have"),
-            KeyFigure(metres(gain["after_m"]), "the same with the cause in the model"),
-            KeyFigure(metres(gain["noise_floor_m"]), "what a perfect model would still miss"),
+            KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"]))
+            for name, meaning in _GAIN.items()
+            if gain[name] is not None
         ]
         if gain["share_of_explainable"] is not None:
             low, high = (f"{100 * edge:.0f}" for edge in gain["ci95"])
