@@ -35,6 +35,9 @@ CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
     "navigation_lag": {"lag": "s"},
     "thruster_lag": {"lag": "s"},
     "thrust_to_inertia": {"ratio": "1"},
+    "surge_damping_to_inertia": {"ratio": "1"},
+    "sway_damping_to_inertia": {"ratio": "1"},
+    "yaw_damping_to_inertia": {"ratio": "1"},
 }
 SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "hull_interaction": {"loss": "1"},
@@ -52,7 +55,7 @@ SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "yaw_damping": {"coefficient": "1"},
     "yaw_inertia": {"inertia": "kg.m2"},
 }
-BY_COMPARISON = {"thrust_to_inertia"}
+BY_COMPARISON = {name for name in CONTRACT if name.endswith("_to_inertia")}
 """Found by holding commanded against felt force, so no hypothesis of a fit."""
 WHERE = {
     "thrust_loss": ["port", "starboard", "tunnel"],
