@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shipcosim.diagnose.comparison.crude import HeldOutErrors
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.experiment.testability import log_facts
 from shipcosim.diagnose.result import Candidate, ExperimentDesign, Finding, FormNumber, LoadForm
@@ -96,6 +97,13 @@ def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(diagno
     assert "free drift, not fitted on" in text and "too little of another quarter of headings for it" in text
     known = metres(rms(errors, "position", "calibrated"))
     assert f"{known} would be missed over the later part instead of" in text
+
+
+def test_gain_of_thrust_and_damping_alone_is_told_over_the_time_of_the_craft(diagnosis):
+    errors = HeldOutErrors(3.0, 2.0, 0.5, (0.2, 0.4))
+    shown = render(replace(diagnosis, gain=errors.as_gain()))
+    assert "75 % of the error" in shown and "25 % (95 % sure: 20 % to 40 %)" in shown
+    assert "Position error after 3 s" in shown and "bias observer, as DP" not in shown
 
 
 def test_diagnosis_without_predictions_or_forces_still_makes_a_page(diagnosis):
