@@ -249,9 +249,9 @@ def _deviations(predictions, task, logs):
     inverse = np.linalg.inv(normal)
     left = (_loss(off * predictions.weights) * task.used[:, None, None]).mean((1, 2, 3)) / task.used.mean(1)
     number = np.unique(predictions.block, return_inverse=True)[1]
-    sums = np.zeros((*logs.shape, number.max() + 1))
-    np.add.at(sums, (slice(None), slice(None), number), each[..., :-1])
-    spread = sums @ sums.swapaxes(1, 2) * sums.shape[2] / max(sums.shape[2] - logs.shape[1], 1)
+    blocks = int(number.max()) + 1
+    sums = each[..., :-1] @ np.eye(blocks)[number]
+    spread = sums @ sums.swapaxes(1, 2) * blocks / max(blocks - logs.shape[1], 1)
     by_blocks = inverse @ (spread + task.std[:, None] ** -2.0 * np.eye(logs.shape[1])) @ inverse
     squares = [
         np.diagonal(one, axis1=1, axis2=2) for one in (inverse * np.minimum(left, 1.0)[:, None, None], by_blocks)
@@ -312,6 +312,5 @@ def _compared(predictions, before, after):
     draws = np.random.default_rng(1).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=DRAWS)
     first, last = np.sqrt(np.maximum(sums @ draws.T, 1e-30))
     low, high = map(float, np.quantile(last / first, (0.025, 0.975)))
-    return HeldOutErrors(
-        predictions.counts[-1] * predictions.record.step, *map(float, np.sqrt(squares.mean(1))), (low, high)
-    )
+    given, found = (float(one) for one in np.sqrt(squares.mean(1)))
+    return HeldOutErrors(predictions.counts[-1] * predictions.record.step, given, found, (low, high))

@@ -167,8 +167,8 @@ def _multiplied(draft: ExtensionDraft, paths: Iterable[str], factor: Estimate) -
     for path in paths:
         place, name = _place(path), path.rpartition(".")[2]
         variable = parts[place].fmu.variables.get(name) if place in parts else None
-        value = float(parts[place].start_value(name)) if variable is not None else 0.0
-        if variable is not None and value != 0.0:
+        value = parts[place].start_value(name) if variable is not None else None
+        if variable is not None and isinstance(value, int | float) and value != 0.0:
             size = factor.estimate * value, factor.std * abs(value)
             found[path] = Estimate(*size, variable.unit or "1")
     return found
