@@ -22,8 +22,11 @@ class PropellerRudder(Fmu):
     unit = Parameters(PropellerRudderParameters)
 
     def start(self):
-        loads = propeller_rudder_loads(self.rpm_in / 60.0, self.azimuth_in, self.u_r, self.v_r, self.r, unit=self.unit)
-        self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
+        self._push()
 
     def step(self, t, h):
-        self.start()
+        self._push()
+
+    def _push(self):
+        loads = propeller_rudder_loads(self.rpm_in / 60.0, self.azimuth_in, self.u_r, self.v_r, self.r, unit=self.unit)
+        self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads

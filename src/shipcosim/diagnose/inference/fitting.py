@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,6 +45,8 @@ class IdentificationProblem:
         About the ship without a cause, with the columns of `basis`.
     known_of : tuple of Hypothesis, optional
         Hypotheses whose numbers are known within a tolerance, where those are more than `hypotheses`.
+    fits : dict
+        What `fitted` has made of this problem: stages ask for the same fits again.
     """
 
     record: Record
@@ -54,6 +56,7 @@ class IdentificationProblem:
     motion: Motion
     base: InParts | None = None
     known_of: tuple[Hypothesis, ...] = ()
+    fits: dict[tuple[Any, ...], Fit] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def basis(self) -> list[Regressor]:
@@ -202,7 +205,16 @@ def fitted(
     Returns
     -------
     Fit
+        The same one where the same has been asked for before.
     """
+    asked = tuple(one.label for one in hypotheses), tuple(sorted((values or {}).items())), rounds
+    if asked not in problem.fits:
+        problem.fits[asked] = _fitted(problem, hypotheses, values, rounds)
+    return problem.fits[asked]
+
+
+def _fitted(problem, hypotheses, values, rounds):
+    """A fit, made anew."""
     finite = {path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()}
     values, about, motion, last = bounded(hypotheses, finite), {}, problem.motion, None
     columns = problem.known(hypotheses) + own_columns(problem, hypotheses)

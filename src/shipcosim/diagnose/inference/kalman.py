@@ -67,27 +67,27 @@ def weights(
         V = C[log]
         for k in range(n):
             h = H[k, log % H.shape[1]]
-            HC[:] = 0.0
+            _clear(HC)
             _add(HC, h, V, 1.0)
             _seen_covariance(S, h, HC)
             logdet[k, log] = _inverse_root(S, R[k, log], root[k, log])
             _add(gain[k, log], root[k, log], HC, 1.0)
             _take_out(V, gain[k, log])
             if keep:
-                covariances[k, log] = V
+                _set(covariances[k, log], V)
             if k < len(A):
-                T[:] = 0.0
+                _clear(T)
                 _add(T, A[k, log % A.shape[1]], V, 1.0)
                 _add(T, W[log], V, 1.0)
                 _transpose(T, Tt)
-                T[:] = Q[log]
+                _set(T, Q[log])
                 if not known[k]:
-                    T += lost
+                    _add_diagonal(T, lost, 1)
                 _add(T, A[k, log % A.shape[1]], Tt, 1.0)
                 _add(T, W[log], Tt, 1.0)
                 _symmetric(T, V)
                 if is_last[k]:
-                    V[:] = begun[log]
+                    _set(V, begun[log])
     return gain, root, logdet, covariances
 
 
@@ -132,19 +132,20 @@ def whitened(
     for log in range(m):
         y = x[log]
         for k in range(n):
-            missed[:] = Z[k, log % Z.shape[1]]
+            _set(missed, Z[k, log % Z.shape[1]])
             _add(missed, H[k, log % H.shape[1]], y, -1.0)
             _add(white[k, log], root[k, log], missed, 1.0)
             _add_transposed(y, gain[k, log], white[k, log])
-            states[k, log] = y[:, 0]
+            for i in range(s):
+                states[k, log, i] = y[i, 0]
             if k < len(A):
-                ahead[:] = 0.0
-                ahead[: B.shape[2]] = B[k, log % B.shape[1]]
+                _clear(ahead)
+                _set(ahead, B[k, log % B.shape[1]])
                 _add(ahead, A[k, log % A.shape[1]], y, 1.0)
                 _add(ahead, W[log], y, 1.0)
-                y[:] = ahead
+                _set(y, ahead)
                 if is_last[k]:
-                    y[:] = 0.0
+                    _clear(y)
     return white, states
 
 
@@ -183,19 +184,19 @@ def smoothed(
     (n, m, s) array
     """
     n, m, s = states.shape
-    found, o, moved = np.empty((n, m, s)), white.shape[2], np.empty(s)
+    found, o, moved, left = np.empty((n, m, s)), white.shape[2], np.empty(s), np.empty(white.shape[2])
     for log in range(m):
         p = pull[log]
         for k in range(n - 1, -1, -1):
             if k < len(A):
-                moved[:] = 0.0
+                for i in range(s):
+                    moved[i] = 0.0
                 _add_product(moved, A[k, log % A.shape[1]], p)
                 _add_product(moved, W[log], p)
-                p[:] = moved
-                if is_last[k]:
-                    p[:] = 0.0
-            found[k, log] = states[k, log] + covariances[k, log] @ p
-            left = white[k, log] - gain[k, log] @ p
+                for i in range(s):
+                    p[i] = 0.0 if is_last[k] else moved[i]
+            _of_product(found[k, log], states[k, log], covariances[k, log], p, 1.0)
+            _of_product(left, white[k, log], gain[k, log], p, -1.0)
             h, r = H[k, log % H.shape[1]], root[k, log]
             for i in range(o):
                 share = 0.0
@@ -251,31 +252,32 @@ def log_likelihoods(
     x, C, found = np.zeros((s, m)), P.copy(), np.zeros(m)
     ahead, T = np.zeros((s, m)), np.zeros((s, s, m))
     rows, rows_ahead = C.reshape(s, s * m), T.reshape(s, s * m)
+    rows_begun, rows_added = P.reshape(s, s * m), Q.reshape(s, s * m)
     for k in range(n):
         for i in range(o):
             if whole[k, i]:
                 _take_in(x, C, rows, H[k, i], z[k, i], R[i], found)
         if k < n - 1:
-            ahead[:] = 0.0
+            _clear(ahead)
             for i in range(b.shape[1]):
-                ahead[i] += b[k, i]
+                for log in range(m):
+                    ahead[i, log] = b[k, i]
             _add(ahead, A[k], x, 1.0)
             _add_each(ahead, W, x)
-            x[:] = ahead
-            T[:] = 0.0
+            _set(x, ahead)
+            _clear(rows_ahead)
             _add(rows_ahead, A[k], rows, 1.0)
             _add_each(rows_ahead, W, rows)
-            _transpose(T, C)
-            T[:] = Q
+            _transpose_each(T, C)
+            _set(rows_ahead, rows_added)
             if not known[k]:
-                for i in range(s):
-                    T[i, i] += lost[i, i]  # and nothing beside the diagonal
+                _add_diagonal(rows_ahead, lost, m)
             _add(rows_ahead, A[k], rows, 1.0)
             _add_each(rows_ahead, W, rows)
-            _symmetric(T, C)  # else what rounding makes of it grows over a long log
+            _symmetric_each(T, C)  # else what rounding makes of it grows over a long log
             if is_last[k]:
-                x[:] = 0.0
-                C[:] = P
+                _clear(x)
+                _set(rows, rows_begun)
     return found
 
 
@@ -283,8 +285,7 @@ def log_likelihoods(
 def _take_in(x, C, rows, h, z, R, found):
     """Take in one output: state, covariance and log-likelihood after it; `rows` is C with the logs in its rows."""
     s, m = x.shape
-    seen, missed, S = np.zeros(s * m), np.empty(m), R.copy()
-    missed[:] = z
+    seen, missed, S = np.zeros(s * m), np.full(m, z), R.copy()
     for j in range(s):
         if h[j] != 0.0:
             for log in range(m):
@@ -307,6 +308,30 @@ def _take_in(x, C, rows, h, z, R, found):
         for j in range(s):
             for log in range(m):
                 C[i, j, log] -= share[log] * Ch[j, log]
+
+
+@_compiled
+def _clear(out):
+    # loops here and below: what numba makes of slices takes several times as long to compile, and is slower
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            out[i, j] = 0.0
+
+
+@_compiled
+def _set(out, X):
+    """Set the first rows of `out` to X."""
+    for i in range(X.shape[0]):
+        for j in range(X.shape[1]):
+            out[i, j] = X[i, j]
+
+
+@_compiled
+def _add_diagonal(out, M, m):
+    """Add the diagonal of M to that of `out`, a (s, s m) array of m logs."""
+    for i in range(M.shape[0]):
+        for log in range(m):
+            out[i, i * m + log] += M[i, i]
 
 
 @_compiled
@@ -352,6 +377,16 @@ def _add_product(out, M, v):
 
 
 @_compiled
+def _of_product(out, start, M, v, sign):
+    """Set `out` to what it starts from plus M v, or less it."""
+    for i in range(M.shape[0]):
+        total = 0.0
+        for j in range(M.shape[1]):
+            total += M[i, j] * v[j]
+        out[i] = start[i] + sign * total
+
+
+@_compiled
 def _seen_covariance(S, h, HC):
     """Covariance of the outputs, into the lower half of S."""
     for i in range(h.shape[0]):
@@ -378,6 +413,25 @@ def _transpose(M, out):
     for i in range(M.shape[0]):
         for j in range(M.shape[1]):
             out[j, i] = M[i, j]
+
+
+@_compiled
+def _transpose_each(M, out):
+    """The same of each log, on the last axis."""
+    for i in range(M.shape[0]):
+        for j in range(M.shape[1]):
+            for log in range(M.shape[2]):
+                out[j, i, log] = M[i, j, log]
+
+
+@_compiled
+def _symmetric_each(M, out):
+    """The mean of M and its transpose, of each log."""
+    for i in range(M.shape[0]):
+        for j in range(i + 1):
+            for log in range(M.shape[2]):
+                out[i, j, log] = 0.5 * (M[i, j, log] + M[j, i, log])
+                out[j, i, log] = out[i, j, log]
 
 
 @_compiled

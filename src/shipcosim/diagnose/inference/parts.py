@@ -23,8 +23,9 @@ PART = 4096
 _ENTRIES = 4096 * 64
 _LEAST = 512
 """Rows times columns of a part, some 50 MB in all that the filter makes of them; rows that it has at least."""
-_KEPT = 400_000
-"""Rows times columns that are kept for a second look, 38 MB; more are made anew, which takes half as long again."""
+_KEPT = 600_000
+"""Rows times columns that are kept for a second look, 58 MB: those of a fit to a long log's 6000 rows. More are made
+anew, which takes half as long again."""
 
 Columns = Callable[[slice], tuple[np.ndarray, np.ndarray]]
 """Further columns of some rows, `driven` and `seen` as in `Linear`."""

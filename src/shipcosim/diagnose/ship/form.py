@@ -9,6 +9,7 @@ form of one ship differs is learnt.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, make_dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,7 +50,7 @@ def _along(degree: int) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class _Form:
-    @property
+    @cached_property
     def acts(self) -> bool:
         """Whether any of it is not neutral."""
         return any(np.any(getattr(self, item.name)) for item in fields(self))

@@ -8,7 +8,7 @@ of thrust, which holds for large changes too; the surrogate is linear in the res
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -36,6 +36,7 @@ _CHANGE_OF_DRIVE = 2e-3  # of the largest speed or thrust
 _CHANGE_OF_PARAMETER = 0.1  # of a tolerance
 _LEAD = 30.0  # s, in which an FMU settles at what the log begins with
 _MOST_STEPS = 250_000  # of all FMUs together
+_MET = 4  # sets of times whose loads are kept: a few MB each
 _NEAR = 0.05  # of the largest speed, and in rad: for other inputs than these another surrogate is made
 
 
@@ -91,6 +92,8 @@ class Surrogate:
         Largest speed, the FMU's or the log's. [rpm]
     rows : (n,) array
         Times of the log's rows. [s]
+    met : dict
+        `about` and `rest` at times asked for last: a linearisation asks for the same ones column by column.
     """
 
     time: np.ndarray
@@ -100,6 +103,7 @@ class Surrogate:
     thrust: QuadraticThrust
     rpm_max: float
     rows: np.ndarray
+    met: dict[bytes, tuple[list[np.ndarray], np.ndarray]] = field(default_factory=dict, init=False, repr=False)
 
     def loads(self, time: np.ndarray, given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> Load:
         """Loads on the ship.
@@ -117,15 +121,11 @@ class Surrogate:
         tuple of three arrays
             X, Y, N. [N, N, N.m]
         """
-        at = (_without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
-        at = np.clip(at, 0.0, self.time.size - 1.0)
-        low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
-        share = at - low
-        rest = self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share
+        about, rest = self._at(time)
         told = {name: given[name] + sign * getattr(part, off) for name, off, sign in _offsets(given, part)}
         given = {**given, **told}
         found = list(rest[0])
-        off = [given[name] - (v[low] * (1.0 - share) + v[low + 1] * share) for name, v in self.about.items()]
+        off = [given[name] - value for name, value in zip(self.about, about, strict=True)]
         off += [getattr(part, name) - value for name, value in self.nominal.items()]
         for deviation, slopes in zip(off, rest[1:], strict=True):
             found = [load + slope * deviation for load, slope in zip(found, slopes, strict=True)]
@@ -135,6 +135,22 @@ class Surrogate:
         kept = 1.0 - getattr(part, "thrust_loss", 0.0)
         surge, sway, yaw = found
         return kept * surge, kept * sway, kept * yaw
+
+    def _at(self, time: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+        """`about` and `rest` at some times."""
+        asked = np.asarray(time, float).tobytes()
+        found = self.met.get(asked)
+        if found is None:
+            at = (_without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
+            at = np.clip(at, 0.0, self.time.size - 1.0)
+            low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
+            share = at - low
+            about = [v[low] * (1.0 - share) + v[low + 1] * share for v in self.about.values()]
+            found = about, self.rest[..., low] * (1.0 - share) + self.rest[..., low + 1] * share
+            if len(self.met) >= _MET:
+                self.met.clear()
+            self.met[asked] = found
+        return found
 
     def fits(self, record: Record, units: Mapping[str, np.ndarray]) -> bool:
         """Whether the surrogate was built for these times and similar inputs."""
