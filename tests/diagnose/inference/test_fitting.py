@@ -1,5 +1,7 @@
 """What is planted in the modelled ship herself is found at its place and with its size."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnose import twin
@@ -50,6 +52,16 @@ def test_a_cause_that_is_fitted_gives_the_ship_that_sailed():
     assert best.model.get("water.tow_north") == best.values["water.tow_north"]
     north = twin.logs()["tow"]["north"].values
     assert np.std(best.motion.x - north) == pytest.approx(0.2, rel=0.2)
+
+
+def test_the_same_fit_is_made_once_and_another_problem_makes_its_own():
+    here = problem("mass")
+    cause = next(one for one in here.hypotheses if one.label == "mass")
+    alone, beside = fitted(here), fitted(here, (cause,))
+    assert fitted(here) is alone and fitted(here, (cause,)) is beside is not alone
+    assert fitted(here, (cause,), {"vessel.mass": 1.1 * here.model.get("vessel.mass")}) is not beside
+    noisy = replace(here, noise=replace(here.noise, white=2.0 * here.noise.white))
+    assert fitted(noisy) is not alone and fitted(noisy).score != alone.score
 
 
 def test_weighing_ranks_the_planted_cause_first_and_starts_near_its_value():

@@ -1,5 +1,6 @@
 """Third-party thrusters: their surrogates are made by co-simulation, and what is wrong with them is named."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -19,6 +20,7 @@ from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.diagnose.ship.surrogate import fitted_thrust, with_surrogates
+from shipcosim.diagnose.ship.third_party_fmu import drives_of
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.motion import Motion
@@ -69,6 +71,18 @@ def test_along_the_log_the_load_is_that_of_the_fmu(side):
     np.testing.assert_allclose(X, push, atol=1e-6 * np.abs(push).max())
     np.testing.assert_allclose(N, moment, atol=1e-6 * np.abs(moment).max())
     assert not Y.any()
+
+
+def test_loads_that_are_kept_are_those_of_their_times():
+    """A surrogate keeps what it has looked up last: after more times than it keeps the first are looked up anew."""
+    model, record, motion = along()
+    part, surrogate = model.parts["left"], replace(model.third_party["left"].built_surrogate)
+    given = motion._asdict() | {"u_r": motion.u, "v_r": motion.v} | drives_of(*record.units["left"])
+    early = [surrogate.loads(record.time - shift, given, part) for shift in range(8)]
+    again = [replace(surrogate).loads(record.time - shift, given, part) for shift in range(8)]
+    np.testing.assert_array_equal(early, again)
+    np.testing.assert_array_equal(surrogate.loads(record.time, given, part), early[0])
+    assert np.any(np.array(early[0]) != np.array(early[7])) and len(surrogate.met) <= 4
 
 
 def test_beside_the_log_the_load_changes_as_that_of_the_fmu():
