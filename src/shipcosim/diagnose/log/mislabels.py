@@ -22,6 +22,7 @@ __all__ = [
     "POSITION_IN_DEGREES",
     "POSITION_LABELS",
     "THRUSTER_LABELS",
+    "TURNED",
     "VELOCITY",
     "WIND_LABELS",
     "Mislabel",
@@ -33,6 +34,7 @@ __all__ = [
     "negative",
     "possible",
     "swap_of",
+    "turned_grid",
     "undone",
     "velocity_frame",
 ]
@@ -50,6 +52,7 @@ CHANNEL_UNITS = {
     ("yaw_rate",): {"deg/s": 1.0, "rad/s": float(np.degrees(1.0)), "deg/min": 1.0 / 60.0, "rpm": 6.0},
 }
 """Units in which channels can be, and their size in the role's unit, which comes first."""
+TURNED = "north and east are turned against heading and velocities"
 
 
 @dataclass(frozen=True)
@@ -137,6 +140,15 @@ def _from_degrees(log):
     return {"north": meridian * (log["north"] - log["north"][first]), "east": parallel * east}
 
 
+def turned_grid(angle: float) -> Mislabel:
+    """Positions in a grid that is turned against heading and velocities, clockwise by some degrees."""
+
+    def undo(log):
+        return dict(zip(POSITION, _turned_to_body(log["north"], log["east"], angle), strict=True))
+
+    return Mislabel("frame", POSITION, TURNED, undo)
+
+
 def _from_bow(log):
     return {"wind_from": np.mod(log["wind_from"] - log["heading"], 360.0)}
 
@@ -217,6 +229,8 @@ def mislabel_of(finding: Finding) -> Mislabel | None:
     """The mislabel that a finding names by its note; None where the finding is another fault, or leaves it open."""
     if finding.alternatives:
         return None
+    if finding.note.startswith(TURNED) and "angle" in finding.parameters:
+        return turned_grid(finding.parameters["angle"].estimate)
     half = len(finding.channels) // 2
     of_thrusters = []
     if finding.channels and all(role.endswith(DRIVES) for role in finding.channels):

@@ -53,6 +53,10 @@ NOISIER = 2.0
 Assumed."""
 CALM_SHARE = 0.25
 """Share of the parts of a log that are calm."""
+UNSURE_NOISE = (0.25, 0.35, 0.15)
+"""Of what noise takes from a factor, measured in two ways: how far from the larger to the smaller the value is taken,
+how unsure it is as a share of their difference, and as a share of the larger even where both agree. Set on hold logs
+of seeds 200 to 213: 28 factors are off by 0.6 of what is said of them, as a root mean square."""
 HEARD = 12.0
 """What the best form of a relation must gain over none, to be heard. [nats] Assumed; of 36 forms without any relation
 the best one gains 5."""
@@ -78,6 +82,16 @@ ANGLE_TOLERANCE = (0.02, 0.1)
 """The same of the angle between velocity and change of position. [rad] Assumed."""
 FAR_SHARE = 0.03
 """Share of those few. Assumed."""
+GOES_AHEAD, GOES_ASTERN = 0.85, 0.05
+"""Shares of logs in which a craft that has one course against her bow goes ahead or astern; the rest goes anywhere.
+Assumed."""
+DRIFT = 0.25
+"""By how much such a course is off the bow, beyond what it varies by. [rad] Assumed."""
+ONE_COURSE = 0.5
+"""Mean of the unit vectors of the velocity against the bow, by its square, from which on it is one course. Assumed."""
+COMPASS_OFF = 20.0
+"""Angle by which a compass is off at most; positions that are turned further are in a grid that is turned. [deg]
+Assumed."""
 USUAL_SPEED = (1.0, 6.0)
 """Speed of craft, and the factor by which most are slower or faster: [m/s, 1]. Assumed."""
 USUAL_STEP = (0.5, 8.0)
@@ -98,7 +112,7 @@ LEFT_OPEN = 0.5
 """Probability of something that no reading explains, from which on nothing is said."""
 UNLIKELY_READING = 0.02
 """Probability below which a reading is not said beside others."""
-MOST_ALTERNATIVES = 4
+MOST_ALTERNATIVES = 6
 """Readings that are said beside another."""
 
 # Position against velocity, heading against rate

@@ -107,7 +107,9 @@ def _as_logged(segment, start, rate):
 
 
 def _stated_units(log):
-    return {str(n): v.attrs["stated_unit"] for n, v in log.variables.items() if v.attrs.get("stated_unit")}
+    """Units that are stated, by role; of positions that come from latitude and longitude, that they do."""
+    geodetic = {"latitude": "deg"} if "latitude_origin" in log.attrs else {}
+    return geodetic | {str(n): v.attrs["stated_unit"] for n, v in log.variables.items() if v.attrs.get("stated_unit")}
 
 
 def _is_the_clock(label, clock, time):

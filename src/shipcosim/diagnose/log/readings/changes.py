@@ -7,6 +7,7 @@ wrong less often than what nobody stated.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -16,6 +17,7 @@ from shipcosim.diagnose.log.mislabels import (
     HEADING_FROM_EAST,
     POSITION,
     POSITION_IN_DEGREES,
+    TURNED,
     VELOCITY,
     Mislabel,
     mislabel_of_unit,
@@ -44,7 +46,8 @@ class Reading:
     heading_unit, rate, time : float
         Factors of the heading's unit, of the yaw rate with its sign, of the time.
     free : frozenset of str
-        What may have any value besides: ``"time"``, ``"scale"`` of the velocity, ``"rate"``, ``"angle"`` of frames.
+        What may have any value besides: ``"time"``, ``"scale"`` of the velocity, ``"rate"``, ``"angle"`` of frames;
+        with ``"axes"`` that angle is one of surge and sway.
     """
 
     position: complex = 1.0
@@ -73,6 +76,22 @@ class Reading:
         factor = self.time * self.velocity * turning / self.position
         factor = complex(factor).conjugate() if "position" in self.mirrored else complex(factor)
         return complex(math.log(abs(factor)), math.atan2(factor.imag, factor.real))
+
+    def course(self, courses: dict[tuple[bool, bool], complex], angle: float) -> complex:
+        """Mean direction in which the craft goes against her bow, as a complex number of length 1 at most.
+
+        Parameters
+        ----------
+        courses : dict of (bool, bool) to complex
+            As logged: whether surge and sway are over the earth, and whether the heading is mirrored then.
+        angle : float
+            By how much the change of position is turned against this reading. [rad]
+        """
+        flipped, mirrored = "velocity" in self.mirrored, "heading" in self.mirrored
+        course = courses[self.earth, self.earth and (mirrored != flipped)]
+        course = course.conjugate() if flipped else course
+        turn = complex(self.velocity) * (complex(self.heading).conjugate() if self.earth else 1.0)
+        return course * turn / abs(turn) * (cmath.exp(1j * angle) if "axes" in self.free else 1.0)
 
     @property
     def rate_factor(self) -> float:
@@ -106,7 +125,7 @@ class Change:
     slab : Slab or None
         Where its factor may have any value.
     or_else : tuple of str
-        What explains the same and cannot be told apart by any log; then neither is named.
+        What explains the same and cannot be told apart by any log; then neither is named (but see COMPASS_OFF).
     """
 
     slot: str
@@ -132,6 +151,7 @@ class Change:
 
 FACTOR_OF = {VELOCITY: "velocity", POSITION: "position", ("heading",): "heading_unit", ("yaw_rate",): "rate"}
 SLOT_CHANNELS = {"unit of velocity": VELOCITY, "unit of rate": ("yaw_rate",), "turned": POSITION}
+SLOT_CHANNELS |= {"axes turned": VELOCITY}
 CLOCK = "the clock runs wrong throughout"
 STATED = 2.0  # more, where a header or a channel file states the unit [nats]; assumed
 UNIT_COSTS = {"kn": 5.0, "km/h": 5.0, "m/s": 5.0, "ft/s": 6.5, "mph": 7.0, "cm/s": 6.5, "mm/s": 7.0}
@@ -223,6 +243,6 @@ def _odd() -> Iterator[Change]:
     yield Change("unit of velocity", 8.0, lambda r: _freed(r, "scale"), None, said, Slab("scale", 1.5), lengths)
     said = "yaw_rate is in an unknown unit, or badly scaled"
     yield Change("unit of rate", 8.0, lambda r: _freed(r, "rate"), None, said, Slab("rate", 1.5), angles)
-    said = "north and east are turned against heading and velocities"
-    others = ("the heading is off by that angle", "surge and sway are turned against the ship")
-    yield Change("turned", 6.5, lambda r: _freed(r, "angle"), None, said, None, others)
+    yield Change("turned", 6.5, lambda r: _freed(r, "angle"), None, TURNED, None, ("the heading is off by that angle",))
+    said = "surge and sway are turned against the ship"
+    yield Change("axes turned", 7.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)

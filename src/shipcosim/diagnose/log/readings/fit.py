@@ -27,11 +27,13 @@ from shipcosim.diagnose.log.thresholds import (
     RELATION_WINDOWS,
     ROBUST_ROUNDS,
     ROBUST_SHARE,
+    UNSURE_NOISE,
 )
 
 __all__ = ["Relation", "fitted"]
 
 
+ROUGHNESS = 5.69  # variance of the fourth differences of a spline's integral of white noise of variance 1
 _Key = TypeVar("_Key", bound=Hashable)
 
 
@@ -59,14 +61,19 @@ class Relation:
 
 @dataclass(frozen=True)
 class _Fit:
-    """A relation with what is needed to weigh it against others: white rows, and how likely what is left is."""
+    """A relation with what is needed to weigh it against others: white rows, and how likely what is left is.
+
+    `wander` and `rows_noise` are the variance that noise of what is told adds from row to row, whitened and over both
+    axes: by what is left, and by how much neighbouring rows of what is told differ.
+    """
 
     seen: np.ndarray
     told: np.ndarray
     factor: complex
     variance: float
     likelihood: float
-    noise: float
+    wander: float = 0.0
+    rows_noise: float = 0.0
 
     @property
     def rest(self) -> np.ndarray:
@@ -114,6 +121,7 @@ def _fits(drafts: list[Filter], pairs, axes):
     stacked = np.stack(list(columns.values()), axis=1)
     place = {name: number for number, name in enumerate(columns)}
     fits: dict = {}
+    noises = {id(told): _noise_of_rows(told, axes) for _, told in pairs.values()}
     alone = dict.fromkeys((id(seen) for seen, _ in pairs.values()), -np.inf)
     for draft, ratio in zip(drafts, RATIOS, strict=True):
         known = draft.gains < 1.0
@@ -126,8 +134,9 @@ def _fits(drafts: list[Filter], pairs, axes):
             fit = _fit(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
                 gain = float(np.median(draft.gains[known]))
-                wander = ratio / (gain * (2.0 - gain) * np.median(scale) ** 2)  # of white noise that adds up, whitened
-                fits[key] = replace(fit, noise=axes * wander * fit.variance)
+                adds_up = 1.0 / (gain * (2.0 - gain) * np.median(scale) ** 2)  # white noise that adds up, whitened
+                rows_noise = axes * adds_up * abs(fit.factor) ** 2 * noises[id(told)]
+                fits[key] = replace(fit, wander=axes * adds_up * ratio * fit.variance, rows_noise=rows_noise)
     return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
 
 
@@ -139,7 +148,13 @@ def _fit(seen, told, axes, offset):
         off = np.abs(seen - factor * told)
         weights = np.minimum(1.0, FIT_CLIP * _spread(off, axes) / np.maximum(off, 1e-300))
     likelihood, variance = _likelihood(seen - factor * told, axes)
-    return _Fit(seen, told, complex(factor), variance, likelihood + offset, 0.0)
+    return _Fit(seen, told, complex(factor), variance, likelihood + offset)
+
+
+def _noise_of_rows(told, axes):
+    """Variance of an axis of the noise of what is told from row to row; too large where waves are as short as rows."""
+    rows = np.abs(np.diff(told, n=4))
+    return _spread(rows, axes) ** 2 / ROUGHNESS
 
 
 def _spread(off, axes):
@@ -155,16 +170,27 @@ def _likelihood(rest, axes):
 
 
 def _relation(fit, evidence, rough):
-    """The relation of a fit. Noise of what is told makes the factor too small: by 1 - share, where all that wanders is
-    noise of what is told, and so times the factor itself; half of that is left open."""
+    """The relation of a fit."""
     windows = np.array_split(np.arange(len(fit.told)), RELATION_WINDOWS)
     energy = np.vdot(fit.told, fit.told).real
     size = max(abs(fit.factor), 1e-300)
-    wander = len(fit.told) * fit.noise / (size**2 * energy)  # = share / (1 - share)^2
-    low = math.log(0.5 + math.sqrt(0.25 + wander))
     std = max(_jackknife(fit, windows), math.sqrt(rough * fit.variance / energy) / size)
+    low, unsure = _too_small(len(fit.told) / (size**2 * energy), fit)
     factor = complex(math.log(size) + low, np.angle(fit.factor))
-    return Relation(factor, (math.hypot(std, 0.5 * low), std), evidence, _throughout(fit, windows))
+    return Relation(factor, (math.hypot(std, unsure), std), evidence, _throughout(fit, windows))
+
+
+def _too_small(per_row, fit):
+    """By how much noise of what is told makes the logarithm of a factor too small, and how unsure that is.
+
+    Noise with a share of what is told makes a factor 1 - share of what it is. All that wanders can be such noise, or
+    noise of what is seen; no more of it can than neighbouring rows differ by. But noise that a filter has smoothed
+    hides from these: then the first is right.
+    """
+    most = math.log(0.5 + math.sqrt(0.25 + per_row * fit.wander))  # = share / (1 - share)^2
+    least = min(most, math.log(0.5 + math.sqrt(0.25 + per_row * fit.rows_noise)))
+    apart = most - least
+    return most - UNSURE_NOISE[0] * apart, UNSURE_NOISE[1] * apart + UNSURE_NOISE[2] * most
 
 
 def _jackknife(fit, windows):

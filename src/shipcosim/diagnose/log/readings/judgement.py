@@ -7,9 +7,10 @@ costs the width of its prior.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
@@ -18,7 +19,11 @@ from shipcosim.diagnose.log.readings.changes import Change, Reading
 from shipcosim.diagnose.log.readings.fit import Relation
 from shipcosim.diagnose.log.thresholds import (
     ANGLE_TOLERANCE,
+    DRIFT,
     FAR_SHARE,
+    GOES_AHEAD,
+    GOES_ASTERN,
+    ONE_COURSE,
     RATE_TOLERANCE,
     SCALE_TOLERANCE,
     UNEXPLAINED_COST,
@@ -26,7 +31,7 @@ from shipcosim.diagnose.log.thresholds import (
     USUAL_STEP,
 )
 
-__all__ = ["Evidence", "Judged", "judged", "reading_of"]
+__all__ = ["Evidence", "Judged", "judged", "off_angle", "reading_of"]
 
 GRID = np.linspace(-5.0, 5.0, 101)
 
@@ -45,6 +50,8 @@ class Evidence:
         How likely the wind is, with the heading as it is and mirrored. [nats]
     speed, step : float or None
         As logged, of the craft and from row to row. [m/s, s]
+    courses : dict of float to dict of (bool, bool) to complex
+        By the heading's unit: where the craft goes against her bow, see `Reading.course`.
     """
 
     position: dict[tuple[float, bool], dict[tuple[str, str], Relation]]
@@ -52,6 +59,11 @@ class Evidence:
     turning: dict[bool, float]
     speed: float | None = None
     step: float | None = None
+    courses: dict[float, dict[tuple[bool, bool], complex]] = field(default_factory=dict)
+
+    def relation_of(self, reading: Reading) -> Relation | None:
+        """Position against velocity, as a reading has it."""
+        return self.position.get((reading.heading_unit, reading.degrees), {}).get(reading.form)
 
 
 @dataclass(frozen=True)
@@ -112,15 +124,14 @@ def _best_forms(evidence):
 def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     """Log of the probability of a combination, but for a constant, and the rate of the clock with its deviation."""
     reading, cost = reading_of(combination), sum(change.cost for change in combination)
-    forms = evidence.position.get((reading.heading_unit, reading.degrees), {})
-    relation, rate = forms.get(reading.form), evidence.rate.get(reading.heading_unit)
+    relation, rate = evidence.relation_of(reading), evidence.rate.get(reading.heading_unit)
     if (evidence.position and relation is None) or (evidence.rate and rate is None):
         return -np.inf, (1.0, 0.0)
     said = evidence.turning.get("heading" in reading.mirrored, 0.0)
     slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
     off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
     if relation is not None:
-        said += relation.evidence + _angle(relation, reading)
+        said += relation.evidence + _angle(relation, reading) + _ahead(relation, reading, evidence.courses)
     if rate is not None:
         said += _direction(rate, reading)
     said += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(evidence.step, reading.time, USUAL_STEP)
@@ -140,8 +151,27 @@ def _angle(relation, reading):
     """Log-density of the angle of a factor that was found."""
     if "angle" in reading.free:
         return -math.log(2.0 * math.pi)
-    off = math.remainder(relation.factor.imag - reading.factor.imag, 2.0 * math.pi)
-    return _log_density(np.array([off]), relation.std[1], ANGLE_TOLERANCE)[0]
+    return _log_density(np.array([off_angle(relation, reading)]), relation.std[1], ANGLE_TOLERANCE)[0]
+
+
+def _ahead(relation, reading, courses):
+    """Log-density of the direction in which the craft goes against her bow, over that of any: most go ahead."""
+    if reading.heading_unit not in courses:
+        return 0.0
+    course = reading.course(courses[reading.heading_unit], off_angle(relation, reading))
+    if abs(course) < ONE_COURSE:
+        return 0.0
+    spread = math.hypot(DRIFT, math.sqrt(-2.0 * math.log(min(abs(course), 1.0))))
+    shares = [
+        share * 2.0 * math.pi * math.exp(-0.5 * (off / spread) ** 2) / (spread * math.sqrt(2.0 * math.pi))
+        for share, off in ((GOES_AHEAD, cmath.phase(course)), (GOES_ASTERN, cmath.phase(-course)))
+    ]
+    return math.log(sum(shares) + 1.0 - GOES_AHEAD - GOES_ASTERN)
+
+
+def off_angle(relation: Relation, reading: Reading) -> float:
+    """Angle between the change of position and what a reading makes of the velocity. [rad]"""
+    return math.remainder(relation.factor.imag - reading.factor.imag, 2.0 * math.pi)
 
 
 def _direction(rate, reading):

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.angles import wrap_series
-from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of
+from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of, turned_grid
 from shipcosim.diagnose.log.readings.changes import CLOCK, Change, changes
-from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, reading_of
+from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, off_angle, reading_of
 from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations, steadiness
 from shipcosim.diagnose.log.thresholds import (
+    COMPASS_OFF,
     LEFT_OPEN,
     MOST_ALTERNATIVES,
     MOST_SURE,
@@ -48,7 +49,8 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
     if not evidence.position and not evidence.rate:
         return []  # what is usual alone says nothing
     readings, unexplained = judged(evidence, changes(stated))
-    return _findings(readings, unexplained) if _holds_throughout(readings[0], evidence) else []
+    angle = _angle(readings[0], evidence) if "latitude" not in stated else None
+    return _findings(readings, unexplained, angle) if _holds_throughout(readings[0], evidence) else []
 
 
 def explained(log: dict) -> float:
@@ -90,7 +92,7 @@ def evidence_of(log: dict) -> Evidence:
         return Evidence({}, {}, {})
     headings = {unit: unit * log["heading"] for unit in (1.0, DEGREE, 1.0 / DEGREE)}
     rate = rate_relations(log["time"], headings, log["yaw_rate"]) if "yaw_rate" in log else {}
-    position, speed = {}, None
+    position, speed, courses = {}, None, {}
     if {"north", "east", "surge", "sway"} <= set(log):
         positions = {False: log["north"] + 1j * log["east"]}
         if _can_be_degrees(log):
@@ -99,7 +101,17 @@ def evidence_of(log: dict) -> Evidence:
         position = position_relations(log, headings, positions)
         speeds = np.hypot(log["surge"], log["sway"])
         speed = float(np.sqrt(np.mean(speeds[np.isfinite(speeds)] ** 2))) if np.isfinite(speeds).any() else None
-    return Evidence(position, rate, _turning(log), speed, float(np.median(np.diff(log["time"]))))
+        courses = {unit: _courses(log["surge"] + 1j * log["sway"], values) for unit, values in headings.items()}
+    return Evidence(position, rate, _turning(log), speed, float(np.median(np.diff(log["time"]))), courses)
+
+
+def _courses(velocity, heading):
+    """Mean direction of the velocity against the bow, as `Reading.course` takes it; fast rows count for more."""
+    turn = np.exp(1j * np.radians(heading))
+    velocity, turn = (one[np.isfinite(velocity) & np.isfinite(turn)] for one in (velocity, turn))
+    weights, energy = np.abs(velocity), max(float(np.sum(np.abs(velocity) ** 2)), 1e-300)
+    ways = {(False, False): 1.0, (True, False): np.conj(turn), (True, True): turn}
+    return {way: complex(np.sum(weights * velocity * of) / energy) for way, of in ways.items()}
 
 
 def _can_be_degrees(log):
@@ -127,29 +139,40 @@ def _turning(log):
 def _holds_throughout(best, evidence):
     """Whether a reading holds in the whole log, not in the larger part of it."""
     reading = reading_of(best.changes)
-    forms = evidence.position.get((reading.heading_unit, reading.degrees), {})
-    relations = [forms.get(reading.form), evidence.rate.get(reading.heading_unit)]
+    relations = [evidence.relation_of(reading), evidence.rate.get(reading.heading_unit)]
     return all(relation.throughout > THROUGHOUT for relation in relations if relation is not None)
 
 
-def _findings(readings: list[Judged], unexplained: float) -> list[Finding]:
-    """Findings of the changes that are sure, and one of what is left open."""
+def _angle(best, evidence):
+    """By how much the grid is turned where no compass can be off by as much; None where it is not, or not alone."""
+    reading = reading_of(best.changes)
+    relation = evidence.relation_of(reading)
+    if relation is None or "angle" not in reading.free or "position" in reading.mirrored:
+        return None
+    angle = Estimate(float(np.degrees(off_angle(relation, reading))), float(np.degrees(relation.std[1])), "deg")
+    return angle if abs(angle.estimate) > COMPASS_OFF else None
+
+
+def _findings(readings: list[Judged], unexplained: float, angle: Estimate | None) -> list[Finding]:
+    """Findings of the changes that are sure, and one of what is left open; `angle`: of a grid that can be put right."""
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
     for one in readings:
         for said in {change.sentence for change in one.changes}:
             shares[said] = shares.get(said, 0.0) + one.probability
     first = {change.sentence: change for one in reversed(readings) for change in one.changes}  # likeliest last
-    sure = [said for said, share in shares.items() if share > READING_SURE and not first[said].or_else]
-    found = [_named(first[said], shares[said], readings) for said in sure]
+    sure = [said for said, share in shares.items() if share > READING_SURE and (not first[said].or_else or angle)]
+    found = [_named(first[said], shares[said], readings, angle) for said in sure]
     rests: dict[tuple[Change, ...], float] = {}
+    rates: dict[tuple[Change, ...], float] = {}
     for one in readings:
         if set(sure) <= {change.sentence for change in one.changes}:
             rest = tuple(first[change.sentence] for change in one.changes if change.sentence not in sure)
             rests[rest] = rests.get(rest, 0.0) + one.probability
+            rates.setdefault(rest, one.rate[0])
     if unexplained + rests.get((), 0.0) > LEFT_OPEN:
         return found if unexplained < LEFT_OPEN else []
-    return [*found, _left_open(rests)]
+    return [*found, _left_open(rests, rates)]
 
 
 def _with_known_rates(readings):
@@ -172,9 +195,12 @@ def _beside_clock(one):
     return frozenset(change.sentence for change in one.changes if change.slot != "time")
 
 
-def _named(change, probability, readings):
+def _named(change, probability, readings, angle):
     """The finding of one change."""
     probability = min(probability, MOST_SURE)
+    if change.or_else:
+        said = f"{change.sentence}; it looks the same if {' or '.join(change.or_else)}"
+        return replace(finding_of(turned_grid(angle.estimate), probability), parameters={"angle": angle}, note=said)
     if change.mislabel is not None:
         return finding_of(change.mislabel, probability)
     return replace(_clock(change, readings), probability=probability)
@@ -186,17 +212,20 @@ def _clock(change, readings):
     return Finding("clock", None, "data", 1.0, rates, (), ("time",), note=change.sentence)
 
 
-def _left_open(rests):
+def _left_open(rests, rates):
     """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
-    likely = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
-    (first, share), others = likely[0], [rest for rest, p in likely[1:] if p > UNLIKELY_READING]
+    (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
+    words = {rest: _words(rest, rates[rest]) for rest in rests}
+    likely = [rest for rest, p in others if p > UNLIKELY_READING] or [rest for rest, _ in others[:1]]
     beside = [said for change in first for said in change.or_else]
-    beside += [_words(rest) or NOTHING_ELSE for rest in others if _words(rest) != _words(first)]
+    beside += [words[rest] or NOTHING_ELSE for rest in likely if words[rest] != words[first]]
     channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
     share = share / (1 + len(first[0].or_else))
     alternatives = tuple(dict.fromkeys(beside))[:MOST_ALTERNATIVES]
-    return Finding(first[0].cause, None, "data", share, {}, (), channels, note=_words(first), alternatives=alternatives)
+    return Finding(first[0].cause, None, "data", share, {}, (), channels, note=words[first], alternatives=alternatives)
 
 
-def _words(rest):
-    return " and ".join(change.sentence for change in rest)
+def _words(rest, rate):
+    """A reading in words, with the rate of a clock that can have any."""
+    said = (f"{c.sentence}, {rate:.3g} s in each logged second" if c.sentence == CLOCK else c.sentence for c in rest)
+    return " and ".join(said)
