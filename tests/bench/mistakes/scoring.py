@@ -5,12 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 import xarray
 
-from mistakes.mistakes import MISTAKES, with_mistakes
+from mistakes.mistakes import MISTAKES, POSITION, with_mistakes
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.log.repair import read_anew
 from shipcosim.diagnose.log.roles import role_of
 
 RATE_NEAR = 0.015  # of a clock: largest error of the logarithm of its rate
+PUT_RIGHT = 0.1  # of what a channel changes: how far off it may be once put right
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,8 @@ class Answer:
     source, seed, mistakes, declared
         The log.
     outcome : str
-        "right": all mistakes that can be seen are named and nothing wrong; "wrong": something else is named; "among":
+        "right": all mistakes that can be seen are named and put right, and nothing wrong; "wrong": something else is
+        named, or the log that is put right is not the right one; "among":
         nothing wrong is named, and of the readings left open one is right; "beside": none of them is; "part": one of
         two is named; "silent": nothing is said; "not visible": the same where no mistake can be seen in the log.
     said : tuple of (str, float, bool)
@@ -64,6 +67,8 @@ def answered(log, source, seed, names, declared, hidden=()):
     open_words = tuple(f"{_words(finding)} / {' / '.join(finding.alternatives)}" for finding in left_open)
     visible = [MISTAKES[name] for name in names if name not in hidden]
     outcome = _outcome(expected, visible, hits, left_open)
+    if outcome == "right" and not _is_put_right(log, with_mistakes(log, names), sure, visible):
+        outcome = "wrong"
     return Answer(source, seed, tuple(names), declared, outcome, said, open_words, tuple(hidden))
 
 
@@ -76,6 +81,26 @@ def _outcome(expected, visible, hits, left_open):
     if not any(mistake in left for mistake in visible):
         return "right" if hits or not expected else "not visible"
     return "part" if hits else "silent"
+
+
+def _is_put_right(log, wrong, found, visible):
+    """Whether the channels that visible mistakes are in are, once put right, those of the right log."""
+    clean = read_anew(wrong, found)
+    return all(_is_near(role, clean[role], log[role]) for mistake in visible for role in mistake.channels)
+
+
+def _is_near(role, clean, right):
+    """To a tenth of what the channel changes, headings to 3 degrees; the time base to RATE_NEAR."""
+    known = np.isfinite(clean) & np.isfinite(right)
+    clean, right = clean[known], right[known]
+    if role == "time":
+        return abs(np.log(np.ptp(clean) / np.ptp(right))) < RATE_NEAR
+    if role == "heading":
+        return np.median(np.abs(np.mod(clean - right + 180.0, 360.0) - 180.0)) < 3.0
+    if not len(right):
+        return True  # what rounding took is not used
+    off, size = (np.std(one - (np.mean(one) if role in POSITION else 0.0)) for one in (clean - right, right))
+    return off < PUT_RIGHT * size
 
 
 def _is_among(finding, left, visible):

@@ -25,7 +25,7 @@ def _line(name, group):
 
 def _calibration(answers):
     said = [(probability, right) for answer in answers for _, probability, right in answer.said]
-    for low, high in ((0.0, 0.9), (0.9, 0.99), (0.99, 0.999), (0.999, 1.01)):
+    for low, high in ((0.0, 0.9), (0.9, 0.96), (0.96, 0.98), (0.98, 0.995), (0.995, 1.01)):
         group = [(p, right) for p, right in said if low <= p < high]
         if group:
             mean, right = np.mean(group, axis=0)

@@ -17,6 +17,7 @@ __all__ = [
     "CHANNEL_UNITS",
     "HEADING_FROM_EAST",
     "HEADING_LABELS",
+    "KNOT",
     "MISLABELS",
     "POSITION",
     "POSITION_IN_DEGREES",

@@ -117,6 +117,7 @@ def _leaps(log):
     went = np.hypot(np.diff(north), np.diff(east))
     told = np.maximum(speed[1:], speed[:-1]) * steps
     usual = np.nanquantile(np.abs(went - told), 0.9) if np.isfinite(went - told).any() else np.inf
+    usual = max(usual, np.hypot(quantum(north), quantum(east)))  # between two steps of its resolution no ship leaps
     with np.errstate(invalid="ignore"):
         leaping = went > LEAP * (told + usual)
     for first, last in runs(leaping):

@@ -180,7 +180,7 @@ def _label(slot, cost, apply, mislabel):
 
 def changes(stated: dict[str, str]) -> list[Change]:
     """All changes, for a log of which some units are stated, by role; the role's unit elsewhere."""
-    return [*_time(stated.get("time")), *_units(stated), *_frames(), *_odd()]
+    return [*_time(stated.get("time")), *_units(stated), *_frames(), *_odd(stated)]
 
 
 def _time(stated):
@@ -230,19 +230,22 @@ def _freed(reading, what):
     return replace(reading, free=reading.free | {what})
 
 
-def _odd() -> Iterator[Change]:
+def _odd(stated) -> Iterator[Change]:
     """What has no name or cannot be put right, and must be beaten by what has one."""
+    of_velocity, of_rate = (STATED * bool(stated.get(role)) for role in ("surge", "yaw_rate"))
     lengths = ("north and east are in another unit, or badly scaled",)
     angles = ("heading is in another unit, or badly scaled",)
     for factor, cost in ODD_FACTORS.items():
         said = f"surge and sway must be multiplied by {factor:.3g}"
-        yield Change("unit of velocity", cost, _factor_of("velocity", factor), None, said, None, lengths)
+        yield Change("unit of velocity", cost + of_velocity, _factor_of("velocity", factor), None, said, None, lengths)
         said = f"yaw_rate must be multiplied by {factor:.3g}"
-        yield Change("unit of rate", cost, _factor_of("rate", factor), None, said, None, angles)
+        yield Change("unit of rate", cost + of_rate, _factor_of("rate", factor), None, said, None, angles)
     said = "surge and sway are in an unknown unit, or badly scaled"
-    yield Change("unit of velocity", 8.0, lambda r: _freed(r, "scale"), None, said, Slab("scale", 1.5), lengths)
+    free, cost = Slab("scale", 1.5), 8.0 + of_velocity
+    yield Change("unit of velocity", cost, lambda r: _freed(r, "scale"), None, said, free, lengths)
     said = "yaw_rate is in an unknown unit, or badly scaled"
-    yield Change("unit of rate", 8.0, lambda r: _freed(r, "rate"), None, said, Slab("rate", 1.5), angles)
+    free, cost = Slab("rate", 1.5), 8.0 + of_rate
+    yield Change("unit of rate", cost, lambda r: _freed(r, "rate"), None, said, free, angles)
     yield Change("turned", 6.5, lambda r: _freed(r, "angle"), None, TURNED, None, ("the heading is off by that angle",))
     said = "surge and sway are turned against the ship"
     yield Change("axes turned", 7.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)

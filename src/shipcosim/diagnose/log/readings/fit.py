@@ -30,7 +30,7 @@ from shipcosim.diagnose.log.thresholds import (
     UNSURE_NOISE,
 )
 
-__all__ = ["Relation", "fitted"]
+__all__ = ["Relation", "RowsFit", "fit_rows", "fitted"]
 
 
 ROUGHNESS = 5.69  # variance of the fourth differences of a spline's integral of white noise of variance 1
@@ -60,7 +60,7 @@ class Relation:
 
 
 @dataclass(frozen=True)
-class _Fit:
+class RowsFit:
     """A relation with what is needed to weigh it against others: white rows, and how likely what is left is.
 
     `wander` and `rows_noise` are the variance that noise of what is told adds from row to row, whitened and over both
@@ -131,7 +131,7 @@ def _fits(drafts: list[Filter], pairs, axes):
         for name in alone:
             alone[name] = max(alone[name], _likelihood(white[:, place[name]], axes)[0] + offset)
         for key, (seen, told) in pairs.items():
-            fit = _fit(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
+            fit = fit_rows(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
                 gain = float(np.median(draft.gains[known]))
                 adds_up = 1.0 / (gain * (2.0 - gain) * np.median(scale) ** 2)  # white noise that adds up, whitened
@@ -140,15 +140,25 @@ def _fits(drafts: list[Filter], pairs, axes):
     return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
 
 
-def _fit(seen, told, axes, offset):
-    """The factor that leaves least, rows that it does not explain at all counting little."""
+def fit_rows(seen: np.ndarray, told: np.ndarray, axes: int, offset: float) -> RowsFit:
+    """The factor that leaves least of white rows, those that it does not explain at all counting little.
+
+    Parameters
+    ----------
+    seen, told : (n,) complex arrays
+        Whitened.
+    axes : int
+        2, or 1 where both are real.
+    offset : float
+        Of the logarithm of the likelihood, by the whitening.
+    """
     weights = np.ones(len(told))
     for _ in range(ROBUST_ROUNDS):
         factor = np.vdot(weights * told, seen) / max(np.vdot(weights * told, told).real, 1e-300)
         off = np.abs(seen - factor * told)
         weights = np.minimum(1.0, FIT_CLIP * _spread(off, axes) / np.maximum(off, 1e-300))
     likelihood, variance = _likelihood(seen - factor * told, axes)
-    return _Fit(seen, told, complex(factor), variance, likelihood + offset)
+    return RowsFit(seen, told, complex(factor), variance, likelihood + offset)
 
 
 def _noise_of_rows(told, axes):

@@ -17,6 +17,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.readings.changes import Change, Reading
 from shipcosim.diagnose.log.readings.fit import Relation
+from shipcosim.diagnose.log.readings.wind import WindRelations
 from shipcosim.diagnose.log.thresholds import (
     ANGLE_TOLERANCE,
     DRIFT,
@@ -46,8 +47,8 @@ class Evidence:
         By the heading's unit as a factor and whether positions are degrees: each form's relation. Empty without any.
     rate : dict of float to Relation
         By the heading's unit: heading against yaw rate.
-    turning : dict of bool to float
-        How likely the wind is, with the heading as it is and mirrored. [nats]
+    wind : WindRelations
+        The wind against velocity and heading.
     speed, step : float or None
         As logged, of the craft and from row to row. [m/s, s]
     courses : dict of float to dict of (bool, bool) to complex
@@ -56,7 +57,7 @@ class Evidence:
 
     position: dict[tuple[float, bool], dict[tuple[str, str], Relation]]
     rate: dict[float, Relation]
-    turning: dict[bool, float]
+    wind: WindRelations = field(default_factory=lambda: WindRelations({}))
     speed: float | None = None
     step: float | None = None
     courses: dict[float, dict[tuple[bool, bool], complex]] = field(default_factory=dict)
@@ -118,7 +119,7 @@ def _best_forms(evidence):
     position = max((r.evidence for forms in evidence.position.values() for r in forms.values()), default=0.0)
     rate = max((r.evidence for r in evidence.rate.values()), default=0.0)
     usual = _usual(evidence.speed, 1.0, USUAL_SPEED) + _usual(evidence.step, 1.0, USUAL_STEP)
-    return position + rate + max(evidence.turning.values(), default=0.0) + usual
+    return position + rate + usual
 
 
 def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
@@ -127,7 +128,7 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     relation, rate = evidence.relation_of(reading), evidence.rate.get(reading.heading_unit)
     if (evidence.position and relation is None) or (evidence.rate and rate is None):
         return -np.inf, (1.0, 0.0)
-    said = evidence.turning.get("heading" in reading.mirrored, 0.0)
+    said = evidence.wind.likelihood(reading, off_angle(relation, reading) if relation is not None else 0.0)
     slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
     off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
     if relation is not None:

@@ -6,19 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of, turned_grid
 from shipcosim.diagnose.log.readings.changes import CLOCK, Change, changes
 from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, off_angle, reading_of
-from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations, steadiness
+from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations
+from shipcosim.diagnose.log.readings.wind import wind_relations
 from shipcosim.diagnose.log.thresholds import (
     COMPASS_OFF,
     LEFT_OPEN,
     MOST_ALTERNATIVES,
     MOST_SURE,
     READING_SURE,
-    STEADINESS_COUNT,
-    STEADINESS_FLOOR,
     THROUGHOUT,
     UNLIKELY_READING,
 )
@@ -89,7 +87,7 @@ def evidence_of(log: dict) -> Evidence:
         As in `misread`.
     """
     if "heading" not in log:
-        return Evidence({}, {}, {})
+        return Evidence({}, {})
     headings = {unit: unit * log["heading"] for unit in (1.0, DEGREE, 1.0 / DEGREE)}
     rate = rate_relations(log["time"], headings, log["yaw_rate"]) if "yaw_rate" in log else {}
     position, speed, courses = {}, None, {}
@@ -102,7 +100,11 @@ def evidence_of(log: dict) -> Evidence:
         speeds = np.hypot(log["surge"], log["sway"])
         speed = float(np.sqrt(np.mean(speeds[np.isfinite(speeds)] ** 2))) if np.isfinite(speeds).any() else None
         courses = {unit: _courses(log["surge"] + 1j * log["sway"], values) for unit, values in headings.items()}
-    return Evidence(position, rate, _turning(log), speed, float(np.median(np.diff(log["time"]))), courses)
+    units = {*rate, *(unit for unit, _ in position)}
+    followed = {unit: heading for unit, heading in headings.items() if unit in units}
+    return Evidence(
+        position, rate, wind_relations(log, followed), speed, float(np.median(np.diff(log["time"]))), courses
+    )
 
 
 def _courses(velocity, heading):
@@ -119,21 +121,6 @@ def _can_be_degrees(log):
     if not len(north) or not len(east):
         return False
     return bool(np.abs(north).max() <= 90.0 and np.abs(east).max() <= 180.0 and max(np.ptp(north), np.ptp(east)) < 5.0)
-
-
-def _turning(log):
-    """How likely the wind over ground is with the heading as it is, and mirrored: it does not turn with the ship."""
-    if not {"wind_speed", "wind_from", "heading"} <= set(log):
-        return {}
-    wind = log["wind_speed"] * np.exp(1j * np.radians(log["wind_from"]))
-    turn = np.exp(1j * np.radians(log["heading"]))
-    known = np.isfinite(wind) & np.isfinite(turn)
-    if known.sum() < 100:
-        return {}
-    count = min(STEADINESS_COUNT, np.nansum(np.abs(wrap_series(np.diff(log["heading"])))) / 90.0)
-    plain, mirrored = (steadiness(wind[known] * t[known]) for t in (turn, np.conj(turn)))
-    likely = [-count * np.log(1.0 - s + STEADINESS_FLOOR) for s in (plain, mirrored)]
-    return {False: float(likely[0]), True: float(likely[1])}
 
 
 def _holds_throughout(best, evidence):

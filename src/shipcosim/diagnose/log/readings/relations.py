@@ -1,4 +1,4 @@
-"""What holds between channels of a whole log: position against velocity, heading against rate, wind against heading.
+"""What holds between channels of a whole log: position against velocity, heading against rate.
 
 With position p and velocity w as complex numbers and E = exp(i heading), the change of position is the integral of w E.
 Any mistake of a sign, a frame or a unit makes it c times the integral of another *form*, such as conj(w) E or w alone,
@@ -15,7 +15,7 @@ from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.readings.fit import fitted
 from shipcosim.diagnose.log.thresholds import ALONGSIDE, FEWEST_INCREMENTS, LARGEST_TURN, TURNED_TOO_FAR
 
-__all__ = ["FORMS", "position_relations", "rate_relations", "steadiness"]
+__all__ = ["FORMS", "position_relations", "rate_relations"]
 
 FORMS = {
     ("as is", "body"): lambda w, e: w * e,
@@ -99,14 +99,3 @@ def _can_be_followed(turns):
 def _integral(time, series):
     """By a spline: the trapezium loses a tenth of a motion with six rows a period."""
     return CubicSpline(time, series).antiderivative()(time)
-
-
-def steadiness(wind: np.ndarray) -> float:
-    """Length of the mean over the mean length: 1 for a steady wind, less for one that turns with the ship.
-
-    Parameters
-    ----------
-    wind : (n,) complex array
-        [m/s]
-    """
-    return float(np.abs(np.mean(wind)) / max(np.mean(np.abs(wind)), 1e-9))

@@ -1,0 +1,167 @@
+"""The wind as a relation of the joint judgement: over ground it neither turns nor moves with the ship.
+
+The apparent wind a, as a vector to where it comes from, turned by the heading, is the wind over ground plus the ship's
+velocity: a E = W + w E, and W changes slowly. A mistake of heading or velocity makes it a other E, or c times another
+form of the velocity; the time base has no part in it. Wind channels can have mistakes of their own: from north,
+mirrored, over ground already, in another unit. Each reading is as likely as all of these together make it.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from shipcosim.diagnose.log.checks.kinematics import filters, whiteness
+from shipcosim.diagnose.log.mislabels import KNOT
+from shipcosim.diagnose.log.readings.changes import Reading
+from shipcosim.diagnose.log.readings.fit import RowsFit, fit_rows
+from shipcosim.diagnose.log.thresholds import (
+    CLEAR_MOTION,
+    FEWEST_WIND_ROWS,
+    LONGEST_BRIDGE,
+    MOST_FITTED,
+    MOST_OF_WIND,
+    WIND_LABEL_COST,
+    WIND_ROWS,
+    WIND_SCALE,
+)
+
+__all__ = ["WindRelations", "wind_relations"]
+
+UNITS = {1.0: 0.0, KNOT: WIND_LABEL_COST, 1.0 / KNOT: WIND_LABEL_COST, 1.0 / 3.6: WIND_LABEL_COST}
+"""Factors that the wind's speed may need, and what that costs."""
+SEEN = {"bow": 0.0, "mirrored": WIND_LABEL_COST, "north": WIND_LABEL_COST}
+"""How the wind's direction may be counted, and what that costs."""
+
+
+@dataclass(frozen=True)
+class WindRelations:
+    """The wind against the velocity, by heading's unit.
+
+    Attributes
+    ----------
+    fits : dict of (unit, is the heading mirrored, seen, form of the velocity) to (likelihood, factor, variance)
+        Seen = factor * told + what changes slowly; likelihood at that factor [nats], variance of the factor.
+    """
+
+    fits: dict[tuple[float, bool, str, tuple[bool, bool]], tuple[float, complex, float]]
+
+    def likelihood(self, reading: Reading, angle: float) -> float:
+        """How likely the wind is under a reading, over the likeliest. [nats]
+
+        Parameters
+        ----------
+        reading : Reading
+        angle : float
+            By how much the change of position is turned against this reading. [rad]
+        """
+        mirrored, flipped = "heading" in reading.mirrored, "velocity" in reading.mirrored
+        told = complex(reading.velocity) * (cmath.exp(1j * angle) if "axes" in reading.free else 1.0)
+        said = []
+        for seen, cost in SEEN.items():
+            key = (reading.heading_unit, mirrored, seen, (flipped, reading.earth))
+            if key not in self.fits:
+                return 0.0
+            turned = reading.earth and seen != "north"
+            factor = told * (complex(reading.heading).conjugate() if turned else 1.0)
+            factor *= complex(reading.heading) if seen == "north" and not reading.earth else 1.0
+            said += [_at(self.fits[key], factor / unit) - cost - more for unit, more in UNITS.items()]
+            said.append(_at(self.fits[key], 0.0) - cost - WIND_LABEL_COST)
+        top = max(said)
+        return max(top + math.log(sum(math.exp(one - top) for one in said)), -MOST_OF_WIND)
+
+
+def _at(fit, factor):
+    """Log-likelihood with the factor that a reading says, give or take what wind sensors are off."""
+    likelihood, found, variance = fit
+    wide = variance + (WIND_SCALE * abs(factor)) ** 2
+    return likelihood - 0.5 * abs(found - factor) ** 2 / wide - math.log(wide / variance)
+
+
+def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelations:
+    """The wind against the velocity in all forms; no fits where there is too little of them.
+
+    Parameters
+    ----------
+    log : dict of (n,) arrays
+        `time`, and roles in their units as logged.
+    headings : dict of (n,) arrays
+        By how they are read. [deg]
+
+    Notes
+    -----
+    A ship that hardly moves is not judged by it: noise of her velocity would make all factors too small.
+    """
+    roles = ("wind_speed", "wind_from", "surge", "sway")
+    if not set(roles) <= set(log):
+        return WindRelations({})
+    rows = np.flatnonzero(np.all([np.isfinite(log[r]) for r in roles] + [np.isfinite(log["heading"])], axis=0))
+    rows = rows[:: max(1, math.ceil(len(rows) / MOST_FITTED))]
+    if len(rows) < FEWEST_WIND_ROWS:
+        return WindRelations({})
+    time = log["time"][rows]
+    apparent = log["wind_speed"][rows] * np.exp(1j * np.radians(log["wind_from"][rows]))
+    velocity = log["surge"][rows] + 1j * log["sway"][rows]
+    if np.mean(np.abs(velocity) ** 2) < 2.0 * (CLEAR_MOTION * _noise(velocity)) ** 2:
+        return WindRelations({})
+    steps = np.diff(time, prepend=-np.inf)
+    drafts = filters(time, steps > LONGEST_BRIDGE * np.median(steps[1:]))[::3]
+    fits: dict = {}
+    for unit, heading in headings.items():
+        for mirrored in (False, True):
+            turn = np.exp((-1j if mirrored else 1j) * np.radians(heading[rows]))
+            seen = {"bow": apparent * turn, "mirrored": np.conj(apparent) * turn, "north": apparent}
+            told = _told(velocity, turn)
+            for (name, form), fit in _fitted(drafts, seen, told).items():
+                fits[unit, mirrored, name, form] = fit
+    return WindRelations(_tamed(fits))
+
+
+def _told(velocity, turn):
+    """Forms of the velocity, by whether it is mirrored and whether it is over the earth; as slow as wind sensors."""
+    forms = {(m, earth): (np.conj(velocity) if m else velocity) for m in (False, True) for earth in (False, True)}
+    ways = {form: one if form[1] else one * turn for form, one in forms.items()}
+    return {form: _slow(way) for form, way in ways.items()}
+
+
+def _slow(way):
+    return gaussian_filter1d(way.real, WIND_ROWS) + 1j * gaussian_filter1d(way.imag, WIND_ROWS)
+
+
+def _noise(velocity):
+    """Standard deviation of an axis from row to row, by third differences of four in five rows."""
+    return float(np.quantile(np.abs(np.diff(velocity, n=3)), 0.8)) / 1.794 / math.sqrt(20.0)
+
+
+def _fitted(drafts, seen, told):
+    """Of each pair the fit under the noise that suits it best."""
+    stacked = np.stack([*seen.values(), *told.values()], axis=1)
+    fits: dict[tuple, RowsFit] = {}
+    for draft in drafts:
+        known = draft.gains < 1.0
+        white = (draft(stacked.real) + 1j * draft(stacked.imag))[known]
+        offset = -2.0 * float(np.sum(np.log(draft.scale[known])))
+        for row, name in enumerate(seen):
+            for column, form in enumerate(told, start=len(seen)):
+                fit = fit_rows(white[:, row], white[:, column], 2, offset)
+                if (name, form) not in fits or fit.likelihood > fits[name, form].likelihood:
+                    fits[name, form] = fit
+    return fits
+
+
+def _tamed(fits):
+    """Likelihoods over the best one, and variances of the factors, by how much what is left hangs together."""
+    best = max(fits.values(), key=lambda fit: fit.likelihood)
+    rough = whiteness(np.column_stack([best.rest.real, best.rest.imag]))
+    return {
+        key: (
+            (fit.likelihood - best.likelihood) / rough,
+            fit.factor,
+            rough * 2.0 * fit.variance / max(np.vdot(fit.told, fit.told).real, 1e-300),
+        )
+        for key, fit in fits.items()
+    }
