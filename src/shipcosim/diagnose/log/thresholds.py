@@ -107,8 +107,9 @@ WIND_SCALE = 0.2
 """By how much wind sensors and the flow around the mast make the wind follow the velocity otherwise. [1] Assumed."""
 WIND_LABEL_COST = 5.5
 """Cost of a wrong label of the wind itself. [nats] Assumed, as of other channels."""
-MOST_OF_WIND = 20.0
-"""Most that the wind says against a reading: it turns of itself, too. [nats] Assumed."""
+MOST_OF_WIND = 10.0
+"""Most that the wind says against a reading: it turns of itself, too, and must not silence what position and heading
+say, so it is less than UNEXPLAINED_COST. [nats] Assumed."""
 THROUGHOUT = 0.75
 """Share of a log, by what its parts say, in which a reading holds that is one of all of it. Assumed."""
 READING_SURE = 0.95

@@ -248,4 +248,4 @@ def _odd(stated) -> Iterator[Change]:
     yield Change("unit of rate", cost, lambda r: _freed(r, "rate"), None, said, free, angles)
     yield Change("turned", 6.5, lambda r: _freed(r, "angle"), None, TURNED, None, ("the heading is off by that angle",))
     said = "surge and sway are turned against the ship"
-    yield Change("axes turned", 7.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)
+    yield Change("axes turned", 8.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)

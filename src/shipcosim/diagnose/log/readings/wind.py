@@ -122,10 +122,14 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
 
 
 def _told(velocity, turn):
-    """Forms of the velocity, by whether it is mirrored and whether it is over the earth; as slow as wind sensors."""
-    forms = {(m, earth): (np.conj(velocity) if m else velocity) for m in (False, True) for earth in (False, True)}
-    ways = {form: one if form[1] else one * turn for form, one in forms.items()}
-    return {form: _slow(way) for form, way in ways.items()}
+    """Forms of the velocity, by whether it is mirrored and whether it is over the earth; as slow as wind sensors.
+
+    Those turn with the ship and average what they feel: the velocity is averaged in her axes.
+    """
+    both = {mirrored: np.conj(velocity) if mirrored else velocity for mirrored in (False, True)}
+    body = {(mirrored, False): one for mirrored, one in both.items()}
+    earth = {(mirrored, True): one * np.conj(turn) for mirrored, one in both.items()}
+    return {form: _slow(way) * turn for form, way in (body | earth).items()}
 
 
 def _slow(way):
