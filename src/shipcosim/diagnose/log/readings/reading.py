@@ -186,7 +186,8 @@ def _named(change, probability, readings, angle):
     """The finding of one change."""
     probability = min(probability, MOST_SURE)
     if change.or_else:
-        said = f"{change.sentence}; it looks the same if {' or '.join(change.or_else)}"
+        both = "both have the other sign, or " if abs(angle.estimate) > 180.0 - COMPASS_OFF else ""
+        said = f"{change.sentence}; it looks the same if {both}{' or '.join(change.or_else)}"
         return replace(finding_of(turned_grid(angle.estimate), probability), parameters={"angle": angle}, note=said)
     if change.mislabel is not None:
         return finding_of(change.mislabel, probability)
