@@ -76,6 +76,24 @@ def test_one_weak_thruster_is_no_common_ratio_but_named_by_itself():
     assert first.component == "left" and abs(first.estimate - 0.4) < 0.05
 
 
+def test_thrust_astern_that_is_weaker_than_ahead_is_said_and_no_common_ratio():
+    weak = usv.structure("weak", **{"left.reverse_loss": 0.6, "right.reverse_loss": 0.6})
+    comparison = held(usv.log(8.0, 13, weak)).comparison
+    (said,) = [one for one in comparison.discrepancies if "astern" in one.what and one.axis == "surge"]
+    assert abs(said.estimate - 0.4) < 0.05 and said.what.endswith("ahead 0.98") and comparison.ratio is None
+    healthy = held(sailed(13)).comparison
+    assert not any(gain.differs_by_way for gain in healthy.gains) and not healthy.discrepancies
+
+
+def test_unequal_thrust_ahead_and_astern_is_no_wrong_sign_of_their_sum():
+    """In a spin one thruster runs ahead and one astern: if that is the weaker, their sum as modelled looks reversed."""
+    comparison = held(sailed(13)).comparison
+    (surge,) = [one for one in comparison.gains if one.axis.name == "surge"]
+    reversed_sum = replace(surge.fit, gains=-surge.fit.gains)
+    assert replace(surge, fit=reversed_sum).is_balanced
+    assert not replace(surge, fit=reversed_sum, support_of_ways=surge.fit.support - 10.0).is_balanced
+
+
 @pytest.mark.parametrize("seed", [11, 13])
 def test_there_are_always_figures_of_the_error(seed):
     errors = held(sailed(seed)).comparison.errors

@@ -138,7 +138,7 @@ def compared(log: CheckedLog) -> ComparedLog:
         large = tuple(one.discrepancy for one in missing if one.is_large)
         return _stage(log, LogComparison(errors, large, obstacles=unknown, missing=missing))
     labels = read_labels(record, felt, axes, ship)
-    gains = gains_of(axes, labels.used.commanded)
+    gains = gains_of(axes, labels.used.commanded, labels.used.ahead)
     ratio = common_ratio(gains)
     missing = missing_loads(axes, labels.used.commanded, felt, ship, over_none)
     told = tuple(discrepancies_of(labels, gains, ratio, missing))

@@ -13,6 +13,7 @@ from shipcosim.diagnose.comparison.commanded import commanded_by
 from shipcosim.diagnose.comparison.crude import CrudeModel, CrudeNumber, HeldOutErrors, crude_numbers
 from shipcosim.diagnose.comparison.errors import starts_of
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
+from shipcosim.diagnose.comparison.readings import ahead_of
 from shipcosim.diagnose.comparison.thresholds import (
     COMMON_SPREAD,
     CRUDE_BLOCK,
@@ -197,7 +198,7 @@ def _ratio_on(record, felt, model, rows=None):
         return None
     felt = replace(felt, usable=usable)
     commanded = commanded_by(record, felt, model)
-    return common_ratio(gains_of(axes_of(felt, commanded, model), commanded))
+    return common_ratio(gains_of(axes_of(felt, commanded, model), commanded, ahead_of(record.units)))
 
 
 def _task(predictions, used, ratios):

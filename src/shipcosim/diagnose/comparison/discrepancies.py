@@ -57,7 +57,7 @@ def discrepancies_of(
         text = f"thrust over inertia {ratio.ratio:.2f} of the model's"
         found.append(Discrepancy(text, None, None, ratio.ratio, ratio.std, "1", share))
     else:
-        found += [one for gain in gains if gain.is_off and gain.is_told for one in _weak(gain)]
+        found += [one for gain in gains if gain.is_told and (gain.is_off or gain.differs_by_way) for one in _weak(gain)]
     if all(one.is_common for one in off):  # else what one thruster lacks passes for damping
         found += [one for gain in off for one in _damping(gain)]
     if labels.used.is_late:
@@ -88,6 +88,8 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT or fit.share < TOLD:
             continue
         because = bool(why) and bool(np.abs(before - axis.total(labels.best.commanded)).max() > 0.1 * axis.size)
+        if one.is_balanced and not because:  # a way that is weaker makes the sum of both look reversed
+            continue
         told |= because
         text = f"{FORCES[axis.name]}: wrong sign" + (f", as with {why}" if because else "")
         share = float(np.clip(1.0 - fit.squares / axis.unexplained(np.zeros(before.size)), 0.0, 1.0))
@@ -113,13 +115,18 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
     """A gain on one axis, or those of its thrusters where they differ."""
     if max(one.support_of_each, one.fit.support) < LEAST_SUPPORT:
         return
+    share = _explained_by_gain(one)
+    if one.differs_by_way and one.ways is not None:
+        (ahead, std), (astern, other) = one.ways
+        text = f"{FORCES[one.axis.name]} of thrust astern over inertia {astern:.2f} of the model's, ahead {ahead:.2f}"
+        yield Discrepancy(text, None, one.axis.name, astern, other, "1", share)
+        return
     apart = {} if one.is_common else one.each
     apart = {
         n: v
         for n, v in apart.items()
         if v > SURE_OF_GAIN * one.each_std[n] and abs(v - 1.0) > SURE_OF_GAIN * one.each_std[n] + MENTIONED - 1.0
     }
-    share = _explained_by_gain(one)
     for name, value in apart.items():
         text = f"{FORCES[one.axis.name]} of {name} over inertia {value:.2f} of the model's"
         yield Discrepancy(text, name, one.axis.name, value, one.each_std[name], "1", share)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,9 @@ import numpy as np
 from shipcosim.diagnose.comparison.thresholds import (
     COMMON_SPREAD,
     LEAST_SUPPORT,
+    LEAST_WAY,
     OFF,
+    RIVAL,
     SURE_OF_GAIN,
     SURE_OF_RATIO,
     THRUSTER_SPREAD,
@@ -47,6 +49,10 @@ class AxisGain:
         Of the felt force's mean square that they then explain, with the water.
     correlation : float
         Of what is commanded with what is felt less the model's other loads.
+    ways : tuple of two pairs of floats, or None
+        Gains of thrust ahead and astern with their standard deviations; None where the log does not have both.
+    support_of_ways : float
+        Log-likelihood that the thrusters gain, each way with a gain of its own that is not negative. [nats]
     error : float
         Root mean square of the felt force less all of the model's, over that of the commanded one.
     """
@@ -61,6 +67,8 @@ class AxisGain:
     support_of_each: float
     share_of_each: float
     correlation: float
+    ways: tuple[tuple[float, float], tuple[float, float]] | None
+    support_of_ways: float
     error: float
 
     @property
@@ -80,32 +88,51 @@ class AxisGain:
 
     @property
     def is_common(self) -> bool:
-        """Whether no thruster's own gain is surely far from that of all."""
+        """Whether neither way's, nor any thruster's own gain is surely far from that of all."""
         common = float(self.fit.gains[0])
         near = THRUSTER_SPREAD * abs(common)
-        return all(abs(v - common) <= SURE_OF_GAIN * self.each_std[name] + near for name, v in self.each.items())
+        return not self.differs_by_way and all(
+            abs(v - common) <= SURE_OF_GAIN * self.each_std[name] + near for name, v in self.each.items()
+        )
+
+    @property
+    def is_balanced(self) -> bool:
+        """Whether gains of thrust ahead and astern explain as much as a negative gain of their sum."""
+        return self.ways is not None and self.support_of_ways > self.fit.support - RIVAL
+
+    @property
+    def differs_by_way(self) -> bool:
+        """Whether thrust ahead and astern surely have gains of their own, one of them known."""
+        if self.ways is None or self.support_of_ways < self.fit.support + LEAST_SUPPORT:
+            return False
+        (ahead, std), (astern, other) = self.ways
+        known = max(ahead / max(std, 1e-9), astern / max(other, 1e-9)) > SURE_OF_GAIN and min(ahead, astern) > 0.0
+        near = THRUSTER_SPREAD * max(ahead, astern)
+        return known and abs(ahead - astern) > SURE_OF_GAIN * float(np.hypot(std, other)) + near
 
     def differs(self, least: float) -> bool:
         """Whether the gain differs from 1 by a factor of more than `least` for sure."""
         return self.gain <= 0.0 or abs(np.log(self.gain)) - SURE_OF_GAIN * self.std / self.gain > np.log(least)
 
 
-def gains_of(axes: Sequence[Axis], commanded: Commanded) -> list[AxisGain]:
+def gains_of(axes: Sequence[Axis], commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> list[AxisGain]:
     """The gain on each axis that the thrusters drive.
 
     Parameters
     ----------
     axes : sequence of Axis
     commanded : Commanded
+    ahead : mapping of str to (n,) bool array
+        By thruster: where it runs ahead.
 
     Returns
     -------
     list of AxisGain
     """
-    return [_gain(axis, commanded) for axis in axes if axis.is_driven(commanded)]
+    return [_gain(axis, commanded, ahead) for axis in axes if axis.is_driven(commanded)]
 
 
-def _gain(axis: Axis, commanded: Commanded) -> AxisGain:
+def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> AxisGain:
     total = axis.total(commanded)
     names = [name for name, load in commanded.thrusters.items() if np.any(load[axis.number])]
     fit = axis.compared(total[None])
@@ -124,7 +151,21 @@ def _gain(axis: Axis, commanded: Commanded) -> AxisGain:
     error = float(np.sqrt(((other - total) ** 2).mean())) / size
     each = dict(zip(names, map(float, apart.gains), strict=True))
     each_std = dict(zip(names, map(float, apart.std), strict=True))
-    return AxisGain(axis, total, fit, gain, std, each, each_std, apart.support, apart.share, correlation, error)
+    ways, support = _by_way(axis, commanded, ahead)
+    shares = apart.support, apart.share, correlation
+    return AxisGain(axis, total, fit, gain, std, each, each_std, *shares, ways, support, error)
+
+
+def _by_way(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> tuple[tuple | None, float]:
+    """Gains of thrust ahead and astern, and what they support that are not negative; None where the log lacks a way."""
+    loads = commanded.thrusters.items()
+    ways = np.stack([sum((axis.smoothed(load * (ahead[n] == way)) for n, load in loads), 0.0) for way in (True, False)])
+    sizes = np.sqrt((ways**2).mean(1))
+    if sizes.min() < LEAST_WAY * sizes.max():
+        return None, 0.0
+    apart = axis.compared(ways)
+    both = zip(map(float, apart.gains), map(float, apart.std), strict=True)
+    return tuple(both), axis.explained(ways).support
 
 
 @dataclass(frozen=True)

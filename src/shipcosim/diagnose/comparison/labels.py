@@ -117,7 +117,8 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     """The readings of the thrusters' channels.
 
     Other readings than the logged one are only tried where that is in doubt: where on some axis the thrusters together
-    do not surely what they are commanded, or one of them does surely the opposite.
+    do not surely what they are commanded, or one of them does surely the opposite; and where they do it late: half a
+    period of a manoeuvre late looks like a wrong sign.
 
     Parameters
     ----------
@@ -132,7 +133,7 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     Labels
     """
     logged = reading((), record, felt, axes, model)
-    if all(_does_as_told(axis, logged.commanded) for axis in axes):
+    if not logged.lag and all(_does_as_told(axis, logged.commanded) for axis in axes):
         return Labels(logged, logged)
     found = [logged, *(reading(one, record, felt, axes, model) for one in changes_of(record, model))]
     credible = [one for one in found[1:] if one.score > logged.score - CONTRADICTED]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Change", "Reading", "changes_of", "driven", "reading"]
+__all__ = ["Change", "Reading", "ahead_of", "changes_of", "driven", "reading"]
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ def reading(changes: tuple[Change, ...], record: Record, felt: Felt, axes: Seque
     for change in changes:
         units = change.undo(units)
     commanded = commanded_by(*driven(units, record, felt, model))
-    ahead = {name: speed >= 0.0 for name, (speed, _) in units.items()}
+    ahead = ahead_of(units)
     tries = []
     scale = froude_time(model.parts["hull"].length)
     for lag in (0.0, *(k * scale for k in LAGS)):
@@ -161,6 +161,11 @@ def reading(changes: tuple[Change, ...], record: Record, felt: Felt, axes: Seque
         cost = LAG_COST + lag / scale if lag else 0.0
         tries.append(Reading(changes, support, float(lag), gained, cost, record.step, moved, ahead, units))
     return max(tries, key=lambda one: one.score)
+
+
+def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np.ndarray]:
+    """By thruster, where it runs ahead, (n,) bool arrays, from the speed and direction that it is driven with."""
+    return {name: speed >= 0.0 for name, (speed, _) in units.items()}
 
 
 def driven(

@@ -123,6 +123,8 @@ PLAIN = 1.3
 much: zig-zags of a tanker's model, whose hull bears far more than her rudder, gave 1.2 to 1.4 of published numbers."""
 LEAST_DAMPING = 0.05
 """Damping over the model's below which it is not said: a hull that is unstable on her course has none to compare."""
+LEAST_WAY = 0.15
+"""Root mean square of thrust astern over that ahead, or the other way round, from which both are compared. Assumed."""
 MENTIONED = 1.25
 """Factor from which a gain or a damping is a discrepancy."""
 REMAINS = 0.1
