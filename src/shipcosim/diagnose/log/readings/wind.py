@@ -147,7 +147,7 @@ def _fitted(drafts, seen, told):
     fits: dict[tuple, RowsFit] = {}
     for draft in drafts:
         known = draft.gains < 1.0
-        white = (draft(stacked.real) + 1j * draft(stacked.imag))[known]
+        white = (draft(np.real(stacked)) + 1j * draft(np.imag(stacked)))[known]
         offset = -2.0 * float(np.sum(np.log(draft.scale[known])))
         for row, name in enumerate(seen):
             for column, form in enumerate(told, start=len(seen)):
