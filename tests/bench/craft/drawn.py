@@ -8,6 +8,7 @@ import numpy as np
 from diagnose import usv
 from scipy.signal import lfilter
 
+from shipcosim.diagnose.ship.form import form_of
 from shipcosim.diagnose.ship.model import ship_model_of
 from shipcosim.series import make_table
 
@@ -206,7 +207,7 @@ def _model(craft):
     numbers |= {"breadth": 0.35 * craft.length, "A26": 0.0, "A62": 0.0, "lift": 0.0, "N_modrr": -N_rr}
     numbers |= dict(zip(("A11", "A22", "A66"), craft.added, strict=True))
     numbers |= {"X_u": -X_u, "X_uu": -X_uu, "Y_v": -Y_v, "N_r": -N_r, "cross_flow_drag": 0.0, "Y_modvv": -across}
-    parts = {name: part for name, part in model.parts.items() if name not in ("left", "right")}
+    parts = {name: part for name, part in model.parts.items() if not name.startswith(("left", "right"))}
     parts["hull"] = replace(hull, **numbers)
     fixed, speed = {}, 60.0 * craft.most
     for name, (x, y, toe, ahead, astern, diameter) in craft.thrusters.items():
@@ -214,6 +215,7 @@ def _model(craft):
         loss = 1.0 - ahead / made.bollard[0]
         astern_loss = 1.0 - astern / (made.bollard[1] * (1.0 - loss))
         parts[name] = replace(made, thrust_loss=loss, reverse_loss=astern_loss)
+        parts[form_of(name)] = model.parts[form_of("left")]
         fixed[name] = toe
     wanted = {path: size for path, size in model.tolerances.items() if not path.startswith(("left", "right"))}
     return replace(model, parts=parts, fixed=fixed, neighbours={}, tolerances=wanted)

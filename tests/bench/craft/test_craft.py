@@ -33,6 +33,12 @@ def test_labels_that_a_steady_spin_cannot_tell_are_said_not_to_be_judged():
     assert answer(draw(201)).comparison.labels.is_judged
 
 
+def test_of_thrusters_told_nearly_alike_none_is_said_to_push_many_times_as_much():
+    drawn = draw(205, change="one weak")
+    said = answer(drawn).comparison.discrepancies
+    assert not [one.what for one in said if one.component is not None and one.estimate > 2.0]
+
+
 @pytest.mark.parametrize("seed", [108, 115])  # thrust twice and damping thrice the model's; a half and a quarter
 def test_thrust_and_damping_over_inertia_are_found_together_and_predict_better(seed):
     drawn = draw(seed, change="ratio and damping", rough=0.0)

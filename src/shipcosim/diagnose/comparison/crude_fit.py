@@ -21,6 +21,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     CRUDE_ROUNDS,
     CRUDE_SETTLED,
     CRUDE_STARTS,
+    DAMPING_SPREAD,
     FEWEST_BLOCKS,
     FEWEST_USABLE,
     HUBER,
@@ -172,7 +173,9 @@ def crude_model(
     errors = _held_out(predictions, others)
     sizes = np.exp(logs[0])
     numbers = [
-        replace(one, estimate=float(size), std=float(size * np.hypot(off, COMMON_SPREAD)))
+        replace(
+            one, estimate=float(size), std=float(size * np.hypot(off, DAMPING_SPREAD if one.axis else COMMON_SPREAD))
+        )
         for one, size, off in zip(predictions.numbers, sizes, std[0], strict=True)
     ]
     return CrudeModel(tuple(numbers), errors)

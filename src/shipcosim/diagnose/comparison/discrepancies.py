@@ -121,7 +121,7 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
         text = f"{FORCES[one.axis.name]} of thrust astern over inertia {astern:.2f} of the model's, ahead {ahead:.2f}"
         yield Discrepancy(text, None, one.axis.name, astern, other, "1", share)
         return
-    apart = {} if one.is_common else one.each
+    apart = {} if one.is_common or not one.has_thrusters_apart else one.each
     apart = {
         n: v
         for n, v in apart.items()

@@ -87,6 +87,11 @@ class AxisGain:
         return self.is_told and self.fit.support > LEAST_SUPPORT and self.gain > SURE_OF_GAIN * self.std
 
     @property
+    def has_thrusters_apart(self) -> bool:
+        """Whether each thruster's own gain can be believed: of those told nearly alike one takes what another gives."""
+        return all(v > -SURE_OF_GAIN * self.each_std[name] for name, v in self.each.items())
+
+    @property
     def is_common(self) -> bool:
         """Whether neither way's, nor any thruster's own gain is surely far from that of all."""
         common = float(self.fit.gains[0])
