@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MEASURED = ROOT.parent / "shared" / "measured"
 SURE = 0.99
 REAL = [(c, p) for c in FOLDERS if (MEASURED / FOLDERS[c]).is_dir() for p in files(MEASURED.parent, c)]
-CRAFT = [(228, "exchanged", "none"), (201, "none", "damping"), (203, "exchanged", "none"), (205, "none", "one weak")]
+CRAFT = [(201, "none", "damping"), (203, "exchanged", "none"), (205, "none", "one weak")]
 
 
 def agrees(found):
@@ -36,10 +36,8 @@ def of_craft(seed, fault, change):
     return stated(verdict_on(ReadLog(read_log(drawn.log), drawn.model, read_catalogue()), lambda *_: None))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("seed", "fault", "change"), CRAFT[:1])
-def test_candidates_of_a_drawn_craft_do_not_contradict_what_is_not_testable(seed, fault, change):
-    found = of_craft(seed, fault, change)
+def test_candidates_of_a_drawn_craft_do_not_contradict_what_is_not_testable():
+    found = of_craft(228, "exchanged", "none")
     agrees(found)
     assert {"channel_swap", "sign"} <= {*found.not_testable}
 
