@@ -74,17 +74,20 @@ class HeldOutErrors:
         Root mean square position error with the given model, and with the crude one. [m]
     over_before : tuple of two floats
         95 % interval of the crude model's error over the given one's, by a bootstrap over blocks of the log.
+    over_current : tuple of two floats
+        The same over that of the given model with a steady current, fitted on the same rows.
     """
 
     horizon: float
     before: float
     after: float
     over_before: tuple[float, float]
+    over_current: tuple[float, float]
 
     @property
     def is_better(self) -> bool:
-        """Whether the crude model predicts better than the given one beyond doubt."""
-        return self.over_before[1] < 1.0
+        """Whether the crude model predicts better than the given one beyond doubt, in still water and in a current."""
+        return self.over_before[1] < 1.0 and self.over_current[1] < 1.0
 
     def as_gain(self) -> dict[str, Any]:
         """The entry ``gain`` of diagnosis.json; what is only known beside a fit of fine causes is None."""

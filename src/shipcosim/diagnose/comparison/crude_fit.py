@@ -28,6 +28,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     LARGEST_STEP,
     NOT_ZERO,
     ROUND_MODEL,
+    TYPICAL_CURRENT,
 )
 from shipcosim.diagnose.ship.instruments import readings, true_motion
 from shipcosim.diagnose.validation.predictions import predicted, replayable
@@ -36,6 +37,7 @@ from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.gains import CommonRatio
     from shipcosim.diagnose.hypotheses.cause import Cause
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
@@ -68,6 +70,18 @@ class _Task:
 
 
 @dataclass(frozen=True)
+class _Current:
+    """A steady current in one direction, in the place of a crude number: what water that goes would do instead."""
+
+    path: str
+    axis: str = "water"
+
+    def values(self, model: ShipModel, factor: np.ndarray) -> dict[str, np.ndarray]:
+        """Numbers of the ship with the current that goes with a factor."""
+        return {self.path: model.get(self.path) + TYPICAL_CURRENT * np.log(factor)}
+
+
+@dataclass(frozen=True)
 class _Predictions:
     """Open-loop predictions from rows of a log.
 
@@ -91,7 +105,7 @@ class _Predictions:
     seen: Motion
     rows: np.ndarray
     counts: list[int]
-    numbers: Sequence[CrudeNumber]
+    numbers: Sequence[CrudeNumber | _Current]
     weights: np.ndarray
 
     def missed(self, logs: np.ndarray) -> np.ndarray:
@@ -155,30 +169,36 @@ def crude_model(
             return None
         every = _predictions(record, felt, model, numbers, horizons)
 
-    free, logs, rest = np.ones(len(every.numbers), bool), None, np.ones((1, every.rows.size), bool)
-    task = _task(every, rest, [ratio])
-    while True:
-        predictions = every.of_numbers(free)
-        logs, std = _fitted(predictions, task.of_numbers(free), logs)
-        sure = np.abs(logs[0]) > NOT_ZERO * std[0]
-        if sure.all():
-            break
-        free[np.flatnonzero(free)[~sure]] = False
-        logs = logs[:, sure]
-        if not free.any():
-            return None
+    free, logs, std = _differing(every, ratio)
+    if not free.any():
+        return None
     train, touched = _folds(every)
     task = _task(every, train, [_ratio_on(record, felt, model, ~rows) for rows in touched]).of_numbers(free)
-    others, _ = _fitted(predictions, task, np.repeat(logs, len(train), axis=0), CRUDE_ROUNDS // 2)
-    errors = _held_out(predictions, others)
-    sizes = np.exp(logs[0])
-    numbers = [
-        replace(
-            one, estimate=float(size), std=float(size * np.hypot(off, DAMPING_SPREAD if one.axis else COMMON_SPREAD))
-        )
-        for one, size, off in zip(predictions.numbers, sizes, std[0], strict=True)
-    ]
-    return CrudeModel(tuple(numbers), errors)
+    others, _ = _fitted(every.of_numbers(free), task, np.repeat(logs[None], len(train), axis=0), CRUDE_ROUNDS // 2)
+    current = replace(every, numbers=[_Current(f"water.current_{way}") for way in ("north", "east")])
+    drifting, _ = _fitted(current, _task(current, train, [None] * len(train)), rounds=CRUDE_ROUNDS // 2)
+    errors = _held_out(every.of_numbers(free), others, current, drifting)
+    found = [one for one, is_free in zip(numbers, free, strict=True) if is_free]
+    return CrudeModel(tuple(map(_sized, found, logs, std)), errors)
+
+
+def _differing(every: _Predictions, ratio: CommonRatio) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Which numbers differ from the given model for sure; logarithms and standard deviations of these."""
+    free, logs = np.ones(len(every.numbers), bool), None
+    task = _task(every, np.ones((1, every.rows.size), bool), [ratio])
+    while True:
+        logs, std = _fitted(every.of_numbers(free), task.of_numbers(free), logs)
+        sure = np.abs(logs[0]) > NOT_ZERO * std[0]
+        free[np.flatnonzero(free)[~sure]] = False
+        if sure.all() or not free.any():
+            return free, logs[0], std[0]
+        logs = logs[:, sure]
+
+
+def _sized(number: CrudeNumber, log: float, std: float) -> CrudeNumber:
+    """A number with its size."""
+    size, spread = float(np.exp(log)), DAMPING_SPREAD if number.axis else COMMON_SPREAD
+    return replace(number, estimate=size, std=float(size * np.hypot(std, spread)))
 
 
 def _predictions(record, felt, model, numbers, horizons):
@@ -298,23 +318,31 @@ def _folds(predictions: _Predictions) -> tuple[np.ndarray, np.ndarray]:
     return sums[:, rows + reach + 1] == sums[:, rows], touched
 
 
-def _held_out(predictions: _Predictions, logs: np.ndarray) -> HeldOutErrors:
-    """Errors of each part of the log, by what was fitted without it, (f, p) array."""
-    found = predictions.missed(np.concatenate([np.zeros((1, logs.shape[1])), logs]))
-    fold = np.unique(predictions.block, return_inverse=True)[1] % CRUDE_FOLDS
-    return _compared(
-        predictions, found[0], np.moveaxis(found[1:], -1, 1)[fold, np.arange(fold.size)].transpose(1, 2, 0)
-    )
-
-
-def _compared(predictions, before, after):
-    """Position errors after the longest horizon, with the interval of their ratio."""
-    squares = np.stack([(one[:2, -1] ** 2).sum(0) for one in (before, after)])
+def _held_out(predictions: _Predictions, logs: np.ndarray, rival: _Predictions, others: np.ndarray) -> HeldOutErrors:
+    """Errors of each part of the log, by what was fitted without it, (f, p) arrays, of the crude model and a rival."""
+    given = predictions.missed(np.zeros((1, logs.shape[1])))[0]
+    squares = [_squares(one) for one in (given, _each_by_its_fold(predictions, logs), _each_by_its_fold(rival, others))]
     number = np.unique(predictions.block, return_inverse=True)[1]
     blocks = number.max() + 1
     sums = np.stack([np.bincount(number, one, blocks) for one in squares])
     draws = np.random.default_rng(1).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=DRAWS)
-    first, last = np.sqrt(np.maximum(sums @ draws.T, 1e-30))
-    low, high = map(float, np.quantile(last / first, (0.025, 0.975)))
-    given, found = (float(one) for one in np.sqrt(squares.mean(1)))
-    return HeldOutErrors(predictions.counts[-1] * predictions.record.step, given, found, (low, high))
+    first, crude, instead = np.sqrt(np.maximum(sums @ draws.T, 1e-30))
+    before, after = (float(np.sqrt(one.mean())) for one in squares[:2])
+    horizon = predictions.counts[-1] * predictions.record.step
+    return HeldOutErrors(horizon, before, after, _interval(crude / first), _interval(crude / instead))
+
+
+def _each_by_its_fold(predictions, logs):
+    """Errors of each prediction by what was fitted without it, (3, h, s) array."""
+    fold = np.unique(predictions.block, return_inverse=True)[1] % CRUDE_FOLDS
+    return np.moveaxis(predictions.missed(logs), -1, 1)[fold, np.arange(fold.size)].transpose(1, 2, 0)
+
+
+def _squares(off):
+    """Squared distance after the longest horizon."""
+    return (off[:2, -1] ** 2).sum(0)
+
+
+def _interval(ratios):
+    low, high = map(float, np.quantile(ratios, (0.025, 0.975)))
+    return low, high

@@ -164,6 +164,8 @@ DAMPING_SPREAD = 0.3
 """Natural logarithm by which one factor on an axis' damping may be off, standard deviation: it stands for linear,
 quadratic and coupled parts that differ from the model's each by its own. Without it 8 of 23 dampings of drawn craft
 (tests/bench/craft, seeds 7000 to 7029) were more than two standard deviations off, up to 6."""
+TYPICAL_CURRENT = 0.25
+"""Current in each direction that may take the place of a crude model, standard deviation. [m/s] As of sea trials."""
 NOT_ZERO = 2.0
 """Standard deviations of a number's logarithm from which it is part of a crude model. Assumed."""
 CRUDE_STARTS = 100
