@@ -153,7 +153,7 @@ def find_common_causes(
     channels: str | os.PathLike | None = None,
     causes: str | os.PathLike | None = None,
     progress: Progress | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    reference: Reference | None = None,
 ) -> JointDiagnosis:
     """Diagnose several logs of one ship together.
 
@@ -168,7 +168,7 @@ def find_common_causes(
         Folder with further causes.
     progress : callable, optional
         Called with what is being done, in words.
-    reference : path or Reference, optional
+    reference : Reference, optional
         What logs in which the ship was well say of her.
 
     Returns
@@ -200,13 +200,12 @@ def find_common_causes(
     usable = {name: one for name, one in known.items() if name not in left_out}
     if not usable:
         return replace(found, remarks=tuple(remarks_on(found)))
-    ship, known_well = ship_model_of(system), None if reference is None else read_reference(reference)
-    ship = ship if known_well is None else with_reference(ship, known_well)
+    ship = ship_model_of(system) if reference is None else with_reference(ship_model_of(system), reference)
     with threadpool_limits(1):
         found = _together(found, usable, ship, say)
-    if known_well is None:
+    if reference is None:
         return found
-    since = with_sizes_at_reference((one.what for one in found.findings), ship, known_well, found.causes)
+    since = with_sizes_at_reference((one.what for one in found.findings), ship, reference, found.causes)
     return replace(
         found, findings=tuple(replace(one, what=what) for one, what in zip(found.findings, since, strict=True))
     )

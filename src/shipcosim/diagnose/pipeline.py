@@ -138,7 +138,7 @@ def find_causes(
     channels: str | os.PathLike | None = None,
     causes: str | os.PathLike | None = None,
     progress: Progress | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    reference: Reference | None = None,
 ) -> Diagnosis:
     """Diagnose a log: its faults, and the causes for which the ship does not behave as modelled.
 
@@ -154,8 +154,8 @@ def find_causes(
         Folder with further causes.
     progress : callable, optional
         Called with what is being done, in words.
-    reference : path or Reference, optional
-        As for `diagnose`.
+    reference : Reference, optional
+        As for `diagnose`, read by `read_reference`.
 
     Returns
     -------
@@ -171,12 +171,11 @@ def find_causes(
     with threadpool_limits(1):  # many small matrices: threads would only wait for each other
         say = progress or (lambda *_: None)
         say("is the log right?")
-        known = None if reference is None else read_reference(reference)
-        read = read_measurements(log, system, channels, causes, known)
+        read = read_measurements(log, system, channels, causes, reference)
         found = stated(verdict_on(read, say))
-        if known is None:
+        if reference is None:
             return found
-        return replace(found, findings=with_sizes_at_reference(found.findings, read.ship, known, read.causes))
+        return replace(found, findings=with_sizes_at_reference(found.findings, read.ship, reference, read.causes))
 
 
 def read_measurements(
@@ -184,11 +183,11 @@ def read_measurements(
     system: System,
     channels: str | os.PathLike | None = None,
     causes: str | os.PathLike | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    reference: Reference | None = None,
 ) -> ReadLog:
     """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""
     ship = ship_model_of(system)
-    ship = ship if reference is None else with_reference(ship, read_reference(reference))
+    ship = ship if reference is None else with_reference(ship, reference)
     log = run_as_log(log, ship.vessel, ship.thrusters) if channels is None else log
     return ReadLog(read_log(log, channels), ship, read_catalogue(causes))
 

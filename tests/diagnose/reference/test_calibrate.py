@@ -10,6 +10,7 @@ from diagnose.reference import ships
 from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.reference import calibration
+from shipcosim.diagnose.reference.reference import read_reference
 from shipcosim.diagnose.reference.remaining import remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.result import Finding
@@ -63,7 +64,7 @@ def test_logs_that_cannot_show_a_ship_that_is_well_are_refused_with_why():
 
 def test_a_log_is_held_against_the_ship_of_the_reference(made):
     ship, folder = made
-    read = read_measurements(ships.logs(4)["lost"], twin.system(), reference=folder)
+    read = read_measurements(ships.logs(4)["lost"], twin.system(), reference=read_reference(folder))
     estimates = {number.name: number.estimate for number in ship.reference.numbers}
     assert read.ship.directions and read.ship.get("vessel.mass") == estimates["vessel.mass"] != 531e3
 
