@@ -4,22 +4,16 @@ NumPy takes all columns, or all levels of noise, in one call for each row and ea
 calls. Both give the same likelihoods.
 """
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from shipcosim.diagnose.inference import innovations as noise_of
-from shipcosim.diagnose.inference.innovations import Noise, innovations, log_likelihoods, smoothed
+from shipcosim.diagnose.inference.innovations import Noise, innovations, log_likelihoods
 from shipcosim.diagnose.inference.linearisation import STATES, Linear
-from shipcosim.models.core.motion import Motion
 from speed.measure import cpu_seconds, reported
 
 ROWS, COLUMNS, LEVELS, REPEATS = 2400, 60, 24, 5
-COLUMNS_TO_REACH, LEVELS_TO_REACH, COMPILED_IN = 3.0, 3.0, 15.0  # 1, 1, s on a busy machine
+COLUMNS_TO_REACH, LEVELS_TO_REACH = 3.0, 3.0  # 1, 1
 
 
 class Log:
@@ -32,7 +26,7 @@ class Log:
 def test_columns_are_filtered_3_times_as_fast_as_by_numpy():
     linear, noise = drawn(COLUMNS), levels(1)
     alone = Noise(*(values[0] for values in (noise.white, noise.jolt, noise.walk, noise.wave, noise.wave_frequency)))
-    white = innovations(linear, alone, Log).white  # compiled by now
+    white = innovations(linear, alone, Log).white
     _, theirs = in_numpy(linear, noise)
     np.testing.assert_allclose(white, theirs[:, 0], rtol=1e-6, atol=1e-6 * np.abs(white).max())
     ours, theirs = lambda: innovations(linear, alone, Log), lambda: in_numpy(linear, noise)
@@ -46,18 +40,6 @@ def test_levels_of_noise_are_compared_3_times_as_fast_as_by_numpy():
     np.testing.assert_allclose(found, in_numpy(linear, noises)[0], rtol=1e-9)
     ours, theirs = lambda: log_likelihoods(linear, noises, Log), lambda: in_numpy(linear, noises)
     assert ratio(f"{LEVELS} levels of noise", ours, theirs, LEVELS_TO_REACH) >= LEVELS_TO_REACH
-
-
-@pytest.mark.slow
-def test_the_filter_is_compiled_in_a_few_seconds(tmp_path):
-    """What the first diagnosis after an installation takes longer than the next: CPU time of a process of its own."""
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(Path(__file__).parents[1])}
-    seconds = []
-    for _ in range(2):
-        done = subprocess.run([sys.executable, __file__], env=environment, capture_output=True, text=True, check=True)
-        seconds.append(float(done.stdout))
-    compiled = reported("compiling the filter", [seconds[0] - seconds[1]], "s CPU", f"{COMPILED_IN:.0f}")
-    assert compiled <= COMPILED_IN
 
 
 def ratio(what, ours, theirs, to_reach):
@@ -107,20 +89,3 @@ def in_numpy(linear, noises):
             x[:, :6] += linear.driven[k]
             C = A[k] @ C @ np.swapaxes(A[k], -1, -2) + Q
     return found, np.stack(white)
-
-
-def main():
-    """Every function of the filter called once; CPU time of that, printed."""
-    linear, noises = drawn(2), levels(1)
-    alone = Noise(
-        *(values[0] for values in (noises.white, noises.jolt, noises.walk, noises.wave, noises.wave_frequency))
-    )
-    motion = Motion(*np.zeros((6, ROWS)))
-    calls = log_likelihoods, innovations, lambda *what: smoothed(*what, motion)
-    print(
-        cpu_seconds(lambda: [call(linear, one, Log) for call, one in zip(calls, (noises, alone, alone), strict=True)])
-    )
-
-
-if __name__ == "__main__":
-    main()

@@ -244,7 +244,6 @@ def _by_log(values: np.ndarray, lead: tuple[int, ...], tail: int) -> np.ndarray:
     if own != lead and np.prod(own) > 1:
         values = values.reshape(len(values), *(1,) * (len(lead) - len(own)), *own, *shape)
         values = np.broadcast_to(values, (len(values), *lead, *shape))
-    # one kind of array only: for each other kind the filter would be compiled anew
     logs = int(np.prod(values.shape[1 : values.ndim - tail]))
     return np.require(values, requirements=["C", "W"]).reshape(len(values), logs, *shape)
 
