@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from shipcosim.cli.project import build_stale
+from shipcosim.library import build_stale
 from shipcosim.scenario import check_scenario, read_scenario
 from shipcosim.ssp import read_system
 

@@ -17,9 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
 from shipcosim.fmi.export.description import table_of_variables
+from shipcosim.library import build_stale
 from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table, read_table, write_table
 from shipcosim.ssp import read_ship, read_system

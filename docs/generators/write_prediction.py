@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import xarray
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.dead_reckoning import predict

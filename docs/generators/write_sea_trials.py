@@ -13,10 +13,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.sea_trials.evidence import changes_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
 from shipcosim.diagnose.sea_trials.study import errors, estimates, study
+from shipcosim.library import build_stale
 from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[2]

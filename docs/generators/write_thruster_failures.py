@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.library import build_stale
 from shipcosim.scenario import judge, read_scenario
 from shipcosim.ssp import read_system
 

@@ -14,8 +14,8 @@ from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, Condition
 from shipcosim.capability.loads import level_1_loads
 from shipcosim.capability.result import BALANCED, LEVEL_1, SIMULATOR, Capability, Case
 from shipcosim.capability.simulator import simulated_parts
-from shipcosim.cli.project import build_stale
 from shipcosim.errors import ShipcosimError
+from shipcosim.library import build_stale
 from shipcosim.ssp import read_ship, read_system, with_values
 
 MIRROR = -np.arange(len(DIRECTIONS)) % len(DIRECTIONS)

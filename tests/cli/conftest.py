@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from shipcosim.cli import app
-from shipcosim.cli.project import build_stale
+from shipcosim.library import build_stale
 
 FMU = '''
 """Lag that can fail on demand."""

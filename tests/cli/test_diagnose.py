@@ -326,11 +326,12 @@ def test_unusable_arguments_are_refused_and_leave_nothing(call, root, built, tmp
     assert not list(Path().glob("results/*"))
 
 
-def test_without_a_project_the_default_system_is_asked_for(call, tmp_path, monkeypatch):
+def test_without_a_project_the_systems_of_the_package_are_there(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("log.csv").write_text(table(HEAD), encoding="utf-8")
-    done = call("diagnose", "log.csv")
-    assert done.code == 2 and "gunnerus_open" in done.err and "--system" in done.err
+    assert "There is no such system" not in call("diagnose", "log.csv").err
+    done = call("diagnose", "log.csv", "--system", "gunnerus_opn")
+    assert done.code == 2 and "--system" in done.err and "Did you mean 'gunnerus_open'?" in done.err
 
 
 def test_help_names_the_exit_codes_and_options(call):

@@ -65,6 +65,13 @@ def no_source(name):
     shutil.rmtree(f"fmus/{name}")
 
 
+def not_shipped():
+    """Have the system name its tunnel thruster as no FMU is named that is shipped, and leave the built one only."""
+    no_source("tunnel_thruster")
+    change(SSD, "resources/tunnel_thruster.fmu", "resources/own_thruster.fmu")
+    return Path(FMU).rename(Path(FMU).with_name("own_thruster.fmu"))
+
+
 # what is given on the command line
 
 
@@ -108,12 +115,12 @@ def test_options_of_a_run(call, gunnerus, arguments, said):
     [
         (["rnu", "short"], ["Usage: shipcosim", "No such command 'rnu'. Did you mean 'run'?"]),
         (["run"], ["Usage: shipcosim run", "Missing argument 'SCENARIO'"]),
-        (["run", "shrot"], ["There is no such scenario file. In scenarios there is: short. Did you mean 'short'?"]),
+        (["run", "shrot"], ["There is no such scenario file. There is: ", "Did you mean 'short'?"]),
         (["run", "ssp"], ["ssp:", "There is no scenario file in this folder.", "Name a .toml file."]),
         (["run", "scenarios", "--store", "end.state"], ["scenarios:", "a folder of scenarios", "leave out --store"]),
         (["run", SSD], ["This is a system, not a scenario.", f"`shipcosim simulate {SSD}` runs it."]),
         (["run", SSV], [f"{SSV}, line 1:", "is no TOML", "Scenarios are text files in TOML"]),
-        (["simulate", "absent.ssp"], ["absent.ssp:", "no such file or folder", "a .ssp, a .ssd or a folder with one"]),
+        (["simulate", "absent.ssp"], ["absent.ssp:", "There is no such system. There is: ", "gunnerus_dp"]),
         (["simulate", SHORT], ["This is no system.", f"`shipcosim run {SHORT}`"]),
         (["simulate", FMU], ["This is one FMU, not a system.", f"`shipcosim check {FMU}`"]),
         (["simulate", "scenarios"], ["scenarios/SystemStructure.ssd:", "No such file"]),
@@ -278,18 +285,17 @@ def test_file_cut_short(call, gunnerus, file):
 
 @pytest.mark.parametrize("file", [SSD, SSV, FMU])
 def test_folder_in_place_of_a_file(call, gunnerus, file):
-    no_source("tunnel_thruster")
-    Path(file).unlink()
-    Path(file).mkdir()
-    said = "Is a directory" if file == SSD else f"'resources/{Path(file).name}' is a folder, not a file."
+    path = not_shipped() if file == FMU else Path(file)
+    path.unlink()
+    path.mkdir()
+    said = "Is a directory" if file == SSD else f"'resources/{path.name}' is a folder, not a file."
     assert refused(call("run", "short"), SSD, said) and not results()
 
 
 def test_missing_fmu_is_named_with_the_place_that_asks_for_it_and_where_it_was_sought(call, gunnerus):
-    no_source("tunnel_thruster")
-    Path(FMU).unlink()
-    said = "In ssp/gunnerus_dp/resources and build/fmus there is: allocator.fmu, "
-    assert refused(call("run", "short"), f"{SSD}, line ", "'resources/tunnel_thruster.fmu' does not exist", said)
+    not_shipped().unlink()
+    said = "In ssp/gunnerus_dp/resources and build/fmus and "
+    assert refused(call("run", "short"), f"{SSD}, line ", "'resources/own_thruster.fmu' does not exist", said)
     assert not results()
 
 

@@ -8,9 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import RunOptions, repeat, simulate
 from shipcosim.errors import ShipcosimError
+from shipcosim.library import build_stale
 from shipcosim.series import make_table, read_table, write_table
 from shipcosim.ssp import with_values
 

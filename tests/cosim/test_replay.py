@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import RunError, RunOptions, interpolated, replay, simulate
 from shipcosim.errors import ShipcosimError
+from shipcosim.library import build_stale
 from shipcosim.scenario import Scenario, read_scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system, with_values

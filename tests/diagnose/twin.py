@@ -12,7 +12,6 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from threadpoolctl import threadpool_limits
 
-from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.innovations import _process, _steady, _uncertain
 from shipcosim.diagnose.inference.linearisation import STATES
@@ -23,6 +22,7 @@ from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs
 from shipcosim.diagnose.ship.instruments import readings
 from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind
 from shipcosim.models.ship import instruments

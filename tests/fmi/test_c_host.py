@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from fmpy import read_model_description, simulate_fmu
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import export_fmu
+from shipcosim.library import build_stale
 from shipcosim.series import read_table
 from shipcosim.ssp import read_system
 

@@ -9,9 +9,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
 from shipcosim.cosim.export.osp import osp_files
+from shipcosim.library import build_stale
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import pack, read_fmu, read_system
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from fmpy.fmi1 import FMICallException
 
-from shipcosim.cli.project import build_stale
+from shipcosim.library import build_stale
 
 
 def run(*code, path):

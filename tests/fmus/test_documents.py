@@ -9,7 +9,7 @@ from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 
-from shipcosim.cli.project import build_stale
+from shipcosim.library import build_stale
 from shipcosim.series import read_table
 
 ROOT = Path(__file__).parents[2]

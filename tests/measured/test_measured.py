@@ -14,9 +14,9 @@ import pytest
 from measured.logs import CHANNELS, FOLDERS, as_table, files
 
 import shipcosim as sc
-from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.replays import replay_log
 from shipcosim.diagnose.validation.tracks import errors_of
+from shipcosim.library import build_stale
 from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -4,8 +4,8 @@ import functools
 
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.library import build_stale
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.library import build_stale
 from shipcosim.scenario import judge, read_scenario
 from shipcosim.ssp import read_system
 

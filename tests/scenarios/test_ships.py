@@ -5,7 +5,7 @@ import pytest
 from ships import GUNNERUS
 
 import shipcosim as sc
-from shipcosim.cli.project import build_stale
+from shipcosim.library import build_stale
 from shipcosim.ssp import read_system
 
 

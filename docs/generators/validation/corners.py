@@ -7,8 +7,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from common import MODEL, REFERENCE, THIRD, save, table
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.library import build_stale
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
 

@@ -17,8 +17,8 @@ import numpy as np
 from common import MODEL, REFERENCE, SHIPS, THIRD, save, table
 
 from shipcosim.angles import wrap
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.library import build_stale
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
 from shipcosim.models.propulsion.tunnel import TunnelParameters

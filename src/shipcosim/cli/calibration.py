@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, shown_progress
-from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -32,7 +31,7 @@ def calibrate_ship(
     out : Path or None
         Gets calibrated.ssv, reference.json and report.html; results/calibrated-SYSTEM without.
     system : str, optional
-        As for `find_system`; that of `diagnose` without.
+        As for `library.find`; that of `diagnose` without.
     channels, effects : path, optional
         Channel file, and folder with further causes.
 
@@ -52,7 +51,7 @@ def calibrate_ship(
     from shipcosim.report.calibration.page import write_calibration
 
     check_inputs(logs, channels, effects)
-    ship = system_of(find_system(system or DEFAULT_SYSTEM, "--system"))
+    ship = system_of(system or DEFAULT_SYSTEM, option="--system")
     folder = out or Path("results") / f"calibrated-{ship.name}"
     check_targets(folder)
     with shown_progress("") as show, staged(folder, FILES) as stage:

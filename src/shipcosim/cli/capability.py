@@ -6,10 +6,10 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from shipcosim import library
 from shipcosim.capability import Capability, as_json, capability_of, dataset, notation, numbers_table, read_vessel
 from shipcosim.capability.result import SIMULATOR
 from shipcosim.cli.console import shown_path
-from shipcosim.cli.project import find_parameters, find_system
 from shipcosim.cli.requests import system_of
 from shipcosim.cli.results import check_targets, staged
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -24,7 +24,7 @@ def assess(
     Parameters
     ----------
     system : str
-        As for `find_system`.
+        As for `library.find`.
     parameters : sequence of Path
         Parameter sets, or names of sets in the system's resources.
     ship : str or None
@@ -47,8 +47,8 @@ def assess(
     from shipcosim.report.capability.page import write_capability
     from shipcosim.series import write_file, write_table
 
-    given = find_system(system)
-    sets = [find_parameters(path, given) for path in parameters]
+    given = str(library.find("system", system))
+    sets = [library.find_parameters(path, given) for path in parameters]
     whole = system_of(given, sets)
     found = ship_folder(ship, given, sets)
     folder = out or Path("results") / f"capability-{found.name}"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shipcosim.cli.project import SYSTEMS, built_fmus, find_project
+from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 
 LATE, SMALLEST_STEP = 1e9, 1e-6  # s; beyond what any run has
@@ -60,13 +60,13 @@ def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem]
     from shipcosim.scenario import read_scenario
     from shipcosim.ssp.portability.check import check_for
 
-    if path.suffix.lower() not in (".toml", *SYSTEMS) and not path.is_dir():
+    if path.suffix.lower() not in (".toml", *library.SYSTEMS) and not path.is_dir():
         return None
-    project, system = find_project(path), file
+    system = file
     if path.suffix == ".toml":
         scenario = read_scenario(path)
-        project, system = scenario.project, scenario.system_path
-    fmus = [built_fmus(project)] if project else ()
+        system = scenario.system_path
+    fmus = library.fmus(system, build=False)
     return [problem for host in hosts for problem in check_for(host, system, fmus=fmus)]
 
 
@@ -91,7 +91,9 @@ def check_scenario_file(path: Path) -> list[Problem]:
     scenario = read_scenario(path)
     if missing := check_files(scenario):
         return missing
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[built_fmus(scenario.project)])
+    system = read_system(
+        scenario.system_path, scenario.parameter_paths, fmus=library.fmus(scenario.system_path, build=False)
+    )
     try:
         system, problems = with_values(system, scenario.set, str(path)), []
     except ShipcosimError as error:
@@ -173,9 +175,10 @@ def check_table(path: Path) -> list[Problem]:
 def _check_system_file(file: str, path: Path) -> list[Problem]:
     from shipcosim.ssp import check_file
 
-    project = find_project(path)
-    fmus = built_fmus(project) if project else None
-    problems = check_file(file, fmus=[fmus] if fmus else ())
-    if fmus and not fmus.is_dir() and any(problem.severity == "error" for problem in problems):
-        problems.append(Problem(str(fmus), "There are no FMUs yet.", "`shipcosim build` builds them.", "remark"))
+    fmus = library.fmus(path, build=False)
+    problems = check_file(file, fmus=fmus)
+    if any(problem.severity == "error" for problem in problems):
+        missing = [folder for folder in fmus if library.fmu_sources(folder.parents[1]) and not folder.is_dir()]
+        remedy = "`shipcosim build` builds them."
+        problems += [Problem(str(folder), "There are no FMUs yet.", remedy, "remark") for folder in missing]
     return problems

@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from shipcosim import library
 from shipcosim.cli.console import WIDTH
-from shipcosim.cli.project import built_fmus, find_project
 from shipcosim.cosim.compare import OURS, Comparison, Difference, Signal
 from shipcosim.cosim.engines.as_read import readers
 from shipcosim.errors import Problem, ShipcosimError
@@ -64,8 +64,7 @@ def reading(
     ShipcosimError
         If it is none of these, or something happens in the scenario.
     """
-    path, project = Path(given), find_project(Path(given))
-    fmus = [built_fmus(project)] if project else ()
+    path, fmus = Path(given), library.fmus(given)
     if parameters:
         raise ShipcosimError(Problem("--parameters", "A tool that reads the file itself does not know them."))
     if system.experiment.start_time:

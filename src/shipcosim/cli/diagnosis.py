@@ -10,7 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.cli.project import find_system
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -56,7 +55,7 @@ def diagnose_log(
     folder : Path
         Gets diagnosis.json and report.html, and where a cause in the model was named extended.ssp and extended.ssv.
     system : str, optional
-        As for `find_system`; the open Gunnerus without.
+        As for `library.find`; the open Gunnerus without.
     channels, effects : path, optional
         Channel file, and folder with further causes.
     reference : path, optional
@@ -79,7 +78,7 @@ def diagnose_log(
 
     check_inputs([data], channels, effects)
     known = None if reference is None else read_reference(reference)
-    ship = system_of(find_system(system or DEFAULT_SYSTEM, "--system"))
+    ship = system_of(system or DEFAULT_SYSTEM, option="--system")
     with shown_progress() as show, staged(folder, FILES) as stage:
         diagnosis = diagnose(data, ship, channels, effects, show, out=stage, reference=known)
         show(LAST_STEP)

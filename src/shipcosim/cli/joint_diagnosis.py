@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, FILES, check_inputs, shown_progress, table
-from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.joint_pipeline import JointDiagnosis
@@ -53,7 +52,7 @@ def diagnose_logs(
 
     check_inputs(logs, channels, effects)
     known = None if reference is None else read_reference(reference)
-    ship = system_of(find_system(system or DEFAULT_SYSTEM, "--system"))
+    ship = system_of(system or DEFAULT_SYSTEM, option="--system")
     with shown_progress("") as show, staged(folder, FILES) as stage:
         found = diagnose_jointly(list(logs), ship, channels, effects, show, out=stage, reference=known)
         show("writing the page")

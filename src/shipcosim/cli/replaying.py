@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shipcosim import library
 from shipcosim.cli.console import print_problems, progress_of, shown_path
 from shipcosim.cli.diagnosis import check_inputs
-from shipcosim.cli.project import find_system
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def systems_of(given: str, before: str | None, parameters: Sequence[Path]) -> di
     Parameters
     ----------
     given : str
-        As for `find_system`.
+        As for `library.find`.
     before : str, optional
         The other system; of an extended.ssp the one in ssp/ with its name if not given.
     parameters : sequence of Path
@@ -51,16 +51,15 @@ def systems_of(given: str, before: str | None, parameters: Sequence[Path]) -> di
 def _read(given: str, option: str) -> System:
     from shipcosim.cli.requests import system_of
 
-    return system_of(find_system(given, option))
+    return system_of(given, option=option)
 
 
 def _extended_from(system: System, given: str) -> str:
     """Name of the system that was extended, where it is one of the project's."""
-    try:
-        return str(find_system(system.name, "--before"))
-    except ShipcosimError as error:
-        found = f"it extends a system '{system.name}', which is not in ssp/."
-        raise ShipcosimError(Problem(given, found, "Say which one it was: --before SSP.")) from error
+    if library.named("system", system.name) is None:
+        found = f"it extends a system '{system.name}', which has no name here."
+        raise ShipcosimError(Problem(given, found, "Say which one it was: --before SSP."))
+    return system.name
 
 
 def replay_and_save(

@@ -9,34 +9,35 @@ from typing import Any
 
 import xarray
 
+from shipcosim import library
 from shipcosim.cli.console import print_problems
-from shipcosim.cli.project import build_stale, check_is_system, find_project, find_scenario
 from shipcosim.cosim import interpolated
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.scenario import Scenario, check_times, read_scenario
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario import Scenario, check_files, check_times, read_scenario
 from shipcosim.scenario.osp import read_osp_scenario
 from shipcosim.series import read_table
 from shipcosim.ssp import System, read_system
 
 
-def system_of(given: str, parameters: Iterable[Path] | None = None) -> System:
-    """The system of a file or folder, with the FMUs of its project built where they are missing or out of date.
+def system_of(given: str, parameters: Iterable[Path] | None = None, option: str = "") -> System:
+    """The system of a file, folder or name, with our FMUs built where they are missing or out of date.
 
     Parameters
     ----------
     given : str
-        As for `shipcosim.ssp.read_system`.
+        A name, or as for `shipcosim.ssp.read_system`.
     parameters : iterable of Path, optional
         Parameter sets over those of the system.
+    option : str
+        Where it was given, for messages.
 
     Raises
     ------
     ShipcosimError
         If it is no system, or a faulty one.
     """
-    check_is_system(given)
-    project = find_project(Path(given.partition("#")[0]))
-    return read_system(given, parameters or (), fmus=[build_stale(project)] if project else ())
+    path = library.find("system", given, option)
+    return read_system(path, parameters or (), fmus=library.fmus(path))
 
 
 def system_and_scenario(
@@ -51,7 +52,7 @@ def system_and_scenario(
     Parameters
     ----------
     given : str
-        A scenario (.toml, or its name in the project's scenarios/) or a system.
+        A scenario (.toml, or its name) or a system.
     parameters : sequence of Path, optional
         Parameter sets over those of the scenario or the system.
     stop_time, step_size : float, optional
@@ -64,17 +65,37 @@ def system_and_scenario(
     ShipcosimError
         If there is no such thing, or the times do not fit.
     """
-    if not given.endswith(".toml") and Path(given.partition("#")[0]).exists():
+    if not is_scenario(given):
         system = system_of(given, parameters)
         return system, with_osp_events(experiment_of(system, stop_time, step_size), events)
-    scenario = read_scenario(find_scenario(given))
-    fmus = [build_stale(scenario.project)]
-    system = read_system(scenario.system_path, [*scenario.parameter_paths, *(parameters or ())], fmus=fmus)
+    scenario = read_scenario(library.find("scenario", given))
+    if missing := check_files(scenario):
+        raise ShipcosimError(missing)
+    path = scenario.system_path
+    system = read_system(path, [*scenario.parameter_paths, *(parameters or ())], fmus=library.fmus(path))
     times = {"stop_time": stop_time, "step_size": step_size}
     scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
     if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
         raise ShipcosimError(problems)
     return system, with_osp_events(scenario, events)
+
+
+def is_scenario(given: str) -> bool:
+    """Whether an argument that is a scenario or a system is a scenario: by its ending, else by what has this name.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is neither.
+    """
+    if given.endswith(".toml") or Path(given.partition("#")[0]).exists():
+        return given.endswith(".toml")
+    scenarios, systems = library.names("scenario"), library.names("system")
+    if given not in scenarios and given not in systems:
+        raise ShipcosimError(
+            Problem(given, "There is no such scenario or system.", suggestion(given, {*scenarios, *systems}))
+        )
+    return given in scenarios
 
 
 def experiment_of(system: System, stop_time: float | None = None, step_size: float | None = None) -> Scenario:

@@ -7,8 +7,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shipcosim import library
 from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, default_folder
-from shipcosim.cli.project import find_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
@@ -34,7 +34,7 @@ def study_log(
         Gets sea_trials.json, report.html, and where causes were found extended.ssp and extended.ssv.
         Default: results/DATA.
     system : str, optional
-        As for `find_system`; the default one without.
+        As for `library.find`; the default one without.
     channels, effects : path, optional
         Channel file, and folder with further causes.
     orders : bool
@@ -61,11 +61,11 @@ def study_log(
     check_inputs([data], channels, effects)
     folder = out or default_folder(data)
     check_targets(folder)
-    given = find_system(system or DEFAULT_SYSTEM, "--system")
-    found = study(data, system_of(given), channels, effects, orders=orders)
+    given = library.find("system", system or DEFAULT_SYSTEM, "--system")
+    found = study(data, system_of(str(given)), channels, effects, orders=orders)
     with staged(folder, FILES) as stage:
         write_json(found.as_json(), stage / FILES[0])
-        facts = {"Log": Path(data).name, "System": Path(given).name, "Thrusters": "orders" if orders else "feedback"}
+        facts = {"Log": Path(data).name, "System": given.name, "Thrusters": "orders" if orders else "feedback"}
         write_sea_trials(found, stage / FILES[1], facts)
         if found.findings:
             extend(read(given), found.findings, stage, catalogue=read_catalogue(effects))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+from shipcosim import library
 from shipcosim.cosim.engines.registry import ENGINES, OWN_OPTIONS
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
@@ -48,7 +49,7 @@ def simulate(
     if options.engine not in ENGINES:
         raise ShipcosimError(f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}")
     if not isinstance(system, System):
-        system = read_system(system, scenario.parameter_paths, fmus=[scenario.project / "build" / "fmus"])
+        system = read_system(system, scenario.parameter_paths, fmus=library.fmus(system))
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
         raise ShipcosimError(errors)

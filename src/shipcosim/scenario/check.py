@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario.locations import problem_at
 from shipcosim.scenario.model import Scenario, Value
@@ -24,7 +25,7 @@ def check_files(scenario: Scenario) -> list[Problem]:
     system, problems = scenario.system_path, []
     if not system.exists() and "#" not in scenario.system:
         known = _systems(scenario)
-        found = f"there is no system '{scenario.system}', in {scenario.project / 'ssp'} or beside the scenario."
+        found = f"there is no system '{scenario.system}', by this name or beside the scenario."
         return [problem_at(scenario, ("system",), found, suggestion(scenario.system, known))]
     for name, path in zip(scenario.parameters, scenario.parameter_paths, strict=True):
         if not path.exists():
@@ -35,7 +36,7 @@ def check_files(scenario: Scenario) -> list[Problem]:
 
 
 def _systems(scenario: Scenario) -> list[str]:
-    return [ssd.parent.name for ssd in scenario.project.joinpath("ssp").glob("*/SystemStructure.ssd")]
+    return list(library.names("system", scenario.project))
 
 
 def whole_steps(duration: float, step_size: float) -> int | None:

@@ -8,6 +8,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, PrivateAttr, model_validator
 
+from shipcosim import library
+
 
 def _plain(value: Any) -> bool | int | float | str:
     if isinstance(value, float) and not np.isfinite(value):
@@ -104,7 +106,7 @@ class Scenario(_Part):
     """
 
     description: str = ""
-    system: str = Field(default="", description="name of a folder in the project's ssp/, or a path")
+    system: str = Field(default="", description="name of a system, or a path")
     parameters: ListOfNames = Field(
         default=[], description="names of parameter sets in the system's resources, or paths"
     )
@@ -128,18 +130,20 @@ class Scenario(_Part):
 
     @property
     def project(self) -> Path:
-        """Folder of the project: the nearest above the scenario's own with fmus/ or ssp/, else the one above it."""
+        """Folder of the project around the scenario's own folder, else the one above it."""
         if self._path is None:
             return Path.cwd()
         above = self._path.resolve().parents[1:] or self._path.resolve().parents
-        return next((f for f in above if (f / "fmus").is_dir() or (f / "ssp").is_dir()), above[0])
+        return library.project_of(above[0]) or above[0]
 
     @property
     def system_path(self) -> Path:
-        """Where the system is: a path beside the scenario or in the project, else the folder of this name in ssp/."""
+        """Where the system is: a path beside the scenario or in the project, else what has this name."""
         beside = self._path.resolve().parent if self._path else Path.cwd()
         candidates = [beside / self.system, self.project / self.system]
-        return next((c for c in candidates if c.exists()), self.project / "ssp" / self.system)
+        if found := next((c for c in candidates if self.system and c.exists()), None):
+            return found
+        return library.named("system", self.system, self.project) or self.project / "ssp" / self.system
 
     @property
     def parameter_paths(self) -> list[Path]:

@@ -6,8 +6,8 @@ import dp_loop
 import numpy as np
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import simulate
+from shipcosim.library import build_stale
 from shipcosim.scenario import read_scenario
 from shipcosim.ssp import read_system
 from speed.measure import cpu_seconds, reported

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from shipcosim.cli.project import build_stale
+from shipcosim.library import build_stale
 from speed.measure import reported
 
 RUNS = 5

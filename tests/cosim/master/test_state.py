@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from ships import given_to
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import ShipcosimError
+from shipcosim.library import build_stale
 from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import Component, read_fmu, read_system, with_values
 

@@ -205,7 +205,7 @@ def test_a_stored_run_goes_on_from_processes_to_processes_and_back(make_system, 
 
 @slow
 def test_the_dp_ship_gives_the_same_digits(root):
-    from shipcosim.cli.project import build_stale
+    from shipcosim.library import build_stale
     from shipcosim.scenario import read_scenario
     from shipcosim.ssp import read_system
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from ships import parameters
 
-from shipcosim.cli.project import build_stale
 from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
+from shipcosim.library import build_stale
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 from shipcosim.models.ship.instruments import true_motion

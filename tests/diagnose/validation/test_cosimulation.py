@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.inputs import Record
@@ -15,6 +14,7 @@ from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table, 
 from shipcosim.diagnose.validation.gain import Predictor
 from shipcosim.diagnose.validation.predictions import replayable
 from shipcosim.errors import ShipcosimError
+from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind
 from shipcosim.ssp import read_system, with_values

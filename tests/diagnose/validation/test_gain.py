@@ -6,7 +6,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.linearisation import linearise
@@ -40,6 +39,7 @@ from shipcosim.diagnose.validation.split import (
     trained,
     without_headings,
 )
+from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
 from shipcosim.ssp import read_system, with_values
 from truth import draw

@@ -7,7 +7,7 @@ import pytest
 
 from shipcosim.capability import capability_of, notation, read_vessel
 from shipcosim.capability.conditions import CONDITIONS
-from shipcosim.cli.project import build_stale
+from shipcosim.library import build_stale
 from shipcosim.report.capability.page import write_capability
 from shipcosim.ssp import read_ship, read_system
 

@@ -2,12 +2,12 @@
 
 import pytest
 
-from shipcosim.cli.project import build_stale
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.stages import ExtendedSystem, PredictedLog, SimulatedLog
 from shipcosim.diagnose.statement import completed
 from shipcosim.diagnose.validation.gain import compare
 from shipcosim.diagnose.validation.missing_force import missing_forces
+from shipcosim.library import build_stale
 from shipcosim.ssp import read_system
 from truth import draw
 

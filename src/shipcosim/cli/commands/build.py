@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from shipcosim import library
 from shipcosim.cli.options import Debug
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -19,10 +20,10 @@ def build(
     debug: Debug = False,
 ) -> None:
     """Build the FMUs in fmus/ and pack each system in ssp/."""
+    from shipcosim.cli.building import build_named
     from shipcosim.cli.console import progress_of, shown_path
-    from shipcosim.cli.project import build_named, find_project
 
-    project = find_project(Path.cwd())
+    project = library.project_of()
     if project is None:
         raise ShipcosimError(
             Problem(str(Path.cwd()), "There is no project here.", "A project has a folder fmus/ or ssp/; go there.")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from shipcosim import library
 from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Parameters, Settings, Store, Timeout, Until
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -40,20 +41,19 @@ def run(
     --parameters takes sets that were made for another system too, as extended.ssv of a diagnosis: what the scenario's
     system has is taken, over what the scenario says, and what it has not is said.
     """
-    from shipcosim.cli.project import find_scenario, find_scenarios
     from shipcosim.cli.requests import isolation, parsed_settings
     from shipcosim.cli.runs import simulate_and_save
     from shipcosim.options import RunOptions
 
     given = parsed_settings(settings or [])
     options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
-    if files := find_scenarios(scenario):
+    if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
             raise ShipcosimError(Problem(scenario, found, "Name one scenario, or leave out --store and --from."))
         _run_all(files, out or Path("results") / files[0].resolve().parent.name, parameters or [], given, options)
         return
-    system, happening = _prepared(find_scenario(scenario), parameters or [], given)
+    system, happening = _prepared(library.find("scenario", scenario), parameters or [], given)
     simulate_and_save(system, happening, out or Path("results") / happening.name, options, store)
 
 
@@ -81,15 +81,13 @@ def _run_all(
 def _prepared(path: Path, parameters: list[Path], given: dict[str, object]) -> "tuple[System, Scenario]":
     """System and scenario of a file, checked, with the values that are set for this run."""
     from shipcosim.cli.console import print_problems
-    from shipcosim.cli.project import build_stale
     from shipcosim.scenario import check_files, check_times, read_scenario
     from shipcosim.ssp import fitting_values, read_system, with_values
 
     happening = read_scenario(path)
     if missing := check_files(happening):
         raise ShipcosimError(missing)
-    fmus = build_stale(happening.project)
-    system = read_system(happening.system_path, happening.parameter_paths, fmus=[fmus])
+    system = read_system(happening.system_path, happening.parameter_paths, fmus=library.fmus(happening.system_path))
     with_values(system, given, "--set")
     print_problems(check_times(happening))
     fitting = {}

@@ -5,12 +5,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import shipcosim
+from shipcosim import library
 from shipcosim.diagnose.result import Estimate, Finding
-from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 from shipcosim.ssp import SystemStructure, parameter
-from shipcosim.ssp.edit.opening import built_fmus
 from shipcosim.ssp.read.parameters import ParameterValue
 
 __all__ = ["AXES", "Estimated", "ExtensionDraft", "converted"]
@@ -114,14 +112,10 @@ class ExtensionDraft:
         return full
 
     def _fmu(self, name: str) -> Path:
-        """File of one of our FMUs: beside those of the system, or built."""
+        """File of one of our FMUs: beside those of the system, else built."""
         beside = [part.fmu.path.parent for part in self.structure.components.values()]
-        starts = (Path.cwd(), Path(shipcosim.__file__))
-        for folder in (*beside, *(folder for start in starts for folder in built_fmus(start))):
-            if (folder / f"{name}.fmu").is_file():
-                return folder / f"{name}.fmu"
-        found = f"{name}.fmu is neither beside the system's FMUs nor in build/fmus."
-        raise ShipcosimError(Problem(self.structure.name, found, f"`shipcosim build {name}` makes it."))
+        found = next((folder / f"{name}.fmu" for folder in beside if (folder / f"{name}.fmu").is_file()), None)
+        return found or library.find("fmu", name)
 
     def load(self, component: str) -> bool:
         """Connect a component's loads to a free input of the ship; whether there is one."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import lxml.etree as etree
 
+from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.system_structure import SystemStructure
@@ -30,7 +31,7 @@ def read(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | Non
     path : path
         A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, or a .ssd.
     fmus : iterable of path, optional
-        Folders searched for FMUs that are not beside the SSD; build/fmus of the project around it if not given.
+        Folders searched for FMUs that are not beside the SSD; those of `library.fmus` if not given, nothing built.
 
     Returns
     -------
@@ -46,7 +47,7 @@ def read(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | Non
     if osp_file(path):
         found = "An OspSystemStructure.xml cannot be edited."
         raise ShipcosimError(Problem(str(path), found, "`simulate` and `read_system` take it."))
-    package = open_package(path, findings, built_fmus(path) if fmus is None else fmus)
+    package = open_package(path, findings, library.fmus(path, build=False) if fmus is None else fmus)
     document = None if package is None else package.document(findings)
     if document is not None and has_root(document, "ssd:SystemStructureDescription", findings):
         if child(document.root, "ssd:System") is None:
@@ -75,9 +76,3 @@ def new(name: str) -> SystemStructure:
     package = Package(Path(folder.name), name, unpacked=folder)
     document = Document(f"{name}/{SYSTEM_STRUCTURE}", root, package.folder)
     return SystemStructure(Draft(package, document, name))
-
-
-def built_fmus(path: str | PathLike[str]) -> list[Path]:
-    """Folder build/fmus of the project around a system, in a list; empty where there is none."""
-    start = Path(str(path).partition("#")[0]).resolve()
-    return [folder for above in (start, *start.parents) if (folder := above / "build" / "fmus").is_dir()][:1]

@@ -1,0 +1,30 @@
+"""What has a name: scenarios, systems, ships, FMUs and examples of a user's project and of the package.
+
+`find` is the one look-up of names, for commands and Python: a path first, then a name in the project around, then one
+in what the package ships. `entries` lists them, `fmus` gives the folders of built FMUs.
+"""
+
+from shipcosim.library.building import build_stale, built_fmus, fmus
+from shipcosim.library.finding import SYSTEMS, check_is_system, find, find_parameters, scenarios
+from shipcosim.library.names import KINDS, Entry, entries, fmu_sources, named, names
+from shipcosim.library.places import project_of, roots, shipped
+
+__all__ = [
+    "KINDS",
+    "SYSTEMS",
+    "Entry",
+    "build_stale",
+    "built_fmus",
+    "check_is_system",
+    "entries",
+    "find",
+    "find_parameters",
+    "fmu_sources",
+    "fmus",
+    "named",
+    "names",
+    "project_of",
+    "roots",
+    "scenarios",
+    "shipped",
+]

@@ -1,0 +1,126 @@
+"""Built FMUs: those of a project in its build/, those that came with a wheel in the user's cache."""
+
+import hashlib
+import os
+import shutil
+import tempfile
+from importlib.metadata import version
+from pathlib import Path
+
+from shipcosim import __version__
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.library.names import fmu_sources
+from shipcosim.library.places import CACHE, PACKAGE, StrPath, cache, project_of, shipped
+
+IN_EVERY_FMU = ("models", "angles.py", "fmi", "units.py")  # of this package: what travels in FMUs, what builds them
+
+
+def fmus(near: StrPath | None = None, build: bool = True) -> list[Path]:
+    """Folders in which a system finds the FMUs that are not beside it.
+
+    Parameters
+    ----------
+    near : path, optional
+        The system or scenario; the working folder without.
+    build : bool
+        Build the project's FMUs that are missing or out of date, which runs their source. Those that came with a
+        wheel are always built.
+
+    Returns
+    -------
+    list of Path
+        Those of the project around, then those that the package ships. Empty for a path outside of any project, so
+        that an FMU that somebody's system lacks is missing rather than one of ours.
+    """
+    project = project_of(os.fspath(near).partition("#")[0] if near is not None else None)
+    if project is None:
+        return [] if near is not None else [_shipped_fmus(build)]
+    ours = _shipped_fmus(build)
+    if project == shipped():
+        return [ours]
+    own = build_stale(project) if build else built_fmus(project)
+    return [own, ours]
+
+
+def built_fmus(project: Path) -> Path:
+    """Folder of a project's built FMUs."""
+    return project / "build" / "fmus"
+
+
+def build_stale(project: Path) -> Path:
+    """Build the FMUs of a project that are missing or older than what goes into them.
+
+    Parameters
+    ----------
+    project : Path
+        With fmus/.
+
+    Returns
+    -------
+    Path
+        Folder with the FMUs.
+    """
+    from shipcosim.fmi.export.builder import build_fmu
+
+    out, shared = built_fmus(project), max(_newest(PACKAGE / part) for part in IN_EVERY_FMU)
+    for name, folder in fmu_sources(project).items():
+        fmu = out / f"{name}.fmu"
+        if not fmu.is_file() or fmu.stat().st_mtime < max(shared, _newest(folder)):
+            build_fmu(folder, out)
+    return out
+
+
+def built_fmu(source: Path) -> Path:
+    """File of one FMU by the folder of its source; built where it is missing or out of date."""
+    ours = source.parent == shipped() / "fmus"
+    folder = _shipped_fmus(build=True) if ours else build_stale(source.parents[1])
+    return folder / f"{source.name}.fmu"
+
+
+def _shipped_fmus(build: bool) -> Path:
+    """Folder of the FMUs that the package ships: in a repository its build/, else in the user's cache."""
+    root = shipped()
+    if not root.is_relative_to(PACKAGE):
+        return build_stale(root) if build else built_fmus(root)
+    folder = cache() / "fmus" / f"{__version__}-{_digest(root)}"
+    if not folder.is_dir():
+        _build_into_cache(root, folder)
+    return folder
+
+
+def _build_into_cache(root: Path, folder: Path) -> None:
+    """Build all FMUs beside the folder and rename: it is there whole or not at all, whoever builds at the same time."""
+    from shipcosim.fmi.export.builder import build_all
+
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".building-"))
+    except OSError as error:
+        remedy = f"Set {CACHE} to a folder that can be written to."
+        raise ShipcosimError(Problem(str(folder), f"cannot be written: {error.strerror}.", remedy)) from None
+    try:
+        build_all(root / "fmus", out=temporary)
+        temporary.chmod(0o755)
+        temporary.rename(folder)
+    except OSError:
+        if not folder.is_dir():  # else another process was first, with the same FMUs
+            raise
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _digest(root: Path) -> str:
+    """Of everything that goes into the FMUs that are shipped."""
+    digest = hashlib.sha256(version("pythonfmu").encode())
+    for path in (root / "fmus", *(PACKAGE / part for part in IN_EVERY_FMU)):
+        for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
+            if file.is_file() and file.suffix != ".pyc":
+                content = file.read_bytes()
+                digest.update(f"{file.relative_to(PACKAGE).as_posix()} {len(content)}\n".encode() + content)
+    return digest.hexdigest()[:16]
+
+
+def _newest(path: Path) -> float:
+    """Time of the last change of a file, or of the files in a folder."""
+    files = path.rglob("*") if path.is_dir() else [path]
+    return max((file.stat().st_mtime for file in files if file.suffix != ".pyc"), default=0.0)

@@ -1,0 +1,112 @@
+"""What a user means: a path, or a name that is looked up; where there is no such thing, what there is."""
+
+import os
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.library.building import built_fmu
+from shipcosim.library.names import SYSTEM_STRUCTURE, names
+from shipcosim.library.places import StrPath, roots
+
+SYSTEMS = (".ssp", ".ssd", ".xml")
+STRUCTURES = (SYSTEM_STRUCTURE, "OspSystemStructure.xml")
+WHAT = {
+    "scenario": "scenario file",
+    "system": "system",
+    "ship": "ship",
+    "fmu": "FMU",
+    "example": "file of measured data",
+}
+
+
+def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = None) -> Path:
+    """Path of what a user means.
+
+    Parameters
+    ----------
+    kind : str
+        ``"scenario"``, ``"system"``, ``"ship"``, ``"fmu"`` or ``"example"``.
+    given : path or str
+        A path, or a name in the project around or in what the package ships.
+    option : str
+        Where it was given, for messages: ``"--system"``.
+    near : path, optional
+        In the project; the working folder without.
+
+    Returns
+    -------
+    Path
+        Of an FMU the built one, which is built where it is missing or out of date. ``X.ssp#Variant.ssd`` stays so.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is none; says which there are.
+    """
+    text = os.fspath(given)
+    _check_kind(kind, text)
+    path, known = Path(text.partition("#")[0]), names(kind, near)
+    is_plain = text in known and not _is_one(kind, path)
+    if path.exists() and not is_plain and (kind != "scenario" or path.is_file()):
+        return Path(text)
+    if text in known:
+        return built_fmu(known[text]) if kind == "fmu" else known[text]
+    where = f"{option} {text}" if option else text
+    raise ShipcosimError(Problem(where, f"There is no such {WHAT[kind]}.", suggestion(_bare(text), known)))
+
+
+def scenarios(given: str) -> list[Path]:
+    """Scenario files of a folder: a path, or the name of a folder of scenarios; empty if it is no folder.
+
+    Raises
+    ------
+    ShipcosimError
+        If the folder holds none.
+    """
+    folders = (Path(given), *(root / "scenarios" / given for root in roots()))
+    folder = next((f for f in folders if f.is_dir()), None)
+    if folder is None or given in names("scenario"):
+        return []
+    found = sorted(folder.glob("*.toml"))
+    if not found:
+        raise ShipcosimError(Problem(given, "There is no scenario file in this folder.", "Name a .toml file."))
+    return found
+
+
+def find_parameters(given: Path, system: StrPath) -> Path:
+    """Parameter set: a path, or the name of one in the system's resources."""
+    named = Path(system) / "resources" / f"{given.name}.ssv"
+    return named if not given.exists() and named.is_file() else given
+
+
+def check_is_system(given: str) -> None:
+    """Raise ShipcosimError where what should be a system has the ending of something else."""
+    suffix = Path(given).suffix.lower()
+    if suffix == ".toml":
+        remedy = f"If it is a scenario, `shipcosim run {given}` runs it."
+        raise ShipcosimError(Problem(given, "This is no system.", remedy))
+    if suffix == ".fmu":
+        remedy = f"Connect it in a system (.ssp, .ssd). `shipcosim check {given}` says what is in it."
+        raise ShipcosimError(Problem(given, "This is one FMU, not a system.", remedy))
+
+
+def _check_kind(kind: str, text: str) -> None:
+    """Raise ShipcosimError where a file is there and is of another kind."""
+    if not Path(text.partition("#")[0]).exists():
+        return
+    if kind == "system":
+        check_is_system(text)
+    if kind == "scenario" and Path(text).suffix.lower() in SYSTEMS:
+        raise ShipcosimError(
+            Problem(text, "This is a system, not a scenario.", f"`shipcosim simulate {text}` runs it.")
+        )
+
+
+def _is_one(kind: str, path: Path) -> bool:
+    """Whether a path is a thing of a kind, so that it goes before a name; an empty folder of this name does not."""
+    holds = {"system": STRUCTURES, "ship": ("ship.toml",)}.get(kind, ())
+    return path.is_file() or any((path / name).is_file() for name in holds)
+
+
+def _bare(text: str) -> str:
+    return text.removesuffix(".toml")
