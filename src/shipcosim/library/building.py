@@ -1,5 +1,6 @@
 """Built FMUs: those of a project in its build/, those that came with a wheel in the user's cache."""
 
+import functools
 import hashlib
 import os
 import shutil
@@ -109,6 +110,7 @@ def _build_into_cache(root: Path, folder: Path) -> None:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
+@functools.cache
 def _digest(root: Path) -> str:
     """Of everything that goes into the FMUs that are shipped."""
     digest = hashlib.sha256(version("pythonfmu").encode())
