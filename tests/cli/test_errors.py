@@ -464,22 +464,24 @@ def give_up_rights():
             ctypes.CDLL(None).prctl(24, capability, 0, 0, 0)  # PR_CAPBSET_DROP
 
 
-LIMITED_SAVE = """
+LIMITED_WRITING = """
 import resource
-from shipcosim.cli import results
-save = results.save
+from shipcosim import {module}
+write = {module}.{function}
 def limited(*arguments, **options):
-    resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))
-    return save(*arguments, **options)
-results.save = limited
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+    return write(*arguments, **options)
+{module}.{function} = limited
 """
 
 
 @needs_posix
-@pytest.mark.parametrize(("size", "file"), [(20_000, "result.nc"), (1_000_000, "report.html")])
-def test_full_disk_costs_no_old_result_and_leaves_no_part_of_a_new_one(gunnerus, size, file):
+@pytest.mark.parametrize(
+    ("module", "function", "file"), [("series", "write_table", "result.nc"), ("report", "write_report", "report.html")]
+)
+def test_full_disk_costs_no_old_result_and_leaves_no_part_of_a_new_one(gunnerus, module, function, file):
     before = old_results()
-    done = command("run", "short", before=LIMITED_SAVE.format(size=size))
+    done = command("run", "short", before=LIMITED_WRITING.format(module=module, function=function))
     assert done.returncode == 2
     assert f"error: results/short/{file}:\ncannot be written: File too large." in done.stderr
     assert "MB are needed." in done.stderr

@@ -1,7 +1,10 @@
 """A made-up four-corner run with the signals of gunnerus_dp: the page's tests need no FMU."""
 
+import base64
+import gzip
 import json
 import os
+import re
 import shutil
 import time as clock
 
@@ -10,6 +13,8 @@ import pytest
 import xarray as xr
 
 from shipcosim.scenario import Event, Expectation, Scenario, judge
+
+PACKED = r'<script type="text/plain" id="data">([^<]*)</script>'
 
 SET_POINTS = [  # time [s], x [m], y [m], psi [rad]
     (0.0, 20.0, 0.0, 0.0),
@@ -147,6 +152,18 @@ def scenario():
 def verdicts(four_corner, scenario):
     """On the made-up run."""
     return judge(four_corner(), scenario)
+
+
+@pytest.fixture(scope="session")
+def data_of():
+    """Function from a page's text to the data that it draws, as strict JSON."""
+
+    def data(page):
+        (packed,) = re.findall(PACKED, page)
+        text = gzip.decompress(base64.b64decode(packed)).decode()
+        return json.loads(text, parse_constant=lambda name: pytest.fail(name))
+
+    return data
 
 
 @pytest.fixture(scope="session")

@@ -28,13 +28,13 @@ def found():
         return studied(pair, model, causes, orders=True)
 
 
-def test_the_page_says_what_is_wrong_what_fits_alike_and_what_to_sail(found, tmp_path):
+def test_the_page_says_what_is_wrong_what_fits_alike_and_what_to_sail(found, tmp_path, data_of):
     write_sea_trials(found, tmp_path / "report.html", {"Log": "<trials>.csv"})
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "&lt;trials&gt;.csv" in page and "AMBIGUOUS" in page
     for anchor in re.findall(r'<a href="#(\w+)"', page):
         assert f'id="{anchor}"' in page
-    data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.DOTALL)[1])
+    data = data_of(page)
     tracks = data[0]["data"]
     assert len(tracks) == 2 * 3 and {trace["name"] for trace in tracks} == {
         "measured",

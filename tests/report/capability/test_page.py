@@ -1,6 +1,5 @@
 """The page of a capability says what was computed, how it is to be read, and what it rests on."""
 
-import json
 import re
 
 import pytest
@@ -26,8 +25,8 @@ def page(capability, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def figures(page):
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
+def figures(page, data_of):
+    return data_of(page)
 
 
 def test_notation_conditions_and_origin_are_on_the_page(page, capability):

@@ -192,7 +192,7 @@ def test_texts_from_files_stay_texts(browse, four_corner, tmp_path):
 
 def test_page_stays_small_and_says_what_it_does_not_draw(four_corner, browse, tmp_path):
     write_report(four_corner(0.05), tmp_path / "long.html")
-    assert (tmp_path / "long.html").stat().st_size < 8e6
+    assert (tmp_path / "long.html").stat().st_size < 1.5e6
     page = browse(tmp_path / "long.html")
     assert "of 22001 rows" in page.text("#thinning")
 

@@ -66,7 +66,7 @@ def test_wind_that_blows_to_the_south_west_comes_from_the_north_east():
 def test_thinning_keeps_the_peaks_the_order_of_time_and_both_ends():
     values = np.sin(np.arange(100_000) / 500.0)
     values[[12_345, 67_890]] = 40.0, -30.0
-    drawn, span = thinned(shown(table_of(a__b=(values, "m"))), budget=20_000)
+    drawn, span = thinned(shown(table_of(a__b=(values, "m"))), most=3_000)
     assert drawn.sizes["time"] < 4_000 and span > 1
     assert float(drawn["a.b"].max()) == 40.0 and float(drawn["a.b"].min()) == -30.0
     assert (np.diff(drawn["time"]) > 0).all()

@@ -23,7 +23,7 @@ GROUPS = (  # title, channels, unit
     ("Wind from", ("wind_from", "true_wind_from"), "deg"),
 )
 COLOURS = (palette.BLUE, palette.ORANGE, palette.GREEN, palette.PURPLE, palette.SKY, palette.OLIVE)
-MOST_BYTES = 900_000
+MOST_ROWS = {"track": 4000, "channel": 2000}
 
 
 def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> list[Figure]:
@@ -60,7 +60,7 @@ def track_figure(clean: Dataset) -> Figure | None:
     """Where the ship went, north up; None without positions."""
     if "north" not in clean or "east" not in clean:
         return None
-    thin, _ = thinned(_on_log_time(clean)[["north", "east"]], MOST_BYTES // 10)
+    thin, _ = thinned(_on_log_time(clean)[["north", "east"]], MOST_ROWS["track"])
     north, east = thin["north"].values, thin["east"].values
     known = np.flatnonzero(np.isfinite(north) & np.isfinite(east))
     if not known.size:
@@ -131,8 +131,8 @@ def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -
     """A channel as used; before it as logged, where that differs."""
     label = channel.replace("_", " ")
     traces = []
-    old, _ = thinned(raw[[channel]], MOST_BYTES // 40)
-    new, _ = thinned(used[[channel]], MOST_BYTES // 40) if channel in used else (None, 1)
+    old, _ = thinned(raw[[channel]], MOST_ROWS["channel"])
+    new, _ = thinned(used[[channel]], MOST_ROWS["channel"]) if channel in used else (None, 1)
     if new is None or not _same(raw[channel], used[channel]):
         traces.append(
             _curve(

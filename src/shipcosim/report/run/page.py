@@ -1,13 +1,10 @@
 """The page of a run: what it shows, and the functions that write it or say it in words."""
 
-import base64
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike
 from xarray import Dataset
 
 from shipcosim.report.run.derived import add_derived
@@ -21,11 +18,15 @@ from shipcosim.report.run.track import Track, ship_size, track_figure
 from shipcosim.report.run.weather import Flow, weather
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import display_table, is_constant, thinned
+from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Link, Outcome, Page, Table
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.series import write_file
 from shipcosim.ssp import System
+
+EXACT = 1e9  # steps of the time axis
+BYTES_FOR_SIGNALS = 750_000  # of a page that shall stay below 1.5 MB
 
 
 @dataclass(frozen=True)
@@ -136,7 +137,8 @@ def digest(table: Dataset, verdicts: Sequence[Verdict] = ()) -> Digest:
 
 def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict], system: System | None) -> RunPage:
     roles, shown = _shown(table, verdicts)
-    drawn, span = thinned(shown)
+    varying = [v.values for v in shown.data_vars.values() if not is_constant(v.values)]
+    drawn, span = thinned(shown, most_rows(varying, BYTES_FOR_SIGNALS))
     track = track_figure(drawn, roles, verdicts, ship_size(table, roles))
     sections = make_sections(shown, roles, verdicts)
     return RunPage(
@@ -193,12 +195,12 @@ def _drawn(
 ) -> dict[str, Any]:
     """What the script of the page draws."""
     return {
-        "time": _packed(drawn["time"].values, "float64"),
+        "time": packed_series(drawn["time"].values, EXACT),
         "signals": {
             str(name): {
                 "unit": v.attrs["units"],
                 "label": v.attrs["long_name"],
-                "values": float(v.values[0]) if is_constant(v.values) else _packed(v.values, "float32"),
+                "values": float(v.values[0]) if is_constant(v.values) else packed_series(v.values),
             }
             for name, v in drawn.data_vars.items()
         },
@@ -208,10 +210,3 @@ def _drawn(
         "events": sorted({event.time for event in scenario.events}) if scenario else [],
         "colours": {"passed": palette.PASSED, "failed": palette.FAILED, "cycle": palette.CYCLE},
     }
-
-
-def _packed(values: ArrayLike, kind: str) -> str:
-    """Numbers as base64 of little-endian bytes: a third of the size of text."""
-    with np.errstate(over="ignore"):  # a run that diverged: what float32 cannot hold becomes a gap
-        packed = np.asarray(values).astype(np.dtype(kind).newbyteorder("<"))
-    return base64.b64encode(packed.tobytes()).decode()

@@ -18,7 +18,6 @@ READ_AS = {  # unit in the table: unit people read, factor, least size for which
     "1": ("", 1.0, 0.0),
     None: ("", 1.0, 0.0),
 }
-BYTES_FOR_SIGNALS = 2_700_000  # with plotly.js the page stays below 8 MB
 
 
 def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
@@ -37,14 +36,13 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
         Same rows; text signals are left out. What is drawn is the attribute `factor` times what the table holds, plus
         whole turns where it is an angle.
     """
-    units = units_to_read(table)
-    numeric = {name: v for name, v in table.data_vars.items() if v.dtype.kind in "fiub" and v.dims == ("time",)}
-    shown = xr.Dataset(coords={"time": ("time", np.asarray(table["time"].values, float))})
-    for name, variable in numeric.items():
+    units, found = units_to_read(table), {}
+    for name, variable in _series(table).items():
         unit, factor = units.get(variable.attrs.get("units"), (variable.attrs.get("units"), 1.0))
         values = unturned(str(name), variable.values) if unit == "deg" else variable.values
-        shown[name] = as_variable(factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor)
-        shown[name].attrs["logical"] = variable.dtype.kind == "b"
+        found[name] = as_variable(factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor)
+        found[name].attrs["logical"] = variable.dtype.kind == "b"
+    shown = xr.Dataset(found, coords={"time": ("time", np.asarray(table["time"].values, float))})
     if ship_heading is not None:
         _align_headings(shown, ship_heading)
     return shown
@@ -57,35 +55,42 @@ def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
     -------
     dict of str or None to (str, float)
     """
-    chosen = {}
-    for unit in {v.attrs.get("units") for v in table.data_vars.values()}:
+    chosen, largest = {}, dict.fromkeys([v.attrs.get("units") for v in table.variables.values()], 0.0)
+    for variable in _series(table).values():
+        if variable.dtype.kind != "b" and variable.size and not np.isnan(variable.values).all():
+            unit = variable.attrs.get("units")
+            largest[unit] = max(largest[unit], np.nanmax(np.abs(variable.values)))
+    for unit, size in largest.items():
         shown, factor, least = READ_AS.get(unit, (unit, 1.0, 0.0))
-        numeric = [v.values for v in table.data_vars.values() if v.attrs.get("units") == unit and v.dtype.kind in "fiu"]
-        largest = max((np.nanmax(np.abs(v)) for v in numeric if v.size and not np.isnan(v).all()), default=0.0)
-        chosen[unit] = (shown, factor) if largest >= least else (unit or "", 1.0)
+        chosen[unit] = (shown, factor) if size >= least else (unit or "", 1.0)
     return chosen
 
 
-def thinned(shown: Dataset, budget: int = BYTES_FOR_SIGNALS) -> tuple[Dataset, int]:
-    """The table with few enough rows for the page: the extremes of each interval, so that no peak is lost.
+def _series(table: Dataset) -> dict[str, xr.Variable]:
+    """The columns of numbers."""
+    found = {str(name): table.variables[name] for name in table.data_vars}
+    return {name: v for name, v in found.items() if v.dtype.kind in "fiub" and v.dims == ("time",)}
+
+
+def thinned(shown: Dataset, most: int) -> tuple[Dataset, int]:
+    """The table with few enough rows to draw: the extremes of each interval, so that no peak is lost.
 
     Parameters
     ----------
     shown : xarray.Dataset
         Table to draw.
-    budget : int
-        Bytes that its signals may take in the page.
+    most : int
+        Rows that may be left.
 
     Returns
     -------
     (xarray.Dataset, int)
         The table, and how many rows each interval spans; 1 if nothing was thinned.
     """
-    rows, varying = shown.sizes["time"], sum(not is_constant(v.values) for v in shown.data_vars.values())
-    allowed = max(int(budget / (varying * 4 * 4 / 3 + 16)), 500)
-    if rows <= allowed:
+    rows = shown.sizes["time"]
+    if rows <= most:
         return shown, 1
-    span = int(np.ceil(2 * rows / allowed))
+    span = int(np.ceil(2 * rows / most))
     starts = np.arange(0, rows, span)
     drawn = np.unique(np.concatenate([starts, np.minimum(starts + span // 2, rows - 1), [rows - 1]]))
     thin = shown.isel(time=drawn)

@@ -7,6 +7,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import shipcosim
+from shipcosim.report.theme.packing import packed_data, packed_text
 from shipcosim.report.theme.views import Page
 
 
@@ -36,15 +37,16 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
-    made.globals |= {"asset": _asset, "plotly": _plotly, "version": shipcosim.__version__}
+    made.globals |= {"asset": _asset, "packed": packed_data, "plotly": _plotly, "version": shipcosim.__version__}
     return made
 
 
 def _asset(path: str) -> Markup:
-    """A style sheet or script of ours, as it is."""
+    """A style sheet or script, as it is."""
     return Markup(files("shipcosim.report").joinpath(path).read_text(encoding="utf-8"))
 
 
-def _plotly() -> Markup:
-    return Markup(files("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8"))
+@cache
+def _plotly() -> str:
+    """The library that draws, compressed, with the licences of all that is in it."""
+    return packed_text(f"/*{_asset('theme/vendor/LICENSES.txt')}*/{_asset('theme/vendor/plotly.min.js')}")

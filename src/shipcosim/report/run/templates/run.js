@@ -1,13 +1,8 @@
 // The page of a run: panels over time that share one time window, the track beside them, and signals to choose from.
 (() => {
-  const { data, axis, colour, draw, later, layout, markup, painted, traces } = report;
-  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
-  const time = new Float64Array(bytes(data.time));
-  const decoded = {};
-  const values = (name) => {
-    const packed = data.signals[name].values;
-    return (decoded[name] ??= typeof packed === "number" ? new Float32Array(time.length).fill(packed) : new Float32Array(bytes(packed)));
-  };
+  const { data, axis, colour, draw, later, layout, markup, painted, series, traces } = report;
+  const time = series(data.time), decoded = {};
+  const values = (name) => (decoded[name] ??= series(data.signals[name].values, time.length));
   const config = { responsive: true, displaylogo: false, scrollZoom: false, displayModeBar: "hover", modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]] };
   const whole = [time[0], time[time.length - 1]];
   let shownWindow = whole;

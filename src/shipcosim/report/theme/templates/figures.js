@@ -2,7 +2,39 @@
 // What the figures of all pages share: the colours of the style sheet, light or dark; axes; and drawing as they come
 // into view, the rest when the browser is idle.
 const report = (() => {
-  const data = JSON.parse(document.getElementById("data").textContent);
+  const shared = {};
+
+  // ---- what the page brings, compressed
+
+  async function unpacked(id) {
+    const bytes = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
+    return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+  }
+
+  async function start(page) {
+    if (!window.DecompressionStream) {
+      document.body.insertAdjacentText("afterbegin", "The figures need a browser of 2023 or later.");
+      return;
+    }
+    const [library, data] = await Promise.all(["plotly", "data"].map(unpacked));
+    const script = document.createElement("script");
+    script.textContent = library;
+    document.head.append(script);
+    shared.data = JSON.parse(data);
+    page();
+    schedule();
+  }
+
+  // Numbers that Python's `packed_series` made small; a single number stands for `length` of them.
+  function series(packed, length) {
+    if (typeof packed === "number") return new Float64Array(length).fill(packed);
+    if (Array.isArray(packed)) return Float64Array.from(packed, (v) => v ?? NaN);
+    const inverse = Math.round(1 / packed.step);
+    let count = 0;
+    return Float64Array.from(packed.steps, (n) => (n === null ? NaN : ((count += n), packed.step < 1 ? count / inverse : count * packed.step)));
+  }
+
+  // ---- colours and texts
 
   function colour(name) {  // "blue", or "blue/0.2" for a transparent one
     const [token, opacity] = name.split("/");
@@ -74,9 +106,8 @@ const report = (() => {
     else later(place, how);
   }
 
-  schedule();
   addEventListener("scroll", schedule, { passive: true });
   addEventListener("beforeprint", () => work([...waiting.keys()]));
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => drawings.forEach((how, place) => later(place, how)));
-  return { data, colour, markup, painted, traces, axis, layout, draw, later };
+  addEventListener("scheme", () => drawings.forEach((how, place) => later(place, how)));
+  return Object.assign(shared, { start, series, colour, markup, painted, traces, axis, layout, draw, later });
 })();
