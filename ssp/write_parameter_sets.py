@@ -12,7 +12,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import Ship, parameter, read_ship, write_ssv
+from shipcosim.ships import Ship, parameter_values, read_ship
+from shipcosim.ssp import write_ssv
 
 HERE = Path(__file__).resolve().parent
 COMPONENT = "{http://ssp-standard.org/SSP1/SystemStructureDescription}Component"
@@ -55,13 +56,7 @@ def _fields(kind: type) -> tuple:
 
 def values(system: str, ship: Ship) -> Iterator:
     """Parameters of a ship in a system, as they stand in the SSV."""
-    for component, quantities in ship.parameter_set(components(system, ship)).items():
-        for name, q in quantities.items():
-            unit = q.unit if isinstance(q.value, float) and q.unit != "1" else None
-            text = f"{q.description}; {q.origin}"
-            if q.uncertainty:
-                text += f"; sources from {q.uncertainty[0]:g} to {q.uncertainty[1]:g}"
-            yield parameter(f"{component}.{name}", q.value, unit, text, tolerance=q.tolerance or None)
+    return parameter_values(ship, components(system, ship))
 
 
 if __name__ == "__main__":

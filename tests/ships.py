@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
-from shipcosim.ssp import Ship, read_ship
+from shipcosim.ships import Ship, read_ship
 
 Kind = TypeVar("Kind")
 FOLDER = Path(__file__).resolve().parents[1] / "ssp" / "ships"

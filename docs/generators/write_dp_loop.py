@@ -15,7 +15,7 @@ import numpy as np
 from shipcosim.models.control.margins import AXES, Delays, linear_loop, margins, open_loop, wave_suppression
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
-from shipcosim.ssp import read_ship
+from shipcosim.ships import read_ship
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE, PICTURE = ROOT / "docs" / "dp-loop.md", ROOT / "docs" / "images" / "dp-loop.png"

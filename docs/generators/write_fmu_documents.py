@@ -22,7 +22,8 @@ from shipcosim.fmi.export.description import table_of_variables
 from shipcosim.library import build_stale
 from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table, read_table, write_table
-from shipcosim.ssp import read_ship, read_system
+from shipcosim.ships import read_ship
+from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[2]
 MARK = "## Variables\n"

@@ -19,7 +19,8 @@ from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 from shipcosim.scenario import read_scenario
-from shipcosim.ssp import read_ship, read_system
+from shipcosim.ships import read_ship
+from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "generated" / "prediction.md"

@@ -16,7 +16,8 @@ from shipcosim.capability.result import BALANCED, LEVEL_1, SIMULATOR, Capability
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.errors import ShipcosimError
 from shipcosim.library import build_stale
-from shipcosim.ssp import read_ship, read_system, with_values
+from shipcosim.ships import read_ship
+from shipcosim.ssp import read_system, with_values
 
 MIRROR = -np.arange(len(DIRECTIONS)) % len(DIRECTIONS)
 

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters
-from shipcosim.ssp import read_ship
+from shipcosim.ships import read_ship
 
 SHIPS = Path(__file__).resolve().parents[3] / "ssp" / "ships"
 PICTURES = Path(__file__).resolve().parents[2] / "generated" / "pictures"

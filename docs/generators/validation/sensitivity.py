@@ -25,7 +25,8 @@ from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import DriftParameters
 from shipcosim.scenario import read_scenario
-from shipcosim.ssp import read_ship, read_system
+from shipcosim.ships import read_ship
+from shipcosim.ssp import read_system
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]

@@ -15,7 +15,8 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters
-from shipcosim.ssp import Component, Ship, System
+from shipcosim.ships import Ship
+from shipcosim.ssp import Component, System
 
 Kind = TypeVar("Kind")
 HULL_FILE = "capability"

@@ -13,7 +13,8 @@ from shipcosim.cli.console import shown_path
 from shipcosim.cli.requests import system_of
 from shipcosim.cli.results import check_targets, staged
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.ssp import osp_file, read, read_ship
+from shipcosim.ships import read_ship
+from shipcosim.ssp import osp_file, read
 
 
 def assess(

@@ -12,7 +12,6 @@ from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
-from shipcosim.ssp.ships import Ship, read_ship
 from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
 
@@ -20,7 +19,6 @@ __all__ = [
     "Component",
     "Connection",
     "FmuDescription",
-    "Ship",
     "Signal",
     "Simulator",
     "System",
@@ -35,7 +33,6 @@ __all__ = [
     "parameter",
     "read",
     "read_fmu",
-    "read_ship",
     "read_system",
     "seconds_text",
     "structure_text",

@@ -8,7 +8,8 @@ from shipcosim.capability import capability_of, notation, read_vessel
 from shipcosim.capability.conditions import CONDITIONS
 from shipcosim.library import build_stale
 from shipcosim.report.capability.page import write_capability
-from shipcosim.ssp import read_ship, read_system
+from shipcosim.ships import read_ship
+from shipcosim.ssp import read_system
 
 
 @pytest.fixture(scope="module")

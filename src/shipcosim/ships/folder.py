@@ -4,7 +4,6 @@ A folder holds a ``ship.toml``, one parameter file a component (``vessel.toml``)
 on others, a component like others of the same ship: no number stands twice. See docs/your-own-ship.md.
 """
 
-import csv
 import math
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -13,11 +12,15 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ships.described import describe
+from shipcosim.ships.entries import Entry, table_entry
+from shipcosim.ships.file import ShipFile
 
 __all__ = ["Quantity", "Ship", "read_ship"]
 
 Kind = TypeVar("Kind")
-_SHIP_KEYS = {"description": str, "based_on": list, "systems": list}
+_SHIP_KEYS = {"description": str, "source": str, "based_on": list, "systems": list}
+_SECTIONS = set(ShipFile.model_fields) - set(_SHIP_KEYS)
 
 
 class Quantity(NamedTuple):
@@ -43,20 +46,6 @@ class Quantity(NamedTuple):
     uncertainty: tuple[float, ...] = ()
 
 
-class _Entry(NamedTuple):
-    """A parameter as a file says it: value, unit, tolerance, origin, columns of a table, file and name, uncertainty,
-    and whether it is said of another component that this one is like."""
-
-    value: Any
-    unit: str
-    tolerance: float
-    origin: str
-    columns: tuple[str, ...]
-    where: str
-    uncertainty: tuple[float, ...] = ()
-    inherited: bool = False
-
-
 @dataclass(frozen=True)
 class Ship:
     """A ship's files, with those of the ships that she is based on.
@@ -68,7 +57,7 @@ class Ship:
     folder : Path
     systems : tuple of str
         Systems in ``ssp/`` that have a parameter set of her.
-    entries : mapping of str to mapping of str to _Entry
+    entries : mapping of str to mapping of str to Entry
         What the files say, by component and parameter.
     """
 
@@ -76,7 +65,7 @@ class Ship:
     description: str
     folder: Path
     systems: tuple[str, ...]
-    entries: Mapping[str, Mapping[str, _Entry]]
+    entries: Mapping[str, Mapping[str, Entry]]
 
     def parameter_set(self, components: Mapping[str, Iterable[type]]) -> dict[str, dict[str, Quantity]]:
         """All parameters of components, checked: nothing missing, nothing unknown, units and bounds as declared.
@@ -173,10 +162,25 @@ def read_ship(folder: str | Path) -> Ship:
     files = {name: [_read(layer / f"{name}.toml", problems) for layer in layers] for name in names}
     entries = {name: _entries(name, files, (), problems) for name in names}
     about = [_about(layer, []) for layer in layers]
+    for layer in layers:
+        for name, found in _described(layer, problems).items():
+            entries[name] = found | entries.get(name, {})
     if problems:
         raise ShipcosimError(list(dict.fromkeys(problems)))
     systems = next((one["systems"] for one in reversed(about) if "systems" in one), [])
     return Ship(folder.name, about[-1].get("description", ""), folder, tuple(systems), entries)
+
+
+def _described(folder: Path, problems: list[Problem]) -> dict[str, dict[str, Entry]]:
+    """What the ship file of a folder says in a naval architect's words, by component; nothing without particulars."""
+    file = folder / "ship.toml"
+    if not {"particulars", "thrusters"} & set(_toml(file, []) if file.is_file() else ()):
+        return {}
+    try:
+        return describe(folder).entries
+    except ShipcosimError as error:
+        problems += error.problems
+        return {}
 
 
 def _layers(folder: Path, above: tuple[Path, ...], problems: list[Problem]) -> list[Path]:
@@ -204,6 +208,7 @@ def _about(folder: Path, problems: list[Problem]) -> dict[str, Any]:
         return {}
     said = _toml(file, problems)
     known = {key: [value] if key == "based_on" and isinstance(value, str) else value for key, value in said.items()}
+    known = {key: value for key, value in known.items() if key not in _SECTIONS}
     for key, value in known.items():
         if not isinstance(value, _SHIP_KEYS.get(key, ())):
             problems.append(Problem(f"{file}: {key}", f"found {value!r}.", suggestion(key, _SHIP_KEYS)))
@@ -231,7 +236,7 @@ def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
     return {"like": like} | {name: entry for name, entry in found.items() if entry is not None}
 
 
-def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> _Entry | None:
+def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Entry | None:
     """What a file says of a parameter: a value, or where its table is."""
     where = f"{file}: {name}"
     is_table = isinstance(said, dict) and "table" in said
@@ -240,9 +245,9 @@ def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> _Entry 
         problems.append(Problem(where, f"{'; '.join(wrong)}.", remedy))
         return None
     if is_table:
-        return _table(file.parent / said["table"], where, problems)
+        return table_entry(file.parent / said["table"], where, problems)
     uncertainty = tuple(map(float, said.get("uncertainty", ())))
-    return _Entry(
+    return Entry(
         said["value"], said["unit"], float(said.get("tolerance", 0.0)), said["origin"], (), where, uncertainty
     )
 
@@ -257,26 +262,9 @@ def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
     return wrong
 
 
-def _table(file: Path, where: str, problems: list[Problem]) -> _Entry | None:
-    """A table as text: comments, of which one says the source, a header with units, rows of numbers."""
-    if not file.is_file():
-        problems.append(Problem(where, f"there is no file {file}."))
-        return None
-    lines = file.read_text(encoding="utf-8").splitlines()
-    source = next((line[1:].partition("source:")[2].strip() for line in lines if line.startswith("# source:")), "")
-    header, *rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#"))) or [[]]
-    if not source:
-        problems.append(Problem(str(file), "no line says where the table is from.", "Write '# source: ...' above it."))
-    for number, row in enumerate(rows, 1):
-        if len(row) != len(header) or not all(_is_number_text(cell) for cell in row):
-            problems.append(Problem(f"{file}, row {number}", f"{row}.", f"A row has {len(header)} numbers."))
-    text = "; ".join(" ".join(cell.strip() for cell in row) for row in rows)
-    return _Entry(text, "1", 0.0, source, tuple(cell.strip() for cell in header), str(file))
-
-
 def _entries(
     name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]
-) -> dict[str, _Entry]:
+) -> dict[str, Entry]:
     """What a ship's files say of a component: of those that it is like, the first before the next, then of itself."""
     layers, found = files.get(name, []), {}
     likes = next((layer["like"] for layer in reversed(layers) if layer.get("like")), [])
@@ -292,7 +280,7 @@ def _entries(
     return found
 
 
-def _quantity(field: Field, entry: _Entry | None, problems: list[Problem]) -> Quantity:
+def _quantity(field: Field, entry: Entry | None, problems: list[Problem]) -> Quantity:
     about = field.metadata
     if entry is None:
         return Quantity(field.default, about["unit"], about["description"], about["origin"], about["tolerance"])
@@ -303,7 +291,7 @@ def _quantity(field: Field, entry: _Entry | None, problems: list[Problem]) -> Qu
     return Quantity(value, about["unit"], about["description"], entry.origin, entry.tolerance, entry.uncertainty)
 
 
-def _wrong(value: Any, entry: _Entry, about: Mapping[str, Any]) -> tuple[str, str]:
+def _wrong(value: Any, entry: Entry, about: Mapping[str, Any]) -> tuple[str, str]:
     """What is wrong with a value, and what would be right; both empty where it is right."""
     kind, low, high = about["kind"], about["minimum"], about["maximum"]
     if type(value) is not kind or (entry.columns and not about["columns"]):
@@ -325,13 +313,6 @@ def _wrong(value: Any, entry: _Entry, about: Mapping[str, Any]) -> tuple[str, st
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def _is_number_text(cell: str) -> bool:
-    try:
-        return math.isfinite(float(cell))
-    except ValueError:
-        return False
 
 
 def _is_text(value: Any) -> bool:

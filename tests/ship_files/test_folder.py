@@ -6,7 +6,7 @@ import pytest
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.parameters import quantity, required, required_table
-from shipcosim.ssp import read_ship
+from shipcosim.ships import read_ship
 
 
 @dataclass(frozen=True, kw_only=True)

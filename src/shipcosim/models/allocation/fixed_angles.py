@@ -1,0 +1,260 @@
+"""Thrust allocation of up to six units at fixed directions by a weighted generalised inverse.
+
+The units are what their parameters say: a propeller, a tunnel thruster, an azimuth held at an angle. One without thrust
+is none. As in `pseudo_inverse`, what one unit cannot give is asked of those that are not yet at a limit.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.models.core.maths import Arithmetic, clip, cos, sin, where
+from shipcosim.models.core.motion import Load
+from shipcosim.models.core.parameters import quantity, required
+
+UNITS = 6
+
+
+def _place(unit, description):
+    return quantity(0.0, unit, description, "no such unit")
+
+
+def _least(number):
+    return quantity(0.0, "N", f"least thrust of unit {number}, negative", "no such unit", maximum=0.0)
+
+
+def _most(number):
+    return quantity(0.0, "N", f"most thrust of unit {number}; 0: there is none", "no such unit", minimum=0.0)
+
+
+def _rate(number):
+    return quantity(0.0, "N/s", f"quickest change of the command to unit {number}", "no such unit", minimum=0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FixedAngleParameters:
+    """Places, directions and limits of the units."""
+
+    x_1: float = _place("m", "unit 1 forward of the origin")
+    y_1: float = _place("m", "unit 1 to starboard of the origin")
+    azimuth_1: float = _place("rad", "direction of positive thrust of unit 1, clockwise from the bow")
+    thrust_min_1: float = _least(1)
+    thrust_max_1: float = _most(1)
+    thrust_rate_1: float = _rate(1)
+    x_2: float = _place("m", "unit 2 forward of the origin")
+    y_2: float = _place("m", "unit 2 to starboard of the origin")
+    azimuth_2: float = _place("rad", "direction of positive thrust of unit 2, clockwise from the bow")
+    thrust_min_2: float = _least(2)
+    thrust_max_2: float = _most(2)
+    thrust_rate_2: float = _rate(2)
+    x_3: float = _place("m", "unit 3 forward of the origin")
+    y_3: float = _place("m", "unit 3 to starboard of the origin")
+    azimuth_3: float = _place("rad", "direction of positive thrust of unit 3, clockwise from the bow")
+    thrust_min_3: float = _least(3)
+    thrust_max_3: float = _most(3)
+    thrust_rate_3: float = _rate(3)
+    x_4: float = _place("m", "unit 4 forward of the origin")
+    y_4: float = _place("m", "unit 4 to starboard of the origin")
+    azimuth_4: float = _place("rad", "direction of positive thrust of unit 4, clockwise from the bow")
+    thrust_min_4: float = _least(4)
+    thrust_max_4: float = _most(4)
+    thrust_rate_4: float = _rate(4)
+    x_5: float = _place("m", "unit 5 forward of the origin")
+    y_5: float = _place("m", "unit 5 to starboard of the origin")
+    azimuth_5: float = _place("rad", "direction of positive thrust of unit 5, clockwise from the bow")
+    thrust_min_5: float = _least(5)
+    thrust_max_5: float = _most(5)
+    thrust_rate_5: float = _rate(5)
+    x_6: float = _place("m", "unit 6 forward of the origin")
+    y_6: float = _place("m", "unit 6 to starboard of the origin")
+    azimuth_6: float = _place("rad", "direction of positive thrust of unit 6, clockwise from the bow")
+    thrust_min_6: float = _least(6)
+    thrust_max_6: float = _most(6)
+    thrust_rate_6: float = _rate(6)
+    yaw_lever: float = required("m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1)
+
+    def of_units(self, name: str) -> list[float]:
+        """A parameter of all units, in their order."""
+        return [getattr(self, f"{name}_{number}") for number in range(1, UNITS + 1)]
+
+
+class Allocated(NamedTuple):
+    """State of the allocator.
+
+    Parameters
+    ----------
+    thrusts : tuple of six floats or (...) arrays or tensors
+        Commanded thrusts. [N]
+    tau_X, tau_Y, tau_N : like the thrusts
+        Load of these thrusts, body frame. [N, N, N.m]
+    saturated : bool or (...) array or tensor of bool
+        True where limits of thrust or missing units keep the commands from meeting the request. [1]
+    """
+
+    thrusts: tuple
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
+    saturated: Arithmetic
+
+
+class Layout(NamedTuple):
+    """What `step` needs of the parameters.
+
+    Parameters
+    ----------
+    effect : tuple of six tuples
+        Load of one newton of each unit: X, Y, N. [1, 1, m]
+    inverses : (64, 6, 3) array
+        Generalised inverse for each set of free units: set k holds unit i where bit i of k is set. [1, 1, 1/m]
+    least, most, rate : tuple of six floats
+        Limits. [N, N, N/s]
+    """
+
+    effect: tuple
+    inverses: np.ndarray
+    least: tuple
+    most: tuple
+    rate: tuple
+
+
+def layout(parameters: FixedAngleParameters) -> Layout:
+    """Effect of the units, and the generalised inverses for all sets of them.
+
+    Parameters
+    ----------
+    parameters : FixedAngleParameters
+        The units.
+
+    Returns
+    -------
+    Layout
+        What `step` needs.
+
+    Notes
+    -----
+    As `pseudo_inverse.design`; the price of a unit's thrust is the square of its share of the unit's largest thrust.
+
+    References
+    ----------
+    Weighted generalised inverse: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley,
+    2021.
+    """
+    p = parameters
+    places = zip(p.of_units("x"), p.of_units("y"), p.of_units("azimuth"), strict=True)
+    effect = tuple((cos(a), sin(a), x * sin(a) - y * cos(a)) for x, y, a in places)
+    least, most = p.of_units("thrust_min"), p.of_units("thrust_max")
+    size = np.array([max(high, -low) for low, high in zip(least, most, strict=True)])
+    size = size / max(size.max(), 1.0)
+    scale = np.array([1.0, 1.0, 1.0 / p.yaw_lever])
+    weighted, inverses = scale[:, None] * np.array(effect).T * size, np.zeros((1 << UNITS, UNITS, 3))
+    for k in range(1, 1 << UNITS):
+        free = np.array([(k >> unit) & 1 for unit in range(UNITS)])
+        inverses[k] = size[:, None] * np.linalg.pinv(weighted * free, rcond=1e-6) * scale
+    return Layout(effect, inverses, tuple(least), tuple(most), tuple(p.of_units("thrust_rate")))
+
+
+def at_rest(tau: Load) -> Allocated:
+    """State at the start: no thrust.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays or tensors
+        Any load: it gives shape and type only. [N, N, N.m]
+
+    Returns
+    -------
+    Allocated
+        The state.
+    """
+    zero = 0.0 * tau[0]
+    return Allocated((zero,) * UNITS, zero, zero, zero, zero > 0.0)
+
+
+def step(
+    state: Allocated,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    parameters: FixedAngleParameters,
+    design: Layout,
+) -> Allocated:
+    """Commands for a requested load, `h` after the last ones.
+
+    Parameters
+    ----------
+    state : Allocated
+        State at the last commands.
+    tau : tuple of three floats or (...) arrays or tensors
+        Requested load, body frame. [N, N, N.m]
+    available : tuple of six bools or (...) arrays or tensors of bool
+        Whether the units can be used; the others take over what they can. [1]
+    h : float
+        Time since the last commands, for the limits of the rate. [s]
+    parameters : FixedAngleParameters
+        Units and limits.
+    design : Layout
+        Made of the same parameters by `layout`.
+
+    Returns
+    -------
+    Allocated
+        Commands and the load they give.
+
+    References
+    ----------
+    As `layout`; that thrust beyond a limit is asked of the free units is assumed.
+    """
+    wanted = _within_limits(tau, available, design)
+    X, Y, N = _missing(tau, wanted, design.effect)
+    missed = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    limits = zip(state.thrusts, wanted, available, design.rate, strict=True)
+    thrusts = tuple(where(on, old + clip(new - old, -rate * h, rate * h), 0.0 * new) for old, new, on, rate in limits)
+    return Allocated(thrusts, *_load(thrusts, design.effect), missed > 1.0)
+
+
+def _load(thrusts, effect):
+    """Load of thrusts."""
+    X = Y = N = 0.0
+    for thrust, (x, y, n) in zip(thrusts, effect, strict=True):
+        X, Y, N = X + x * thrust, Y + y * thrust, N + n * thrust
+    return X, Y, N
+
+
+def _missing(tau, thrusts, effect):
+    """Load that the thrusts leave unmet."""
+    X, Y, N = _load(thrusts, effect)
+    return tau[0] - X, tau[1] - Y, tau[2] - N
+
+
+def _within_limits(tau, available, design):
+    """Thrusts for a load, without limit of the rate."""
+    free, held = [where(on, 1.0, 0.0) for on in available], [0.0 * tau[0]] * UNITS
+    thrusts = held
+    for _ in range(UNITS):
+        found = _solve(_missing(tau, held, design.effect), free, design.inverses)
+        given = [clip(f, low, high) for f, low, high in zip(found, design.least, design.most, strict=True)]
+        thrusts = [f + g for f, g in zip(held, given, strict=True)]
+        over = [abs(f - g) > 1e-9 for f, g in zip(found, given, strict=True)]
+        if not any(one if isinstance(one, bool) else bool(one.any()) for one in over):
+            break
+        held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
+        free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
+    return thrusts
+
+
+def _solve(tau, free, inverses):
+    """Thrusts of the free units for a load, 0 for the others."""
+    chosen = sum(2.0**unit * one for unit, one in enumerate(free))
+    if isinstance(chosen, float):
+        return [a * tau[0] + b * tau[1] + c * tau[2] for a, b, c in inverses[int(chosen)].tolist()]
+    found = [0.0 * tau[0]] * UNITS
+    for k in range(1, 1 << UNITS):
+        rows = inverses[k].tolist()
+        found = [
+            where(chosen == k, a * tau[0] + b * tau[1] + c * tau[2], old)
+            for (a, b, c), old in zip(rows, found, strict=True)
+        ]
+    return found

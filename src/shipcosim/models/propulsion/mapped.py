@@ -1,0 +1,141 @@
+"""Thrusters by a measured map: thrust over whatever commands them (per cent, pulse width, speed, pitch), with a lag."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from shipcosim.models.core.interpolation import interp
+from shipcosim.models.core.kinematics import load_at, velocity_at
+from shipcosim.models.core.maths import Arithmetic, clip, cos, exp, maximum, sin, where
+from shipcosim.models.core.parameters import quantity, required, required_table
+from shipcosim.models.core.tables import columns
+from shipcosim.models.propulsion.thruster import LOSS, Loads
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapParameters:
+    """A thruster that does not turn, whose thrust at no speed was measured over its command."""
+
+    x: float = required("m", "position forward", share=0.02)
+    y: float = required("m", "position to starboard", share=0.02)
+    direction: float = quantity(0.0, "rad", "direction of positive thrust, clockwise from the bow", "ahead")
+    thrust_table: str = required_table(
+        ("command [1]", "thrust [N]"),
+        "rows 'command thrust': thrust at no speed over the command in any unit, both increasing; constant beyond",
+    )
+    time_constant: float = quantity(0.0, "s", "time constant of the thrust", "neutral: at once", minimum=0.0)
+    speed_loss: float = quantity(
+        0.0, "s/m", "share of the thrust that each m/s of advance in its direction takes", "neutral", minimum=0.0
+    )
+    thrust_loss: float = quantity(0.0, "1", LOSS, "neutral; 5 % of the map", tolerance=0.05, maximum=1.0)
+
+
+def mapped_thrust(command: Arithmetic, *, thruster: MapParameters) -> Arithmetic:
+    """Thrust at no speed that a command gives once the lag is over.
+
+    Parameters
+    ----------
+    command : float or (...) array or tensor
+        In the unit of the map. [1]
+    thruster : MapParameters
+        The thruster.
+
+    Returns
+    -------
+    like command
+        Thrust. [N]
+
+    Raises
+    ------
+    ValueError
+        The map is not one of two columns that both increase.
+    """
+    return interp(command, *_map(thruster.thrust_table))
+
+
+def within_map(thrust: Arithmetic, *, thruster: MapParameters) -> Arithmetic:
+    """The thrust nearest to a wanted one that the map has.
+
+    Parameters
+    ----------
+    thrust : float or (...) array or tensor
+        Wanted. [N]
+    thruster : MapParameters
+        The thruster.
+
+    Returns
+    -------
+    like thrust
+        Thrust. [N]
+    """
+    _, thrusts = _map(thruster.thrust_table)
+    return clip(thrust, thrusts[0], thrusts[-1])
+
+
+def mapped_step(thrust: Arithmetic, wanted: Arithmetic, h: float, *, thruster: MapParameters) -> Arithmetic:
+    """Thrust at no speed a step later: a lag of first order, integrated exactly.
+
+    Parameters
+    ----------
+    thrust, wanted : float or (...) array or tensor
+        At the start; what is wanted over the step. [N, N]
+    h : float
+        Step. [s]
+    thruster : MapParameters
+        The thruster.
+
+    Returns
+    -------
+    like thrust
+        Thrust. [N]
+    """
+    if thruster.time_constant == 0.0:
+        return wanted
+    return wanted + (thrust - wanted) * exp(0.0 * thrust - h / thruster.time_constant)
+
+
+def mapped_loads(
+    thrust: Arithmetic, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, thruster: MapParameters
+) -> Loads:
+    """Load on the ship, T max(0, 1 - speed_loss u_a sign(T)) with the speed u_a of the water along the thruster.
+
+    Parameters
+    ----------
+    thrust : float or (...) array or tensor
+        At no speed. [N]
+    u_r, v_r, r : like thrust
+        Velocity of the ship through the water, yaw rate. [m/s, m/s, rad/s]
+    thruster : MapParameters
+        The thruster.
+
+    Returns
+    -------
+    Loads
+        Forces and load.
+
+    References
+    ----------
+    As `fixed.fixed_loads`: a straight line, assumed.
+
+    Examples
+    --------
+    >>> boat = MapParameters(x=-0.4, y=0.3, thrust_table="1100 -28; 1500 0; 1900 55")
+    >>> mapped_loads(mapped_thrust(1700.0, thruster=boat), 0.0, 0.0, 0.0, thruster=boat).tau_X
+    27.5
+    """
+    p = thruster
+    c, s = cos(p.direction), sin(p.direction)
+    u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
+    along = c * u_a + s * v_a
+    kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)
+    thrust = (1.0 - p.thrust_loss) * thrust * kept
+    return Loads(thrust, 0.0 * thrust, *load_at(p.x, p.y, c * thrust, s * thrust))
+
+
+@lru_cache(maxsize=16)
+def _map(text):
+    """Columns of the map."""
+    commands, thrusts = columns(text, 2)
+    for number, (before, after) in enumerate(zip(thrusts, thrusts[1:], strict=False), 2):
+        if after < before:
+            raise ValueError(f"table, row {number}: {after:g} N after {before:g} N. The thrust must not fall.")
+    return commands, thrusts

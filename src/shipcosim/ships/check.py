@@ -1,0 +1,181 @@
+"""What is impossible of a ship as her file describes her, and what is odd."""
+
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ships.control import mass_matrix, why_no_dp
+from shipcosim.ships.described import Described, describe, file_of, read_file
+from shipcosim.ships.estimates.propulsion import MOST_KT, most_thrust
+from shipcosim.ships.file import number
+from shipcosim.ships.folder import read_ship
+from shipcosim.ships.numbers import ESTIMATED
+from shipcosim.ships.system import check_numbers
+from shipcosim.ships.thrusters import Unit
+
+BLOCK = (0.2, 1.0)
+"""Block coefficients of ships."""
+OWN_BLOCK = 0.05
+"""Share by which the displacement may differ from the block coefficient's."""
+SLENDER, SHALLOW = (1.0, 20.0), (0.3, 15.0)
+"""Length over breadth, breadth over draught."""
+GYRADIUS = (0.15, 0.40)
+BEYOND = 0.6
+"""Share of the length or breadth from the middle, beyond which a thruster hangs outside of the ship."""
+DRIVING = ("X_u", "X_uu", "Y_v", "Y_modvv", "N_r", "N_modrr")
+"""Damping coefficients that are negative in every ship."""
+
+
+def check_ship(path: str) -> list[Problem]:
+    """Everything that is missing, cannot be read or cannot be, of a ship file.
+
+    Parameters
+    ----------
+    path : str
+        The file, or the folder around a ``ship.toml``.
+
+    Returns
+    -------
+    list of Problem
+        Errors, and remarks on what is odd.
+    """
+    file = file_of(path)
+    try:
+        said = read_file(file)
+        if said.particulars is None and not said.thrusters:
+            read_ship(file.parent)
+            return []
+        ship = describe(file, said)
+    except ShipcosimError as error:
+        return error.problems
+    return [*check_numbers(ship), *_hull(ship), *_matrix(ship), *_thrusters(ship), *_remarks(ship)]
+
+
+def estimated(ship: Described) -> list[tuple[str, str, str, str]]:
+    """What is estimated: name, value, tolerance, source.
+
+    Parameters
+    ----------
+    ship : Described
+    """
+    rows = []
+    for component, entries in ship.entries.items():
+        for name, entry in entries.items():
+            if entry.origin.startswith(ESTIMATED):
+                value = f"{entry.value:.4g} {entry.unit}".removesuffix(" 1") if not entry.columns else "table"
+                tolerance = f"{entry.tolerance:.2g}" if entry.tolerance else ""
+                rows.append((f"{component}.{name}", value, tolerance, entry.origin.removeprefix(ESTIMATED)))
+    return rows
+
+
+def _hull(ship: Described) -> Iterator[Problem]:
+    form, p, m = ship.form, ship.file.particulars, ship.file.mass
+    assert p is not None
+    where = f"{ship.path}: particulars"
+    box = form.density * form.hulls * form.length * form.breadth * form.draught
+    mass = float(ship.vessel["mass"].value)
+    dimensions = f"{form.length:g} m x {form.breadth:g} m x {form.draught:g} m"
+    dimensions = f"{form.hulls} hulls of {dimensions}" if form.hulls > 1 else dimensions
+    if not BLOCK[0] <= mass / box <= BLOCK[1]:
+        remedy = f"That is a block coefficient of {mass / box:.2g}; ships have {BLOCK[0]:g} to {BLOCK[1]:g}: "
+        remedy += f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
+        yield Problem(f"{ship.path}: mass", f"{_mass(mass)} do not fit {dimensions}.", remedy)
+    elif p.block_coefficient is not None and abs(mass / box / form.block - 1.0) > OWN_BLOCK:
+        found = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
+        yield Problem(f"{ship.path}: mass", found, f"The mass is that of {mass / box:.3f}; leave one of them out.")
+    if m.mass and p.displacement and abs(m.mass.value / p.displacement.value - 1.0) > OWN_BLOCK:
+        found = f"the mass is {_mass(m.mass.value)}, the displacement {_mass(p.displacement.value)}."
+        yield Problem(f"{ship.path}: mass", found, "A ship that floats displaces her mass; give one of them.")
+    breadth = number(p.breadth)
+    for name, ratio, (low, high) in (
+        ("length over breadth", form.length / breadth, SLENDER),
+        ("breadth over draught", form.breadth / form.draught, SHALLOW),
+    ):
+        if not low <= ratio <= high:
+            yield Problem(where, f"{name} is {ratio:.3g}.", f"Ships have {low:g} to {high:g}; is a unit missing?")
+    if form.hulls > 1 and form.hulls * form.breadth > breadth:
+        found = f"{form.hulls} hulls of {form.breadth:g} m are broader than the ship, {breadth:g} m."
+        yield Problem(where, found, "hull_breadth is that of one hull.")
+
+
+def _matrix(ship: Described) -> Iterator[Problem]:
+    value = {name: float(e.value) for name, e in ship.vessel.items() if not e.columns}
+    where, length, mass = f"{ship.path}: mass", ship.form.length, value["mass"]
+    matrix = mass_matrix(ship)
+    least = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min())
+    diagonal = np.diag(matrix)
+    if not (diagonal > 0.0).all() or least <= 0.0:
+        names = [f"{n} {d:.3g}" for n, d in zip(("surge", "sway", "yaw"), diagonal, strict=True)]
+        remedy = "Mass with added mass must be positive, and sway_yaw squared less than sway times yaw: "
+        remedy += f"at most {np.sqrt(max(diagonal[1] * diagonal[2], 0.0)):.3g} kg.m."
+        found = f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}."
+        yield Problem(where, found, remedy)
+    own = value["inertia_yaw"] - mass * value.get("centre_of_gravity_x", 0.0) ** 2
+    gyradius = np.sqrt(max(own, 0.0) / mass) / length
+    if not GYRADIUS[0] <= gyradius <= GYRADIUS[1]:
+        low, high = (mass * (share * length) ** 2 for share in GYRADIUS)
+        remedy = f"Ships have {GYRADIUS[0]:g} to {GYRADIUS[1]:g}, which is {low:.3g} to {high:.3g} kg.m2."
+        yield Problem(where, f"the yaw inertia is that of a gyration radius of {gyradius:.2g} lengths.", remedy)
+    if abs(value.get("centre_of_gravity_x", 0.0)) > 0.2 * length:
+        found = f"the centre of gravity lies {value['centre_of_gravity_x']:g} m forward of midships."
+        yield Problem(where, found, f"Of {length:g} m of length it lies within a tenth or so of them.")
+    for name in DRIVING:
+        if value.get(name, 0.0) > 0.0:
+            found = f"{name} is {value[name]:g}: the water drives her."
+            yield Problem(f"{ship.path}: hull", found, "Damping coefficients are negative.")
+
+
+def _thrusters(ship: Described) -> Iterator[Problem]:
+    p = ship.file.particulars
+    assert p is not None
+    length, breadth, draught = ship.form.length, number(p.breadth), ship.form.draught
+    for unit in ship.units:
+        where = f"{ship.path}: thruster {unit.name}"
+        if abs(unit.x) > BEYOND * length:
+            found = f"x is {unit.x:g} m, outside of the hull of {length:g} m."
+            yield Problem(where, found, f"x is forward of midships: {-0.5 * length:g} to {0.5 * length:g} m.")
+        if abs(unit.y) > BEYOND * breadth:
+            found = f"y is {unit.y:g} m, outside of the hull of {breadth:g} m."
+            yield Problem(where, found, f"y is to starboard: {-0.5 * breadth:g} to {0.5 * breadth:g} m.")
+        yield from _thrust(unit, where, draught)
+
+
+def _thrust(unit: Unit, where: str, draught: float) -> Iterator[Problem]:
+    """Thrust that no such propeller gives."""
+    screw = unit.screw
+    if screw is None:
+        return
+    most = most_thrust(screw.kind, screw.diameter, screw.power, screw.density)
+    if screw.thrust > 1.02 * most:
+        found = f"{screw.thrust / 1000:.4g} kN of {screw.power / 1000:.4g} kW and {screw.diameter:g} m."
+        yield Problem(where, found, f"No {screw.kind} propeller of that power gives more than {most / 1000:.4g} kN.")
+    if screw.thrust_coefficient > MOST_KT:
+        found = f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
+        found += f"{screw.thrust_coefficient:.2g}."
+        yield Problem(where, found, f"Propellers have at most {MOST_KT:g}: is the speed, or the diameter, right?")
+    if screw.diameter > 1.2 * draught:
+        found = f"the propeller of {screw.diameter:g} m does not fit under a ship of {draught:g} m of draught."
+        yield Problem(where, found, "Diameter and draught are in m; is a unit missing?")
+    tip = pi * screw.diameter * screw.rpm / 60.0
+    if tip > 80.0:
+        found = f"the tips run at {tip:.0f} m/s."
+        yield Problem(where, found, "Propellers stay below some 50 m/s: is rpm that of the motor?", "remark")
+
+
+def _remarks(ship: Described) -> Iterator[Problem]:
+    form, p = ship.form, ship.file.particulars
+    assert p is not None
+    ahead = sum(u.most for u in ship.units if u.kind != "tunnel" and abs(u.direction) < 0.5 * pi)
+    drag = float(ship.vessel["X_uu"].value) if "X_uu" in ship.vessel else 0.0
+    if p.service_speed and ahead and -drag * form.speed**2 > ahead:
+        found = f"at {form.speed:.3g} m/s she has a resistance of {-drag * form.speed**2 / 1000:.4g} kN, "
+        found += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
+        yield Problem(f"{ship.path}: resistance", found, "She does not reach her service speed.", "remark")
+    if why := why_no_dp(ship):
+        yield Problem(f"{ship.path}: thrusters", f"there is no DP system: {why}.", "", "remark")
+    count = len(estimated(ship))
+    if count:
+        found = f"{count} numbers are estimated."
+        yield Problem(str(ship.path), found, "`shipcosim check --json` lists them with source and tolerance.", "remark")

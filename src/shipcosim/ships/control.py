@@ -1,0 +1,122 @@
+"""The DP of a described ship: parameters of its components, or why her thrusters do not allow one."""
+
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.errors import Problem
+from shipcosim.models.allocation.fixed_angles import UNITS
+from shipcosim.ships.described import Described
+from shipcosim.ships.entries import Entry
+from shipcosim.ships.estimates import control
+from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.file import number
+from shipcosim.ships.numbers import Numbers
+from shipcosim.ships.thrusters import Unit
+
+COMPONENTS = {
+    "sensors": "sensors",
+    "reference": "reference",
+    "controller": "dp_controller",
+    "allocator": "fixed_angle_allocator",
+}
+"""Component: the FMU that it is."""
+WORTH = 1e-3
+"""Thrust over the ship's weight, below which it holds nothing. [1]"""
+
+
+def why_no_dp(ship: Described) -> str:
+    """Why the thrusters allow no DP; empty where they do.
+
+    Parameters
+    ----------
+    ship : Described
+    """
+    if len(ship.units) > UNITS:
+        return f"the allocator takes {UNITS} thrusters, she has {len(ship.units)}"
+    if not (used := units_for_dp(ship)):
+        return "no thruster takes a thrust command with known limits"
+    X, Y, N = _loop(ship, used).reach
+    weak = [name for name, load in (("surge", X), ("sway", Y), ("yaw", N)) if load <= 0.0]
+    return f"her thrusters give no force in {' and '.join(weak)} alone" if weak else ""
+
+
+def units_for_dp(ship: Described) -> list[Unit]:
+    """Thrusters that the DP uses: those that take a commanded thrust."""
+    return [unit for unit in ship.units if unit.most > 0.0 and unit.kind != "rudder"]
+
+
+def mass_matrix(ship: Described) -> np.ndarray:
+    """Mass matrix with added mass. [kg, kg.m, kg.m2]
+
+    Parameters
+    ----------
+    ship : Described
+
+    Returns
+    -------
+    (3, 3) array
+    """
+    value = {name: float(entry.value) for name, entry in ship.vessel.items() if isinstance(entry.value, (int, float))}
+    m, static = value["mass"], value["mass"] * value.get("centre_of_gravity_x", 0.0)
+    return np.array(
+        [
+            [m + value["A11"], 0.0, 0.0],
+            [0.0, m + value["A22"], static + value["A26"]],
+            [0.0, static + value["A62"], value["inertia_yaw"] + value["A66"]],
+        ]
+    )
+
+
+def dp_entries(ship: Described) -> dict[str, dict[str, Entry]]:
+    """Parameters of sensors, reference, controller and allocator.
+
+    Parameters
+    ----------
+    ship : Described
+        One whose thrusters allow a DP.
+
+    Returns
+    -------
+    dict of dict of Entry
+        By component and parameter.
+    """
+    used = units_for_dp(ship)
+    loop, length = _loop(ship, used), ship.form.length
+    own = {name: _numbers(fmu, ship.path) for name, fmu in COMPONENTS.items()}
+    own["sensors"].estimates(control.sensors(length))
+    own["reference"].estimates(control.reference(loop))
+    given = ship.file.control
+    for name in ("surge_frequency", "sway_frequency"):
+        own["controller"].give(name, given.position_frequency)
+    own["controller"].give("yaw_frequency", given.heading_frequency)
+    own["controller"].give("position_error_max", given.position_error_max)
+    own["controller"].estimates(control.controller(loop) | control.mast(length))
+    own["controller"].entries["wind_table"] = ship.vessel["wind_table"]
+    own["allocator"].estimates(_allocation(used))
+    return {name: numbers.entries for name, numbers in own.items()}
+
+
+def _numbers(fmu: str, path: Path) -> Numbers:
+    problems: list[Problem] = []
+    return Numbers(fmu, f"{path}: control", path.parent, "", problems)
+
+
+def _loop(ship: Described, used: list[Unit]) -> control.Loop:
+    effects = np.array([unit.effect for unit in used]).T
+    least, most = np.array([unit.least for unit in used]), np.array([unit.most for unit in used])
+    reach = control.reach_of(effects, least, most)
+    floor = WORTH * 0.01 * number(ship.file.mass.mass, ship.form.mass)
+    reach = tuple(0.0 if load < floor * lever else load for load, lever in zip(reach, (1.0, 1.0, 0.1), strict=True))
+    return control.Loop(length=ship.form.length, mass=mass_matrix(ship), reach=reach)
+
+
+def _allocation(used: list[Unit]) -> dict[str, Estimate]:
+    """Places, directions and limits of the thrusters as the allocator knows them."""
+    found = {}
+    for i, unit in enumerate(used, 1):
+        places = {"x": unit.x, "y": unit.y, "azimuth": unit.direction, "thrust_rate": unit.rate}
+        places |= {"thrust_min": unit.least, "thrust_max": unit.most}
+        found |= {f"{name}_{i}": Estimate(value, 0.0, f"thruster {unit.name}") for name, value in places.items()}
+    lever = max(max(abs(unit.effect[2]) for unit in used), 0.1)
+    return found | {"yaw_lever": Estimate(lever, 0.0, "largest lever of a thruster")}

@@ -1,0 +1,190 @@
+"""A ship file read: its records, its hull, its thrusters; and what cannot be read of it."""
+
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ships.entries import Entry
+from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.file import KINDS, ShipFile
+from shipcosim.ships.thrusters import Unit, units_of_ship
+from shipcosim.ships.vessel import form_of, vessel_of
+
+LONGEST = 200_000
+"""Characters of a ship file."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Described:
+    """A ship by her file.
+
+    Attributes
+    ----------
+    name : str
+        Of the file, or of the folder around a ``ship.toml``.
+    path : Path
+        The file.
+    file : ShipFile
+        What it says.
+    form : Form
+        Her main particulars.
+    vessel : dict of str to Entry
+        Parameters of her hull, given or estimated.
+    units : list of Unit
+        Her thrusters.
+    """
+
+    name: str
+    path: Path
+    file: ShipFile
+    form: Form
+    vessel: dict[str, Entry]
+    units: list[Unit]
+
+    @property
+    def entries(self) -> dict[str, dict[str, Entry]]:
+        """Parameters by component."""
+        return {"vessel": self.vessel} | {unit.name: unit.entries for unit in self.units}
+
+
+def file_of(ship: str | Path) -> Path:
+    """The ship file of a path: itself, or ``ship.toml`` in a folder."""
+    path = Path(ship)
+    return path / "ship.toml" if path.is_dir() else path
+
+
+def is_ship_file(path: Path) -> bool:
+    """Whether a TOML file describes a ship: it has particulars, thrusters or the name ``ship.toml``."""
+    if path.name == "ship.toml":
+        return True
+    try:
+        said = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return "particulars" in said or "thrusters" in said
+
+
+def read_file(path: Path) -> ShipFile:
+    """Records of a ship file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that cannot be read, each with what would be right.
+    """
+    said = _toml(path)
+    try:
+        return ShipFile.model_validate(said)
+    except ValidationError as error:
+        raise ShipcosimError([_problem(path, said, one) for one in error.errors()]) from None
+
+
+def describe(path: str | Path, file: ShipFile | None = None) -> Described:
+    """A ship with all parameters of her hull and her thrusters, what is not given estimated.
+
+    Parameters
+    ----------
+    path : path
+        Her file, or the folder around a ``ship.toml``.
+    file : ShipFile, optional
+        What it says, where it is read already.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is missing or cannot be read.
+    """
+    path = file_of(path)
+    said, problems = read_file(path) if file is None else file, []
+    form = form_of(said, str(path), problems)
+    names = [one.name for one in said.thrusters]
+    if twice := sorted({name for name in names if names.count(name) > 1 or name in ("vessel", "environment")}):
+        problems.append(Problem(f"{path}: thrusters", f"the name '{twice[0]}' is taken.", "Each has a name of its own."))
+    if not names:
+        remedy = f"Add a [[thrusters]] with name, kind ({', '.join(KINDS)}), x and y."
+        problems.append(Problem(f"{path}: thrusters", "she has none.", remedy))
+    if form is None:
+        raise ShipcosimError(problems)
+    vessel = vessel_of(said, form, path, problems)
+    units = units_of_ship(said.thrusters, form, said.source, path, problems)
+    if problems:
+        raise ShipcosimError(problems)
+    name = path.parent.name if path.name == "ship.toml" else path.stem
+    return Described(name=name, path=path, file=said, form=form, vessel=vessel, units=units)
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    try:
+        text = path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror}.")) from None
+    except UnicodeDecodeError:
+        raise ShipcosimError(Problem(str(path), "is not UTF-8 text.", "Save the file in UTF-8.")) from None
+    if len(text) > LONGEST:
+        raise ShipcosimError(Problem(str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."))
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        line = re.search(r" \(at line (\d+), column \d+\)", str(error))
+        where = f"{path}, line {line[1]}" if line else str(path)
+        said = str(error).replace(line[0], "") if line else "brackets are nested too deep"
+        raise ShipcosimError(Problem(where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes.")) from None
+
+
+def _problem(path: Path, said: dict[str, Any], finding: Any) -> Problem:
+    """A finding of pydantic in our words."""
+    keys, kind = list(finding["loc"]), finding["type"]
+    if keys[:1] == ["thrusters"] and len(keys) > 1:
+        return _of_thruster(path, said, keys, finding)
+    last, record = str(keys[-1]), ShipFile.model_fields
+    where = f"{path}: {'.'.join(map(str, keys[:-1] if kind == 'extra_forbidden' else keys))}".rstrip(": ")
+    if kind == "extra_forbidden":
+        known = record if len(keys) == 1 else type(_default(keys[0])).model_fields
+        return Problem(where, f"unknown key '{last}'.", suggestion(last, known))
+    return Problem(where, *_words(finding))
+
+
+def _default(section: Any) -> Any:
+    """The record of a section, empty."""
+    from shipcosim.ships.file import Particulars
+
+    return Particulars() if section == "particulars" else ShipFile.model_fields[str(section)].default
+
+
+def _of_thruster(path: Path, said: dict[str, Any], keys: list, finding: Any) -> Problem:
+    """A finding in a thruster, which is called by its name."""
+    listed = said["thrusters"] if isinstance(said.get("thrusters"), list) else []
+    one = listed[keys[1]] if isinstance(keys[1], int) and keys[1] < len(listed) else {}
+    name = one.get("name", keys[1] + 1 if isinstance(keys[1], int) else "") if isinstance(one, dict) else ""
+    kind, where = finding["type"], f"{path}: thruster {name}"
+    if kind.startswith("union_tag"):
+        found = one.get("kind") if isinstance(one, dict) else None
+        if found is None:
+            return Problem(where, "nothing says its kind.", f"There is: {', '.join(KINDS)}.")
+        return Problem(where, f"kind = {found!r}.", suggestion(str(found), KINDS))
+    last = str(keys[-1])
+    if kind == "extra_forbidden":
+        return Problem(where, f"unknown key '{last}'.", suggestion(last, KINDS[str(keys[2])].model_fields))
+    if kind == "string_pattern_mismatch":
+        return Problem(where, f"the name is {finding['input']!r}.", "A name has letters, digits and _, a letter first.")
+    return Problem(f"{where}, {last}" if len(keys) > 3 else where, *_words(finding))
+
+
+def _words(finding: Any) -> tuple[str, str]:
+    """What was found, and what would be right."""
+    if finding["type"] == "missing":
+        return f"nothing says {finding['loc'][-1]}.", ""
+    if finding["type"] == "value_error":
+        return str(finding["ctx"]["error"]), ""
+    shown = repr(finding["input"])
+    return f"found {shown[:60]}.", finding["msg"].replace("Input", "It", 1).rstrip(".") + "."

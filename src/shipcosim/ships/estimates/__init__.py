@@ -1,0 +1,1 @@
+"""What is not known of a ship, from published formulae, each with its source and a tolerance."""

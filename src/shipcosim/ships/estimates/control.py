@@ -1,0 +1,234 @@
+"""A DP loop for any ship: one tuned loop, made slower or quicker with her size, within what her thrusters can do.
+
+The rule. All natural frequencies go with the root of the length, as ship motions do (Froude): with s = sqrt(33.9 m/L)
+the tuned loop of docs/dp-loop.md has s times its frequencies, time constants over s. It is made slower where a metre of
+error would ask for more than a fifth of the weakest thrust. The observer's bandwidth follows: intensities of velocity
+disturbance grow with the fourth power of s, of the bias' drift with the sixth. Noise, rates and latencies of the
+sensors are those of usual DP sensors whatever the ship; s is at most 1.5, beyond which they leave no margin.
+"""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from scipy.optimize import linprog
+
+from shipcosim.ships.estimates.estimate import Estimate
+
+TUNED_LENGTH, MOST_PACE, SHARE = 33.9, 1.5, 0.2
+TUNED = {"position": 0.0684, "heading": 0.101, "reference": pi / 60.0}  # rad/s
+RULE = "rule of docs/your-own-ship.md"
+DAMPING = 0.15
+"""Damping that the controller assumes over mass and natural frequency. [1]"""
+SENSORS = {
+    "period": 0.1,
+    "heading_latency": 0.1,
+    "position_period": 0.2,
+    "position_latency": 0.3,
+    "wind_period": 1.0,
+    "wind_latency": 0.5,
+    "position_drift_std": 0.1,
+    "position_drift_time": 240.0,
+    "position_noise_std": 0.2,
+    "velocity_noise_std": 0.02,
+    "heading_drift_std": 0.1 * pi / 180.0,
+    "heading_drift_time": 60.0,
+    "heading_noise_std": 0.1 * pi / 180.0,
+    "yaw_rate_noise_std": 0.05 * pi / 180.0,
+    "wind_average_time": 3.0,
+    "wind_speed_noise": 0.02,
+    "wind_from_noise_std": pi / 180.0,
+}
+"""Usual DP sensors: Skulstad 2021, paper II, Table I, and telegrams' rates; assumed."""
+OBSERVER = {
+    "sample_period": 0.1,
+    "position_period": 0.2,
+    "heading_period": 0.1,
+    "position_delay": 0.4,
+    "heading_delay": 0.2,
+    "position_noise": 0.12,
+    "heading_noise": 0.1 * pi / 180.0,
+    "velocity_noise": 0.012,
+    "rate_noise": 0.05 * pi / 180.0,
+    "wave_frequency": 1.1,
+    "wave_frequency_min": 0.4,
+    "wave_frequency_max": 2.0,
+    "wave_peak_ratio": 0.96,
+    "full_frequency": 1.1,
+    "wave_time": 200.0,
+    "wave_damping": 0.08,
+    "wave_motion": 0.035,
+    "wave_yaw": 0.00239,
+}
+"""Of the tuned loop, docs/dp-loop.md."""
+DISTURBANCES = {
+    "velocity_disturbance": (5.54e-5, 4),
+    "rate_disturbance": (2.34e-7, 4),
+    "bias_drift": (1.93e-7, 6),
+    "bias_drift_yaw": (3.98e-10, 6),
+}
+"""Intensity in the tuned loop, and the power of the pace with which it grows."""
+FILTERS = {"wind_filter_time": 0.7, "force_filter_time": 1.19, "moment_filter_time": 1.23}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loop:
+    """What the rule needs of a ship.
+
+    Attributes
+    ----------
+    length : float
+        [m]
+    mass : (3, 3) array
+        With added mass. [kg, kg.m, kg.m2]
+    reach : tuple of three floats
+        Largest surge and sway force and yaw moment to either side that the thrusters give alone. [N, N, N.m]
+    """
+
+    length: float
+    mass: np.ndarray
+    reach: tuple[float, float, float]
+
+
+def reach_of(effects: np.ndarray, least: np.ndarray, most: np.ndarray) -> tuple[float, float, float]:
+    """Largest force forward or astern, to a side, and yaw moment, each alone and to the weaker side.
+
+    Parameters
+    ----------
+    effects : (3, n) array
+        Load of one newton of each thruster. [1, 1, m]
+    least, most : (n,) array
+        Limits of their thrust. [N]
+
+    Returns
+    -------
+    tuple of three floats
+        0 where the thrusters cannot give it without the others. [N, N, N.m]
+    """
+    found = []
+    for axis in range(3):
+        others = effects[[i for i in range(3) if i != axis]]
+        scale = np.maximum(np.abs(others).max(axis=1, keepdims=True), 1e-9)
+        sides = []
+        for sign in (1.0, -1.0):
+            bounds = list(zip(least, most, strict=True))
+            best = linprog(-sign * effects[axis], A_eq=others / scale, b_eq=np.zeros(2), bounds=bounds)
+            sides.append(-float(best.fun) if best.success else 0.0)
+        found.append(max(min(sides), 0.0))
+    return found[0], found[1], found[2]
+
+
+def pace_of(loop: Loop) -> tuple[float, float]:
+    """Frequencies of position and heading over those of the tuned loop.
+
+    Parameters
+    ----------
+    loop : Loop
+        The ship.
+
+    Returns
+    -------
+    tuple of two floats
+        [1, 1]
+    """
+    by_size = min(sqrt(TUNED_LENGTH / loop.length), MOST_PACE)
+    mass, force = max(loop.mass[0, 0], loop.mass[1, 1]), min(loop.reach[:2])
+    by_thrust = sqrt(SHARE * force / mass) / TUNED["position"]
+    turn = sqrt(SHARE * loop.reach[2] / (loop.mass[2, 2] * 5.0 * pi / 180.0)) / TUNED["heading"]
+    return min(by_size, by_thrust), min(by_size, turn)
+
+
+def controller(loop: Loop) -> dict[str, Estimate]:
+    """Model, observer and law of the DP controller.
+
+    Parameters
+    ----------
+    loop : Loop
+        The ship.
+
+    Returns
+    -------
+    dict of str to Estimate
+        Parameters of the controller, without its wind table and mast.
+    """
+    position, heading = pace_of(loop)
+    m = loop.mass
+    stiff = TUNED["position"] * position, TUNED["heading"] * heading
+    error = SHARE * min(loop.reach[:2]) / (max(m[0, 0], m[1, 1]) * stiff[0] ** 2)
+    values = {
+        "mass_surge": m[0, 0],
+        "mass_sway": m[1, 1],
+        "mass_sway_yaw": m[1, 2],
+        "mass_yaw": m[2, 2],
+        "damping_surge": DAMPING * m[0, 0] * stiff[0],
+        "damping_sway": DAMPING * m[1, 1] * stiff[0],
+        "damping_yaw": DAMPING * m[2, 2] * stiff[1],
+        "surge_frequency": stiff[0],
+        "sway_frequency": stiff[0],
+        "yaw_frequency": stiff[1],
+        "damping_ratio": 1.0,
+        "position_error_max": min(max(error, 1.0), max(0.1 * loop.length, 1.0)),
+        "heading_error_max": 20.0 * pi / 180.0,
+        "wind_share": 1.0,
+    }
+    values |= {name: time / min(position, heading, 1.0) for name, time in FILTERS.items()}
+    for name, (value, power) in DISTURBANCES.items():
+        values[name] = value * (heading if name in ("rate_disturbance", "bias_drift_yaw") else position) ** power
+    found = {name: Estimate(float(value), 0.0, RULE) for name, value in values.items()}
+    return found | {name: Estimate(value, 0.0, "docs/dp-loop.md") for name, value in OBSERVER.items()}
+
+
+def reference(loop: Loop) -> dict[str, Estimate]:
+    """How quickly the reference follows its setpoint, and how fast it may be.
+
+    Parameters
+    ----------
+    loop : Loop
+        The ship.
+
+    Returns
+    -------
+    dict of str to Estimate
+        Parameters of the reference model.
+    """
+    position, heading = pace_of(loop)
+    speed = 0.3 * position * TUNED["reference"] * loop.length
+    return {
+        "position_frequency": Estimate(TUNED["reference"] * position, 0.0, RULE),
+        "heading_frequency": Estimate(TUNED["reference"] * heading, 0.0, RULE),
+        "speed_max": Estimate(max(speed, 0.2), 0.0, RULE),
+    }
+
+
+def sensors(length: float) -> dict[str, Estimate]:
+    """Usual DP sensors, and a mast before midships.
+
+    Parameters
+    ----------
+    length : float
+        Of the ship. [m]
+
+    Returns
+    -------
+    dict of str to Estimate
+        Parameters of the sensors.
+    """
+    found = {name: Estimate(value, 0.0, "usual DP sensors; assumed") for name, value in SENSORS.items()}
+    return found | mast(length)
+
+
+def mast(length: float) -> dict[str, Estimate]:
+    """Where the anemometer stands.
+
+    Parameters
+    ----------
+    length : float
+        Of the ship. [m]
+
+    Returns
+    -------
+    dict of str to Estimate
+        mast_x, mast_y, mast_height. [m, m, m]
+    """
+    places = {"mast_x": 0.1 * length, "mast_y": 0.0, "mast_height": min(max(0.45 * length, 3.0), 40.0)}
+    return {name: Estimate(value, 0.0, "on the wheelhouse; assumed") for name, value in places.items()}

@@ -1,0 +1,40 @@
+"""A number that a formula gives."""
+
+from typing import NamedTuple
+
+
+class Estimate(NamedTuple):
+    """A number that nobody measured.
+
+    Attributes
+    ----------
+    value : float or str
+        In the unit of the parameter that takes it; a table is a str.
+    tolerance : float
+        Standard deviation, in the same unit.
+    source : str
+        The formula's.
+    """
+
+    value: float | str
+    tolerance: float
+    source: str
+
+
+def within(value: float, share: float, source: str) -> Estimate:
+    """An estimate whose tolerance is a share of its size.
+
+    Parameters
+    ----------
+    value : float
+        In the unit of the parameter.
+    share : float
+        Standard deviation over the size of the value. [1]
+    source : str
+        The formula's.
+
+    Returns
+    -------
+    Estimate
+    """
+    return Estimate(value, share * abs(value), source)

@@ -1,0 +1,164 @@
+"""Added mass, inertia, cross-flow drag and manoeuvring derivatives of a hull from her main particulars.
+
+References
+----------
+Söding, Prediction of ship steering capabilities, Schiffstechnik 29, 1982. Clarke, Gedling and Hine, The application of
+manoeuvring criteria in hull design using linear theory, Trans. RINA 125, 1983. Hoerner, Fluid-Dynamic Drag, 1965, the
+curve over breadth and draught as in Faltinsen, Sea Loads on Ships and Offshore Structures, Cambridge, 1990, ch. 6.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from shipcosim.ships.estimates.estimate import Estimate, within
+
+SODING = "Söding 1982: 2.7 rho V^(5/3)/L^2"
+CLARKE = "Clarke, Gedling and Hine 1983"
+_HOERNER = (
+    (0.0, 0.35, 0.45, 0.50, 0.56, 0.65, 0.83, 1.0, 1.3, 1.65, 2.3, 3.0, 4.0),
+    (1.97, 1.90, 1.79, 1.20, 1.08, 1.00, 0.88, 0.83, 0.76, 0.69, 0.63, 0.59, 0.56),
+)
+"""Half breadth over draught, drag coefficient."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Form:
+    """Main particulars of a hull, or of each of the hulls that she has.
+
+    Attributes
+    ----------
+    length, breadth, draught : float
+        Between perpendiculars; of the waterline of one hull; mean. [m]
+    block : float
+        Block coefficient. [1]
+    hulls : int
+        Number of equal hulls. [1]
+    density : float
+        Of the water. [kg/m3]
+    speed : float
+        Service speed. [m/s]
+    """
+
+    length: float
+    breadth: float
+    draught: float
+    block: float
+    hulls: int
+    density: float
+    speed: float
+
+    @property
+    def volume(self) -> float:
+        """Displaced by all hulls. [m3]"""
+        return self.hulls * self.block * self.length * self.breadth * self.draught
+
+    @property
+    def mass(self) -> float:
+        """Of the displaced water. [kg]"""
+        return self.density * self.volume
+
+
+def added_masses(form: Form) -> dict[str, Estimate]:
+    """Added mass at low frequency; sway is Clarke's, yaw follows from it by strip theory.
+
+    Of two hulls each counts for itself: what one does to the other is left out.
+
+    Parameters
+    ----------
+    form : Form
+        The hull.
+
+    Returns
+    -------
+    dict of str to Estimate
+        A11, A22, A26, A62, A66. [kg, kg, kg.m, kg.m, kg.m2]
+
+    Notes
+    -----
+    The yaw moment has the gyration radius of the strips' added mass: 0.29 L of a box, 0.19 L of a hull with fine ends.
+    Clarke's own formula for it falls below a tenth of that for ships as broad as a third of their length.
+    """
+    L, B, T, rho = form.length, form.breadth, form.draught, form.density
+    volume = form.volume / form.hulls
+    A11 = 2.7 * rho * volume ** (5.0 / 3.0) / L**2
+    sway = 1.0 + 0.16 * form.block * B / T - 5.1 * (B / L) ** 2
+    A22 = 0.5 * rho * L**3 * pi * (T / L) ** 2 * max(sway, 0.3)
+    lever, share = 0.05 * L, form.hulls
+    coupling = Estimate(0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway")
+    return {
+        "A11": Estimate(share * A11, max(0.3 * share * A11, 0.05 * form.mass), f"{SODING}; tolerance 5 % of the mass"),
+        "A22": within(share * A22, 0.4, CLARKE),
+        "A26": coupling,
+        "A62": coupling,
+        "A66": within(share * A22 * (0.23 * L) ** 2, 0.5, f"strips of {CLARKE}'s added mass in sway, gyration 0.23 L"),
+    }
+
+
+def yaw_inertia(mass: float, length: float, centre_x: float) -> Estimate:
+    """Moment of inertia about midships, with a gyration radius of a quarter of the length.
+
+    Parameters
+    ----------
+    mass : float
+        Of the ship. [kg]
+    length : float
+        Between perpendiculars. [m]
+    centre_x : float
+        Centre of gravity forward of midships. [m]
+
+    Returns
+    -------
+    Estimate
+        [kg.m2]
+    """
+    own = mass * (0.25 * length) ** 2
+    return Estimate(own + mass * centre_x**2, 0.12 * own, "gyration radius 0.25 L, Fossen 2021")
+
+
+def cross_flow_drag(form: Form) -> Estimate:
+    """Drag coefficient of the hull in sway, by breadth over draught.
+
+    Parameters
+    ----------
+    form : Form
+        The hull.
+
+    Returns
+    -------
+    Estimate
+        [1]
+
+    Notes
+    -----
+    The tolerance is wide: published values of ships go from 0.6 to 1.5.
+    """
+    return within(float(np.interp(0.5 * form.breadth / form.draught, *_HOERNER)), 0.6, "Hoerner's curve over B/(2T)")
+
+
+def manoeuvring_derivatives(form: Form, sway_mass: float) -> dict[str, Estimate]:
+    """Linear derivatives under way, which hold the added mass' Coriolis load already.
+
+    Parameters
+    ----------
+    form : Form
+        The hull.
+    sway_mass : float
+        Added mass in sway. [kg]
+
+    Returns
+    -------
+    dict of str to Estimate
+        Y_uv, Y_ur, N_uv, N_ur, X_rv; and added_mass_coriolis, 0.
+    """
+    L, B, T, Cb = form.length, form.breadth, form.draught, form.block
+    scale = 0.5 * form.density * form.hulls * pi * (T / L) ** 2
+    return {
+        "added_mass_coriolis": Estimate(0.0, 0.0, f"the derivatives of {CLARKE} hold it"),
+        "Y_uv": within(-scale * L**2 * (1.0 + 0.40 * Cb * B / T), 0.3, CLARKE),
+        "Y_ur": within(scale * L**3 * (0.5 - 2.2 * B / L + 0.08 * B / T), 0.5, CLARKE),
+        "N_uv": within(-scale * L**3 * (0.5 + 2.4 * T / L), 0.3, CLARKE),
+        "N_ur": within(-scale * L**4 * max(0.25 + 0.039 * B / T - 0.56 * B / L, 0.1), 0.3, CLARKE),
+        "X_rv": within(0.7 * sway_mass, 0.3, "0.7 of the added mass in sway; assumed, as MMG derivatives have it"),
+    }

@@ -1,0 +1,155 @@
+"""A number as a ship file gives it: plain, as a text with a unit, or as a table with tolerance and origin."""
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field
+
+from shipcosim.units import conversion, relation, spelled_unit
+
+_AMOUNT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z%°/1][^\s]*)?\s*")
+_KEYS = ("value", "unit", "tolerance", "uncertainty", "origin")
+PLAIN = "given in the ship file"
+
+
+@dataclass(frozen=True)
+class Given:
+    """A number that the ship file gives, in the unit of its key.
+
+    Attributes
+    ----------
+    value : float
+    tolerance : float or None
+        Standard deviation; None where nothing is said of it.
+    origin : str
+        Where it comes from; empty where the file's own source holds.
+    uncertainty : tuple of two floats, or empty
+        Least and largest value of different sources.
+    """
+
+    value: float
+    tolerance: float | None = None
+    origin: str = ""
+    uncertainty: tuple[float, ...] = ()
+
+
+def given_in(unit: str, *, least: float | None = None, most: float | None = None) -> Any:
+    """Type of a key whose number has a unit and bounds.
+
+    Parameters
+    ----------
+    unit : str
+        In which it is kept, and in which a plain number is.
+    least, most : float, optional
+        Bounds of what can be; the least itself is none where it is 0.
+
+    Returns
+    -------
+    type
+        For a pydantic record.
+    """
+
+    def read(found: Any) -> Given | None:
+        if found is None or isinstance(found, Given):
+            return found
+        given = given_in_unit(found, unit)
+        if least is not None and not (given.value > least if least == 0.0 else given.value >= least):
+            more = "greater than 0" if least == 0.0 else f"at least {least:g}"
+            raise ValueError(f"found {_text(found)}. It must be {more} {_shown(unit)}".rstrip() + ".")
+        if most is not None and given.value > most:
+            raise ValueError(f"found {_text(found)}. It must be at most {most:g} {_shown(unit)}".rstrip() + ".")
+        return given
+
+    return Annotated[Given | None, BeforeValidator(read), Field(default=None, description=unit)]
+
+
+def number_in(found: Any, unit: str) -> float:
+    """A number, or a text with a unit, in another unit.
+
+    Parameters
+    ----------
+    found : Any
+        As it stands in the file.
+    unit : str
+        That is wanted.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        With what would be right.
+
+    Examples
+    --------
+    >>> number_in("12 kn", "m/s")
+    6.173333333333334
+    >>> number_in(2650, "kg")
+    2650.0
+    """
+    if isinstance(found, (int, float)) and not isinstance(found, bool):
+        value = float(found)
+    else:
+        match = _AMOUNT.fullmatch(found) if isinstance(found, str) else None
+        if match is None:
+            raise ValueError(f"found {_text(found)}. Write a number in {unit}, or a text such as \"12.5 {unit}\".")
+        value = float(match[1])
+        if match[2]:
+            value = _converted(value, match[2], unit)
+    if not math.isfinite(value) or abs(value) > 1e20:
+        raise ValueError(f"found {_text(found)}. Give a finite number.")
+    return value
+
+
+def _converted(value: float, spelling: str, wanted: str) -> float:
+    source, target = spelled_unit(spelling), spelled_unit(wanted)
+    assert target is not None, wanted
+    if source is None or source.exponents is None:
+        raise ValueError(f"the unit '{spelling}' is not known. Write it as {wanted}, kn, deg, t, kW or the like.")
+    if relation(source, target) == "incompatible" or relation(source, target) == "angle":
+        raise ValueError(f"found a number in {spelling}. It is measured in {wanted}, or a unit that converts to it.")
+    factor, offset = conversion(source, target)
+    return factor * value + offset
+
+
+def given_in_unit(found: Any, unit: str) -> Given:
+    """A number, a text with a unit or a table of a file, in a unit.
+
+    Raises
+    ------
+    ValueError
+        With what would be right.
+    """
+    if not isinstance(found, dict):
+        return Given(number_in(found, unit))
+    if wrong := [key for key in found if key not in _KEYS]:
+        raise ValueError(f"'{wrong[0]}' is no key of a number. It has: {', '.join(_KEYS)}.")
+    if "value" not in found:
+        raise ValueError('\'value\' is missing. Write { value = 1.0, tolerance = 0.1, origin = "drawing" }.')
+    own, origin = found.get("unit", unit), found.get("origin", "")
+    if not isinstance(own, str) or not isinstance(origin, str):
+        raise ValueError("unit and origin are texts in quotes.")
+
+    def number(one: Any) -> float:
+        return number_in(one if isinstance(one, str) else f"{number_in(one, own)!r} {own}", unit)
+
+    tolerance = None if "tolerance" not in found else number(found["tolerance"])
+    if tolerance is not None and tolerance < 0.0:
+        raise ValueError(f"the tolerance is {tolerance:g}. It is a standard deviation, at least 0.")
+    value, both = number(found["value"]), found.get("uncertainty", [])
+    if not isinstance(both, list) or len(both) not in (0, 2):
+        raise ValueError("uncertainty is the least and the largest value, [0.6, 1.5].")
+    return Given(value, tolerance, origin, tuple(map(number, both)))
+
+
+def _text(found: Any) -> str:
+    text = f'"{found}"' if isinstance(found, str) else str(found)
+    return text if len(text) <= 60 else f"{text[:60]}..."
+
+
+def _shown(unit: str) -> str:
+    return "" if unit == "1" else unit

@@ -1,0 +1,94 @@
+"""Parameters of one component, put together: what the ship file gives, else what a formula estimates."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from shipcosim.errors import Problem, suggestion
+from shipcosim.ships.entries import Entry, table_entry
+from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.given import PLAIN, Given, given_in_unit
+from shipcosim.ships.kinds import columns_of, units_of
+
+ESTIMATED = "estimated: "
+"""What the origin of a number begins with that a formula gave."""
+
+
+@dataclass
+class Numbers:
+    """Parameters of a component as they are found.
+
+    Attributes
+    ----------
+    fmu : str
+        FMU that the component is.
+    where : str
+        File and section, for messages.
+    folder : Path
+        Folder of the file, for its tables.
+    source : str
+        Where numbers come from that do not say it themselves.
+    problems : list of Problem
+        Gets what is wrong.
+    entries : dict of str to Entry
+        What was found.
+    """
+
+    fmu: str
+    where: str
+    folder: Path
+    source: str
+    problems: list[Problem]
+    entries: dict[str, Entry] = field(default_factory=dict)
+
+    def give(self, name: str, given: Given | None) -> bool:
+        """Take a number that the file gives; says whether it does."""
+        if given is None:
+            return False
+        origin = given.origin or self.source or PLAIN
+        unit = units_of(self.fmu)[name]
+        more = given.tolerance or 0.0, origin, (), f"{self.where}: {name}", given.uncertainty
+        self.entries[name] = Entry(given.value, unit, *more)
+        return True
+
+    def estimate(self, name: str, estimate: Estimate) -> None:
+        """Take what a formula gives, where nothing is known yet."""
+        if name in self.entries:
+            return
+        unit, columns = units_of(self.fmu)[name], columns_of(self.fmu)[name]
+        origin = f"{ESTIMATED}{estimate.source}"
+        where = f"{self.where}: {name}"
+        self.entries[name] = Entry(estimate.value, unit, estimate.tolerance, origin, columns, where)
+
+    def estimates(self, found: dict[str, Estimate]) -> None:
+        """Take all of these where nothing is known yet."""
+        for name, estimate in found.items():
+            self.estimate(name, estimate)
+
+    def table(self, name: str, file: str) -> None:
+        """Take a table in a CSV file beside the ship file."""
+        entry = table_entry(self.folder / file, f"{self.where}: {name}", self.problems)
+        if entry is not None:
+            self.entries[name] = entry
+
+    def coefficients(self, found: dict[str, Any]) -> None:
+        """Take parameters that the file gives by the names that the FMU has for them."""
+        units = units_of(self.fmu)
+        for name, value in found.items():
+            if name not in units:
+                self.problems.append(Problem(f"{self.where}.{name}", "There is no such number.", _named(name, units)))
+            elif isinstance(value, dict) and "table" in value:
+                self.table(name, str(value["table"]))
+            else:
+                try:
+                    self.give(name, given_in_unit(value, units[name]))
+                except ValueError as error:
+                    self.problems.append(Problem(f"{self.where}.{name}", _sentence(str(error))))
+
+
+def _named(name: str, units: dict[str, str]) -> str:
+    return suggestion(name, units)
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,202 @@
+"""Systems of a described ship: open, for replays and diagnosis, and in a closed DP loop."""
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ships.control import COMPONENTS, dp_entries, units_for_dp, why_no_dp
+from shipcosim.ships.described import Described, describe
+from shipcosim.ships.entries import Entry
+from shipcosim.ships.folder import Ship
+from shipcosim.ships.kinds import FMU_OF, PARAMETERS
+from shipcosim.ships.parameter_set import parameter_values
+from shipcosim.ships.thrusters import Unit
+from shipcosim.ssp import SystemStructure, new, parameter, read, write_ssv
+
+STEP, LONG_RUN = 0.05, 600.0  # s
+MOST_THRUSTERS = 6
+"""Loads that the vessel takes."""
+WEATHER = ("wind_north", "wind_east", "current_north", "current_east")
+SEA = ("wave_height", "wave_period", "wave_from", "wave_peak_enhancement", "wave_seed")
+OUTSIDE = {
+    "true_wind_speed": ("wind_speed", "m/s", "mean wind speed over ground"),
+    "true_wind_from": ("wind_from", "deg", "direction the wind comes from, from true north"),
+    "current_speed": ("current_speed", "m/s", "speed of the current"),
+    "current_to": ("current_to", "deg", "direction the current flows to, from true north"),
+}
+"""Input of an open system: input of the environment, unit, meaning."""
+REPLAYED = ("azimuth_thruster", "tunnel_thruster", "mapped_thruster")
+MEASURED = (
+    *(f"{name}_{i}_meas" for i in (1, 2, 3) for name in "xyuv"),
+    *(f"position_{i}_valid" for i in (1, 2, 3)),
+    *(f"psi_{i}_meas" for i in (1, 2)),
+    *(f"compass_{i}_valid" for i in (1, 2)),
+    *("r_meas", "wind_speed_meas", "wind_from_meas", "wind_valid"),
+    *(f"{name}_time_meas" for name in ("position", "heading", "wind")),
+)
+DESIRED = ("x_d", "y_d", "psi_d", "x_d_dot", "y_d_dot", "r_d", "x_d_ddot", "y_d_ddot", "r_d_dot")
+TRUTH = (*("x", "y", "psi", "u", "v", "r"), *(f"{name}_wave" for name in ("x", "y", "psi", "u", "v", "r")))
+APPARENT = ("apparent_wind_speed", "apparent_wind_from")
+
+
+def make_systems(
+    ship: str | PathLike[str] | Described, out: str | PathLike[str], fmus: Iterable[str | PathLike[str]]
+) -> list[Path]:
+    """Parameter sets and systems of a ship: ``NAME_open``, and ``NAME_dp`` where her thrusters allow a DP.
+
+    Parameters
+    ----------
+    ship : path or Described
+        Her file, or what is known of her.
+    out : path
+        Folder that gets a folder for each system.
+    fmus : iterable of path
+        Folders with the FMUs.
+
+    Returns
+    -------
+    list of Path
+        Folders of the systems.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is missing.
+    """
+    known = ship if isinstance(ship, Described) else describe(Path(ship))
+    folders, made = [Path(folder) for folder in fmus], []
+    if len(known.units) > MOST_THRUSTERS:
+        found = f"she has {len(known.units)}."
+        raise ShipcosimError(Problem(f"{known.path}: thrusters", found, f"A ship has at most {MOST_THRUSTERS}."))
+    kinds = ["open"] if why_no_dp(known) else ["open", "dp"]
+    for kind in kinds:
+        name, entries = f"{known.name}_{kind}", known.entries | (dp_entries(known) if kind == "dp" else {})
+        system, folder = structure(known, kind, folders), Path(out) / name
+        values = list(parameter_values(_as_ship(known, entries), _kinds(known, kind)))
+        if kind == "open":
+            follow = "follows the inputs of the system, not a command"
+            values += [parameter(f"{u.name}.replay", True, None, follow) for u in known.units if u.fmu in REPLAYED]
+        system.write(folder, fmus=False)
+        write_ssv(folder / "resources" / f"{known.name}.ssv", known.name, values)
+        bound = read(folder, fmus=folders)
+        bound.bind(f"resources/{known.name}.ssv")
+        bound.write(folder, fmus=False)
+        made.append(folder)
+    return made
+
+
+def check_numbers(ship: Described) -> list[Problem]:
+    """What the parameters of a ship's components object to: missing, out of bounds, of another unit.
+
+    Parameters
+    ----------
+    ship : Described
+    """
+    try:
+        _as_ship(ship, ship.entries).parameter_set(_kinds(ship, "open"))
+    except ShipcosimError as error:
+        return error.problems
+    return []
+
+
+def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructure:
+    """System of a ship without her numbers.
+
+    Parameters
+    ----------
+    ship : Described
+    kind : str
+        ``"open"`` or ``"dp"``.
+    fmus : iterable of Path
+        Folders with the FMUs.
+
+    Raises
+    ------
+    ShipcosimError
+        If an FMU is missing.
+    """
+    folders = list(fmus)
+    system = new(f"{ship.name}_{kind}")
+    components = {"environment": "environment", "vessel": "vessel"} | {unit.name: unit.fmu for unit in ship.units}
+    components |= COMPONENTS if kind == "dp" else {}
+    with system.changes():
+        for name, fmu in components.items():
+            system.add_component(name, _fmu(fmu, folders))
+    wires = [*_around(ship.units), *(_loop_wires(ship) if kind == "dp" else ())]
+    with system.changes():
+        for source, target in wires:
+            system.connect(source, target)
+        if kind == "open":
+            _open_to_outside(system, ship)
+    system.start_time, system.stop_time, system.step_size = 0.0, LONG_RUN, STEP
+    return system
+
+
+def _fmu(name: str, folders: list[Path]) -> Path:
+    for folder in folders:
+        if (folder / f"{name}.fmu").is_file():
+            return folder / f"{name}.fmu"
+    raise ShipcosimError(Problem(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them."))
+
+
+def _around(units: list[Unit]) -> Iterable[tuple[str, str]]:
+    """Wires between weather, hull and thrusters."""
+    yield from ((f"environment.{name}", f"vessel.{name}") for name in (*WEATHER, *SEA))
+    for number, unit in enumerate(units, 1):
+        yield from ((f"{unit.name}.tau_{axis}", f"vessel.tau_{axis}_{number}") for axis in "XYN")
+        flow = ("u_r",) if unit.fmu == "tunnel_thruster" else ("u_r", "v_r", "r")
+        yield from ((f"vessel.{name}", f"{unit.name}.{name}") for name in flow)
+
+
+def _open_to_outside(system: SystemStructure, ship: Described) -> None:
+    """Inputs of an open system."""
+    for unit in ship.units:
+        for name, unit_of, target, said in _commands(unit, ship):
+            system.add_connector(name, "input", unit=unit_of, description=said)
+            system.connect(name, f"{unit.name}.{target}")
+    for name, (target, unit_of, said) in OUTSIDE.items():
+        system.add_connector(name, "input", unit=unit_of, description=said)
+        system.connect(name, f"environment.{target}")
+
+
+def _commands(unit: Unit, ship: Described) -> Iterable[tuple[str, str | None, str, str]]:
+    """Inputs of a thruster from outside: name, unit, input of the FMU, meaning."""
+    by_thrust = any(one.name == unit.name and getattr(one, "command", "") == "thrust" for one in ship.file.thrusters)
+    if by_thrust:
+        yield f"{unit.name}_thrust", "N", "thrust_in", f"force of thruster {unit.name}"
+    elif unit.kind == "map":
+        yield f"{unit.name}_command", "1", "command_in", f"command of thruster {unit.name}, in the unit of its map"
+    else:
+        yield f"{unit.name}_rpm", "rpm", "rpm_in", f"speed of thruster {unit.name}"
+    if unit.kind == "azimuth":
+        yield f"{unit.name}_azimuth", "deg", "azimuth_in", "direction of positive thrust, clockwise from the bow"
+    if unit.kind == "rudder":
+        yield f"{unit.name}_azimuth", "deg", "azimuth_in", "rudder angle, positive to where it turns the ship to port"
+
+
+def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
+    """Wires of the DP."""
+    yield from ((f"vessel.{name}", f"sensors.{name}") for name in (*TRUTH, *APPARENT))
+    yield from ((f"sensors.{name}", f"controller.{name}") for name in MEASURED)
+    yield from ((f"reference.{name}", f"controller.{name}") for name in DESIRED)
+    for axis in "XYN":
+        yield f"controller.tau_{axis}_cmd", f"allocator.tau_{axis}_cmd"
+        yield f"allocator.tau_{axis}", f"controller.tau_{axis}_allocated"
+    for number, unit in enumerate(units_for_dp(ship), 1):
+        given = "thrust_in" if unit.fmu == "fixed_thruster" else "thrust_cmd"
+        yield f"allocator.thrust_cmd_{number}", f"{unit.name}.{given}"
+        if unit.kind == "azimuth":
+            yield f"allocator.azimuth_cmd_{number}", f"{unit.name}.azimuth_cmd"
+        if unit.fmu != "fixed_thruster":
+            yield f"{unit.name}.available", f"allocator.available_{number}"
+
+
+def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:
+    """Classes of parameters by component."""
+    found = {"vessel": PARAMETERS["vessel"]} | {unit.name: PARAMETERS[FMU_OF[unit.kind]] for unit in ship.units}
+    return found | ({name: PARAMETERS[fmu] for name, fmu in COMPONENTS.items()} if kind == "dp" else {})
+
+
+def _as_ship(ship: Described, entries: Mapping[str, Mapping[str, Entry]]) -> Ship:
+    return Ship(ship.name, ship.file.description, ship.path.parent, (), entries)

@@ -1,0 +1,168 @@
+"""The hull of a ship file as parameters of the vessel."""
+
+from math import sqrt
+from pathlib import Path
+
+from shipcosim.errors import Problem
+from shipcosim.models.ship.hull import CONTRIBUTIONS
+from shipcosim.ships.entries import Entry
+from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.estimates.hull import (
+    Form,
+    added_masses,
+    cross_flow_drag,
+    manoeuvring_derivatives,
+    yaw_inertia,
+)
+from shipcosim.ships.estimates.resistance import drag_coefficient
+from shipcosim.ships.estimates.weather import USUAL_KIND, drift_table, front_area, side_area, wind_table
+from shipcosim.ships.file import Inertia, Particulars, ShipFile, number
+from shipcosim.ships.given import Given
+from shipcosim.ships.numbers import Numbers
+
+SEA_WATER, USUAL_FROUDE, GRAVITY = 1025.0, 0.2, 9.81
+ALONG = ("X_u", "X_uu")
+"""Coefficients of which one is enough for the resistance ahead."""
+NONE = "none"
+_NO_WAVES = "0.5 0 0 0 0; 0.5 180 0 0 0; 5 0 0 0 0; 5 180 0 0 0"
+
+
+def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> Form | None:
+    """Main particulars with a block coefficient; None where something is missing.
+
+    Parameters
+    ----------
+    ship : ShipFile
+    where : str
+        Its file.
+    problems : list of Problem
+        Gets what is missing.
+    """
+    p, m = ship.particulars or Particulars(), ship.mass
+    needed = ["length", "breadth", "draught"] + (["hull_breadth"] if p.hulls > 1 else [])
+    missing = [name for name in needed if getattr(p, name) is None]
+    if missing:
+        found = f"nothing says {', '.join(missing)}."
+        problems.append(Problem(f"{where}: particulars", found, 'Write, for example, length = "28.9 m".'))
+    heavy = m.mass or p.displacement
+    if heavy is None and p.block_coefficient is None:
+        remedy = "Give mass.mass, particulars.displacement or particulars.block_coefficient."
+        problems.append(Problem(f"{where}: mass", "nothing says how heavy she is.", remedy))
+    if missing or (heavy is None and p.block_coefficient is None):
+        return None
+    L, T = number(p.length), number(p.draught)
+    B = number(p.hull_breadth if p.hulls > 1 else p.breadth)
+    density = number(p.water_density, SEA_WATER)
+    filled = number(heavy) / (density * p.hulls * L * B * T)
+    block = number(p.block_coefficient, filled)
+    speed = number(p.service_speed, USUAL_FROUDE * sqrt(GRAVITY * L))
+    return Form(length=L, breadth=B, draught=T, block=block, hulls=p.hulls, density=density, speed=speed)
+
+
+def vessel_of(ship: ShipFile, form: Form, file: Path, problems: list[Problem]) -> dict[str, Entry]:
+    """Parameters of the vessel, given or estimated.
+
+    Parameters
+    ----------
+    ship : ShipFile
+    form : Form
+        Her main particulars.
+    file : Path
+        Her file.
+    problems : list of Problem
+        Gets what is wrong.
+    """
+    own = Numbers("vessel", f"{file}: hull", file.parent, ship.source, problems)
+    own.coefficients(ship.hull)
+    _dimensions(own, ship.particulars or Particulars())
+    _inertia(own, ship.mass, ship.particulars or Particulars(), form)
+    _resistance(own, ship, form)
+    _across(own, ship, form)
+    _weather(own, ship, form)
+    return own.entries
+
+
+def _dimensions(own: Numbers, p: Particulars) -> None:
+    for name in ("length", "breadth", "draught", "water_density"):
+        own.give(name, getattr(p, name))
+
+
+def _inertia(own: Numbers, m: Inertia, p: Particulars, form: Form) -> None:
+    """Mass, inertia, added mass."""
+    if not own.give("mass", m.mass or p.displacement):
+        own.estimate("mass", Estimate(form.mass, 0.05 * form.mass, "rho C_B L B T"))
+    mass = float(own.entries["mass"].value)
+    own.give("centre_of_gravity_x", m.centre_of_gravity_x)
+    centre = number(m.centre_of_gravity_x)
+    if not own.give("inertia_yaw", m.yaw_inertia):
+        gyradius = m.yaw_gyradius
+        if gyradius is not None:
+            tolerance = None if gyradius.tolerance is None else 2.0 * mass * gyradius.value * gyradius.tolerance
+            value = mass * (gyradius.value**2 + centre**2)
+            own.give("inertia_yaw", Given(value, tolerance, gyradius.origin or own.source))
+        else:
+            own.estimate("inertia_yaw", yaw_inertia(mass, form.length, centre))
+    own.give("A11", m.added_surge)
+    own.give("A22", m.added_sway)
+    for name in ("A26", "A62"):
+        own.give(name, m.added_sway_yaw)
+    own.give("A66", m.added_yaw)
+    own.estimates(added_masses(form))
+
+
+def _resistance(own: Numbers, ship: ShipFile, form: Form) -> None:
+    known = ship.resistance
+    if any(name in own.entries for name in ALONG):
+        return
+    if known.resistance is not None and known.speed is not None:
+        tolerance = known.resistance.tolerance
+        square = known.speed.value**2
+        share = None if tolerance is None else tolerance / square
+        own.give("X_uu", Given(-known.resistance.value / square, share, known.resistance.origin))
+        return
+    surface = known.wetted_surface.value if known.wetted_surface else None
+    factor = known.form_factor.value if known.form_factor else None
+    own.estimate("X_uu", drag_coefficient(form, surface, factor))
+
+
+def _across(own: Numbers, ship: ShipFile, form: Form) -> None:
+    """Drag across and manoeuvring derivatives, estimated where the file gives no coefficients at all across."""
+    own.give("cross_flow_drag", ship.drag.cross_flow)
+    across = {name for _, names in CONTRIBUTIONS.values() for name in names} - {*ALONG, "added_mass_coriolis"}
+    if across & set(ship.hull):
+        return
+    own.estimate("cross_flow_drag", cross_flow_drag(form))
+    if form.hulls == 1:
+        own.estimates(manoeuvring_derivatives(form, float(own.entries["A22"].value)))
+
+
+def _weather(own: Numbers, ship: ShipFile, form: Form) -> None:
+    w = ship.wind
+    own.give("wind_load_scale", w.scale)
+    if w.table is not None and w.table != NONE:
+        own.table("wind_table", w.table)
+    elif w.table == NONE:
+        own.estimate("wind_table", Estimate("0 0 0 0; 180 0 0 0", 0.0, "none, by the ship file"))
+    else:
+        _wind(own, ship, form)
+    if ship.waves.table is not None and ship.waves.table != NONE:
+        own.table("drift_table", ship.waves.table)
+    elif ship.waves.table == NONE:
+        own.estimate("drift_table", Estimate(_NO_WAVES, 0.0, "none, by the ship file"))
+    else:
+        breadth = number((ship.particulars or Particulars()).breadth)
+        own.estimate("drift_table", drift_table(form.length, breadth, form.draught, form.density))
+
+
+def _wind(own: Numbers, ship: ShipFile, form: Form) -> None:
+    """Blendermann's loads of areas that are given or estimated."""
+    w, breadth = ship.wind, number((ship.particulars or Particulars()).breadth)
+    both = (w.front_area, front_area(breadth)), (w.side_area, side_area(form.length))
+    front, side = (float(one.value) if given is None else given.value for given, one in both)
+    found = wind_table(w.kind or USUAL_KIND, front, side, number(w.side_centre_x), form.length)
+    unknown = [one for given, one in both if given is None]
+    source = found.source + "".join(f"; {one.source}" for one in unknown)
+    own.estimate("wind_table", found._replace(source=source))
+    share = 0.2 if not unknown else 0.45
+    own.estimate("wind_load_scale", Estimate(1.0, share, "1; the tolerance is of the coefficients and the areas"))
+
