@@ -18,7 +18,8 @@ MAY_IMPORT = {
     "scenario": {"library", "series", "errors", "units", "angles"},
     "cosim": {"library", "series", "ssp", "scenario", "fmi", "errors", "options", "units"},
     "diagnose": {"library", "errors", "angles", "options", "units", "models", "series", "ssp", "scenario", "cosim"},
-    "capability": {"errors", "angles", "models", "ssp"},
+    "ships": {"errors", "units", "models", "ssp"},
+    "capability": {"errors", "angles", "models", "ships", "ssp"},
     "report": {
         "errors",
         "angles",
@@ -43,6 +44,7 @@ MAY_IMPORT = {
         "fmi",
         "library",
         "ssp",
+        "ships",
         "scenario",
         "cosim",
         "report",

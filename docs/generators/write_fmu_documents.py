@@ -50,6 +50,19 @@ PARAMETERS = {
     "drift_force": {"north": 1500.0, "east": -1000.0, "onset_time": 5.0, "yaw_arm": -1.5},
     "varying_current": {"north_start": 0.3, "east_end": -0.2, "time_start": 10.0, "time_end": 50.0},
     "fixed_thruster": {"speed_loss": 0.1, "direction": 0.2},
+    "mapped_thruster": {
+        "x": -0.4,
+        "y": 0.285,
+        "thrust_table": "1100 -28; 1480 -1; 1520 1; 1900 55",
+        "time_constant": 0.5,
+        "speed_loss": 0.1,
+    },
+    "fixed_angle_allocator": {
+        **{"x_1": -27.0, "y_1": -3.5, "azimuth_1": -0.785, "thrust_min_1": -1.4e5, "thrust_max_1": 2.3e5},
+        **{"x_2": -27.0, "y_2": 3.5, "azimuth_2": 0.785, "thrust_min_2": -1.4e5, "thrust_max_2": 2.3e5},
+        **{"x_3": 25.0, "azimuth_3": 1.5708, "thrust_min_3": -8e4, "thrust_max_3": 8e4},
+        **{"thrust_rate_1": 2.3e4, "thrust_rate_2": 2.3e4, "thrust_rate_3": 8e3, "yaw_lever": 25.0},
+    },
     "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
 }
 """FMU: its parameters in its reference result that are neither the ship's nor as by default."""

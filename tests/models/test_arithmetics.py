@@ -16,7 +16,7 @@ from ships import parameters
 
 import shipcosim.models
 from shipcosim import angles
-from shipcosim.models.allocation import monitor, power
+from shipcosim.models.allocation import fixed_angles, monitor, power
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.power import PowerParameters
 from shipcosim.models.control import compass_voting, observer, position_voting, reference, voting, wave_filter
@@ -27,7 +27,7 @@ from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, 
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning, known, surroundings
-from shipcosim.models.propulsion import azimuth, drive, fixed, propeller, rudder, slipstream, tunnel
+from shipcosim.models.propulsion import azimuth, drive, fixed, mapped, propeller, rudder, slipstream, tunnel
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.ship import hull, instruments, mast, vessel
 from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
@@ -40,6 +40,13 @@ LOSSY = replace(PORT, **LOSSES)
 TUNNEL = parameters(tunnel.TunnelParameters)
 TANKER = parameters(hull.HullParameters, "kvlcc2", "vessel")
 STERN = parameters(rudder.PropellerRudderParameters, "kvlcc2")
+MAPPED = mapped.MapParameters(x=-0.4, y=0.3, thrust_table="-1 -28; 0 0; 1 55", speed_loss=0.1, time_constant=0.5)
+LAYOUT = fixed_angles.FixedAngleParameters(
+    **{"x_1": -20.0, "y_1": -3.0, "thrust_min_1": -6e4, "thrust_max_1": 9e4, "thrust_rate_1": 1e6},
+    **{"x_2": -20.0, "y_2": 3.0, "thrust_min_2": -6e4, "thrust_max_2": 9e4, "thrust_rate_2": 1e6},
+    **{"x_3": 22.0, "azimuth_3": 1.6, "thrust_min_3": -4e4, "thrust_max_3": 4e4, "thrust_rate_3": 1e6},
+    yaw_lever=22.0,
+)
 SIDE = replace(parameters(fixed.FixedParameters, "otter"), speed_loss=0.2, direction=0.3)
 ERRORS = dict(heading_bias=0.05, lever_x=3.0, lever_y=-1.0, velocity_scale=1.1)
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
@@ -118,6 +125,11 @@ def of_control(*row):
 def of_allocation(*row):
     state = allocation.AllocationState(*row[:3], *row[:3], False)
     return state, row[3:6], (True, row[6], True)
+
+
+def of_layout(*row):
+    state = fixed_angles.Allocated((*row[:3], *(0.0 * row[0],) * 3), *row[:3], False)
+    return state, row[3:6], (True, row[6], True, True, True, True)
 
 
 def of_monitor(*row):
@@ -291,6 +303,17 @@ CASES = [
         fixed.fixed_loads,
         [(F, n, *w) for F, n in ((30.0, 0.0), (-20.0, 0.0), (0.0, 60.0), (0.0, -50.0)) for w in WATER],
         constants=dict(thruster=SIDE),
+    ),
+    Case(mapped.mapped_thrust, [(-2.0,), (-0.4,), (0.0,), (0.7,)], constants=dict(thruster=MAPPED)),
+    Case(mapped.within_map, [(-50.0,), (0.0,), (70.0,)], constants=dict(thruster=MAPPED)),
+    Case(mapped.mapped_step, [(3.0, 10.0), (-5.0, 0.0)], constants=dict(h=0.1, thruster=MAPPED)),
+    Case(mapped.mapped_loads, [(F, *w) for F in (30.0, -20.0, 0.0) for w in WATER], constants=dict(thruster=MAPPED)),
+    Case(fixed_angles.at_rest, REQUESTS, lambda *row: (row,)),
+    Case(
+        fixed_angles.step,
+        [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
+        of_layout,
+        dict(h=0.5, parameters=LAYOUT, design=fixed_angles.layout(LAYOUT)),
     ),
     Case(rudder.propeller_in_wake, [(n, *w) for n in (9.0, -4.0, 0.0) for w in WATER], constants=dict(unit=STERN)),
     Case(

@@ -5,4 +5,14 @@ from shipcosim.ships.folder import Quantity, Ship, read_ship
 from shipcosim.ships.parameter_set import parameter_values
 from shipcosim.ships.system import make_systems
 
-__all__ = ["Described", "Quantity", "Ship", "describe", "file_of", "is_ship_file", "make_systems", "parameter_values", "read_ship"]
+__all__ = [
+    "Described",
+    "Quantity",
+    "Ship",
+    "describe",
+    "file_of",
+    "is_ship_file",
+    "make_systems",
+    "parameter_values",
+    "read_ship",
+]

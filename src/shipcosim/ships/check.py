@@ -53,6 +53,10 @@ def check_ship(path: str) -> list[Problem]:
     return [*check_numbers(ship), *_hull(ship), *_matrix(ship), *_thrusters(ship), *_remarks(ship)]
 
 
+def _mass(kilograms: float) -> str:
+    return f"{kilograms / 1000:.4g} t" if kilograms >= 1000.0 else f"{kilograms:.4g} kg"
+
+
 def estimated(ship: Described) -> list[tuple[str, str, str, str]]:
     """What is estimated: name, value, tolerance, source.
 

@@ -107,8 +107,8 @@ def _loop(ship: Described, used: list[Unit]) -> control.Loop:
     least, most = np.array([unit.least for unit in used]), np.array([unit.most for unit in used])
     reach = control.reach_of(effects, least, most)
     floor = WORTH * 0.01 * number(ship.file.mass.mass, ship.form.mass)
-    reach = tuple(0.0 if load < floor * lever else load for load, lever in zip(reach, (1.0, 1.0, 0.1), strict=True))
-    return control.Loop(length=ship.form.length, mass=mass_matrix(ship), reach=reach)
+    X, Y, N = (0.0 if load < least else load for load, least in zip(reach, (floor, floor, 0.1 * floor), strict=True))
+    return control.Loop(length=ship.form.length, mass=mass_matrix(ship), reach=(X, Y, N))
 
 
 def _allocation(used: list[Unit]) -> dict[str, Estimate]:

@@ -17,6 +17,8 @@ from shipcosim.ships.vessel import form_of, vessel_of
 
 LONGEST = 200_000
 """Characters of a ship file."""
+MOST_THRUSTERS = 6
+"""Loads that the vessel takes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +111,12 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     form = form_of(said, str(path), problems)
     names = [one.name for one in said.thrusters]
     if twice := sorted({name for name in names if names.count(name) > 1 or name in ("vessel", "environment")}):
-        problems.append(Problem(f"{path}: thrusters", f"the name '{twice[0]}' is taken.", "Each has a name of its own."))
+        problems.append(
+            Problem(f"{path}: thrusters", f"the name '{twice[0]}' is taken.", "Each has a name of its own.")
+        )
+    if len(names) > MOST_THRUSTERS:
+        found = f"she has {len(names)}."
+        problems.append(Problem(f"{path}: thrusters", found, f"The model of a ship takes {MOST_THRUSTERS}."))
     if not names:
         remedy = f"Add a [[thrusters]] with name, kind ({', '.join(KINDS)}), x and y."
         problems.append(Problem(f"{path}: thrusters", "she has none.", remedy))

@@ -2,23 +2,40 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
+from shipcosim.errors import suggestion
 from shipcosim.ships.estimates.weather import BLENDERMANN
-from shipcosim.ships.given import Given, given_in
+from shipcosim.ships.given import Given, reader
 
-Length = given_in("m", least=0.0)
-Place = given_in("m")
-Area = given_in("m2", least=0.0)
-Mass = given_in("kg", least=0.0)
-Ratio = given_in("1", least=0.0)
-Speed = given_in("m/s", least=0.0)
-Force = given_in("N", least=0.0)
-Power = given_in("W", least=0.0)
-Rpm = given_in("rpm", least=0.0)
-Seconds = given_in("s", least=0.0)
-Angle = given_in("rad")
+Length = Annotated[Given | None, BeforeValidator(reader("m", least=0.0))]
+Block = Annotated[Given | None, BeforeValidator(reader("1", least=0.0, most=1.0))]
+Mass = Annotated[Given | None, BeforeValidator(reader("kg", least=0.0))]
+Speed = Annotated[Given | None, BeforeValidator(reader("m/s", least=0.0))]
+Density = Annotated[Given | None, BeforeValidator(reader("kg/m3", least=900.0, most=1100.0))]
+Place = Annotated[Given | None, BeforeValidator(reader("m"))]
+YawInertia = Annotated[Given | None, BeforeValidator(reader("kg.m2", least=0.0))]
+AddedMass = Annotated[Given | None, BeforeValidator(reader("kg"))]
+MassLever = Annotated[Given | None, BeforeValidator(reader("kg.m"))]
+AddedInertia = Annotated[Given | None, BeforeValidator(reader("kg.m2"))]
+Force = Annotated[Given | None, BeforeValidator(reader("N", least=0.0))]
+Area = Annotated[Given | None, BeforeValidator(reader("m2", least=0.0))]
+Factor = Annotated[Given | None, BeforeValidator(reader("1", least=1.0, most=3.0))]
+DragCoefficient = Annotated[Given | None, BeforeValidator(reader("1", least=0.0, most=4.0))]
+Ratio = Annotated[Given | None, BeforeValidator(reader("1", least=0.0))]
+Rate = Annotated[Given | None, BeforeValidator(reader("rad/s", least=0.0))]
+Angle = Annotated[Given | None, BeforeValidator(reader("rad"))]
+Power = Annotated[Given | None, BeforeValidator(reader("W", least=0.0))]
+Rpm = Annotated[Given | None, BeforeValidator(reader("rpm", least=0.0))]
+Seconds = Annotated[Given | None, BeforeValidator(reader("s", least=0.0))]
+PerSpeed = Annotated[Given | None, BeforeValidator(reader("s/m"))]
 Coefficients = dict[str, Any]
+
+
+def _known_kind(found: str | None) -> str | None:
+    if found is not None and found not in BLENDERMANN:
+        raise ValueError(f'found "{found}". {suggestion(found, BLENDERMANN)}')
+    return found
 
 
 class _Part(BaseModel):
@@ -28,54 +45,54 @@ class _Part(BaseModel):
 class Particulars(_Part):
     """Main dimensions. The origin lies midships, on the centreline: x forward, y to starboard."""
 
-    length: Length  # between perpendiculars
-    breadth: Length
-    draught: Length
-    block_coefficient: given_in("1", least=0.0, most=1.0)
-    displacement: Mass
+    length: Length = None  # between perpendiculars
+    breadth: Length = None
+    draught: Length = None
+    block_coefficient: Block = None
+    displacement: Mass = None
     hulls: int = Field(default=1, ge=1, le=3)
-    hull_breadth: Length  # of each of several hulls
-    service_speed: Speed
-    water_density: given_in("kg/m3", least=900.0, most=1100.0)
+    hull_breadth: Length = None  # of each of several hulls
+    service_speed: Speed = None
+    water_density: Density = None
 
 
 class Inertia(_Part):
     """Mass, where it lies, and the added mass of the water."""
 
-    mass: Mass
-    centre_of_gravity_x: Place
-    yaw_gyradius: Length
-    yaw_inertia: given_in("kg.m2", least=0.0)
-    added_surge: given_in("kg")
-    added_sway: given_in("kg")
-    added_sway_yaw: given_in("kg.m")
-    added_yaw: given_in("kg.m2")
+    mass: Mass = None
+    centre_of_gravity_x: Place = None
+    yaw_gyradius: Length = None
+    yaw_inertia: YawInertia = None
+    added_surge: AddedMass = None
+    added_sway: AddedMass = None
+    added_sway_yaw: MassLever = None
+    added_yaw: AddedInertia = None
 
 
 class Resistance(_Part):
     """Resistance ahead: at a speed as measured or computed, or by formulae with what is known of the hull."""
 
-    speed: Speed
-    resistance: Force
-    wetted_surface: Area
-    form_factor: given_in("1", least=1.0, most=3.0)
+    speed: Speed = None
+    resistance: Force = None
+    wetted_surface: Area = None
+    form_factor: Factor = None
 
 
 class Drag(_Part):
     """Drag across."""
 
-    cross_flow: given_in("1", least=0.0, most=4.0)
+    cross_flow: DragCoefficient = None
 
 
 class Wind(_Part):
     """Wind loads: a table, or areas and a kind of ship."""
 
-    kind: Literal[tuple(BLENDERMANN)] | None = None  # type: ignore[valid-type]
-    front_area: Area
-    side_area: Area
-    side_centre_x: Place
+    kind: Annotated[str | None, AfterValidator(_known_kind)] = None
+    front_area: Area = None
+    side_area: Area = None
+    side_centre_x: Place = None
     table: str | None = None
-    scale: given_in("1", least=0.0)
+    scale: Ratio = None
 
 
 class Waves(_Part):
@@ -87,15 +104,15 @@ class Waves(_Part):
 class Control(_Part):
     """How quick the ship's DP is; what is left out follows from her mass and thrust."""
 
-    position_frequency: given_in("rad/s", least=0.0)
-    heading_frequency: given_in("rad/s", least=0.0)
-    position_error_max: Length
+    position_frequency: Rate = None
+    heading_frequency: Rate = None
+    position_error_max: Length = None
 
 
 class _Thruster(_Part):
     name: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")
-    x: Place
-    y: Place
+    x: Place = None
+    y: Place = None
     coefficients: Coefficients = {}
 
 
@@ -104,68 +121,66 @@ class FixedPropeller(_Thruster):
 
     kind: Literal["fixed"]
     command: Literal["rpm", "thrust"] = "rpm"
-    direction: Angle
-    diameter: Length
-    power: Power
-    rpm: Rpm
-    thrust: Force
-    thrust_astern: Force
+    direction: Angle = None
+    diameter: Length = None
+    power: Power = None
+    rpm: Rpm = None
+    thrust: Force = None
+    thrust_astern: Force = None
 
 
 class Azimuth(_Thruster):
     """A thruster that turns, with its drive."""
 
     kind: Literal["azimuth"]
-    diameter: Length
-    power: Power
-    rpm: Rpm
-    thrust: Force
-    thrust_astern: Force
+    diameter: Length = None
+    power: Power = None
+    rpm: Rpm = None
+    thrust: Force = None
+    thrust_astern: Force = None
     ducted: bool = False
-    rise_time: Seconds
-    turning_rate: given_in("rad/s", least=0.0)
+    rise_time: Seconds = None
+    turning_rate: Rate = None
 
 
 class Tunnel(_Thruster):
     """A tunnel thruster, with its drive."""
 
     kind: Literal["tunnel"]
-    diameter: Length
-    power: Power
-    rpm: Rpm
-    thrust: Force
-    rise_time: Seconds
+    diameter: Length = None
+    power: Power = None
+    rpm: Rpm = None
+    thrust: Force = None
+    rise_time: Seconds = None
 
 
 class ThrustMap(_Thruster):
     """A thruster whose thrust over its command was measured."""
 
     kind: Literal["map"]
-    direction: Angle
+    direction: Angle = None
     table: Annotated[
         list[list[float]] | str, BeforeValidator(lambda found: found if isinstance(found, str) else _rows(found))
     ]
     unit: str = "1"
-    time_constant: Seconds
-    speed_loss: given_in("s/m")
+    time_constant: Seconds = None
+    speed_loss: PerSpeed = None
 
 
 class PropellerWithRudder(_Thruster):
     """A propeller and the rudder behind it."""
 
     kind: Literal["rudder"]
-    diameter: Length
-    power: Power
-    rpm: Rpm
-    thrust: Force
-    rudder_x: Place
-    rudder_area: Area
-    rudder_span: Length
+    diameter: Length = None
+    power: Power = None
+    rpm: Rpm = None
+    thrust: Force = None
+    rudder_x: Place = None
+    rudder_area: Area = None
+    rudder_span: Length = None
 
 
-Thruster = Annotated[
-    FixedPropeller | Azimuth | Tunnel | ThrustMap | PropellerWithRudder, Field(discriminator="kind")
-]
+Thruster = Annotated[FixedPropeller | Azimuth | Tunnel | ThrustMap | PropellerWithRudder, Field(discriminator="kind")]
 
 
 class ShipFile(_Part):
@@ -197,5 +212,7 @@ def number(found: Given | None, otherwise: float = 0.0) -> float:
 
 def _rows(found: Any) -> Any:
     if not isinstance(found, list) or not all(isinstance(row, list) and len(row) == 2 for row in found):
-        raise ValueError("found no rows of two numbers. Write [[command, thrust in N], ...], or the name of a CSV file.")
+        raise ValueError(
+            "found no rows of two numbers. Write [[command, thrust in N], ...], or the name of a CSV file."
+        )
     return found

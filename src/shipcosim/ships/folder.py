@@ -247,9 +247,7 @@ def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Entry |
     if is_table:
         return table_entry(file.parent / said["table"], where, problems)
     uncertainty = tuple(map(float, said.get("uncertainty", ())))
-    return Entry(
-        said["value"], said["unit"], float(said.get("tolerance", 0.0)), said["origin"], (), where, uncertainty
-    )
+    return Entry(said["value"], said["unit"], float(said.get("tolerance", 0.0)), said["origin"], (), where, uncertainty)
 
 
 def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
@@ -262,9 +260,7 @@ def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
     return wrong
 
 
-def _entries(
-    name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]
-) -> dict[str, Entry]:
+def _entries(name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]) -> dict[str, Entry]:
     """What a ship's files say of a component: of those that it is like, the first before the next, then of itself."""
     layers, found = files.get(name, []), {}
     likes = next((layer["like"] for layer in reversed(layers) if layer.get("like")), [])

@@ -2,10 +2,9 @@
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any
-
-from pydantic import BeforeValidator, Field
+from typing import Any
 
 from shipcosim.units import conversion, relation, spelled_unit
 
@@ -35,8 +34,8 @@ class Given:
     uncertainty: tuple[float, ...] = ()
 
 
-def given_in(unit: str, *, least: float | None = None, most: float | None = None) -> Any:
-    """Type of a key whose number has a unit and bounds.
+def reader(unit: str, *, least: float | None = None, most: float | None = None) -> Callable[[Any], Given | None]:
+    """Function that reads a number with a unit and bounds, for a pydantic record.
 
     Parameters
     ----------
@@ -47,8 +46,8 @@ def given_in(unit: str, *, least: float | None = None, most: float | None = None
 
     Returns
     -------
-    type
-        For a pydantic record.
+    callable
+        It raises a ValueError with what would be right.
     """
 
     def read(found: Any) -> Given | None:
@@ -62,7 +61,7 @@ def given_in(unit: str, *, least: float | None = None, most: float | None = None
             raise ValueError(f"found {_text(found)}. It must be at most {most:g} {_shown(unit)}".rstrip() + ".")
         return given
 
-    return Annotated[Given | None, BeforeValidator(read), Field(default=None, description=unit)]
+    return read
 
 
 def number_in(found: Any, unit: str) -> float:
@@ -96,7 +95,7 @@ def number_in(found: Any, unit: str) -> float:
     else:
         match = _AMOUNT.fullmatch(found) if isinstance(found, str) else None
         if match is None:
-            raise ValueError(f"found {_text(found)}. Write a number in {unit}, or a text such as \"12.5 {unit}\".")
+            raise ValueError(f'found {_text(found)}. Write a number in {unit}, or a text such as "12.5 {unit}".')
         value = float(match[1])
         if match[2]:
             value = _converted(value, match[2], unit)
@@ -129,7 +128,7 @@ def given_in_unit(found: Any, unit: str) -> Given:
     if wrong := [key for key in found if key not in _KEYS]:
         raise ValueError(f"'{wrong[0]}' is no key of a number. It has: {', '.join(_KEYS)}.")
     if "value" not in found:
-        raise ValueError('\'value\' is missing. Write { value = 1.0, tolerance = 0.1, origin = "drawing" }.')
+        raise ValueError("'value' is missing. Write { value = 1.0, tolerance = 0.1, origin = \"drawing\" }.")
     own, origin = found.get("unit", unit), found.get("origin", "")
     if not isinstance(own, str) or not isinstance(origin, str):
         raise ValueError("unit and origin are texts in quotes.")

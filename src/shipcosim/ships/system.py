@@ -15,8 +15,6 @@ from shipcosim.ships.thrusters import Unit
 from shipcosim.ssp import SystemStructure, new, parameter, read, write_ssv
 
 STEP, LONG_RUN = 0.05, 600.0  # s
-MOST_THRUSTERS = 6
-"""Loads that the vessel takes."""
 WEATHER = ("wind_north", "wind_east", "current_north", "current_east")
 SEA = ("wave_height", "wave_period", "wave_from", "wave_peak_enhancement", "wave_seed")
 OUTSIDE = {
@@ -66,9 +64,6 @@ def make_systems(
     """
     known = ship if isinstance(ship, Described) else describe(Path(ship))
     folders, made = [Path(folder) for folder in fmus], []
-    if len(known.units) > MOST_THRUSTERS:
-        found = f"she has {len(known.units)}."
-        raise ShipcosimError(Problem(f"{known.path}: thrusters", found, f"A ship has at most {MOST_THRUSTERS}."))
     kinds = ["open"] if why_no_dp(known) else ["open", "dp"]
     for kind in kinds:
         name, entries = f"{known.name}_{kind}", known.entries | (dp_entries(known) if kind == "dp" else {})

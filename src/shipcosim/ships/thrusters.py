@@ -89,7 +89,7 @@ def units_of_ship(
         needed = ("x",) if isinstance(one, Tunnel) else ("x", "y")
         if missing := [name for name in needed if getattr(one, name) is None]:
             found = f"nothing says {' and '.join(missing)}."
-            problems.append(Problem(own.where, found, "x is forward of midships, y to starboard: x = \"-12 m\"."))
+            problems.append(Problem(own.where, found, 'x is forward of midships, y to starboard: x = "-12 m".'))
             continue
         if one.kind == "rudder":
             own.give("propeller_x", one.x)
@@ -177,6 +177,11 @@ def _fixed(one: FixedPropeller, own: Numbers, form: Form) -> Unit | None:
     direction = number(one.direction)
     most = number(one.thrust)
     least = -number(one.thrust_astern, ASTERN["open"] * most)
+    if "coefficient_ahead" in own.entries and one.rpm is not None:
+        square = (one.rpm.value * pi / 30.0) ** 2
+        astern = own.entries.get("coefficient_astern")
+        most = float(own.entries["coefficient_ahead"].value) * square
+        least = -(float(astern.value) * square if astern else 0.0)
     if one.command == "thrust" or "coefficient_ahead" in own.entries:
         return _unit(one, own, least, most, most / RISE, direction)
     screw = _screw(one, own, form, "open")
@@ -205,7 +210,9 @@ def _azimuth(one: Azimuth, own: Numbers, form: Form) -> Unit | None:
         own.estimate("thrust_max", within(screw.thrust, 0.15, "DNV-ST-0111"))
     own.estimate("thrust_min", within(least, 0.15, "as given" if one.thrust_astern else f"{ASTERN[kind]} of ahead"))
     own.estimates(curves(screw) | drive(screw, number(one.rise_time, RISE)))
-    own.estimate("thrust_scale", Estimate(1.0, _share(one), f"1; {_said(one) or 'the curve through the bollard point'}"))
+    own.estimate(
+        "thrust_scale", Estimate(1.0, _share(one), f"1; {_said(one) or 'the curve through the bollard point'}")
+    )
     if not own.give("azimuth_rate", one.turning_rate):
         own.estimate("azimuth_rate", Estimate(TURNING, 0.0, "10 deg/s; assumed"))
     own.estimate("side_force_coefficient", Estimate(0.8, 0.3, "momentum drag of a ducted unit; assumed for others"))
@@ -264,7 +271,5 @@ def _rudder(one: PropellerWithRudder, own: Numbers, form: Form, alone: bool) -> 
     span = number(one.rudder_span, sqrt(1.8 * float(area.value)))
     if not own.give("rudder_x", one.rudder_x):
         own.estimate("rudder_x", Estimate(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller"))
-    own.estimates(
-        propeller_and_rudder(form, single=alone, span=span, area=float(area.value), covered=D / span)
-    )
+    own.estimates(propeller_and_rudder(form, single=alone, span=span, area=float(area.value), covered=D / span))
     return _unit(one, own, 0.0, 0.0, 0.0, 0.0)

@@ -165,4 +165,3 @@ def _wind(own: Numbers, ship: ShipFile, form: Form) -> None:
     own.estimate("wind_table", found._replace(source=source))
     share = 0.2 if not unknown else 0.45
     own.estimate("wind_load_scale", Estimate(1.0, share, "1; the tolerance is of the coefficients and the areas"))
-

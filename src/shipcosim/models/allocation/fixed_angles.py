@@ -167,6 +167,10 @@ def at_rest(tau: Load) -> Allocated:
     -------
     Allocated
         The state.
+
+    References
+    ----------
+    Definition.
     """
     zero = 0.0 * tau[0]
     return Allocated((zero,) * UNITS, zero, zero, zero, zero > 0.0)

@@ -48,6 +48,10 @@ def mapped_thrust(command: Arithmetic, *, thruster: MapParameters) -> Arithmetic
     ------
     ValueError
         The map is not one of two columns that both increase.
+
+    References
+    ----------
+    Definition.
     """
     return interp(command, *_map(thruster.thrust_table))
 
@@ -66,6 +70,15 @@ def within_map(thrust: Arithmetic, *, thruster: MapParameters) -> Arithmetic:
     -------
     like thrust
         Thrust. [N]
+
+    Raises
+    ------
+    ValueError
+        The map is not one of two columns that both increase.
+
+    References
+    ----------
+    Definition.
     """
     _, thrusts = _map(thruster.thrust_table)
     return clip(thrust, thrusts[0], thrusts[-1])
@@ -87,6 +100,10 @@ def mapped_step(thrust: Arithmetic, wanted: Arithmetic, h: float, *, thruster: M
     -------
     like thrust
         Thrust. [N]
+
+    References
+    ----------
+    Definition.
     """
     if thruster.time_constant == 0.0:
         return wanted

@@ -102,7 +102,9 @@ def friction(speed: float, length: float) -> float:
     return 0.075 / (log10(max(speed * length / VISCOSITY, 1e3)) - 2.0) ** 2
 
 
-def wave_resistance(form: Form, *, midship: float | None = None, waterplane: float | None = None, lcb: float = 0.0) -> float:
+def wave_resistance(
+    form: Form, *, midship: float | None = None, waterplane: float | None = None, lcb: float = 0.0
+) -> float:
     """Wave resistance at the service speed of a hull without bulb and immersed transom.
 
     Parameters

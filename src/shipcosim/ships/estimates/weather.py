@@ -134,4 +134,6 @@ def drift_table(length: float, breadth: float, draught: float, density: float) -
             c, s = cos(radians(heading)), sin(radians(heading))
             X, Y = scale * breadth * c * abs(c), scale * length * s * s
             rows.append(f"{omega:g} {heading} {round(X, 3) + 0.0:g} {round(Y, 3) + 0.0:g} 0")
-    return Estimate("; ".join(rows), 0.0, "reflection above the keel, Faltinsen 1990, ch. 5; a factor of two either way")
+    return Estimate(
+        "; ".join(rows), 0.0, "reflection above the keel, Faltinsen 1990, ch. 5; a factor of two either way"
+    )
