@@ -1,20 +1,22 @@
 """Tables: every run and every measurement is one `xarray.Dataset` over `time` in seconds, signals with unit and name.
 
-The only door to pyarrow. xarray and pyarrow are imported where they are used: they take most of a second, which a
-command that only prints its help should not pay.
+The only door to pyarrow, which is needed for Parquet alone. xarray and pandas are imported where they are used: they
+take most of a second, which a command that only prints its help should not pay.
 """
 
 from __future__ import annotations
 
 import csv
+import gzip
 import io
 import os
 import re
+import zlib
 from collections import Counter
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["conversion", "make_table", "read_columns", "read_table", "write_file", "write_table"]
 
+_NOTHING = {"", "#n/a", "#na", "-nan", "n/a", "na", "nan", "null"}  # in lower case: cells without a value
 _HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
 
 
@@ -124,11 +127,11 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
     path = Path(path)
     if _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet")) == ".nc":
         return _netcdf_columns(_open_netcdf(path))
-    names, units, columns = _read_arrow(path)
-    problems = _repeated(path, names)
+    columns = _read_columns(path)
+    problems = _repeated(path, [name for name, _, _ in columns])
     if problems:
         raise ShipcosimError(problems)
-    return {name: _plain(values, unit) for name, unit, values in zip(names, units, columns, strict=True)}
+    return {name: (values, unit) for name, unit, values in columns}
 
 
 def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
@@ -215,22 +218,15 @@ def _netcdf(table: xarray.Dataset) -> bytes:
 
 
 def _csv(table: xarray.Dataset) -> bytes:
-    import pyarrow
-    from pyarrow.csv import WriteOptions, write_csv
-
     columns = {"time": table["time"], **table.data_vars}
-    header = io.StringIO()
-    csv.writer(header, lineterminator="\n").writerow(
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(
         f"{name} [{column.attrs.get('units') or '1'}]" for name, column in columns.items()
     )
-    arrays = [
-        pyarrow.array(c.values.astype("int8") if c.dtype == bool else np.ascontiguousarray(c.values))
-        for c in columns.values()
-    ]
-    rows = pyarrow.BufferOutputStream()
-    rows.write(header.getvalue().encode())
-    write_csv(pyarrow.table(arrays, names=[str(name) for name in columns]), rows, WriteOptions(include_header=False))
-    return rows.getvalue().to_pybytes()
+    values = [c.values.astype("int8") if c.dtype == bool else c.values for c in columns.values()]
+    for row in zip(*(map(repr, of_column.tolist()) for of_column in values), strict=True):
+        text.write(",".join(cell.removesuffix(".0") for cell in row) + "\n")
+    return text.getvalue().encode()
 
 
 def _open_netcdf(path: Path) -> xarray.Dataset:
@@ -261,21 +257,49 @@ def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
     }
 
 
-def _read_arrow(path: Path) -> tuple[list[str], list[str], list[Any]]:
-    """Names, units and columns of a CSV or Parquet file."""
-    import pyarrow
-    from pyarrow.csv import read_csv
-    from pyarrow.parquet import read_table as read_parquet
-
-    is_parquet = path.name.endswith(".parquet")
-    try:
-        content = read_parquet(path) if is_parquet else read_csv(path)
-        headers = [_name_and_unit(header) for header in content.column_names]
-    except (OSError, pyarrow.ArrowInvalid, UnicodeDecodeError) as error:
-        raise ShipcosimError(_unreadable(path, is_parquet, error)) from error
-    if content.num_rows == 0:
+def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
+    """Name, unit and values of each column of a CSV or Parquet file."""
+    headers, columns = _read_parquet(path) if path.name.endswith(".parquet") else _read_csv(path)
+    if not len(columns) or not len(columns[0]):
         raise ShipcosimError(Problem(str(path), "has no row below its header.", "Each row is a time and its values."))
-    return [name for name, _ in headers], [unit for _, unit in headers], content.columns
+    found = []
+    for (name, unit), values in zip(map(_name_and_unit, headers), columns, strict=True):
+        values, is_stamp = _plain(values)
+        found.append((name, "s" if is_stamp else unit, values))
+    return found
+
+
+def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Headers, and cells by column."""
+    try:
+        with gzip.open(path, "rb") if path.name.endswith(".gz") else path.open("rb") as file:
+            text = file.read().decode("utf-8-sig")
+        rows = [row for row in csv.reader(io.StringIO(text, newline=""), strict=True) if row]
+    except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
+        raise ShipcosimError(_unreadable(path, error)) from error
+    if not rows:
+        raise ShipcosimError(_unreadable(path, ValueError("Empty CSV file")))
+    width = len(rows[0])
+    for number, row in enumerate(rows, start=1):
+        if len(row) != width:
+            found = f"Row {number}: Expected {width} columns, got {len(row)}: {','.join(row)}"
+            raise ShipcosimError(_unreadable(path, ValueError(found)))
+    return rows[0], list(zip(*rows[1:], strict=True))
+
+
+def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
+    """Headers and columns."""
+    try:
+        from pyarrow import ArrowInvalid
+        from pyarrow.parquet import read_table as read_parquet
+    except ImportError as error:
+        remedy = 'Install it: pip install "shipcosim[parquet]". Or save the table as CSV.'
+        raise ShipcosimError(Problem(str(path), "pyarrow, which reads Parquet, is not here.", remedy)) from error
+    try:
+        content = read_parquet(path)
+    except (OSError, ArrowInvalid) as error:
+        raise ShipcosimError(_unreadable(path, error)) from error
+    return content.column_names, [column.to_pandas().to_numpy() for column in content.columns]
 
 
 def _name_and_unit(header: str) -> tuple[str, str]:
@@ -284,32 +308,36 @@ def _name_and_unit(header: str) -> tuple[str, str]:
     return (found["name"], found["unit"] or "") if found else (header, "")
 
 
-def _unreadable(path: Path, is_parquet: bool, error: Exception) -> Problem:
+def _unreadable(path: Path, error: Exception) -> Problem:
     if isinstance(error, UnicodeDecodeError):
-        found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} in its header is none of its characters."
+        found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
         return Problem(str(path), found, "Save the file in UTF-8.")
-    said = "".join(c if c.isprintable() else " " for c in str(error).removeprefix("CSV parse error: "))[:100]
+    said = "".join(c if c.isprintable() else " " for c in str(error))[:100]
+    is_parquet = path.name.endswith(".parquet")
     remedy = "" if is_parquet else "Columns are separated by commas, numbers have a decimal point."
     return Problem(str(path), f"cannot be read as {'Parquet' if is_parquet else 'CSV'}: {said.rstrip('.')}.", remedy)
 
 
 def _read_rows(path: Path) -> xarray.Dataset:
-    import pyarrow
-
-    names, units, columns = _read_arrow(path)
+    columns = _read_columns(path)
+    names = [name for name, _, _ in columns]
     problems = [
-        Problem(f"{path}, column '{name}'", f"holds {column.type}, not numbers.")
-        for name, column in zip(names, columns, strict=True)
-        if not (pyarrow.types.is_floating(column.type) or pyarrow.types.is_integer(column.type))
+        Problem(f"{path}, column '{name}'", f"holds texts, not numbers, as '{_first_text(values)}'.")
+        for name, _, values in columns
+        if values.dtype == object
     ]
     problems += _repeated(path, names)
     if "time" not in names:
         problems.append(_no_time(path, names))
     if problems:
         raise ShipcosimError(problems)
-    signals = {n: (n, c.to_numpy(), unit, "") for n, unit, c in zip(names, units, columns, strict=True)}
+    signals = {name: (name, values, unit, "") for name, unit, values in columns}
     _, time, unit, _ = signals.pop("time")
     return make_table(time * _seconds_in(unit, path), signals.values())
+
+
+def _first_text(values: np.ndarray) -> str:
+    return next(str(value) for value in values if value is not None)[:40]
 
 
 def _seconds_in(unit: str, path: Path) -> float:
@@ -321,21 +349,50 @@ def _seconds_in(unit: str, path: Path) -> float:
         ) from error
 
 
-def _plain(column: Any, unit: str) -> tuple[np.ndarray, str]:
-    """Values of an Arrow column and their unit."""
-    import pyarrow
-    from pyarrow import types
+def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
+    """Values of a column, as numbers where they are; and whether they are stamps, which become seconds."""
+    values = np.asarray(values, object) if isinstance(values, tuple) else values
+    if values.dtype.kind in "fiub":
+        return values.astype(float), False
+    if values.dtype.kind == "M":
+        return _seconds_of(values.astype("datetime64[ns]")), True
+    try:
+        return values.astype(float), False
+    except (ValueError, TypeError):
+        pass
+    cells = ["" if value is None else str(value) for value in values]
+    known = np.array([cell.strip().lower() not in _NOTHING for cell in cells])
+    said = {cell.lower() for cell, is_known in zip(cells, known, strict=True) if is_known}
+    numbers = np.full(len(cells), np.nan)
+    if said <= {"true", "false"}:
+        numbers[known] = [cell.lower() == "true" for cell, is_known in zip(cells, known, strict=True) if is_known]
+        return numbers, False
+    try:
+        numbers[known] = [float(cell) for cell, is_known in zip(cells, known, strict=True) if is_known]
+        return numbers, False
+    except ValueError:
+        stamps = _stamps(cells, known)
+        texts = np.array([cell if is_known else None for cell, is_known in zip(cells, known, strict=True)], object)
+        return (texts, False) if stamps is None else (_seconds_of(stamps), True)
 
-    if types.is_timestamp(column.type):
-        column, unit = column.cast(pyarrow.timestamp("ns")), "s"
-        stamps = column.to_numpy().astype("datetime64[ns]")
-        known = stamps[~np.isnat(stamps)]
-        return (stamps - known[0] if len(known) else stamps - stamps) / np.timedelta64(1, "s"), unit
-    if types.is_boolean(column.type) or types.is_null(column.type):
-        column = column.cast(pyarrow.float64()) if types.is_null(column.type) else column.cast(pyarrow.int8())
-    if types.is_floating(column.type) or types.is_integer(column.type):
-        return column.cast(pyarrow.float64()).to_numpy(), unit
-    return np.array(column.to_pylist(), dtype=object), unit
+
+def _stamps(cells: list[str], known: np.ndarray) -> np.ndarray | None:
+    """Cells as stamps of date and time by ISO 8601, NaT where not known; None where they are none."""
+    import pandas
+
+    stamps = np.full(len(cells), "NaT", "datetime64[ns]")
+    try:
+        read = pandas.to_datetime(np.array(cells, object)[known], format="ISO8601", utc=True)
+    except (ValueError, TypeError, OverflowError):
+        return None
+    stamps[known] = read.tz_localize(None).to_numpy()
+    return stamps
+
+
+def _seconds_of(stamps: np.ndarray) -> np.ndarray:
+    """Seconds after the first stamp."""
+    known = stamps[~np.isnat(stamps)]
+    return (stamps - known[0] if len(known) else stamps - stamps) / np.timedelta64(1, "s")
 
 
 def _repeated(path: Path, names: list[str]) -> list[Problem]:

@@ -350,8 +350,8 @@ def test_files_of_windows_editors_are_read(call, gunnerus):
             "time [s];tunnel_rpm [rpm]\n0;1,5\n1;1,5\n",
             ["Columns are separated by commas, numbers have a decimal point"],
         ),
-        (LEVELS + "0,full\n1,full\n", ["column 'tunnel_rpm':", "holds string, not numbers."]),
-        (NOISE, ["in.csv", "CSV"]),
+        (LEVELS + "0,full\n1,full\n", ["column 'tunnel_rpm':", "holds texts, not numbers, as 'full'."]),
+        (NOISE, ["in.csv:", "is not UTF-8 text"]),
         (
             b"time [s],tunnel_rpm [\xb0]\n0,1\n1,1\n",
             ["in.csv:", "is not UTF-8 text: byte 0xb0", "Save the file in UTF-8."],
