@@ -1,39 +1,46 @@
 """shipcosim: FMI co-simulation of ships, after the Open Simulation Platform's setup.
 
-    import shipcosim as sc
-    system = sc.read("my_ship.ssp")
-    table = sc.simulate(system, stop_time=60.0)
+    import shipcosim
+    run = shipcosim.run("four_corner")
+    found = shipcosim.diagnose("gunnerus_log")
 
 Names are imported when they are first asked for, so that the command line starts quickly.
 """
 
-from typing import TYPE_CHECKING
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from shipcosim.api import (
+        Log,
         Problem,
+        Run,
         Scenario,
         ShipcosimError,
         System,
         SystemStructure,
+        diagnose,
         judge,
         new,
         parameter,
         read,
+        read_log,
         read_scenario,
         read_table,
+        run,
         simulate,
         write_ssv,
         write_table,
     )
-    from shipcosim.diagnose.pipeline import diagnose
     from shipcosim.fmi.export.builder import build_fmu
     from shipcosim.report import write_report
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Log",
     "Problem",
+    "Run",
     "Scenario",
     "ShipcosimError",
     "System",
@@ -44,13 +51,28 @@ __all__ = [
     "new",
     "parameter",
     "read",
+    "read_log",
     "read_scenario",
     "read_table",
+    "run",
     "simulate",
     "write_report",
     "write_ssv",
     "write_table",
 ]
+
+
+class CallableRoom(ModuleType):
+    """A package whose name is also that of a function of `shipcosim.api`: the package can be called as the function."""
+
+    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
+        return self.__wrapped__(*arguments, **keywords)
+
+    @property
+    def __wrapped__(self) -> Any:
+        from shipcosim import api
+
+        return getattr(api, self.__name__.rpartition(".")[2])
 
 
 def __getattr__(name):

@@ -3,41 +3,125 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Unpack
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from pydantic import ValidationError
 
+from shipcosim import library
 from shipcosim.cosim import simulate as _simulate
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunKeywords, RunOptions
-from shipcosim.scenario import Scenario, check_times, judge, read_scenario
+from shipcosim.results.calls import with_known_keywords
+from shipcosim.results.log import Log
+from shipcosim.results.run import Run
+from shipcosim.scenario import Scenario, check_files, check_times, judge
+from shipcosim.scenario import read_scenario as _read_scenario
 from shipcosim.series import read_table, write_table
-from shipcosim.ssp import System, SystemStructure, new, osp_file, parameter, read, read_system, write_ssv
+from shipcosim.ssp import System, SystemStructure, fitting_values, new, osp_file, parameter, read_system, write_ssv
+from shipcosim.ssp import read as _read
 
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.diagnose.pipeline import Progress
+    from shipcosim.diagnose.reference.reference import Reference
+    from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
+
+    AnyLog = str | os.PathLike[str] | xarray.Dataset | Log | Run
+    AnySystem = str | os.PathLike[str] | SystemStructure | System
+
 __all__ = [
+    "Log",
     "Problem",
+    "Run",
     "Scenario",
     "ShipcosimError",
     "System",
     "SystemStructure",
+    "diagnose",
     "judge",
     "new",
     "parameter",
     "read",
+    "read_log",
     "read_scenario",
     "read_table",
+    "run",
     "simulate",
     "write_ssv",
     "write_table",
 ]
 
+SYSTEM_OF_LOGS = "gunnerus_open"
+"""What logs are held against where nobody says: as for the commands."""
 
+
+@with_known_keywords
+def run(
+    scenario: Scenario | str | os.PathLike[str],
+    *,
+    set: Mapping[str, object] | None = None,
+    parameters: Sequence[str | os.PathLike[str]] = (),
+    events: Iterable[Mapping[str, object]] = (),
+    stop_time: float | None = None,
+    step_size: float | None = None,
+    output_interval: float | None = None,
+    out: str | os.PathLike[str] | None = None,
+    **options: Unpack[RunKeywords],
+) -> Run:
+    """Run a scenario and judge what it expects.
+
+    Parameters
+    ----------
+    scenario : Scenario, path or name
+        A scenario file, or its name: ``"four_corner"``.
+    set : mapping of str to value, optional
+        Start values by full name, in the FMUs' units; over those of the scenario.
+    parameters : sequence of path
+        Parameter sets (.ssv) over the scenario's own, as the extended.ssv of a diagnosis; what does not fit is left
+        out and said in `Run.remarks`.
+    events : iterable of mapping
+        As in a scenario file; added to its own.
+    stop_time, step_size, output_interval : float, optional
+        In place of the scenario's. [s]
+    out : path, optional
+        Folder that gets result.nc, result.csv and report.html; nothing is written without.
+    engine, inputs, progress, order, until, resume, store, isolate, timeout
+        As in `shipcosim.options.RunOptions`.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    ShipcosimError
+        If something does not fit together, or the run fails.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> gust = shipcosim.run("gust", stop_time=2.0)
+    >>> gust.passed, gust["vessel.psi"].attrs["units"], len(gust.not_judged)
+    (True, 'rad', 4)
+    """
+    given = scenario if isinstance(scenario, Scenario) else read_scenario(scenario)
+    if missing := check_files(given):
+        raise ShipcosimError(missing)
+    path = given.system_path
+    system = read_system(path, given.parameter_paths, fmus=library.fmus(path))
+    times = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
+    fitting, remarks = _fitting(parameters, system)
+    keys = _given(times) | {"set": fitting | dict(set or {}), "events": list(events)}
+    shown = _scenario(given, system.experiment, keys)
+    return _run(system, shown, RunOptions(**options), out, remarks=remarks, planned=given.stop_time)
+
+
+@with_known_keywords
 def simulate(
-    system: SystemStructure | System | str | os.PathLike[str] | None = None,
+    system: AnySystem | None = None,
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
     stop_time: float | None = None,
@@ -46,15 +130,16 @@ def simulate(
     set: Mapping[str, object] | None = None,
     events: Iterable[Mapping[str, object]] = (),
     start_time: float | None = None,
+    out: str | os.PathLike[str] | None = None,
     **options: Unpack[RunKeywords],
-) -> xarray.Dataset:
-    """Run a system and return the table of all signals.
+) -> Run:
+    """Run a system, one of ours or anybody's.
 
     Parameters
     ----------
-    system : SystemStructure, System or path, optional
+    system : SystemStructure, System, path or name, optional
         What runs; the scenario's system if not given.
-    scenario : Scenario or path, optional
+    scenario : Scenario, path or name, optional
         What happens; the keywords add to it and go before it.
     stop_time, step_size, output_interval : float, optional
         Where nobody says anything, the system's default experiment does, and every step is a row. [s]
@@ -64,19 +149,29 @@ def simulate(
         As in a scenario file: ``{"time": 10.0, "override": {"vessel.tau_X_5": 1e4}}``.
     start_time : float, optional
         As in `shipcosim.options.RunOptions`; where nobody says anything, the system's default experiment does. [s]
+    out : path, optional
+        Folder that gets result.nc, result.csv and report.html; nothing is written without.
     engine, inputs, progress, order, until, resume, store, isolate, timeout
         As in `shipcosim.options.RunOptions`: `until` and `store` stop at a time and keep the state of the whole
         system, `resume` continues from there; `isolate` has each component run in a process of its own.
 
     Returns
     -------
-    Dataset
-        One row per output interval, `time` in s; variables are named ``component.connector``.
+    Run
+        Its `table` has one row per output interval, `time` in s; variables are named ``component.connector``. It is
+        read like its table: ``run["vessel.x"]``.
 
     Raises
     ------
     ShipcosimError
         If something does not fit together, or the run fails.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> drift = shipcosim.simulate("gunnerus_open", stop_time=1.0, step_size=0.1, set={"port_rpm": 60.0})
+    >>> drift.sizes["time"], bool(drift["vessel.u"][-1] > 0.0)
+    (11, True)
     """
     if scenario is not None and not isinstance(scenario, Scenario):
         scenario = read_scenario(scenario)
@@ -84,30 +179,240 @@ def simulate(
     if start_time is None:
         continues = options.get("resume") is not None
         start_time = system.experiment.start_time if scenario is None and not continues else 0.0
-    keys = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
-    keys = {name: value for name, value in keys.items() if value is not None}
-    scenario = _scenario(scenario, system.experiment, keys | {"set": set or {}, "events": list(events)})
-    return _simulate(system, scenario, RunOptions(start_time=start_time, **options))
+    times = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
+    keys = _given(times) | {"set": dict(set or {}), "events": list(events)}
+    planned = 0.0 if scenario is None else scenario.stop_time
+    scenario = _scenario(scenario, system.experiment, keys)
+    return _run(system, scenario, RunOptions(start_time=start_time, **options), out, planned=planned)
 
 
-def _system(system, scenario):
+def read(path: str | os.PathLike[str], *, fmus: Iterable[str | os.PathLike[str]] | None = None) -> SystemStructure:
+    """Read a system structure to look at it, change it, run it, write it.
+
+    Parameters
+    ----------
+    path : path or name
+        A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, a .ssd, or the
+        name of a system.
+    fmus : iterable of path, optional
+        Folders searched for FMUs that are not beside the SSD; those of its project and ours if not given.
+
+    Returns
+    -------
+    SystemStructure
+        It may have faults: `check` tells them.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such system.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> sorted(shipcosim.read("otter_open").components)
+    ['environment', 'left', 'right', 'vessel']
+    """
+    found = library.find("system", path)
+    return _read(found, fmus=library.fmus(found) if fmus is None else fmus)
+
+
+def read_scenario(scenario: str | os.PathLike[str]) -> Scenario:
+    """Read and check a scenario file.
+
+    Parameters
+    ----------
+    scenario : path or name
+
+    Raises
+    ------
+    ShipcosimError
+        With every problem of the file: its line, what was found, what would be right.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.read_scenario("gust").system
+    'gunnerus_dp'
+    """
+    return _read_scenario(library.find("scenario", scenario))
+
+
+@with_known_keywords
+def read_log(log: AnyLog, channels: str | os.PathLike[str] | None = None) -> Log:
+    """Read a measured log, every row of it, to look at it before it is diagnosed.
+
+    Parameters
+    ----------
+    log : path, name of an example, or xarray.Dataset
+        Measured data, see docs/measured-data.md.
+    channels : path, optional
+        Channel file: which column is what, in which unit.
+
+    Returns
+    -------
+    Log
+
+    Raises
+    ------
+    ShipcosimError
+        With all that is wrong: a column that is missing, not numeric or in a unit of something else, no time.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.read_log("gunnerus_log")["heading"].attrs["units"]
+    'deg'
+    """
+    from shipcosim.diagnose.log.reader import read_log
+
+    source, channels = _source(log, channels)
+    name = "log" if not isinstance(source, (str, os.PathLike)) else Path(source).name
+    return Log(name, read_log(source, channels), source, channels)
+
+
+@overload
+def diagnose(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    channels: str | os.PathLike[str] | None = None,
+    causes: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | Reference | None = None,
+) -> DiagnosisOfLog: ...
+@overload
+def diagnose(
+    log: Sequence[AnyLog],
+    system: AnySystem | None = None,
+    channels: str | os.PathLike[str] | None = None,
+    causes: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | Reference | None = None,
+) -> DiagnosisOfLogs: ...
+@with_known_keywords
+def diagnose(
+    log: AnyLog | Sequence[AnyLog],
+    system: AnySystem | None = None,
+    channels: str | os.PathLike[str] | None = None,
+    causes: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | Reference | None = None,
+) -> DiagnosisOfLog | DiagnosisOfLogs:
+    """Say what the simulation gets wrong of a log, and why: causes by name, the system with them, what that gains.
+
+    Parameters
+    ----------
+    log : path, name of an example, Log, Run, xarray.Dataset, or a list of them
+        Measured data, see docs/measured-data.md; several logs of one ship are weighed together.
+    system : path, name, SystemStructure or System, optional
+        The ship that the log is held against; gunnerus_open if not given.
+    channels : path, optional
+        Channel file: which column is what, in which unit.
+    causes : path, optional
+        Folder with further causes.
+    progress : callable, optional
+        Called with what is being done, in words; for the co-simulations also with how many are done and of how many.
+    out : path, optional
+        Folder that gets diagnosis.json, report.html, and extended.ssp and extended.ssv where a cause of the physics
+        is named; nothing is left on the disk without.
+    reference : path or Reference, optional
+        What logs in which the ship was well say of her, as a calibration leaves it: what has changed since is told.
+
+    Returns
+    -------
+    DiagnosisOfLog
+        Or DiagnosisOfLogs of a list.
+
+    Raises
+    ------
+    ShipcosimError
+        Data, system or causes that cannot be used.
+    """
+    from shipcosim.diagnose.joint_pipeline import diagnose_jointly
+    from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
+
+    ship = _system(SYSTEM_OF_LOGS if system is None else system)
+    if isinstance(log, Sequence) and not isinstance(log, str):
+        sources = [_source(one, channels)[0] for one in log]
+        found = diagnose_jointly(sources, ship, channels, causes, progress, out=out, reference=reference)
+        result = DiagnosisOfLogs.of(found)
+    else:
+        source, channels = _source(log, channels)
+        found = diagnose(source, ship, channels, causes, progress, out=out, reference=reference)
+        result = DiagnosisOfLog.of(found)
+    if out is not None:
+        result.save(out)
+    return result
+
+
+def _run(system, scenario, options, out, *, remarks=(), planned=0.0):
+    """Simulate, judge what lies within the run, and write it where somebody asks for that.
+
+    `planned` is the stop time for which the expectations were written. [s]
+    """
+    remarks = [*remarks, *(one for one in system.remarks if one.where not in system.components)]
+    remarks += [one for one in check_times(scenario) if one.severity != "error"]
+    table = _simulate(system, scenario, options)
+    first, last = table["time"].values[[0, -1]]
+    is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
+    within = [is_whole or not e.during or (first <= e.during[0] and e.during[1] <= last) for e in scenario.expect]
+    judged, late = ([e for e, is_in in zip(scenario.expect, within, strict=True) if is_in == asked] for asked in (1, 0))
+    verdicts = judge(table, scenario.model_copy(update={"expect": judged}))
+    result = Run(table, scenario, system, tuple(verdicts), tuple(late), tuple(remarks))
+    if out is not None:
+        result.save(out)
+    return result
+
+
+def _system(system, scenario=None):
     """The checked system that a user means, or the scenario's where none is given."""
     if system is None:
         system = scenario.system_path if scenario is not None else _missing("system", "Give a system or a scenario.")
     if isinstance(system, System):
         return system
     parameters = () if scenario is None else scenario.parameter_paths
-    if not isinstance(system, SystemStructure) and osp_file(system):
-        return read_system(system, parameters)
-    structure = system if isinstance(system, SystemStructure) else read(system)
-    return structure.checked(parameters)
+    if not isinstance(system, SystemStructure):
+        system = library.find("system", system)
+        if osp_file(system):
+            return read_system(system, parameters)
+        system = read(system)
+    return system.checked(parameters)
+
+
+def _source(log, channels):
+    """A log for the functions of the rooms, with its channel file."""
+    if isinstance(log, Log):
+        return log.source, log.channels if channels is None else channels
+    if isinstance(log, Run):
+        return log.table, channels
+    return (library.find("example", log) if isinstance(log, (str, os.PathLike)) else log), channels
+
+
+def _fitting(parameters: Sequence[str | os.PathLike[str]], system: System) -> tuple[dict[str, Any], list[Problem]]:
+    """Start values of parameter sets as far as the system has what they are for, and remarks on the rest."""
+    values, remarks = {}, []
+    for file in [parameters] if isinstance(parameters, (str, os.PathLike)) else parameters:
+        fitting, left_out = fitting_values(file, system)
+        values |= fitting
+        remarks += left_out
+    return values, remarks
+
+
+def _given(keys):
+    return {name: value for name, value in keys.items() if value is not None}
 
 
 def _scenario(given, experiment, keys):
     """Scenario of keys, over those of another one or over the system's default experiment; checked."""
     if given is None:
-        default = {"stop_time": experiment.stop_time, "step_size": experiment.step_size}
-        keys = {name: value for name, value in default.items() if value is not None} | keys
+        keys = _given({"stop_time": experiment.stop_time, "step_size": experiment.step_size}) | keys
     else:
         had = given.model_dump(exclude_defaults=True)
         keys["set"] = had.get("set", {}) | keys["set"]
@@ -132,5 +437,7 @@ def _problem(finding):
     name = ".".join(map(str, finding["loc"]))
     if finding["type"] == "missing":
         return Problem("simulate", f"{name} is missing.", "Give it in s: the system has no default.")
+    if finding["type"] == "extra_forbidden":
+        return Problem("simulate", f"{name}: There is no such key.", f"It was given {finding['input']!r}.")
     text = finding["msg"].removeprefix("Value error, ").removesuffix(".")
     return Problem("simulate", f"{name} = {finding['input']!r}.", f"{text}.")

@@ -56,6 +56,12 @@ class ShipcosimError(Exception):
         self.problems = [p if isinstance(p, Problem) else Problem("", p) for p in problems]
         super().__init__("\n".join(map(str, worth_showing(self.problems))))
 
+    def _render_traceback_(self) -> list[str]:
+        """What IPython and Jupyter show in place of a traceback: the problems, each on lines of its own."""
+        shown = worth_showing(self.problems)
+        head = f"{type(self).__name__}: {len(self.problems)} problems" if len(shown) > 1 else type(self).__name__
+        return [f"\x1b[1;31m{head}\x1b[0m", *(f"  {line}" for one in shown for line in str(one).splitlines())]
+
 
 def worth_showing(problems: Iterable[Problem]) -> list[Problem]:
     """As many of the problems as anybody reads, errors before remarks if there are more, and how many others there are.

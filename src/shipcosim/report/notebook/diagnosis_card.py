@@ -1,0 +1,114 @@
+"""The cards of diagnoses of one log and of several, and the log beside predictions of it as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from shipcosim.diagnose.reference.joint_result import JointDiagnosis
+from shipcosim.diagnose.result import Diagnosis, Finding
+from shipcosim.diagnose.validation.tracks import Tracks
+from shipcosim.report.diagnosis.key_figures import key_figures
+from shipcosim.report.diagnosis.track_figures import joined
+from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, outcome, size_rows, title, where
+from shipcosim.report.joint import words as joint
+from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.notebook.chart import Path, chart_svg
+from shipcosim.report.theme import palette
+from shipcosim.report.theme.views import Fact, Table
+
+__all__ = ["diagnosis_card", "joint_card", "tracks_svg"]
+
+COLOURS = (palette.ORANGE, palette.BLUE, palette.GREEN)
+
+
+def diagnosis_card(found: Diagnosis, name: str) -> Card:
+    """Verdict, findings with their sizes, errors before and after, what to do next.
+
+    Parameters
+    ----------
+    found : Diagnosis
+    name : str
+        Its title.
+    """
+    alike = tuple((title(c.cause, c.component), f"{100 * c.probability:.0f} %") for c in found.indistinguishable)
+    silent = tuple(title(cause) for cause in found.not_testable)
+    steps = next_steps(found, None, found.causes)
+    if found.extended is not None:
+        steps = [*steps, "Simulate the system with the cause in it: `.extended`."]
+    return Card(
+        title=name,
+        facts=_facts(found),
+        outcome=outcome(found, found.causes),
+        links=(),
+        data=(),
+        blocks=(
+            Block("Wrong, largest first", Table(tuple(discrepancy_rows(found)))),
+            Block("Found", Table(tuple(_rows(found.findings)), ("", "probability", "", "size"))),
+            Block("This log cannot tell apart", Table(alike)),
+            Block("Errors", Table(tuple((figure.value, figure.meaning) for figure in key_figures(found)))),
+            Block("Remarks", lines=found.notes),
+            Block("What to do next", lines=tuple(steps)),
+            Block("This log could not have shown", lines=silent, folded=True),
+        ),
+        picture="" if found.tracks is None else tracks_svg(found.tracks, name),
+    )
+
+
+def _facts(found: Diagnosis) -> tuple[Fact, ...]:
+    facts = [("System", found.system.name if found.system else "")]
+    if found.log is not None:
+        time = found.log.measured["time"].values
+        facts.append(("Log", f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"))
+    return tuple(Fact(name, text) for name, text in facts if text)
+
+
+def _rows(findings: Iterable[Finding]) -> Iterable[tuple[str, ...]]:
+    """A row for each parameter of a cause; of a fault of the log where it is."""
+    for finding in findings:
+        name, sure = title(finding.cause, finding.component), f"{100 * finding.probability:.0f} %"
+        rows = size_rows(finding) if finding.kind == "physics" else []
+        for parameter, size in rows:
+            yield name, sure, parameter, size
+            name = sure = ""
+        if not rows:
+            yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)
+
+
+def joint_card(found: JointDiagnosis, name: str) -> Card:
+    """What several logs say together, and each by itself.
+
+    Parameters
+    ----------
+    found : JointDiagnosis
+    name : str
+        Its title.
+    """
+    head = ("log", "after", "position", "with causes", "heading", "with causes", "")
+    return Card(
+        title=name,
+        facts=(Fact("System", found.system.name if found.system else "–"), Fact("Logs", ", ".join(found.logs))),
+        outcome=joint.outcome(found),
+        links=(),
+        data=(),
+        blocks=(
+            Block("Wrong, largest first", Table(tuple(joint.discrepancy_rows(found)))),
+            Block("Faults of the data in common", Table(tuple(joint.fault_rows(found)))),
+            Block("Causes in common", Table(tuple(joint.cause_rows(found)))),
+            Block("Errors by log", Table(tuple(joint.error_rows(found)), head)),
+            Block("Each log by itself", Table(tuple(row[:4] for row in joint.log_rows(found)))),
+            Block("Remarks", lines=tuple(found.remarks)),
+            Block("What to do next", lines=tuple(joint.next_steps(found))),
+        ),
+    )
+
+
+def tracks_svg(tracks: Tracks, name: str) -> str:
+    """A log and predictions of it on one chart, as SVG."""
+    seen = tracks.measured
+    paths = [Path("measured", seen["north"].values, seen["east"].values, colour=palette.FAINT)]
+    for (label, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
+        north, east = (np.asarray(joined(one, role)) for role in ("north", "east"))
+        paths.append(Path(f"{label}, every {tracks.horizon:.0f} s anew", north, east, colour=colour))
+    return chart_svg(paths, name)

@@ -1,0 +1,72 @@
+"""The card of a measured log."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from xarray import Dataset
+
+from shipcosim.diagnose.result import Finding
+from shipcosim.report.diagnosis.words import title, where
+from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.views import Fact, Outcome, Table
+
+__all__ = ["log_card"]
+
+
+def log_card(name: str, table: Dataset, faults: Sequence[Finding], remarks: Sequence[str], picture: str) -> Card:
+    """Channels with their ranges, faults, remarks and the track.
+
+    Parameters
+    ----------
+    name : str
+        Of the log.
+    table : xarray.Dataset
+        As `read_log` gives it.
+    faults : sequence of Finding
+        That the channels show.
+    remarks : sequence of str
+    picture : str
+        SVG of the track; empty without a position.
+    """
+    time = table["time"].values
+    span = f"{len(time)} rows, {plain(float(np.nanmin(time)))} to {plain(float(np.nanmax(time)))} s"
+    steps = np.diff(time[np.isfinite(time)])
+    facts = (Fact("Rows", span), Fact("Usual step", f"{plain(float(np.median(steps)))} s"))
+    found = tuple((title(one.cause, one.component), where(one), one.sentence) for one in faults)
+    return Card(
+        title=name,
+        facts=facts,
+        outcome=_outcome(faults),
+        links=(),
+        data=(),
+        blocks=(
+            Block("Faults", Table(found)),
+            Block("Channels", Table(_channels(table), ("", "unit", "least", "largest", "missing"))),
+            Block("Remarks", lines=tuple(remarks)),
+        ),
+        picture=picture,
+    )
+
+
+def _outcome(faults: Sequence[Finding]) -> Outcome:
+    if not faults:
+        return Outcome("plain", "LOG", "Its channels show no fault by themselves.")
+    many = "One fault" if len(faults) == 1 else f"{len(faults)} faults"
+    return Outcome(
+        "faulty", "FAULTY", f"{many} show in the channels by themselves; a diagnosis puts right what it can."
+    )
+
+
+def _channels(table: Dataset) -> tuple[tuple[str, ...], ...]:
+    """Each channel with its unit, its range and the share of rows without a value."""
+    rows = []
+    for name, variable in table.data_vars.items():
+        values = np.asarray(variable.values, float)
+        finite = values[np.isfinite(values)]
+        ends = (plain(float(finite.min())), plain(float(finite.max()))) if len(finite) else ("–", "–")
+        lost = 1.0 - len(finite) / max(len(values), 1)
+        rows.append((str(name), variable.attrs.get("units", ""), *ends, f"{100 * lost:.1f} %" if lost else ""))
+    return tuple(rows)

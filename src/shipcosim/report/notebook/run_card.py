@@ -1,0 +1,78 @@
+"""The card of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from xarray import Dataset
+
+from shipcosim.errors import Problem
+from shipcosim.report.notebook.card import Block, Card
+from shipcosim.report.notebook.run_track import run_track
+from shipcosim.report.run.page import digest
+from shipcosim.report.theme.views import Fact, Table
+from shipcosim.scenario import Expectation, Scenario, Verdict
+from shipcosim.ssp import System
+
+__all__ = ["run_card"]
+
+
+def run_card(
+    table: Dataset,
+    scenario: Scenario,
+    system: System,
+    verdicts: Sequence[Verdict],
+    *,
+    late: Sequence[Expectation],
+    remarks: Sequence[Problem],
+) -> Card:
+    """Verdict, expectations, track and what signals there are.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        The run. [SI]
+    scenario, system
+        What happened to what.
+    verdicts : sequence of Verdict
+        On what was expected within the run.
+    late : sequence of Expectation
+        What was expected later than the run went.
+    remarks : sequence of Problem
+        On system and scenario.
+    """
+    found = digest(table, verdicts)
+    rows = tuple(("holds" if one.passed else "FAILS", *one[1:]) for one in found.expectations)
+    name = scenario.name or system.name
+    not_reached = tuple(f"not reached: {expect}" for expect in late)
+    return Card(
+        title=name + (f": {scenario.description}" if scenario.description and scenario.name else ""),
+        facts=_facts(table, scenario, system),
+        outcome=found.outcome,
+        links=(),
+        data=(),
+        blocks=(
+            Block("Expected", Table(rows, ("", "", "during", "worst", "at")), not_reached),
+            Block("Remarks", lines=(*found.remarks, *map(str, remarks))),
+            Block("Signals, by component", Table(_signals(table)), folded=True),
+        ),
+        picture=run_track(table, verdicts, f"track of {name}") or "",
+    )
+
+
+def _facts(table: Dataset, scenario: Scenario, system: System) -> tuple[Fact, ...]:
+    """What ran, for how long, in which steps."""
+    time = table["time"].values
+    span = f"{time[0]:g} to {time[-1]:g} s" if len(time) else "nothing"
+    facts = [("System", system.name), ("Simulated", span), ("Step size", f"{scenario.step_size:g} s")]
+    facts.append(("Table", f"{len(time)} rows, {len(table)} signals"))
+    return tuple(Fact(name, text) for name, text in facts if text)
+
+
+def _signals(table: Dataset) -> tuple[tuple[str, str], ...]:
+    """Connectors by component."""
+    parts: dict[str, list[str]] = {}
+    for name in map(str, table.data_vars):
+        component, _, connector = name.rpartition(".")
+        parts.setdefault(component or "system", []).append(connector)
+    return tuple((component, ", ".join(connectors)) for component, connectors in parts.items())
