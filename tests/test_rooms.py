@@ -51,7 +51,20 @@ MAY_IMPORT = {
         "diagnose",
         "capability",
     },
-    "api": {"errors", "options", "series", "fmi", "library", "ssp", "scenario", "cosim", "report", "diagnose"},
+    "results": {"errors", "options", "series", "scenario", "ssp", "cosim", "diagnose", "capability", "report"},
+    "api": {
+        "errors",
+        "options",
+        "series",
+        "fmi",
+        "library",
+        "ssp",
+        "scenario",
+        "cosim",
+        "report",
+        "diagnose",
+        "results",
+    },
 }
 ONLY_DOOR = {
     "pythonfmu": {"fmi.export"},

@@ -2,7 +2,7 @@
 
     import shipcosim
     run = shipcosim.run("four_corner")
-    found = shipcosim.diagnose("gunnerus_log")
+    found = shipcosim.diagnose("log.csv")
 
 Names are imported when they are first asked for, so that the command line starts quickly.
 """

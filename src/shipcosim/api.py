@@ -114,7 +114,7 @@ def run(
     system = read_system(path, given.parameter_paths, fmus=library.fmus(path))
     times = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
     fitting, remarks = _fitting(parameters, system)
-    keys = _given(times) | {"set": fitting | dict(set or {}), "events": list(events)}
+    keys = _given(times) | {"set": fitting | _mapping("set", set), "events": list(events)}
     shown = _scenario(given, system.experiment, keys)
     return _run(system, shown, RunOptions(**options), out, remarks=remarks, planned=given.stop_time)
 
@@ -180,7 +180,7 @@ def simulate(
         continues = options.get("resume") is not None
         start_time = system.experiment.start_time if scenario is None and not continues else 0.0
     times = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
-    keys = _given(times) | {"set": dict(set or {}), "events": list(events)}
+    keys = _given(times) | {"set": _mapping("set", set), "events": list(events)}
     planned = 0.0 if scenario is None else scenario.stop_time
     scenario = _scenario(scenario, system.experiment, keys)
     return _run(system, scenario, RunOptions(start_time=start_time, **options), out, planned=planned)
@@ -213,7 +213,7 @@ def read(path: str | os.PathLike[str], *, fmus: Iterable[str | os.PathLike[str]]
     >>> sorted(shipcosim.read("otter_open").components)
     ['environment', 'left', 'right', 'vessel']
     """
-    found = library.find("system", path)
+    found = _found("system", path)
     return _read(found, fmus=library.fmus(found) if fmus is None else fmus)
 
 
@@ -235,7 +235,7 @@ def read_scenario(scenario: str | os.PathLike[str]) -> Scenario:
     >>> shipcosim.read_scenario("gust").system
     'gunnerus_dp'
     """
-    return _read_scenario(library.find("scenario", scenario))
+    return _read_scenario(_found("scenario", scenario))
 
 
 @with_known_keywords
@@ -379,7 +379,7 @@ def _system(system, scenario=None):
         return system
     parameters = () if scenario is None else scenario.parameter_paths
     if not isinstance(system, SystemStructure):
-        system = library.find("system", system)
+        system = _found("system", system)
         if osp_file(system):
             return read_system(system, parameters)
         system = read(system)
@@ -392,7 +392,14 @@ def _source(log, channels):
         return log.source, log.channels if channels is None else channels
     if isinstance(log, Run):
         return log.table, channels
-    return (library.find("example", log) if isinstance(log, (str, os.PathLike)) else log), channels
+    return log if hasattr(log, "data_vars") else _found("example", log), channels
+
+
+def _found(kind, given):
+    """Path of what a user means; `library.find` says what there is where there is no such thing."""
+    if not isinstance(given, (str, os.PathLike)):
+        raise ShipcosimError(Problem(kind, f"{given!r:.60} is neither a path nor a name.", "Give one of them."))
+    return library.find(kind, given)
 
 
 def _fitting(parameters: Sequence[str | os.PathLike[str]], system: System) -> tuple[dict[str, Any], list[Problem]]:
@@ -403,6 +410,12 @@ def _fitting(parameters: Sequence[str | os.PathLike[str]], system: System) -> tu
         values |= fitting
         remarks += left_out
     return values, remarks
+
+
+def _mapping(name, given):
+    if given is not None and not isinstance(given, Mapping):
+        raise ShipcosimError(Problem("", f"{name} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.'))
+    return dict(given or {})
 
 
 def _given(keys):
