@@ -1,7 +1,7 @@
 """Errors and remarks in one form: where, what was found, what would be right."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 LONGEST_TEXT = 4000  # characters of each part of a problem: a name can be as long as a file
@@ -23,12 +23,16 @@ class Problem:
         What would be right; empty where nothing better than `found` can be said.
     severity : str
         ``"error"``, or ``"remark"`` for what does not stop a run.
+    flaw : bool
+        Whether a remark is about something that breaks its standard and can mean one thing only. `--strict` makes it
+        an error.
     """
 
     where: str
     found: str
     remedy: str = ""
     severity: str = "error"
+    flaw: bool = False
 
     def __post_init__(self) -> None:
         for part in ("where", "found", "remedy"):
@@ -61,6 +65,17 @@ class ShipcosimError(Exception):
         shown = worth_showing(self.problems)
         head = f"{type(self).__name__}: {len(self.problems)} problems" if len(shown) > 1 else type(self).__name__
         return [f"\x1b[1;31m{head}\x1b[0m", *(f"  {line}" for one in shown for line in str(one).splitlines())]
+
+
+def held_strictly(problems: Iterable[Problem]) -> list[Problem]:
+    """The problems, with flaws that have only one meaning as errors.
+
+    Examples
+    --------
+    >>> [problem.severity for problem in held_strictly([Problem("", "", severity="remark", flaw=True)])]
+    ['error']
+    """
+    return [replace(problem, severity="error") if problem.flaw else problem for problem in problems]
 
 
 def worth_showing(problems: Iterable[Problem]) -> list[Problem]:

@@ -135,7 +135,12 @@ class Case:
 @cache
 def cases():
     """All cases by name."""
-    return {path.stem: _case(path) for path in sorted((HERE / "features").glob("*.toml"))}
+    return read_cases(HERE / "features")
+
+
+def read_cases(folder):
+    """Cases of a folder by name."""
+    return {path.stem: _case(path) for path in sorted(folder.glob("*.toml"))}
 
 
 def _case(path):

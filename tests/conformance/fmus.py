@@ -73,10 +73,12 @@ def changed_description(data, how, guid):
     """
     root = ElementTree.fromstring(data)
     root.set("guid", f"{{{guid}}}")
-    for variable in root.iter("ScalarVariable"):
+    for variable in list(root.iter("ScalarVariable")):
         for key, value in how.get(variable.get("name"), {}).items():
             if key == "items":
                 _make_enumeration(root, variable, value)
+            elif key == "twice":
+                _add_second(root, variable, value)
             elif key == "unit":
                 variable[0].attrib.pop("declaredType", None)
                 variable[0].set("unit", value)
@@ -92,8 +94,18 @@ def changed_description(data, how, guid):
     return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
 
 
+def _add_second(root, variable, other):
+    """A second variable of a name, with the value of another variable."""
+    second = ElementTree.fromstring(ElementTree.tostring(variable))
+    named = {one.get("name"): one.get("valueReference") for one in root.iter("ScalarVariable")}
+    second.set("valueReference", named[other])
+    second.set("causality", "local")
+    root.find("ModelVariables").append(second)
+
+
 UNITS = {"km": {"m": "1", "factor": "1000"}, "deg": {"rad": "1", "factor": "0.017453292519943295"}, "rad": {"rad": "1"}}
 UNITS |= {"K": {"K": "1"}, "degC": {"K": "1", "offset": "273.15"}, "m": {"m": "1"}, "kg": {"kg": "1"}}
+UNITS |= {"bar": {}}  # as tools write a base unit that they do not know
 
 
 def _define(root, name):

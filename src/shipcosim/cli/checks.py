@@ -98,7 +98,8 @@ def check_scenario_file(path: Path) -> list[Problem]:
         system, problems = with_values(system, scenario.set, str(path)), []
     except ShipcosimError as error:
         problems = error.problems
-    return [*problems, *check_scenario(scenario, system)]
+    flaws = [problem for problem in system.remarks if problem.flaw]
+    return [*flaws, *problems, *check_scenario(scenario, system)]
 
 
 def check_osp_scenario(path: Path) -> list[Problem]:

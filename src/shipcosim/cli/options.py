@@ -56,4 +56,7 @@ Timeout = Annotated[
     typer.Option("--timeout", callback=finite, help="[s] Longest wait for a component of --isolate. Default: 60."),
 ]
 ReportAsJson = Annotated[bool, typer.Option("--json", help="Report as JSON.")]
+Strict = Annotated[
+    bool, typer.Option("--strict", help="Refuse what breaks a standard, even where it can mean one thing only.")
+]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]

@@ -19,7 +19,7 @@ from shipcosim.series import read_table
 from shipcosim.ssp import System, read_system
 
 
-def system_of(given: str, parameters: Iterable[Path] | None = None, option: str = "") -> System:
+def system_of(given: str, parameters: Iterable[Path] | None = None, option: str = "", strict: bool = False) -> System:
     """The system of a file, folder or name, with our FMUs built where they are missing or out of date.
 
     Parameters
@@ -30,6 +30,8 @@ def system_of(given: str, parameters: Iterable[Path] | None = None, option: str 
         Parameter sets over those of the system.
     option : str
         Where it was given, for messages.
+    strict : bool
+        Refuse what breaks a standard, also where it can mean one thing only.
 
     Raises
     ------
@@ -37,7 +39,7 @@ def system_of(given: str, parameters: Iterable[Path] | None = None, option: str 
         If it is no system, or a faulty one.
     """
     path = library.find("system", given, option)
-    return read_system(path, parameters or (), fmus=library.fmus(path))
+    return read_system(path, parameters or (), fmus=library.fmus(path), strict=strict)
 
 
 def system_and_scenario(
@@ -46,6 +48,7 @@ def system_and_scenario(
     stop_time: float | None = None,
     step_size: float | None = None,
     events: Path | None = None,
+    strict: bool = False,
 ) -> tuple[System, Scenario]:
     """System and scenario of an argument that is either.
 
@@ -59,6 +62,8 @@ def system_and_scenario(
         In place of those of the scenario or the system. [s]
     events : Path, optional
         Scenario file of OSP: what happens besides.
+    strict : bool
+        Refuse what breaks a standard, also where it can mean one thing only. Without it this is said.
 
     Raises
     ------
@@ -66,13 +71,15 @@ def system_and_scenario(
         If there is no such thing, or the times do not fit.
     """
     if not is_scenario(given):
-        system = system_of(given, parameters)
+        system = system_of(given, parameters, strict=strict)
+        print_problems(problem for problem in system.remarks if problem.flaw)
         return system, with_osp_events(experiment_of(system, stop_time, step_size), events)
     scenario = read_scenario(library.find("scenario", given))
     if missing := check_files(scenario):
         raise ShipcosimError(missing)
-    path = scenario.system_path
-    system = read_system(path, [*scenario.parameter_paths, *(parameters or ())], fmus=library.fmus(path))
+    path, sets = scenario.system_path, [*scenario.parameter_paths, *(parameters or ())]
+    system = read_system(path, sets, fmus=library.fmus(path), strict=strict)
+    print_problems(problem for problem in system.remarks if problem.flaw)
     times = {"stop_time": stop_time, "step_size": step_size}
     scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
     if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:

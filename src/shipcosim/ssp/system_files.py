@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from os import PathLike
 
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import ShipcosimError, held_strictly
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
@@ -13,7 +13,11 @@ from shipcosim.ssp.xml.document import Findings
 
 
 def read_system(
-    path: str | PathLike[str], parameters: ParameterSets = (), *, fmus: Iterable[str | PathLike[str]] = ()
+    path: str | PathLike[str],
+    parameters: ParameterSets = (),
+    *,
+    fmus: Iterable[str | PathLike[str]] = (),
+    strict: bool = False,
 ) -> System:
     """Read a system structure and everything it refers to, checked completely.
 
@@ -26,6 +30,8 @@ def read_system(
         Parameter sets (.ssv) applied over those of the system, the last one last.
     fmus : iterable of path
         Folders searched for FMUs that are not beside the system structure.
+    strict : bool
+        Refuse what breaks a standard, also where it can mean one thing only.
 
     Returns
     -------
@@ -37,8 +43,9 @@ def read_system(
         With everything that is wrong.
     """
     system, findings = assemble(path, parameters, fmus)
-    if system is None or findings.errors:
-        raise ShipcosimError(list(dict.fromkeys(findings.errors)))
+    refused = [p for p in findings.problems if p.severity == "error" or (strict and p.flaw)]
+    if system is None or refused:
+        raise ShipcosimError(list(dict.fromkeys(held_strictly(refused))))
     return system
 
 

@@ -403,14 +403,14 @@ def test_the_form_of_an_fmu_that_is_asked_for_must_be_there(shop):
 
 def test_a_path_relative_to_the_working_folder_is_shown_as_given(shop, monkeypatch):
     pair(shop)
-    shop.ssv("<oops/>")
+    shop.ssv('<ssv:Parameter name="oops"/>')
     binding = '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/numbers.ssv"/></ssd:ParameterBindings>'
     text = shop.path.read_text().replace("<ssd:Elements>", binding + "<ssd:Elements>")
     shop.path.write_text(text)
     monkeypatch.chdir(shop.folder.parent)
     with pytest.raises(ShipcosimError) as caught:
         read_system(shop.folder.name)
-    assert str(caught.value).startswith("system/resources/numbers.ssv, line 5: Element 'oops'")
+    assert str(caught.value).startswith("system/resources/numbers.ssv, line 5: Element 'Parameter'")
 
 
 def test_a_system_travels_to_another_process(shop, tmp_path):

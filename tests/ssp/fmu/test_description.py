@@ -6,6 +6,8 @@ import pytest
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_fmu
+from shipcosim.ssp.fmu.reader import describe_fmu
+from shipcosim.ssp.xml.document import Findings
 
 FMI3 = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="new" instantiationToken="{{1}}">
@@ -76,10 +78,15 @@ def test_what_is_no_fmu_is_refused(tmp_path, text, message):
     assert message in str(caught.value)
 
 
-def test_two_variables_of_one_name_are_refused(shop):
-    path = shop.fmu("one", "output y Real m", "output y Real m")
-    with pytest.raises(ShipcosimError, match="A second variable has this name"):
-        read_fmu(path)
+def test_of_two_variables_of_one_name_the_first_is_meant_and_it_is_said(shop):
+    path = shop.fmu("one", "output y Real m", "output y Integer", "output z Real m")
+    findings = Findings()
+    fmu = describe_fmu(path, findings)
+    assert fmu.variables["y"].type == "Real"
+    assert list(fmu.variables) == ["y", "z"]
+    (flaw,) = findings.problems
+    assert flaw.flaw
+    assert "A second variable has this name, for another value (Integer" in flaw.found
 
 
 def test_an_archive_without_a_model_description_is_refused(tmp_path):

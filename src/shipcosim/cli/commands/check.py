@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Debug, ReportAsJson
+from shipcosim.cli.options import Debug, ReportAsJson, Strict
 
 
 def check(
@@ -21,6 +21,7 @@ def check(
         list[str] | None,
         typer.Option("--for", metavar="TOOL", help="libcosim or ecos: what it would ignore or die of; repeatable."),
     ] = None,
+    strict: Strict = False,
     as_json: ReportAsJson = False,
     debug: Debug = False,
 ) -> None:
@@ -30,11 +31,14 @@ def check(
     """
     from shipcosim.cli.checks import check_any, variables_in
     from shipcosim.cli.console import print_report, print_variables
+    from shipcosim.errors import held_strictly
     from shipcosim.ssp.portability.check import check_host
 
     for host in hosts or ():
         check_host(host)
     reports = {file: check_any(file, channels, hosts or ()) for file in files}
+    if strict:
+        reports = {file: held_strictly(problems) for file, problems in reports.items()}
     print_report(reports, as_json)
     for variables in () if as_json else filter(None, map(variables_in, files)):
         print_variables(variables)

@@ -12,6 +12,7 @@ from shipcosim.cli.options import (
     ReportAsJson,
     ScenariosStepSize,
     ScenariosStopTime,
+    Strict,
 )
 
 
@@ -27,6 +28,7 @@ def compare(
     as_read: Annotated[
         bool, typer.Option("--as-read", help="libcosim and ecos read the file themselves, as their users run it.")
     ] = False,
+    strict: Strict = False,
     as_json: ReportAsJson = False,
     debug: Debug = False,
 ) -> None:
@@ -39,7 +41,7 @@ def compare(
     from shipcosim.cosim.compare import compare as compare_engines
     from shipcosim.options import RunOptions
 
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events)
+    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict)
     how = reading(what, system, scenario, parameters) if as_read else nullcontext({})
     with how as tools, progress_of("Comparing") as progress:
         comparison = compare_engines(system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools)

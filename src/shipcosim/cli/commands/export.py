@@ -11,6 +11,7 @@ from shipcosim.cli.options import (
     Parameters,
     ScenariosStepSize,
     ScenariosStopTime,
+    Strict,
 )
 
 
@@ -27,6 +28,7 @@ def fmu(
     unchecked: Annotated[
         bool, typer.Option("--unchecked", help="Do not run FMU and system side by side first.")
     ] = False,
+    strict: Strict = False,
     debug: Debug = False,
 ) -> None:
     """Make one FMU of a whole system, a block in anyone's tool. FMPy's container FMU does the work in it.
@@ -37,7 +39,8 @@ def fmu(
     from shipcosim.cli.requests import experiment_of, system_of
     from shipcosim.cosim import export_fmu
 
-    system = system_of(ssp, parameters)
+    system = system_of(ssp, parameters, strict=strict)
+    print_problems(problem for problem in system.remarks if problem.flaw)
     step = experiment_of(system, system.experiment.stop_time or step_size or 1.0, step_size).step_size
     target = out / f"{system.name}.fmu"
     print_problems(export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked))
@@ -51,6 +54,7 @@ def osp(
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
     events: OspEvents = None,
+    strict: Strict = False,
     debug: Debug = False,
 ) -> None:
     """Write OspSystemStructure.xml, the FMUs and scenario.json, which libcosim runs as they are.
@@ -61,7 +65,7 @@ def osp(
     from shipcosim.cli.requests import system_and_scenario
     from shipcosim.cosim.export.osp import write_osp
 
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events)
+    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict)
     print_problems(write_osp(system, scenario, out))
     for path in sorted(out.glob("*")):
         typer.echo(shown_path(path))

@@ -1,12 +1,13 @@
 """The command `shipcosim run`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from shipcosim import library
-from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Parameters, Settings, Store, Timeout, Until
+from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Parameters, Settings, Store, Strict, Timeout, Until
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ def run(
     resume: From = None,
     isolate: Isolate = False,
     timeout: Timeout = None,
+    strict: Strict = False,
     debug: Debug = False,
 ) -> None:
     """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO.
@@ -47,19 +49,27 @@ def run(
 
     given = parsed_settings(settings or [])
     options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
+    reading = _Reading(parameters or [], given, strict)
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
             raise ShipcosimError(Problem(scenario, found, "Name one scenario, or leave out --store and --from."))
-        _run_all(files, out or Path("results") / files[0].resolve().parent.name, parameters or [], given, options)
+        _run_all(files, out or Path("results") / files[0].resolve().parent.name, reading, options)
         return
-    system, happening = _prepared(library.find("scenario", scenario), parameters or [], given)
+    system, happening = _prepared(library.find("scenario", scenario), reading)
     simulate_and_save(system, happening, out or Path("results") / happening.name, options, store)
 
 
-def _run_all(
-    files: list[Path], out: Path, parameters: list[Path], given: dict[str, object], options: "RunOptions"
-) -> None:
+@dataclass(frozen=True)
+class _Reading:
+    """How scenarios and systems are read: with which parameter sets and values, and how strictly."""
+
+    parameters: list[Path]
+    given: dict[str, object]
+    strict: bool
+
+
+def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptions") -> None:
     """Run scenarios one after another, and write the table of all of them. All are read before the first one runs."""
     from shipcosim.cli.console import print_overview
     from shipcosim.cli.exits import FAILED
@@ -67,7 +77,7 @@ def _run_all(
     from shipcosim.report import ScenarioRow, digest, overview_outcome, write_overview
 
     rows = []
-    for system, happening in [_prepared(file, parameters, given) for file in files]:
+    for system, happening in [_prepared(file, reading) for file in files]:
         table, verdicts = simulated_and_saved(system, happening, out / happening.name, options)
         page = f"{happening.name}/report.html"
         rows.append(ScenarioRow(happening.name, happening.description, page, digest(table, verdicts)))
@@ -78,7 +88,7 @@ def _run_all(
         raise typer.Exit(FAILED)
 
 
-def _prepared(path: Path, parameters: list[Path], given: dict[str, object]) -> "tuple[System, Scenario]":
+def _prepared(path: Path, reading: _Reading) -> "tuple[System, Scenario]":
     """System and scenario of a file, checked, with the values that are set for this run."""
     from shipcosim.cli.console import print_problems
     from shipcosim.scenario import check_files, check_times, read_scenario
@@ -87,12 +97,13 @@ def _prepared(path: Path, parameters: list[Path], given: dict[str, object]) -> "
     happening = read_scenario(path)
     if missing := check_files(happening):
         raise ShipcosimError(missing)
-    system = read_system(happening.system_path, happening.parameter_paths, fmus=library.fmus(happening.system_path))
-    with_values(system, given, "--set")
+    path, fmus = happening.system_path, library.fmus(happening.system_path)
+    system = read_system(path, happening.parameter_paths, fmus=fmus, strict=reading.strict)
+    with_values(system, reading.given, "--set")
     print_problems(check_times(happening))
     fitting = {}
-    for file in parameters:
+    for file in reading.parameters:
         values, left_out = fitting_values(file, system)
         print_problems(left_out)
         fitting |= values
-    return system, happening.model_copy(update={"set": happening.set | fitting | given})
+    return system, happening.model_copy(update={"set": happening.set | fitting | reading.given})

@@ -15,6 +15,7 @@ from shipcosim.cli.options import (
     Parameters,
     Settings,
     Store,
+    Strict,
     SystemsStepSize,
     SystemsStopTime,
     Timeout,
@@ -60,6 +61,7 @@ def simulate(
     resume: From = None,
     isolate: Isolate = False,
     timeout: Timeout = None,
+    strict: Strict = False,
     debug: Debug = False,
 ) -> None:
     """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
@@ -71,7 +73,7 @@ def simulate(
     from shipcosim.options import RunOptions
     from shipcosim.ssp import with_values
 
-    system = with_values(system_of(ssp, parameters), parsed_settings(settings or []), "--set")
+    system = with_values(system_of(ssp, parameters, strict=strict), parsed_settings(settings or []), "--set")
     scenario = experiment_of(system, stop_time, step_size)
     table = inputs_of(inputs, system, interpolate or (), max_gap)
     if start_time is None:

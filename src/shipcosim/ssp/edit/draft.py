@@ -14,7 +14,7 @@ import lxml.etree as etree
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.parameter_sets import Sets
-from shipcosim.ssp.edit.write import write_file
+from shipcosim.ssp.edit.write import relocated, write_file
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
@@ -198,7 +198,9 @@ class Draft:
         files |= self.package.located
         for path, held in self.package.held.items():
             if isinstance(held, Document):
-                files[path.relative_to(folder).as_posix()] = to_bytes(held.root, *PREFIXES.get(path.suffix, ()))
+                files[path.relative_to(folder).as_posix()] = to_bytes(
+                    relocated(held.root, self.package.moved), *PREFIXES.get(path.suffix, ())
+                )
         gone = {name for name in self._came_with - set(self.package.located) if name.endswith(".fmu")}
         return {name: file for name, file in files.items() if name not in gone}
 

@@ -1,10 +1,12 @@
 """Parameter sets written, and systems packed into an .ssp."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from copy import deepcopy
 from os import PathLike
 from pathlib import Path
+from urllib.parse import quote
 
 import lxml.etree as etree
 
@@ -128,4 +130,25 @@ def pack(folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: 
         if path.is_file() and not any(part.startswith(".") for part in path.relative_to(folder).parts)
     }
     files |= {name: path.read_bytes() for name, path in package.located.items() if name not in files}
+    if package.moved and (document := package.document(findings)) is not None:
+        files[package.ssd] = to_bytes(relocated(document.root, package.moved), "ssd", "ssc", "ssv", "osp")
     write_archive(out, files)
+
+
+def relocated(root: etree._Element, moved: Mapping[str, str]) -> etree._Element:
+    """An SSD in which addresses that are none of the standard are those of the files within the written package.
+
+    Parameters
+    ----------
+    root : lxml element
+        Stays as it is.
+    moved : mapping of str to str
+        Names in the package by address.
+    """
+    if not moved:
+        return root
+    root = deepcopy(root.getroottree()).getroot()
+    for element in root.iter("{*}*"):
+        if element.get("source") in moved:
+            element.set("source", quote(moved[element.get("source", "")]))
+    return root

@@ -9,6 +9,7 @@ from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.connections import Connection, connect
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.outer_signals import OuterSignals
+from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.flatten.start_values import Settings
 from shipcosim.ssp.flatten.system import Component, System
@@ -82,7 +83,8 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
     connections = connect(tree, findings)
     settings = Settings(tree, findings)
     settings.apply()
-    components = components_of(tree, settings)
+    experiment = _experiment(structure)
+    components = with_whole_steps(components_of(tree, settings), experiment.step_size, findings)
     _check_names(tree, findings)
     for component in components.values():
         for found in resized(component):
@@ -101,7 +103,7 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         inputs=signals.of("input"),
         outputs=signals.of("output", "local", "calculatedParameter", "constant"),
         parameters=signals.of("parameter", "structuralParameter"),
-        experiment=_experiment(structure),
+        experiment=experiment,
         remarks=tuple(dict.fromkeys(findings.remarks)),
         _packages=tuple(tree.library.packages),
     )

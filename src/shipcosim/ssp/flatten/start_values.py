@@ -10,13 +10,15 @@ from collections.abc import Iterable
 from dataclasses import replace
 from difflib import get_close_matches
 
-from shipcosim.errors import it_has, suggestion
+from shipcosim.errors import LONGEST_NAME, MOST_COMPARED, it_has, suggestion
 from shipcosim.ssp.flatten.conversions import Flow, advance
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.ports import SOURCES_INSIDE, Key, Port, Setting, Wire, variable_port
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
+
+SHORT = 2  # characters of a name of which a slip and another name look alike
 
 Arrival = tuple[Value, Flow, "Wire | Setting", Key]
 """A value on its way: as it started, what has happened to it, the step that it takes next, and where that leads."""
@@ -144,7 +146,11 @@ class Settings:
         place, name = setting.value.place, setting.name
         element, known = self._nearest(setting)
         if element is not None:
-            self.findings.error(place, f"{element} has no parameter '{name}'.", it_has(name, known))
+            found = f"{element} has no parameter '{name}'."
+            if _is_slip(name, known):
+                self.findings.error(place, found, it_has(name, known))
+            else:
+                self.findings.flaw(place, f"{found} The value is not used.", it_has(name, known))
             return
         elements = sorted({key.split(".")[0] for key in known})
         first = name.split(".")[0]
@@ -173,6 +179,21 @@ class Settings:
     def _settable(self, names: Iterable[str], start: str) -> list[str]:
         ports = {name: self._port(self.named[start + name][0]) for name in names}
         return [name for name, port in ports.items() if port.variable is None or port.variable.settable]
+
+
+def _is_slip(name: str, known: Iterable[str]) -> bool:
+    """Whether a parameter's name looks like a misspelt one of those that there are: part by part the same or close."""
+    parts = name.split(".")
+    candidates = [one.split(".") for one in list(known)[:MOST_COMPARED] if one.count(".") == len(parts) - 1]
+    return any(all(map(_is_close, parts, others)) for others in candidates)
+
+
+def _is_close(one: str, other: str) -> bool:
+    """Whether one part of a name can be meant for another; of very short ones nobody can tell."""
+    if one == other or max(len(one), len(other)) <= SHORT:
+        return True
+    near = len(one) < LONGEST_NAME and get_close_matches(one, [other], n=1)
+    return bool(near) and not _differ_in_number(one, other)
 
 
 def _differ_in_number(one: str, other: str) -> bool:

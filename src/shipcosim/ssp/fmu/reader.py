@@ -13,7 +13,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.fmi1 import interfaces_of
 from shipcosim.ssp.fmu.variables import read_variables
 from shipcosim.ssp.xml.archive import entries, read_entry
-from shipcosim.ssp.xml.definitions import read_units
+from shipcosim.ssp.xml.definitions import note_empty_units, read_units
 from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, local, parse, parts_of
 from shipcosim.ssp.xml.validation import validate
 
@@ -71,9 +71,9 @@ def describe_fmu(path: str | PathLike[str], findings: Findings, shown: str | Non
     if root is None or not _is_fmi(root, file, findings):
         return None
     version = root.get("fmiVersion", "")[:1]
-    before = len(findings.problems)
+    before = len(findings.errors)
     validate(root, f"fmi{version}", file, findings)
-    if len(findings.problems) > before:
+    if len(findings.errors) > before:
         return None  # a description that breaks its schema is not worth guessing at
     return _description(Document(file, root), Path(path), names, findings)
 
@@ -93,6 +93,7 @@ def _is_fmi(root: etree._Element, file: str, findings: Findings) -> bool:
 def _description(document: Document, path: Path, names: list[str], findings: Findings) -> FmuDescription:
     root = document.root
     version = f"{root.get('fmiVersion', '')[:1]}.0"
+    note_empty_units(document, parts_of(root, "UnitDefinitions"), findings)
     platforms = {parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"}
     return FmuDescription(
         path=path,

@@ -12,6 +12,7 @@ from shipcosim.ssp.flatten.array_sizes import resized, sizes_wanted
 from shipcosim.ssp.flatten.assemble import components_of, parameter_sets, remark_unconnected
 from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.start_values import Settings
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.connections import ConnectionReader
@@ -54,6 +55,8 @@ def assemble_osp(
     System, None or incomplete where there are errors
     """
     document = read_document(path, str(path), findings)
+    if document is not None:
+        _set_namespace(document, findings)
     if document is None or not _is_osp(document, findings):
         return None
     before = len(findings.errors)
@@ -67,6 +70,15 @@ def assemble_osp(
         findings.problems[:] = before
         system = _system(document, folders, sets, sizes_wanted(system.components), findings)
     return system
+
+
+def _set_namespace(document: Document, findings: Findings) -> None:
+    """Put elements without a namespace into OSP's, where the outermost one has the name of an OSP structure."""
+    if document.root.tag == "OspSystemStructure":
+        for element in document.root.iter("{}*"):
+            element.tag = f"{{{NAMESPACE}}}{element.tag}"
+        found = f"It is in no namespace; it is taken for one of {NAMESPACE}."
+        findings.flaw(document.place(document.root), found, f'Add xmlns="{NAMESPACE}".')
 
 
 def _is_osp(document: Document, findings: Findings) -> bool:
@@ -98,8 +110,8 @@ def _system(
         apply_set(tree, values)
     settings = Settings(tree, findings)
     settings.apply()
-    components = components_of(tree, settings)
     experiment = read_experiment(document, findings)
+    components = with_whole_steps(components_of(tree, settings), experiment.step_size, findings, as_libcosim=True)
     remark_unconnected(components, connections, findings)
     return System(
         name=Path(document.file).resolve().parent.name,

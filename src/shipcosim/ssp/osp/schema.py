@@ -8,7 +8,7 @@ from functools import cache
 import lxml.etree as etree
 
 from shipcosim.ssp.xml.document import Document, Findings
-from shipcosim.ssp.xml.schemas import report_schema
+from shipcosim.ssp.xml.schemas import names_in, report_schema
 
 NAMESPACE = "http://opensimulationplatform.com/MSMI/OSPSystemStructure"
 
@@ -87,7 +87,7 @@ SCHEMA = f"""<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema" xmlns="{NAME
 
 def validate_osp(document: Document, findings: Findings) -> None:
     """Check a document's root against the schema, with an error for each place where it breaks it."""
-    report_schema(_checker(), document.root, document.file, findings)
+    report_schema(_checker(), names_in(SCHEMA), document.root, document.file, findings)
 
 
 @cache

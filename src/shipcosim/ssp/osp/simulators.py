@@ -14,6 +14,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.osp.schema import NAMESPACE
 from shipcosim.ssp.osp.times import own_step
+from shipcosim.ssp.read.addresses import PROXY, path_of
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.read.structure import FMU, ComponentElement
 from shipcosim.ssp.xml.document import Document, Findings, local, reporting
@@ -92,7 +93,11 @@ class Simulators:
         """File that a source means, or None with an error; it may lie anywhere, as in OSP's own examples."""
         try:
             parts = urlsplit(source)
-            if parts.scheme not in HERE:
+            if parts.scheme == PROXY and (text := path_of(source)) is not None:
+                found = f"'{source}' is an FMU in a process of its own; {text} is run here."
+                self.findings.flaw(place, found, "Name the FMU's file; `--isolate` runs each FMU in a process.")
+                parts, source = urlsplit(text), text
+            elif parts.scheme not in HERE:
                 remedy = "Name the FMU's file: proxies and servers of FMUs are not supported."
                 self.findings.error(place, f"'{source}' is an address of the kind '{parts.scheme}'.", remedy)
                 return None

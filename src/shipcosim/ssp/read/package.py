@@ -9,15 +9,17 @@ from urllib.parse import unquote, urlsplit
 
 from shipcosim.errors import ShipcosimError, it_has, suggestion
 from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.read.addresses import meant
 from shipcosim.ssp.xml.archive import read_entry, unpack
-from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, parse, read_document
+from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, parsed, read_document
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
+INSIDE = "Put the file beside the SSD, in resources/, and name it so."
 
 
 @dataclass(frozen=True)
 class Package:
-    """An SSP: files that belong together. Nothing outside `folder` and `fmus` is read.
+    """An SSP: files that belong together. Of an archive nothing outside it and `fmus` is read.
 
     Parameters
     ----------
@@ -35,6 +37,8 @@ class Package:
         What stands for a file of the folder: a document in memory, or a file elsewhere. For systems that are edited.
     located : dict of str to Path
         Files that were asked for, by their names in the package: where they are.
+    moved : dict of str to str
+        Names in the package for addresses that are none of the standard.
     """
 
     folder: Path
@@ -44,6 +48,7 @@ class Package:
     unpacked: tempfile.TemporaryDirectory | None = field(default=None, repr=False, compare=False)
     held: dict[Path, Document | Path] = field(default_factory=dict, repr=False, compare=False)
     located: dict[str, Path] = field(default_factory=dict, repr=False, compare=False)
+    moved: dict[str, str] = field(default_factory=dict, repr=False, compare=False)
 
     def show(self, path: str | PathLike[str]) -> str:
         """Name of a file of the package as the user knows it."""
@@ -84,18 +89,22 @@ class Package:
             return None
 
     def _located(self, uri: str, base: Path, place: str, findings: Findings) -> Path | None:
-        parts = urlsplit(uri)
-        if parts.scheme or parts.netloc or uri.startswith("/") or not parts.path:
+        folder = self.folder.resolve()
+        parts, wild = urlsplit(uri), None
+        plain = not (parts.scheme or parts.netloc or uri.startswith("/")) and bool(parts.path)
+        paths = [(base / name).resolve() for name in (unquote(parts.path), parts.path)] if plain else []
+        inside = plain and all(path.is_relative_to(folder) for path in paths)
+        elsewhere = [folder / paths[0].name for folder in self.fmus if inside and paths[0].suffix == ".fmu"]
+        found = next((path for path in (*paths, *elsewhere) if self._is_there(path)), None) if inside else None
+        if found is None and (wild := meant(uri, base, folder, self.unpacked is None)) is not None:
+            return self._taken(uri, wild, place, findings)
+        if not plain:
             remedy = "Addresses are relative to the SSD, e.g. resources/name.fmu."
             findings.error(place, f"'{uri}' is no address within the package.", remedy)
             return None
-        paths = [(base / name).resolve() for name in (unquote(parts.path), parts.path)]
-        folder = self.folder.resolve()
-        if not all(path.is_relative_to(folder) for path in paths):
+        if not inside:
             findings.error(place, f"'{uri}' lies outside the package.", "Put the file beside the SSD, in resources/.")
             return None
-        elsewhere = [folder / paths[0].name for folder in self.fmus if paths[0].suffix == ".fmu"]
-        found = next((path for path in (*paths, *elsewhere) if self._is_there(path)), None)
         if found is None:
             is_folder = any(path.is_dir() for path in (*paths, *elsewhere))
             what = "is a folder, not a file" if is_folder else "does not exist"
@@ -107,6 +116,18 @@ class Package:
         else:
             name = found if found in paths else paths[0]
         self.located[name.relative_to(folder).as_posix()] = found
+        return found
+
+    def _taken(self, uri: str, found: Path, place: str, findings: Findings) -> Path | None:
+        """A file that an address means which is none of the standard; it is said, and kept for writing the package."""
+        shown = self.show(found)
+        findings.flaw(place, f"'{uri}' is no address within the package; {shown} is taken.", INSIDE)
+        folder = self.folder.resolve()
+        name = found.relative_to(folder).as_posix() if found.is_relative_to(folder) else f"resources/{found.name}"
+        if self.located.setdefault(name, found) != found:
+            findings.error(place, f"Two files are named {found.name}: {shown} and {self.located[name]}.", INSIDE)
+            return None
+        self.moved[uri] = name
         return found
 
     def _is_there(self, path: Path) -> bool:
@@ -190,5 +211,4 @@ def read_in_component(fmu: FmuDescription, uri: str, place: str, findings: Findi
         findings.error(place, f"{fmu.path.name} has no file '{name}'.", "Addresses start at the FMU's top.")
         return None
     file = f"{fmu.path.name}/{name}"
-    root = parse(data, file, findings)
-    return None if root is None else Document(file, root)
+    return parsed(data, file, findings)

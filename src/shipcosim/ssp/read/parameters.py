@@ -10,8 +10,9 @@ from os import PathLike
 import lxml.etree as etree
 
 from shipcosim.ssp.read.attributes import attribute
-from shipcosim.ssp.xml.definitions import read_enumerations, read_units
+from shipcosim.ssp.xml.definitions import note_empty_units, read_enumerations, read_units
 from shipcosim.ssp.xml.document import NAMESPACES, Document, Findings, children, is_true, local, qualified, reporting
+from shipcosim.ssp.xml.mend import mend
 from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS, Value, read_value
 from shipcosim.units import Unit, find_unit
@@ -141,6 +142,8 @@ class DictionaryEntry:
 def has_root(document: Document, tag: str, findings: Findings) -> bool:
     """Whether the outermost element of a document is the one of this tag, with an error if not.
 
+    What of the document breaks the standard and has only one meaning is put right first, and said.
+
     Parameters
     ----------
     document : Document
@@ -150,6 +153,8 @@ def has_root(document: Document, tag: str, findings: Findings) -> bool:
     findings : Findings
         Takes what is wrong.
     """
+    mend(document, tag)
+    findings.problems += document.flaws
     if document.root.tag == qualified(tag):
         return True
     found = f"Its outermost element is <{local(document.root)}>."
@@ -182,11 +187,17 @@ def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
     units = {}
     with reporting(document, root, findings):
         units = read_units(children(root, "ssv:Units", "ssc:Unit"))
+        note_empty_units(document, children(root, "ssv:Units", "ssc:Unit"), findings)
     for element in children(root, "ssv:Parameters", "ssv:Parameter") if sound else ():
         value = _parameter(document, element, units, findings)
         if value is not None and value.name in values:
-            first = values[value.name].place.rpartition(", line ")[2].partition(":")[0]
-            findings.error(value.place, f"The set has this parameter already, in line {first}.", "Keep one of them.")
+            first = values[value.name]
+            line = first.place.rpartition(", line ")[2].partition(":")[0]
+            found = f"The set has this parameter already, in line {line}"
+            if (first.kind, first.value, first.unit) == (value.kind, value.value, value.unit):
+                findings.flaw(value.place, f"{found}, with the same value; it counts once.", "Keep one of them.")
+            else:
+                findings.error(value.place, f"{found}.", "Keep one of them.")
         elif value is not None:
             values[value.name] = value
     return ParameterSet(root.get("name", ""), tuple(values.values()), document.file)

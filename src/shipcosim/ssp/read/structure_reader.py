@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 
 import lxml.etree as etree
 
+from shipcosim.errors import suggestion
 from shipcosim.ssp.read.attributes import annotated_number, attribute, whole_numbers
 from shipcosim.ssp.read.parameters import has_root, read_transformation
 from shipcosim.ssp.read.structure import (
@@ -21,8 +22,9 @@ from shipcosim.ssp.read.structure import (
     signal,
 )
 from shipcosim.ssp.xml.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored
-from shipcosim.ssp.xml.definitions import read_enumerations, read_units
+from shipcosim.ssp.xml.definitions import note_empty_units, read_enumerations, read_units
 from shipcosim.ssp.xml.document import Document, Findings, child, children, is_true, local, reporting
+from shipcosim.ssp.xml.schemas import is_slip
 from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS
 from shipcosim.units import find_unit
@@ -71,6 +73,7 @@ class _Reader:
         root = document.root
         with reporting(document, root, findings):
             self.units = read_units(children(root, "ssd:Units", "ssc:Unit"))
+            note_empty_units(document, children(root, "ssd:Units", "ssc:Unit"), findings)
             self.enumerations = read_enumerations(children(root, "ssd:Enumerations", "ssc:Enumeration"))
 
     def place(self, element: etree._Element, what: str = "") -> str:
@@ -149,9 +152,12 @@ class _Reader:
             return {}
         name = typed.get("name", "")
         if name not in self.enumerations:
-            self.findings.error(
-                place, f"The enumeration '{name}' is not defined in this file.", "Add it to Enumerations."
-            )
+            what = f"The enumeration '{name}' is not defined in this file." if name else "The enumeration has no name."
+            if is_slip(name, self.enumerations):
+                self.findings.error(place, what, suggestion(name, self.enumerations))
+            else:
+                found = f"{what} Its items are those of the variable, where there is one."
+                self.findings.flaw(place, found, "Add it to Enumerations.")
         return self.enumerations.get(name, {})
 
     def distinct(self, named: Iterable, what: str, owner: str) -> None:

@@ -4,14 +4,16 @@ from collections.abc import Iterable, Mapping
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import children, local
+from shipcosim.ssp.xml.document import Document, Findings, children, local
 from shipcosim.ssp.xml.markup import add, ensure, free_name
 from shipcosim.ssp.xml.values import read_value
-from shipcosim.units import BASE_UNITS, Unit, relation
+from shipcosim.units import BASE_UNITS, Unit, relation, spelled_unit
 
 
 def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
     """Units by name from Unit elements of an SSP file or model description; those without a base unit are left out.
+
+    A base unit that says nothing is none, where the unit's common spelling says more: some tools write it everywhere.
 
     Raises
     ------
@@ -21,11 +23,26 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
     units = {}
     for element in elements:
         base = next((part for part in element if local(part) == "BaseUnit"), None)
-        if base is not None and element.get("name") is not None:
+        if base is not None and element.get("name") is not None and not _says_nothing(element, base):
             exponents = tuple(int(base.get(name, 0)) for name in BASE_UNITS)
             scale = float(base.get("factor", 1.0)), float(base.get("offset", 0.0))
             units[element.get("name")] = Unit(element.get("name"), exponents, *scale)
     return units
+
+
+def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
+    """Whether a unit's base unit is empty although its name commonly means something that has a dimension."""
+    known = spelled_unit(element.get("name", ""))
+    return not base.attrib and known is not None and any(known.exponents or ())
+
+
+def note_empty_units(document: Document, elements: Iterable[etree._Element], findings: Findings) -> None:
+    """Note as flaws the units whose base unit says nothing and that are therefore taken by their common spelling."""
+    for element in elements:
+        for base in (part for part in element if local(part) == "BaseUnit"):
+            if _says_nothing(element, base):
+                found = f"The base unit of '{element.get('name')}' says nothing; the unit is what it is commonly."
+                findings.flaw(document.place(base), found, "State its exponents, or leave BaseUnit out.")
 
 
 def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str, int]]:

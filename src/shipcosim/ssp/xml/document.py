@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 
@@ -32,6 +32,7 @@ REMEDIES = {
     "is invalid": "Correct it.",
 }
 """What would be right, by part of what was found."""
+MOST_PREFIXES, UNDECLARED = 10, "Namespace prefix"
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
 
 
@@ -63,6 +64,16 @@ class Findings:
         """
         self.problems.append(Problem(where, found, remedy, severity="remark"))
 
+    def flaw(self, where: str, found: str, remedy: str = "") -> None:
+        """Note what breaks the standard and can mean one thing only: a remark, and an error for `--strict`.
+
+        Parameters
+        ----------
+        where, found, remedy : str
+            As in Problem; `found` says what it is taken for.
+        """
+        self.problems.append(Problem(where, found, remedy, severity="remark", flaw=True))
+
     def back_to(self, count: int) -> None:
         """Forget all but the first problems."""
         del self.problems[count:]
@@ -93,11 +104,14 @@ class Document:
         Its outermost element.
     folder : Path
         Folder that relative addresses in it start from.
+    flaws : list of Problem
+        Flaws of its form that were put right in the tree, which reading it says again.
     """
 
     file: str
     root: etree._Element
     folder: Path = Path()
+    flaws: list[Problem] = field(default_factory=list, compare=False)
 
     def place(self, element: etree._Element, what: str = "") -> str:
         """Where an element stands, for the user to look it up."""
@@ -246,8 +260,53 @@ def read_document(path: str | PathLike[str], shown: str, findings: Findings) -> 
     except OSError as error:
         findings.error(shown, f"Cannot be read: {error.strerror}.")
         return None
-    root = parse(data, shown, findings)
-    return None if root is None else Document(shown, root, path.parent)
+    return parsed(data, shown, findings, path.parent)
+
+
+def parsed(data: bytes, shown: str, findings: Findings, folder: Path = Path()) -> Document | None:
+    """Document of an XML text of SSP or OSP, or None with an error.
+
+    Parameters
+    ----------
+    data : bytes
+        The text.
+    shown : str
+        Its name in messages.
+    findings : Findings
+        Takes what is wrong.
+    folder : Path
+        Folder that relative addresses in it start from.
+    """
+    flaws, tried = Findings(), Findings()
+    root = parse(data, shown, tried)
+    if any(UNDECLARED in problem.found for problem in tried.problems):
+        root = parse(with_prefixes(data, shown, flaws), shown, findings)
+    else:
+        findings.problems += tried.problems
+    findings.problems += flaws.problems
+    return None if root is None else Document(shown, root, folder, flaws.problems)
+
+
+def with_prefixes(data: bytes, shown: str, findings: Findings) -> bytes:
+    """An XML text in which every prefix is declared; those of SSP mean what they mean everywhere."""
+    first, *others = data.split(b"<!--")
+    text = b"".join([first, *(part.partition(b"-->")[2] for part in others)])  # prefixes in comments are none
+    used = set(re.findall(rb"</?([A-Za-z_][\w.-]{0,30}):[A-Za-z_]", text))
+    missing = sorted(prefix for prefix in used - {b"xml"} if b"xmlns:" + prefix not in text)
+    start = re.search(rb"<[A-Za-z_][^\s/>]*", data)
+    if not missing or start is None or len(missing) > MOST_PREFIXES:
+        return data
+    spaces = {p: NAMESPACES.get(p.decode(), f"urn:undeclared:{p.decode()}") for p in missing}
+    listed = ", ".join(f"'{prefix.decode()}'" for prefix in missing)
+    known = ", ".join(f'xmlns:{prefix.decode()}="{uri}"' for prefix, uri in spaces.items() if "urn:" not in uri)
+    line = data[: start.start()].count(b"\n") + 1
+    findings.flaw(
+        f"{shown}, line {line}",
+        f"Prefixes that are not declared: {listed}. Those of SSP are taken as everywhere, others as unknown.",
+        f"Add {known} to the outermost element." if known else "Declare them.",
+    )
+    declared = b"".join(b' xmlns:%s="%s"' % (prefix, uri.encode()) for prefix, uri in spaces.items())
+    return data[: start.end()] + declared + data[start.end() :]
 
 
 def _is_utf8(data: bytes) -> bool:

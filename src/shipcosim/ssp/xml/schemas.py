@@ -1,13 +1,18 @@
 """Schemas of SSP 1.0 and FMI, as FMPy brings them; where a file breaks one is said in words that an engineer knows."""
 
 import re
+from collections.abc import Collection
+from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
 import lxml.etree as etree
 
+from shipcosim.errors import LONGEST_NAME
 from shipcosim.ssp.xml.document import Findings, remedy_for
+from shipcosim.ssp.xml.values import KINDS
 
 SCHEMAS = {
     "ssd": "ssp/schema/SystemStructureDescription.xsd",
@@ -21,13 +26,46 @@ SCHEMAS = {
 WORDS = {"double": "a number", "int": "a whole number", "boolean": "a Boolean (true, false, 1, 0)"}
 
 
-def report_schema(checker: etree.XMLSchema, root: etree._Element, file: str, findings: Findings) -> None:
-    """Note every place where an element breaks a schema.
+HARMLESS = re.compile(
+    r"^Element '(UnitDefinitions|TypeDefinitions|LogCategories|Outputs|Derivatives|InitialUnknowns|VendorAnnotations|"
+    r"ModelVariables)': Missing child element"
+    r"|^Element 'fmiModelDescription': Missing child element\(s\)\. Expected is .*\bModelStructure\b"
+    r"|attribute 'generationDateAndTime'"
+)
+"""Violations in model descriptions that leave nothing open."""
+SAYING = ("LinearTransformation", "MapEntry", "BaseUnit", "Item", "MappingEntry", *KINDS)
+"""Elements all of whose attributes matter: one that is not known is a slip."""
+
+
+@dataclass(frozen=True)
+class Names:
+    """Names that schemas have for elements and for attributes."""
+
+    elements: frozenset[str]
+    attributes: frozenset[str]
+
+
+def is_slip(name: str, known: Collection[str]) -> bool:
+    """Whether an unknown name looks like a known one that is misspelt.
+
+    Examples
+    --------
+    >>> is_slip("startConector", ["startConnector"]), is_slip("comment", ["startConnector"])
+    (True, False)
+    """
+    shown = name[:LONGEST_NAME].lower()
+    return name in known or bool(get_close_matches(shown, [one.lower() for one in known], n=1, cutoff=0.77))
+
+
+def report_schema(checker: etree.XMLSchema, names: Names, root: etree._Element, file: str, findings: Findings) -> None:
+    """Note every place where an element breaks a schema; unknown attributes that are no slip are flaws.
 
     Parameters
     ----------
     checker : lxml.etree.XMLSchema
         The schema.
+    names : Names
+        Those that it knows.
     root : lxml element
         To be checked.
     file : str
@@ -44,16 +82,44 @@ def report_schema(checker: etree.XMLSchema, root: etree._Element, file: str, fin
         text, _, choice = re.sub(r"\[facet '[^']*'\] ", "", text).partition(" is not an element of the set ")
         found, _, expected = (f"{text} does not exist." if choice else text).partition(" Expected is ")
         where = f"{file}, line {entry.line}" if entry.line else file
+        if _is_flaw(text, names):
+            findings.flaw(
+                where, f"{text.partition(' Expected is ')[0]} It is not used.", "Correct its name or remove it."
+            )
+            continue
         findings.refused_lines.add(where)
         if choice:
             expected = f"one of: {choice.strip('{}.')}."
         findings.error(where, found, f"Expected is {expected}" if expected else remedy_for(found))
 
 
+def _is_flaw(text: str, names: Names) -> bool:
+    """Whether what breaks a schema has only one meaning."""
+    unknown = re.search(r"^Element '(\w+)', attribute '([^']+)': The attribute '\2' is not allowed\.", text)
+    if unknown is None:
+        return HARMLESS.search(text) is not None
+    return unknown[1] not in SAYING and not is_slip(unknown[2], names.attributes)
+
+
 @cache
 def schema_of(name: str) -> etree.XMLSchema:
     """Schema by its name in SCHEMAS."""
-    fmpy = find_spec("fmpy")  # finds FMPy without running its slow import
-    folder = Path((fmpy and fmpy.submodule_search_locations or [""])[0])
     parser = etree.XMLParser(no_network=True)
-    return etree.XMLSchema(etree.parse(str(folder / SCHEMAS[name]), parser))
+    return etree.XMLSchema(etree.parse(str(_file_of(name)), parser))
+
+
+@cache
+def names_of(name: str) -> Names:
+    """Names that a schema of SCHEMAS and those beside it know."""
+    beside = sorted(_file_of(name).parent.glob("*.xsd"))
+    return names_in("".join(file.read_text(encoding="utf-8") for file in beside))
+
+
+def names_in(text: str) -> Names:
+    """Names that the text of a schema declares."""
+    return Names(*(frozenset(re.findall(rf'<xs:{kind} name="([^"]+)"', text)) for kind in ("element", "attribute")))
+
+
+def _file_of(name: str) -> Path:
+    fmpy = find_spec("fmpy")  # finds FMPy without running its slow import
+    return Path((fmpy and fmpy.submodule_search_locations or [""])[0]) / SCHEMAS[name]

@@ -3,7 +3,7 @@
 import lxml.etree as etree
 
 from shipcosim.ssp.xml.document import Findings
-from shipcosim.ssp.xml.schemas import report_schema, schema_of
+from shipcosim.ssp.xml.schemas import names_of, report_schema, schema_of
 from shipcosim.ssp.xml.version_2 import validate_2
 
 
@@ -24,4 +24,4 @@ def validate(root: etree._Element, schema: str, file: str, findings: Findings) -
     if schema.startswith("ss") and root.get("version", "").startswith("2."):
         validate_2(root, schema, file, findings)
     else:
-        report_schema(schema_of(schema), root, file, findings)
+        report_schema(schema_of(schema), names_of(schema), root, file, findings)

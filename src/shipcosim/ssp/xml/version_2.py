@@ -11,7 +11,7 @@ from copy import deepcopy
 import lxml.etree as etree
 
 from shipcosim.ssp.xml.document import NAMESPACES, Findings, local
-from shipcosim.ssp.xml.schemas import report_schema, schema_of
+from shipcosim.ssp.xml.schemas import names_of, report_schema, schema_of
 from shipcosim.ssp.xml.values import KINDS, read_value
 
 RANGES = {f"Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)}
@@ -30,10 +30,12 @@ def validate_2(root: etree._Element, schema: str, file: str, findings: Findings)
                 findings.error(f"{file}, line {element.sourceline}", *wrong)
             _reduce(element)
     found = Findings()
-    report_schema(schema_of(schema), reduced, file, found)
+    report_schema(schema_of(schema), names_of(schema), reduced, file, found)
     findings.refused_lines |= found.refused_lines
     for problem in found.problems:
-        if any(mark in problem.found for mark in UNKNOWN):
+        if problem.flaw:
+            findings.flaw(problem.where, problem.found, problem.remedy)
+        elif any(mark in problem.found for mark in UNKNOWN):
             findings.remark(problem.where, problem.found, "It is not used. " + problem.remedy)
         else:
             findings.error(problem.where, problem.found, problem.remedy)

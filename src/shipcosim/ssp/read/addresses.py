@@ -1,0 +1,66 @@
+"""Addresses as files of the wild have them: outside the package, with backslashes, absolute, by a proxy of an FMU."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import parse_qs, unquote, urlsplit
+from urllib.request import url2pathname
+
+PROXY = "proxyfmu"
+"""Scheme of OSP's, Ecos' and Vico's addresses of FMUs that run in a process of their own."""
+
+ENDINGS = (".fmu", ".ssv", ".ssm", ".ssb", ".ssd", ".ssp")
+"""Endings of files that are read where they lie outside an unpacked package."""
+
+
+def path_of(uri: str) -> str | None:
+    """Path that an address of a file means, or None where it means no file of this machine.
+
+    Examples
+    --------
+    >>> path_of("proxyfmu://localhost?file=../fmus/hull.fmu"), path_of("resources\\\\hull.fmu"), path_of("http://x/y.fmu")
+    ('../fmus/hull.fmu', 'resources/hull.fmu', None)
+    """
+    parts = urlsplit(uri)
+    if parts.scheme == PROXY and (parts.hostname in (None, "localhost", "127.0.0.1")):
+        return next(iter(parse_qs(parts.query).get("file", ())), None)
+    if parts.scheme == "file":
+        return url2pathname(parts.path) or None
+    if parts.scheme or parts.netloc:
+        return None
+    return unquote(uri).replace("\\", "/") or None
+
+
+def meant(uri: str, base: Path, folder: Path, outside: bool) -> Path | None:
+    """The one file that an address can mean which is none of the standard, or None.
+
+    Parameters
+    ----------
+    uri : str
+        The address.
+    base : Path
+        Folder of the file that it stands in.
+    folder : Path
+        Root of the package.
+    outside : bool
+        Whether files outside the package can be meant: it is no archive.
+    """
+    text = path_of(uri)
+    if text is None:
+        return None
+    for path in _candidates(text, base, folder, rooted=uri.startswith("/")):
+        inside = path.is_relative_to(folder)
+        if path.is_file() and (inside or (outside and path.suffix.lower() in ENDINGS)):
+            return path
+    return None
+
+
+def _candidates(text: str, base: Path, folder: Path, rooted: bool) -> Iterator[Path]:
+    """Files that a path can mean, the likeliest first; a rooted one starts at the package's top."""
+    yield (base / text).resolve()
+    if rooted:
+        yield (folder / text.lstrip("/")).resolve()
+    near = (base / text).resolve()
+    if near.parent.is_dir():
+        alike = [path for path in near.parent.iterdir() if path.name.lower() == near.name.lower()]
+        if len(alike) == 1:
+            yield alike[0].resolve()

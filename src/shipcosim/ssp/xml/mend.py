@@ -1,0 +1,231 @@
+"""Flaws of form that can mean one thing only, put right in the tree: what reads on finds what the standard has.
+
+Files of the wild have them: namespaces left out, empty attributes, empty lists, parts in another order. Each is said as
+a flaw of the document.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import lxml.etree as etree
+
+from shipcosim.ssp.xml.document import NAMESPACES, Document, Findings, local
+from shipcosim.ssp.xml.schemas import is_slip, names_of
+from shipcosim.ssp.xml.values import KINDS
+
+PREFIXES = {
+    "SystemStructureDescription": "ssd",
+    "ParameterSet": "ssv",
+    "ParameterMapping": "ssm",
+    "SignalDictionary": "ssb",
+}
+"""Prefix of the kind of a file by its outermost element."""
+
+COMMON = ("Unit", "BaseUnit", "Item", "Annotation", "MapEntry", "Dimension", "MetaData", "Signature")
+EMPTY_IS_ABSENT = ("startElement", "endElement", "source", "sourceBase", "implementation", "type", "unit", "id")
+EMPTY_IS_ABSENT += ("suppressUnitConversion", "startTime", "stopTime", "factor", "offset")
+ORDER = {
+    "SystemStructureDescription": "System Enumerations Units DefaultExperiment MetaData Annotations",
+    "System": "Connectors ElementGeometry ParameterBindings Elements Connections SignalDictionaries SystemGeometry"
+    " GraphicalElements MetaData Annotations",
+    "Component": "Connectors ElementGeometry ParameterBindings MetaData Annotations",
+    "SignalDictionaryReference": "Connectors ElementGeometry ParameterBindings Annotations",
+    "ParameterBinding": "ParameterValues ParameterMapping MetaData Annotations",
+    "ParameterSet": "Parameters Enumerations Units MetaData Annotations",
+    "SignalDictionary": "DictionaryEntry Enumerations Units MetaData Annotations",
+}
+"""Parts of elements in the order of the standard."""
+
+LISTS = ("Connectors", "Elements", "Connections", "ParameterBindings", "Enumerations", "Units", "SignalDictionaries")
+LISTS += ("GraphicalElements", "Annotations")
+ONCE = ("MappingEntry", "MapEntry", "Unit", "Enumeration", "Item")
+"""Elements of which a second one that says the same says nothing."""
+
+
+def mend(document: Document, tag: str) -> None:
+    """Put right what has only one meaning, if a document is of a kind; it goes among the document's flaws.
+
+    Parameters
+    ----------
+    document : Document
+        Changed in place.
+    tag : str
+        Of the outermost element that it should have: ``"ssv:ParameterSet"``.
+    """
+    prefix, name = tag.split(":")
+    if local(document.root) != name:
+        return
+    noted = Findings()
+    _set_namespaces(document, prefix, noted)
+    _complete(document, noted)
+    for element in list(_own(document.root)):
+        _drop_empty_attributes(document, element, noted)
+        _move_source(document, element, noted)
+        _name_enumeration(document, element, noted)
+        _mend_boolean(document, element, noted)
+        _drop_unknown(document, element, noted)
+        _sort(document, element, noted)
+        _drop_empty_lists(document, element, noted)
+        _drop_repeated(document, element, noted)
+    document.flaws.extend(problem for problem in noted.problems if problem not in document.flaws)
+
+
+def _own(element: etree._Element) -> Iterator[etree._Element]:
+    """An element and those in it that the standard describes: not what annotations hold."""
+    ahead = [element]
+    while ahead:
+        element = ahead.pop()
+        yield element
+        if local(element) != "Annotation":
+            ahead += [part for part in element if local(part)][::-1]
+
+
+def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
+    """Namespaces that are missing or those of another part of the standard, by the place of an element."""
+    said, ahead = set(), [(document.root, prefix)]
+    known = names_of("ssd").elements
+    while ahead:
+        element, kind = ahead.pop()
+        name, space = local(element), etree.QName(element).namespace or ""
+        plain = space.replace("https:", "http:").rstrip("/")
+        ours = not space or plain in NAMESPACES.values()
+        right = NAMESPACES[_prefix_of(element, kind)]
+        if ours and space != right and name in known:
+            if (space, right) not in said:
+                its = f"the namespace '{space}'" if space else "no namespace"
+                found = f"<{name}> is in {its}"
+                noted.flaw(document.place(element), f"{found}; it is taken for one of {right}.", "Correct xmlns.")
+            said.add((space, right))
+            element.tag = f"{{{right}}}{name}"
+        if name != "Annotation" and (ours or name in known):
+            ahead += [(part, _kind_within(element, part, kind)) for part in element if local(part)]
+
+
+def _prefix_of(element: etree._Element, kind: str) -> str:
+    """Prefix of an element of a kind of file."""
+    name, parent = local(element), element.getparent()
+    if name in COMMON or name.endswith("Transformation"):
+        return "ssc"
+    if name == "Enumeration" and parent is not None and local(parent) == "Enumerations":
+        return "ssc"
+    return "ssc" if name in KINDS and kind != "ssv" else kind
+
+
+def _kind_within(element: etree._Element, part: etree._Element, kind: str) -> str:
+    """Kind of file that a part of an element is of: another one within the bindings of an SSD."""
+    inline = kind == "ssd" and local(part) in PREFIXES and local(element) in ("ParameterValues", local(part))
+    return PREFIXES[local(part)] if inline else kind
+
+
+def _complete(document: Document, noted: Findings) -> None:
+    """Version and name, where the outermost element or a set in it has none."""
+    outer = document.root.get("version") or "1.0"
+    for element in document.root.iter(*(f"{{{NAMESPACES[p]}}}{name}" for name, p in PREFIXES.items())):
+        if local(element) != "ParameterMapping" and not element.get("name") and local(element) != "SignalDictionary":
+            element.set("name", Path(document.file).stem)
+            noted.flaw(document.place(element), f"<{local(element)}> has no name.", 'Add name="...".')
+        is_binding = local(element) in ("ParameterMapping", "SignalDictionary") and "ssd" == _prefix_in(element)
+        if not element.get("version") and not is_binding:
+            element.set("version", outer)
+            noted.flaw(document.place(element), f"<{local(element)}> has no version; {outer} is taken.", "Add it.")
+
+
+def _prefix_in(element: etree._Element) -> str:
+    space = etree.QName(element).namespace
+    return next((prefix for prefix, uri in NAMESPACES.items() if uri == space), "")
+
+
+def _drop_empty_attributes(document: Document, element: etree._Element, noted: Findings) -> None:
+    for name in EMPTY_IS_ABSENT:
+        if element.get(name) == "" and not (name == "source" and local(element) in ("Component", "MapEntry")):
+            if name == "source" and local(element) == "MappingEntry":
+                continue
+            del element.attrib[name]
+            noted.flaw(document.place(element), f'{name}="" is taken as if it were not there.', "Leave it out.")
+
+
+def _name_enumeration(document: Document, element: etree._Element, noted: Findings) -> None:
+    """The type of a connector that is an enumeration without a name gets an empty one."""
+    is_type = local(element) == "Enumeration" and element.get("value") is None and not len(element)
+    if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
+        element.set("name", "")
+
+
+def _move_source(document: Document, element: etree._Element, noted: Findings) -> None:
+    """The address of a parameter set stands at its binding, not at the element within that would hold the set."""
+    parent = element.getparent()
+    if local(element) == "ParameterValues" and element.get("source") and parent is not None:
+        if parent.get("source") in (None, "", element.get("source")):
+            parent.set("source", element.attrib.pop("source"))
+            found = "The source stands at <ParameterValues>; it is taken for that of the binding."
+            noted.flaw(document.place(element), found, "Write it at <ParameterBinding>.")
+            parent.remove(element)
+
+
+def _mend_boolean(document: Document, element: etree._Element, noted: Findings) -> None:
+    """True and FALSE, as programs write them that do not know XML."""
+    for name in ("value", "suppressUnitConversion"):
+        text = element.get(name)
+        of_type = name != "value" or local(element) == "Boolean"
+        if text is not None and of_type and text.lower() in ("true", "false") and text != text.lower():
+            element.set(name, text.lower())
+            noted.flaw(document.place(element), f"'{text}' is taken for {text.lower()}.", "Write true or false.")
+
+
+def _drop_unknown(document: Document, element: etree._Element, noted: Findings) -> None:
+    """Elements that SSP 1.0 does not know and that do not look like a misspelt one of it."""
+    if (document.root.get("version") or "").startswith("2"):
+        return  # what is unknown there may be something of 2.0
+    known = names_of("ssd").elements | set(KINDS) | {"Dimension", "MetaData", "Signature"}
+    if local(element) not in known or local(element) == "Annotation" or local(element) in KINDS:
+        return
+    for part in [part for part in element if local(part)]:
+        name = local(part)
+        if name not in known and not is_slip(name, known):
+            noted.flaw(
+                document.place(part), f"The element <{name}> is not of the standard. It is not used.", "Remove it."
+            )
+            element.remove(part)
+
+
+def _sort(document: Document, element: etree._Element, noted: Findings) -> None:
+    order = ORDER.get(local(element), "").split()
+    parts = [part for part in element if local(part)]
+    if not order or any(local(part) not in order for part in parts):
+        return
+    ordered = sorted(parts, key=lambda part: order.index(local(part)))
+    if ordered != parts:
+        element[:] = ordered
+        listed = ", ".join(dict.fromkeys(local(part) for part in ordered))
+        noted.flaw(
+            document.place(element), f"Its parts are in another order than the standard's: {listed}.", "Sort them."
+        )
+
+
+def _drop_empty_lists(document: Document, element: etree._Element, noted: Findings) -> None:
+    for part in [part for part in element if local(part) in LISTS]:
+        if not any(local(one) for one in part):
+            element.remove(part)
+            noted.flaw(
+                document.place(part), f"<{local(part)}> is empty; it is taken as if it were not there.", "Remove it."
+            )
+
+
+def _drop_repeated(document: Document, element: etree._Element, noted: Findings) -> None:
+    """Elements that say again what one before them says."""
+    seen = {}
+    for part in [part for part in element if local(part) in ONCE]:
+        said = _said(part)
+        if said in seen:
+            found = f"<{local(part)}> says the same as line {seen[said]}; it counts once."
+            noted.flaw(document.place(part, part.get("name") or ""), found, "Keep one of them.")
+            element.remove(part)
+        seen.setdefault(said, part.sourceline)
+
+
+def _said(element: etree._Element) -> tuple:
+    """What an element says, without how it is drawn and described."""
+    attributes = {name: text for name, text in element.attrib.items() if name not in ("id", "description")}
+    parts = [part for part in element if local(part) and not re.search("Geometry$|^Annotations$", local(part))]
+    return element.tag, tuple(sorted(attributes.items())), (element.text or "").strip(), tuple(map(_said, parts))
