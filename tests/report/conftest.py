@@ -229,11 +229,6 @@ class Page:
         """Visible text of the first element."""
         return self.ask("return document.querySelector(arguments[0])?.innerText", selector)
 
-    def trace(self, name):
-        """East and north of a trace of the chart."""
-        find = "const t = document.getElementById('track').data.find(t => t.name === arguments[0]); return [t.x, t.y]"
-        return self.ask(find, name)
-
     def errors(self):
         """What the console complains of."""
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]

@@ -14,7 +14,7 @@ from shipcosim.report.run.key_figures import key_figures
 from shipcosim.report.run.panels import Section, make_sections
 from shipcosim.report.run.remarks import remarks
 from shipcosim.report.run.roles import Roles, find_roles
-from shipcosim.report.run.track import Track, ship_size, track_figure
+from shipcosim.report.run.scene import Run, make_run
 from shipcosim.report.run.weather import Flow, weather
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import display_table, is_constant, thinned
@@ -139,14 +139,15 @@ def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict]
     roles, shown = _shown(table, verdicts)
     varying = [v.values for v in shown.data_vars.values() if not is_constant(v.values)]
     drawn, span = thinned(shown, most_rows(varying, BYTES_FOR_SIGNALS))
-    track = track_figure(drawn, roles, verdicts, ship_size(table, roles))
+    run = make_run(table, verdicts)
+    runs = () if run is None else (run,)
     sections = make_sections(shown, roles, verdicts)
     return RunPage(
         title=_title(scenario, system),
         facts=_facts(table, scenario),
         outcome=outcome(table, verdicts),
-        links=_links(track, sections),
-        data=_drawn(drawn, table, track, sections, scenario),
+        links=_links(runs, sections),
+        data=_drawn(drawn, table, runs, sections, scenario),
         remarks=tuple(remarks(table, shown, roles)),
         weather=weather(shown, roles),
         expectations=judged(verdicts, shown),
@@ -184,14 +185,14 @@ def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
     return tuple(Fact(name, text) for name, text in facts if text)
 
 
-def _links(track: Track | None, sections: Sequence[Section]) -> tuple[Link, ...]:
-    chart = [Link("chart", "Track")] if track is not None else []
+def _links(runs: Sequence[Run], sections: Sequence[Section]) -> tuple[Link, ...]:
+    chart = [Link("scene", "Scene")] if runs else []
     panels = [Link(f"section-{k}", section.title) for k, section in enumerate(sections)]
     return (*chart, *panels, Link("choose", "All signals"), Link("details", "Parameters"))
 
 
 def _drawn(
-    drawn: Dataset, table: Dataset, track: Track | None, sections: Sequence[Section], scenario: Scenario | None
+    drawn: Dataset, table: Dataset, runs: Sequence[Run], sections: Sequence[Section], scenario: Scenario | None
 ) -> dict[str, Any]:
     """What the script of the page draws."""
     return {
@@ -205,7 +206,7 @@ def _drawn(
             for name, v in drawn.data_vars.items()
         },
         "choice": [str(name) for name in table.data_vars if name in drawn],
-        "track": None if track is None else asdict(track),
+        "scene": [asdict(run) for run in runs],
         "panels": [asdict(panel) for section in sections for panel in section.panels],
         "events": sorted({event.time for event in scenario.events}) if scenario else [],
         "colours": {"passed": palette.PASSED, "failed": palette.FAILED, "cycle": palette.CYCLE},

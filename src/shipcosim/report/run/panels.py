@@ -148,7 +148,7 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     panels = []
     for unit in roles.thrusters:
         lines = [
-            Line(_command(roles, unit, "thrust"), "commanded", palette.COMMAND, "dot"),
+            Line(roles.command(unit, "thrust"), "commanded", palette.COMMAND, "dot"),
             Line(join(unit, "thrust"), "delivered", palette.SHIP),
         ]
         panels += _panel(shown, f"Thrust, {unit}", lines)
@@ -168,15 +168,10 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
 def _angles(roles: Roles) -> list[Line]:
     lines = []
     for k, unit in enumerate(roles.thrusters):
-        commanded = _command(roles, unit, "azimuth")
+        commanded = roles.command(unit, "azimuth")
         lines.append(Line(commanded, f"{unit} commanded", palette.CYCLE[k % len(palette.CYCLE)], "dot"))
         lines.append(Line(roles.signal(unit, "azimuth"), unit, palette.CYCLE[k % len(palette.CYCLE)]))
     return lines
-
-
-def _command(roles: Roles, unit: str, quantity: str) -> str | None:
-    """Signal of a thruster's command: its own input, or the allocator's output of its name."""
-    return roles.signal(unit, f"{quantity}_cmd") or _first(roles.anywhere(f"{unit}_{quantity}_cmd"))
 
 
 def _environment(shown: Dataset, roles: Roles) -> list[Panel]:

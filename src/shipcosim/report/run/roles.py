@@ -43,6 +43,12 @@ class Roles:
         """Names of all signals whose connector is one of these, in the order asked for."""
         return [join(component, c) for c in connectors for component, has in self.connectors.items() if c in has]
 
+    def command(self, unit: str, quantity: str) -> str | None:
+        """Signal of a thruster's command: its own input, or the allocator's output of its name."""
+        return self.signal(unit, f"{quantity}_cmd") or next(
+            iter(self.anywhere(f"{unit.rpartition('.')[2]}_{quantity}_cmd")), None
+        )
+
     def flagged(self, connector: str) -> dict[str, str]:
         """Signals of this connector by their component, of all components that have it: who says 'saturated'."""
         return {component: join(component, connector) for component, has in self.connectors.items() if connector in has}

@@ -1,4 +1,4 @@
-// The page of a run: panels over time that share one time window, the track beside them, and signals to choose from.
+// The page of a run: panels over time that share one time window and follow the scene, and signals to choose from.
 (() => {
   const { data, axis, colour, draw, later, layout, markup, painted, series, traces } = report;
   const time = series(data.time), decoded = {};
@@ -57,9 +57,14 @@
     const traces = panel.states ? stateTraces(panel) : [...bandTraces(panel), ...lineTraces(panel)];
     Plotly.newPlot(place, traces, layoutOf(panel), config);
     place.on("plotly_relayout", (change) => follow(place, change));
-    place.on("plotly_hover", (event) => pointAt(event.xvals ? event.xvals[0] : event.points[0].x));
-    place.on("plotly_unhover", () => pointAt(null));
+    const timeOf = (event) => +(event.xvals ? event.xvals[0] : event.points[0].x);
+    place.on("plotly_hover", (event) => tell("scene-ghost", timeOf(event)));
+    place.on("plotly_unhover", () => tell("scene-ghost", null));
+    place.on("plotly_click", (event) => tell("scene-go", timeOf(event)));
+    place.on("plotly_afterplot", () => cursor(place));
     place.drawn = shownWindow;
+    seen.observe(place);
+    cursor(place);
   }
 
   function zoom(place) {
@@ -88,41 +93,23 @@
 
   document.getElementById("reset").addEventListener("click", () => show(whole));
 
-  // ---- the chart
+  // ---- the time of the scene
 
-  const track = data.track && document.getElementById("track");
+  let now = null;
 
-  function drawTrack() {
-    const chart = { automargin: false, zeroline: false, ticksuffix: " m", constrain: "domain" };
-    const ghost = { type: "scatter", mode: "lines", name: "at the cursor", x: [], y: [], line: { color: colour("vermillion"), width: 2 }, fill: "toself", fillcolor: colour("vermillion/0.15"), hoverinfo: "skip", showlegend: false };
-    Plotly.newPlot(track, [...traces(data.track.traces), ghost], layout({
-      margin: { l: 60, r: 12, t: 30, b: 84 }, hovermode: "closest", dragmode: "pan",
-      legend: { orientation: "h", x: 0.5, xanchor: "center", yref: "container", y: 0 },
-      xaxis: axis({ ...chart, title: { text: "East", standoff: 6 }, range: data.track.x }), yaxis: axis({ ...chart, title: { text: "North" }, range: data.track.y, scaleanchor: "x", scaleratio: 1 }),
-    }), { ...config, scrollZoom: true });
+  function cursor(place) {
+    if (now === null || !place._fullLayout) return;
+    const { xaxis, _size } = place._fullLayout, line = (place.cursor ??= place.appendChild(Object.assign(document.createElement("div"), { className: "now" })));
+    const x = xaxis.l2p(now), inside = x >= -1 && x <= _size.w + 1;
+    line.hidden = !inside;
+    if (inside) Object.assign(line.style, { top: `${_size.t}px`, height: `${_size.h}px`, transform: `translateX(${_size.l + x}px)` });
   }
 
-  function rowAt(t) {
-    let low = 0, high = time.length - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (time[middle] < t) low = middle + 1; else high = middle;
-    }
-    return low > 0 && t - time[low - 1] < time[low] - t ? low - 1 : low;
-  }
-
-  function pointAt(t) {
-    const cursor = document.getElementById("cursor");
-    cursor.textContent = t === null ? "" : `t = ${(+t).toPrecision(6) / 1} s`;
-    if (!track || !track.data) return;
-    let corners = { x: [[]], y: [[]] };
-    if (t !== null) {
-      const row = rowAt(t), [x, y, psi] = data.track.pose.map((name) => values(name)[row]);
-      const c = Math.cos(psi * Math.PI / 180), s = Math.sin(psi * Math.PI / 180), [forward, starboard] = data.track.outline;
-      corners = { x: [forward.map((f, k) => y + s * f + c * starboard[k])], y: [forward.map((f, k) => x + c * f - s * starboard[k])] };
-    }
-    Plotly.restyle(track, corners, [track.data.length - 1]);
-  }
+  const inView = new Set(), seen = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) { inView[isIntersecting ? "add" : "delete"](target); if (isIntersecting) cursor(target); }
+  });
+  addEventListener("scene-time", (event) => { now = event.detail; inView.forEach(cursor); });
+  const tell = (name, t) => dispatchEvent(new CustomEvent(name, { detail: t }));
 
   // ---- signals to choose from
 
@@ -185,7 +172,7 @@
 
   // ---- go
 
-  if (track) draw(track, drawTrack);
+  if (scene) scene.opened();
   data.panels.forEach((panel, k) => {
     const place = document.getElementById(`panel-${k}`);
     draw(place, () => drawPanel(place, panel));

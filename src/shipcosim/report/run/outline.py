@@ -1,0 +1,63 @@
+"""The outline of a ship, and where on her way to draw it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+HULL = (  # outline over length and breadth from amidships, starboard side from stern to bow; drawn, not measured
+    (-0.5, 0.44),
+    (-0.46, 0.5),
+    (0.18, 0.5),
+    (0.34, 0.37),
+    (0.45, 0.17),
+    (0.5, 0.0),
+)
+SPACING, TURN, MOST = 0.3, 20.0, 40  # outlines: apart in lengths, turned in deg, at most so many
+SYMBOL = 0.08  # length of the outline of a ship of unknown size, over the extent of the track
+SLENDERNESS = 3.5  # length over breadth of that outline
+
+
+def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:
+    """Closed outline in body axes: forward and to starboard, (11,) each. [m, m]
+
+    Examples
+    --------
+    >>> forward, starboard = hull_outline(10.0, 4.0)
+    >>> float(forward.max()), float(starboard.min()), float(starboard.max())
+    (5.0, -2.0, 2.0)
+    """
+    starboard = np.array(HULL) * [length, breadth]
+    port = starboard[-2::-1] * [1.0, -1.0]
+    closed = np.vstack([starboard, port, starboard[:1]])
+    return closed[:, 0], closed[:, 1]
+
+
+def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[int]:
+    """Rows at which to draw the ship: the first, the last, and whenever she moved or turned enough in between.
+
+    Parameters
+    ----------
+    x, y, psi : (n,) array
+        Pose. [m, m, deg]
+    length : float
+        Length of the ship. [m]
+
+    Returns
+    -------
+    list of int
+    """
+    spacing, turn = SPACING * length, TURN
+    while True:
+        rows = [0]
+        for k in range(1, len(x)):
+            last = rows[-1]
+            if np.hypot(x[k] - x[last], y[k] - y[last]) >= spacing or abs(psi[k] - psi[last]) >= turn:
+                rows.append(k)
+        if len(rows) <= MOST:
+            return rows if rows[-1] == len(x) - 1 else [*rows, len(x) - 1]
+        spacing, turn = 1.5 * spacing, 1.5 * turn
+
+
+def symbol_size(x: NDArray, y: NDArray) -> tuple[float, float]:
+    """Length and breadth of an outline that shows where a vessel of unknown size was. [m, m]"""
+    length = max(SYMBOL * max(float(np.ptp(x)), float(np.ptp(y))), 1.0)
+    return length, length / SLENDERNESS

@@ -1,0 +1,267 @@
+"""The scene of a run: what the page's DP display plays, as one compact table and the records that say what is what."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from xarray import Dataset
+
+from shipcosim.angles import unwrap_series
+from shipcosim.report.run.outline import hull_outline, outline_rows, symbol_size
+from shipcosim.report.run.roles import find_roles
+from shipcosim.report.run.vessels import Unit, Vessel, find_vessels, in_unit, start_values
+from shipcosim.report.theme.display import is_constant
+from shipcosim.report.theme.packing import LEVELS, packed_series
+from shipcosim.scenario import Verdict
+
+MOST_ROWS = 2400  # of the scene's table: at 64 times real time half an hour of them passes in a minute
+EXACT = 1e9  # steps of the time axis
+METRES, DEGREES = 0.01, 0.02  # what a screen can tell apart
+FLOWS = {"wind": ("from", -1.0), "current": ("to", 1.0)}  # named by where it comes from or goes to
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run in the scene.
+
+    Attributes
+    ----------
+    label : str
+        Its name where there are two.
+    time : dict or list
+        Column of times. [s]
+    columns : dict of str to number, dict or list
+        Packed columns by name.
+    vessels : list of dict
+        Name, size, outline, columns and thrusters of each.
+    flows : list of dict
+        Wind, current and waves.
+    circles : list of dict
+        Where expectations want her.
+    watch : dict
+        Limits that alarms of the position and heading watch. [m, deg]
+    read_as : list of str
+        What had to be supposed.
+    """
+
+    label: str
+    time: Any
+    columns: dict[str, Any]
+    vessels: list[dict[str, Any]]
+    flows: list[dict[str, Any]]
+    circles: list[dict[str, Any]]
+    watch: dict[str, float]
+    read_as: list[str]
+
+
+@dataclass
+class _Columns:
+    """Columns while they are collected from a table."""
+
+    table: Dataset
+    rows: NDArray
+    packed: dict[str, Any] = field(default_factory=dict)
+    without_unit: list[str] = field(default_factory=list)
+
+    def add(self, name: str | None, unit: str, resolution: float = np.inf) -> str | None:
+        """Pack a signal, unless it is not there, measures something else or is no number all along."""
+        if name is None or name not in self.table:
+            return None
+        values = self.table[name].values.astype(float) if unit == "" else in_unit(self.table, name, unit)
+        if values is None or not np.isfinite(values).any():
+            return None
+        if unit and not self.table[name].attrs.get("units"):
+            self.without_unit.append(f"{name} in {'rad' if unit == 'deg' else unit.removeprefix('k')}")
+        self.put(name, unwrap_degrees(values) if unit == "deg" else values, resolution)
+        return name
+
+    def put(self, name: str, values: ArrayLike, resolution: float = np.inf) -> str:
+        """Pack values under a name."""
+        self.packed[name] = _packed(np.asarray(values, float)[self.rows], resolution)
+        return name
+
+
+def make_run(table: Dataset, verdicts: Sequence[Verdict] = (), label: str = "", shift: float = 0.0) -> Run | None:
+    """The scene of one run; None where nothing in it has a position and a heading.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        A run of any system, as it was stored.
+    verdicts : sequence of Verdict
+        What was expected; expectations on a position become circles.
+    label : str
+        Name of the run, where there are two.
+    shift : float
+        Added to its times. [s]
+
+    Returns
+    -------
+    Run or None
+    """
+    vessels = find_vessels(table) if table.sizes["time"] else ()
+    time = np.asarray(table["time"].values, float) + shift
+    columns = _Columns(table, _rows(len(time)))
+    drawn = [made for vessel in vessels if (made := _vessel(vessel, columns)) is not None]
+    if not drawn:
+        return None
+    flows = _flows(table, columns)
+    supposed = [f"{names[0]} north, {names[1]} east, {names[2]} heading" for names in (v.pose for v in vessels)]
+    if columns.without_unit:
+        supposed.append(f"without a unit in the table: {', '.join(dict.fromkeys(columns.without_unit))}")
+    return Run(
+        label,
+        packed_series(time[columns.rows], EXACT),
+        columns.packed,
+        drawn,
+        flows,
+        [circle for verdict in verdicts for vessel in vessels for circle in _circle(verdict, vessel, shift)],
+        _watch(table),
+        supposed,
+    )
+
+
+def unwrap_degrees(values: NDArray) -> NDArray:
+    """Angles without jumps at half turns. [deg]"""
+    finite = np.isfinite(values)
+    answer = values.copy()
+    answer[finite] = np.degrees(unwrap_series(np.radians(values[finite])))
+    return answer
+
+
+def _packed(values: NDArray, resolution: float) -> float | dict[str, Any] | list[float | None]:
+    """A column for `series` of the page's script: a number where it is the same all along."""
+    if is_constant(values):
+        return float(values[0])
+    finite = values[np.isfinite(values)]
+    span = float(np.ptp(finite)) if len(finite) else 0.0
+    return packed_series(values, max(LEVELS, span / resolution))
+
+
+def _rows(count: int) -> NDArray:
+    """Rows of the scene's table: every one, or evenly fewer, first and last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_ROWS)).round().astype(int))
+
+
+def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
+    """What the display needs of a vessel."""
+    units = ("m", "m", "deg")
+    pose = [columns.add(n, u, r) for n, u, r in zip(vessel.pose, units, (METRES, METRES, DEGREES), strict=True)]
+    if None in pose:
+        return None
+    north, east, heading = (in_unit(columns.table, n, u) for n, u in zip(vessel.pose, units, strict=True))
+    assert north is not None and east is not None and heading is not None
+    shown = columns.rows
+    known = shown[np.isfinite(north[shown]) & np.isfinite(east[shown]) & np.isfinite(heading[shown])]
+    if not len(known):
+        return None
+    size = vessel.size or symbol_size(north[known], east[known])
+    where = known[outline_rows(north[known], east[known], unwrap_degrees(heading[known]), size[0])]
+    return {
+        "name": vessel.name,
+        "pose": pose,
+        "velocity": [
+            columns.add(name, unit) for name, unit in zip(vessel.velocity, ("m/s", "m/s", "deg/s"), strict=True)
+        ],
+        "aims": {word: made for word, names in vessel.aims.items() if (made := _aim(names, columns))},
+        "size": list(size),
+        "to_scale": vessel.size is not None,
+        "outline": [np.round(side, 3).tolist() for side in hull_outline(*size)],
+        "way": [np.round(values[where], 2).tolist() for values in (north, east, heading)],
+        "units": [made for unit in vessel.units if (made := _unit(unit, columns))],
+    }
+
+
+def _aim(names: tuple[str, str, str | None], columns: _Columns) -> list[str | None] | None:
+    north, east = (columns.add(name, "m", METRES) for name in names[:2])
+    return None if north is None or east is None else [north, east, columns.add(names[2], "deg", DEGREES)]
+
+
+def _unit(unit: Unit, columns: _Columns) -> dict[str, Any] | None:
+    """A thruster: bars need its thrust, vectors its force in body axes and its place, too."""
+    thrust = columns.add(unit.thrust, "kN")
+    if thrust is None:
+        return None
+    values = in_unit(columns.table, unit.thrust, "kN")
+    return {
+        "name": unit.name.rpartition(".")[2],
+        "thrust": thrust,
+        "command": columns.add(unit.thrust_command, "kN"),
+        "azimuth": columns.add(unit.azimuth, "deg", 0.1),
+        "azimuth_command": columns.add(unit.azimuth_command, "deg", 0.1),
+        "force": _force(unit, columns),
+        "place": unit.place,
+        "limits": None if unit.limits is None else [limit / 1000.0 for limit in unit.limits],
+        "largest": float(np.nanmax(np.abs(values))) if values is not None else 0.0,
+        **{flag: columns.add(getattr(unit, flag), "") for flag in ("saturated", "failed", "available")},
+    }
+
+
+def _force(unit: Unit, columns: _Columns) -> list[str] | None:
+    """Columns of the force on the ship, forward and to starboard: as put out, else thrust along the azimuth."""
+    if unit.force is not None:
+        put_out = [columns.add(name, "kN") for name in unit.force]
+        if None not in put_out:
+            return [str(name) for name in put_out]
+    angle = None if unit.azimuth is None else in_unit(columns.table, unit.azimuth, "rad")
+    thrust = in_unit(columns.table, unit.thrust, "kN")
+    if angle is None or thrust is None:
+        return None
+    parts = {"forward": thrust * np.cos(angle), "starboard": thrust * np.sin(angle)}
+    return [columns.put(f"{unit.name} force {way}", values) for way, values in parts.items()]
+
+
+def _flows(table: Dataset, columns: _Columns) -> list[dict[str, Any]]:
+    """Wind and current as velocity north and east, waves as height and direction, where they are told."""
+    roles = find_roles(table.data_vars)
+    found: list[dict[str, Any]] = []
+    for what, (sense, sign) in FLOWS.items():
+        values = _velocity(table, roles.anywhere, what, sense, sign)
+        if values is not None and np.nanmax(np.hypot(*values), initial=0.0) > 0.0:
+            names = [columns.put(f"{what} {way}", v) for way, v in zip(("north", "east"), values, strict=True)]
+            found.append({"what": what, "sense": sense, "velocity": names})
+    heights, sources = (_first_in(table, roles.anywhere(f"wave_{part}")) for part in ("height", "from"))
+    height, source = columns.add(heights, "m"), columns.add(sources, "deg")
+    if height is not None and source is not None and np.nanmax(table[height].values) > 0.0:
+        found.append({"what": "waves", "sense": "from", "height": height, "direction": source})
+    return found
+
+
+def _velocity(table: Dataset, anywhere: Any, what: str, sense: str, sign: float) -> list[NDArray] | None:
+    """Velocity north and east of what flows: by its components, else by speed and direction. [m/s]"""
+    parts = [_first_in(table, anywhere(f"{what}_{way}")) for way in ("north", "east")]
+    read = [None if name is None else in_unit(table, name, "m/s") for name in parts]
+    if all(values is not None for values in read):
+        return [values for values in read if values is not None]
+    named = [_first_in(table, anywhere(f"{what}_{part}")) for part in ("speed", sense)]
+    speed = None if named[0] is None else in_unit(table, named[0], "m/s")
+    angle = None if named[1] is None else in_unit(table, named[1], "rad")
+    return None if speed is None or angle is None else [sign * speed * np.cos(angle), sign * speed * np.sin(angle)]
+
+
+def _first_in(table: Dataset, names: Iterable[str]) -> str | None:
+    return next((name for name in names if name in table and table[name].dtype.kind in "fiu"), None)
+
+
+def _circle(verdict: Verdict, vessel: Vessel, shift: float) -> list[dict[str, Any]]:
+    """The circle in which a vessel should stay, of an expectation on her position; else nothing."""
+    expect = verdict.expect
+    centre = [value for value in expect.near or [] if isinstance(value, int | float)]
+    if expect.signal != list(vessel.pose[:2]) or len(centre) != 2 or expect.within is None:
+        return []
+    during = None if expect.during is None else [t + shift for t in expect.during]
+    return [{"centre": centre, "radius": expect.within, "during": during, "passed": verdict.passed}]
+
+
+def _watch(table: Dataset) -> dict[str, float]:
+    """Distance and angle beyond which an alarm of the table sounds, where the start values say it. [m, deg]"""
+    known: Mapping[str, Any] = start_values(table)
+    found = {}
+    for what, factor in (("position", 1.0), ("heading", 180.0 / np.pi)):
+        for alarm in find_roles(table.data_vars).anywhere(f"{what}_alarm"):
+            limit = known.get(alarm.removesuffix("alarm") + "limit")
+            if isinstance(limit, int | float) and limit > 0.0:
+                found[what] = float(limit) * factor
+    return found

@@ -1,0 +1,298 @@
+"""The vessels of a table and what belongs to each, found by the names of signals, whoever made them."""
+
+import json
+import re
+from collections.abc import Hashable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import Dataset
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.report.run.roles import find_roles, join
+from shipcosim.series import conversion
+
+AXES = {"x": ("x", "north", "northing"), "y": ("y", "east", "easting"), "psi": ("psi", "heading", "yaw", "hdg")}
+AROUND = ("", "position", "pos", "displacement", "ned")  # words that may stand beside an axis
+AIMS = {"set point": ("set", "setpoint", "sp"), "reference": ("d", "ref", "reference", "des", "desired")}
+SAME_PLACE = 3.0  # m: what stays nearer to a vessel all along is the same vessel, as a sensor or a predictor sees it
+COMMON_WORDS = {"vessel", "ship", "hull", "boat", "model", "fmu"}
+Pose = tuple[str, str, str]
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A thruster: its signals, None where there is none, and what the start values say of it.
+
+    Attributes
+    ----------
+    name : str
+    thrust : str
+    force : (str, str), optional
+        Its load on the ship, forward and to starboard.
+    azimuth, thrust_command, azimuth_command, saturated, failed, available : str, optional
+    place : (float, float), optional
+        Forward and to starboard. [m, m]
+    limits : (float, float), optional
+        Least and largest thrust. [N, N]
+    """
+
+    name: str
+    thrust: str
+    force: tuple[str, str] | None
+    azimuth: str | None
+    thrust_command: str | None
+    azimuth_command: str | None
+    saturated: str | None
+    failed: str | None
+    available: str | None
+    place: tuple[float, float] | None
+    limits: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Vessel:
+    """Something with a position and a heading.
+
+    Attributes
+    ----------
+    name : str
+    pose : (str, str, str)
+        Signals north, east, heading.
+    velocity : tuple of str or None
+        Signals u, v, r.
+    aims : dict of str to tuple of str or None
+        Signals north, east, heading of "reference" and "set point".
+    size : (float, float), optional
+        Length and breadth. [m, m]
+    units : tuple of Unit
+        Thrusters.
+    """
+
+    name: str
+    pose: Pose
+    velocity: tuple[str | None, ...]
+    aims: dict[str, tuple[str, str, str | None]]
+    size: tuple[float, float] | None
+    units: tuple[Unit, ...]
+
+
+def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
+    """Every vessel of a table, the most important first.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        A run of any system.
+
+    Returns
+    -------
+    tuple of Vessel
+    """
+    names = [str(name) for name, v in table.data_vars.items() if v.dtype.kind in "fiub" and v.dims == ("time",)]
+    main = find_roles(names).ship
+    poses = sorted(_poses(table, names), key=lambda pose: (_owner(pose) != main, -_loads(pose, names)))
+    apart: list[Pose] = []
+    for pose in (p for p in poses if _owner(p) == main or _moves(table, p)):
+        if all(_apart(table, pose, other) for other in apart):
+            apart.append(pose)
+    known = start_values(table)
+    return tuple(_vessel(pose, _belonging(pose, apart, names), known) for pose in apart)
+
+
+def start_values(table: Dataset) -> dict[str, Any]:
+    """Start values of the run, as the table's attribute holds them; empty where there are none."""
+    try:
+        known = json.loads(table.attrs.get("start_values", "{}"))
+    except (TypeError, ValueError):
+        return {}
+    return known if isinstance(known, dict) else {}
+
+
+def in_unit(table: Dataset, name: str, unit: str) -> NDArray | None:
+    """Values of a signal in a unit, (n,); None if it measures something else. One without a unit is taken as SI."""
+    try:
+        factor, offset = conversion(table[name].attrs.get("units") or None, unit)
+    except ShipcosimError:
+        return None
+    if not table[name].attrs.get("units"):
+        factor, offset = conversion({"kN": "N", "deg": "rad"}.get(unit, unit), unit)
+    return factor * np.asarray(table[name].values, float) + offset
+
+
+def _plain(connector: str) -> str:
+    """A connector's name without case, underscores and brackets: `Position_North` is `positionnorth`."""
+    return re.sub(r"[^a-z0-9]", "", connector.lower())
+
+
+def _spellings(axis: str, endings: Iterable[str] = ("",)) -> set[str]:
+    """Names, as `_plain` gives them, under which an axis is known."""
+    words = [a + word + b for word in AXES[axis] for a in AROUND for b in AROUND if not (a and b)]
+    return {word + ending for word in words for ending in endings}
+
+
+def _poses(table: Dataset, names: list[str]) -> list[Pose]:
+    """Signals of every position that has an east beside its north and a heading near it."""
+    found = []
+    headings = [n for n in names if _is(n, "psi") and in_unit(table, n, "rad") is not None]
+    for north in (n for n in names if _is(n, "x") and in_unit(table, n, "m") is not None):
+        east = next((e for e in _beside(north, names) if in_unit(table, e, "m") is not None), None)
+        heading = _nearest(north, headings)
+        if east is not None and heading is not None:
+            found.append((north, east, heading))
+    return found
+
+
+def _moves(table: Dataset, pose: Pose) -> bool:
+    """Whether any of it changes: an input that nothing is connected to never does."""
+    return any(np.ptp(table[name].values.astype(float)) > 0.0 for name in pose if table.sizes["time"])
+
+
+def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
+    return _plain(name.rpartition(".")[2]) in _spellings(axis, endings)
+
+
+def _beside(north: str, names: list[str]) -> list[str]:
+    """Signals that stand to a position north as its east: the same name but for the word."""
+    component, _, connector = north.rpartition(".")
+    plain = _plain(connector)
+    for word, other in zip(AXES["x"], AXES["y"], strict=True):
+        wanted = {plain.replace(word, other, 1)} if word in plain else set()
+        for name in names:
+            place, _, own = name.rpartition(".")
+            if place == component and name != north and _plain(own) in wanted and _is(name, "y"):
+                return [name]
+    return []
+
+
+def _nearest(north: str, headings: list[str]) -> str | None:
+    """The heading of the same component; for `north` and `east`, which are always a position, the nearest one."""
+    path = north.split(".")[:-1]
+    shared = {name: _shared(path, name.split(".")[:-1]) for name in headings}
+    best = max(headings, key=lambda name: (shared[name], -name.count(".")), default=None)
+    if best is None or (best.split(".")[:-1] != path and (shared[best] == 0 or _plain(north.split(".")[-1]) == "x")):
+        return None
+    return best
+
+
+def _shared(path: list[str], other: list[str]) -> int:
+    """How many steps two paths go together."""
+    return next((k for k, (a, b) in enumerate(zip(path, other, strict=False)) if a != b), min(len(path), len(other)))
+
+
+def _loads(pose: Pose, names: list[str]) -> int:
+    """How many loads act on the component: on ships many, on what only measures none."""
+    return sum(name.startswith(f"{_owner(pose)}.tau_") for name in names)
+
+
+def _owner(pose: Pose) -> str:
+    return pose[0].rpartition(".")[0]
+
+
+def _apart(table: Dataset, pose: Pose, other: Pose) -> bool:
+    """Whether two poses are of two vessels: no two lie in the same place."""
+    gaps = [(in_unit(table, a, "m"), in_unit(table, b, "m")) for a, b in zip(pose[:2], other[:2], strict=True)]
+    distance = np.hypot(*(np.subtract(a, b) for a, b in gaps if a is not None and b is not None))
+    distance = distance[np.isfinite(distance)]
+    return bool(len(distance) and np.max(distance) > 0.0 and np.median(distance) > SAME_PLACE)
+
+
+def _words(name: str) -> set[str]:
+    """Words and numbers of a component's name: of `fleet.tug_2` fleet, tug and 2."""
+    return set(re.findall(r"[a-z]+|\d+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())) - COMMON_WORDS
+
+
+def _belonging(pose: Pose, poses: list[Pose], names: list[str]) -> list[str]:
+    """Signals of a vessel and of what is hers: of the same nested system, or with the word that tells her apart."""
+    owners = {other: _owner(other) for other in poses}
+    owner = owners[pose]
+    if len(poses) == 1:
+        return names
+    systems = {other: name.rpartition(".")[0] for other, name in owners.items()}
+    if systems[pose] and len(set(systems.values())) == len(poses):
+        return [name for name in names if name.startswith(f"{systems[pose]}.")]
+    common = set.intersection(*(_words(name) for name in owners.values()))
+    keys = {other: _words(name) - common for other, name in owners.items()}
+
+    def whose(name: str) -> list[Pose]:
+        words = _words(name.rpartition(".")[0])
+        return [other for other, key in keys.items() if key and key <= words]
+
+    return [name for name in names if name.startswith(f"{owner}.") or whose(name) == [pose]]
+
+
+def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
+    owner = _owner(pose)
+    length, breadth = (
+        _first_number(known, owner, words) for words in (("length", "length_pp", "lpp"), ("breadth", "beam"))
+    )
+    return Vessel(
+        name=owner or "ship",
+        pose=pose,
+        velocity=tuple(_there(join(owner, axis), names) for axis in "uvr"),
+        aims=_aims(pose, names),
+        size=None if length is None or breadth is None or min(length, breadth) <= 0.0 else (length, breadth),
+        units=_units(names, known),
+    )
+
+
+def _aims(pose: Pose, names: list[str]) -> dict[str, tuple[str, str, str | None]]:
+    """Where she should be: what is commanded, and the reference on the way there."""
+    found = {}
+    for aim, endings in AIMS.items():
+        north = next((name for name in names if _is(name, "x", endings) and name != pose[0]), None)
+        beside = [n for n in names if north is not None and n.rpartition(".")[0] == north.rpartition(".")[0]]
+        east = next((name for name in beside if _is(name, "y", endings)), None)
+        heading = next((name for name in beside if _is(name, "psi", endings)), None)
+        if north is not None and east is not None:
+            found[aim] = (north, east, heading)
+    return found
+
+
+def _units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Unit, ...]:
+    """Thrusters of these signals."""
+    roles = find_roles(names)
+    force = {unit: [roles.signal(unit, f"tau_{axis}") for axis in "XY"] for unit in roles.thrusters}
+    return tuple(
+        Unit(
+            name=unit,
+            thrust=join(unit, "thrust"),
+            force=(force[unit][0] or "", force[unit][1] or "") if all(force[unit]) else None,
+            azimuth=roles.signal(unit, "azimuth"),
+            thrust_command=roles.command(unit, "thrust"),
+            azimuth_command=roles.command(unit, "azimuth"),
+            saturated=roles.signal(unit, "saturated"),
+            failed=roles.signal(unit, "failed"),
+            available=roles.signal(unit, "available"),
+            place=_place(unit, known),
+            limits=_limits(unit, known),
+        )
+        for unit in roles.thrusters
+    )
+
+
+def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
+    """Where a thruster is, forward and to starboard; on the centre line where it has a place forward alone. [m, m]"""
+    forward = _first_number(known, unit, ("x", "position_x", "x_position", "rudder_x", "propeller_x"))
+    starboard = _first_number(known, unit, ("y", "position_y", "y_position", "rudder_y", "propeller_y"))
+    return None if forward is None else (forward, starboard or 0.0)
+
+
+def _limits(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
+    most, least = (_first_number(known, unit, (f"thrust_{end}",)) for end in ("max", "min"))
+    if most is None or most <= 0.0:
+        return None
+    return (-most if least is None else least, most)
+
+
+def _there(name: str, names: list[str]) -> str | None:
+    return name if name in names else None
+
+
+def _first_number(known: Mapping[str, Any], component: str, words: Iterable[str]) -> float | None:
+    """The first start value of these names that is a number."""
+    values = (known.get(join(component, word)) for word in words)
+    numbers = (float(v) for v in values if isinstance(v, int | float) and not isinstance(v, bool))
+    return next((number for number in numbers if np.isfinite(number)), None)
