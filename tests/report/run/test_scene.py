@@ -10,8 +10,8 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from shipcosim.report import write_report
-from shipcosim.report.run.outline import hull_outline
 from shipcosim.report.run.scene import make_run
+from shipcosim.report.run.track import hull_outline
 
 SIZE = {"vessel.length": 33.9, "vessel.breadth": 9.6}
 PLACES = {"port.x": -14.0, "port.y": -2.0, "starboard.x": -14.0, "starboard.y": 2.0, "tunnel.x": 14.5}

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from xarray import Dataset
 
 from shipcosim.angles import unwrap_series
-from shipcosim.report.run.outline import hull_outline, outline_rows, symbol_size
 from shipcosim.report.run.roles import find_roles
+from shipcosim.report.run.track import hull_outline, outline_rows, symbol_size
 from shipcosim.report.run.vessels import Unit, Vessel, find_vessels, in_unit, start_values
 from shipcosim.report.theme.display import is_constant
 from shipcosim.report.theme.packing import LEVELS, packed_series

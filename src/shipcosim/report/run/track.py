@@ -1,7 +1,12 @@
 """The outline of a ship, and where on her way to draw it."""
 
+import json
+
 import numpy as np
 from numpy.typing import NDArray
+from xarray import Dataset
+
+from shipcosim.report.run.roles import Roles, join
 
 HULL = (  # outline over length and breadth from amidships, starboard side from stern to bow; drawn, not measured
     (-0.5, 0.44),
@@ -14,6 +19,13 @@ HULL = (  # outline over length and breadth from amidships, starboard side from 
 SPACING, TURN, MOST = 0.3, 20.0, 40  # outlines: apart in lengths, turned in deg, at most so many
 SYMBOL = 0.08  # length of the outline of a ship of unknown size, over the extent of the track
 SLENDERNESS = 3.5  # length over breadth of that outline
+
+
+def ship_size(table: Dataset, roles: Roles) -> tuple[float, float] | None:
+    """Length and breadth of the ship, where the start values in the table's attributes have both. [m, m]"""
+    known = json.loads(table.attrs.get("start_values", "{}"))
+    length, breadth = (known.get(join(roles.ship or "", name)) for name in ("length", "breadth"))
+    return None if length is None or breadth is None else (float(length), float(breadth))
 
 
 def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:
@@ -29,6 +41,13 @@ def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:
     port = starboard[-2::-1] * [1.0, -1.0]
     closed = np.vstack([starboard, port, starboard[:1]])
     return closed[:, 0], closed[:, 1]
+
+
+def placed(outline: tuple[NDArray, NDArray], x: float, y: float, psi: float) -> tuple[NDArray, NDArray]:
+    """An outline on the chart: east and north of its corners. [m, m]"""
+    forward, starboard = outline
+    c, s = np.cos(np.radians(psi)), np.sin(np.radians(psi))
+    return y + s * forward + c * starboard, x + c * forward - s * starboard
 
 
 def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[int]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shipcosim.report.run.outline import hull_outline, outline_rows, symbol_size
+from shipcosim.report.run.track import hull_outline, outline_rows, placed, symbol_size
 
 
 def test_outline_is_as_long_and_as_wide_as_the_ship_and_points_forward():
@@ -11,6 +11,29 @@ def test_outline_is_as_long_and_as_wide_as_the_ship_and_points_forward():
     assert np.ptp(forward) == pytest.approx(33.9) and np.ptp(starboard) == pytest.approx(9.6)
     assert starboard[np.argmax(forward)] == 0.0
     assert (forward[0], starboard[0]) == (forward[-1], starboard[-1])
+
+
+def area(east, north):
+    """Of a closed outline, positive if it runs clockwise seen from above with north up."""
+    return -0.5 * np.sum(east[:-1] * north[1:] - east[1:] * north[:-1])
+
+
+def test_bow_points_where_she_heads():
+    bow = int(np.argmax(hull_outline(33.9, 9.6)[0]))
+    east, north = placed(hull_outline(33.9, 9.6), 100.0, 50.0, 90.0)
+    assert (east[bow], north[bow]) == pytest.approx((50.0 + 16.95, 100.0))
+
+
+def test_starboard_is_right_of_the_heading():
+    forward, starboard = hull_outline(30.0, 8.0)
+    corner = int(np.argmax(starboard))
+    east, north = placed((forward, starboard), 0.0, 0.0, 0.0)
+    assert east[corner] == pytest.approx(4.0) and north[corner] == pytest.approx(forward[corner])
+
+
+def test_outline_keeps_its_size_whatever_the_heading():
+    areas = [area(*placed(hull_outline(33.9, 9.6), 7.0, -3.0, psi)) for psi in (0.0, 33.0, 180.0, 271.0)]
+    assert areas == pytest.approx([areas[0]] * 4)
 
 
 def test_ship_that_lies_still_is_outlined_at_start_and_end_only():
