@@ -12,6 +12,7 @@ from shipcosim.cli.commands import (
     compare,
     diagnose,
     export,
+    new_ship,
     replay,
     run,
     sea_trials,
@@ -30,6 +31,9 @@ app = typer.Typer(
 exporting = typer.Typer(
     help="Write a system in a form that other tools run.", rich_markup_mode=None, no_args_is_help=True
 )
+making = typer.Typer(
+    help="Make a new file that runs, in the project around.", rich_markup_mode=None, no_args_is_help=True
+)
 for _function in (
     build.build,
     run.run,
@@ -45,7 +49,10 @@ for _function in (
     app.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (export.fmu, export.osp):
     exporting.command(epilog=EXIT_CODES)(guarded(_function))
+for _function in (new_ship.ship,):
+    making.command(epilog=EXIT_CODES)(guarded(_function))
 app.add_typer(exporting, name="export")
+app.add_typer(making, name="new")
 
 
 @app.callback(invoke_without_command=True)

@@ -44,6 +44,8 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
     try:
         if hosts and (problems := _host_problems(file, path, hosts)) is not None:
             return [*check_any(file, channels), *problems]
+        if _is_ship(path):
+            return check_ship_file(path)
         if path.suffix == ".toml":
             return check_scenario_file(path)
         if path.suffix.lower() in OSP_SCENARIOS:
@@ -53,6 +55,38 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
         return _check_system_file(file, path)
     except ShipcosimError as error:
         return error.problems
+
+
+def check_ship_file(path: Path) -> list[Problem]:
+    """What is missing or impossible of a ship, as her file describes her."""
+    from shipcosim.ships.check import check_ship
+
+    return check_ship(str(path))
+
+
+def estimates_in(file: str) -> list[tuple[str, ...]]:
+    """What is estimated of a ship, as rows of text: number, value, tolerance, source; none for other files."""
+    path = Path(file)
+    if not _is_ship(path):
+        return []
+    from shipcosim.ships import describe
+    from shipcosim.ships.check import estimated
+
+    try:
+        return [tuple(row) for row in estimated(describe(path))]
+    except ShipcosimError:
+        return []
+
+
+def _is_ship(path: Path) -> bool:
+    """Whether a path is a ship file, or a folder with one."""
+    if path.is_dir():
+        return (path / "ship.toml").is_file()
+    if path.suffix != ".toml":
+        return False
+    from shipcosim.ships.described import is_ship_file
+
+    return is_ship_file(path)
 
 
 def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:

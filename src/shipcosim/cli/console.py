@@ -129,6 +129,16 @@ def print_variables(rows: Iterable[Sequence[str]]) -> None:
     console.print(listed)
 
 
+def print_estimates(rows: Iterable[Sequence[str]]) -> None:
+    """Table of what is estimated of a ship."""
+    lines = [("estimated", "value", "tolerance", "source"), *rows]
+    widths = [max(len(line[i]) for line in lines) for i in range(3)]
+    console = Console(highlight=False, soft_wrap=True)
+    for number, line in enumerate(lines):
+        cells = "  ".join(cell.ljust(width) for cell, width in zip(line[:3], widths, strict=True))
+        console.print(Text(f"{cells}  {line[3]}", style="" if number else "bold"))
+
+
 def print_report(reports: Mapping[str, Sequence[Problem]], as_json: bool) -> None:
     """Findings on files; `reports` maps a file to its problems."""
     if as_json:

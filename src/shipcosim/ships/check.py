@@ -50,6 +50,16 @@ def check_ship(path: str) -> list[Problem]:
         ship = describe(file, said)
     except ShipcosimError as error:
         return error.problems
+    return check_described(ship)
+
+
+def check_described(ship: Described) -> list[Problem]:
+    """What cannot be of a ship whose file could be read, and what is odd.
+
+    Parameters
+    ----------
+    ship : Described
+    """
     return [*check_numbers(ship), *_hull(ship), *_matrix(ship), *_thrusters(ship), *_remarks(ship)]
 
 
@@ -182,4 +192,4 @@ def _remarks(ship: Described) -> Iterator[Problem]:
     count = len(estimated(ship))
     if count:
         found = f"{count} numbers are estimated."
-        yield Problem(str(ship.path), found, "`shipcosim check --json` lists them with source and tolerance.", "remark")
+        yield Problem(str(ship.path), found, "Give what you know; the rest has the tolerance of its formula.", "remark")

@@ -84,7 +84,12 @@ def read_file(path: Path) -> ShipFile:
     ShipcosimError
         With everything that cannot be read, each with what would be right.
     """
-    said = _toml(path)
+    return file_from(_text(path), path)
+
+
+def file_from(text: str, path: Path) -> ShipFile:
+    """Records of the text of a ship file; `path` is for messages. Raises as `read_file`."""
+    said = _toml(text, path)
     try:
         return ShipFile.model_validate(said)
     except ValidationError as error:
@@ -130,7 +135,7 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     return Described(name=name, path=path, file=said, form=form, vessel=vessel, units=units)
 
 
-def _toml(path: Path) -> dict[str, Any]:
+def _text(path: Path) -> str:
     try:
         text = path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
@@ -139,6 +144,10 @@ def _toml(path: Path) -> dict[str, Any]:
         raise ShipcosimError(Problem(str(path), "is not UTF-8 text.", "Save the file in UTF-8.")) from None
     if len(text) > LONGEST:
         raise ShipcosimError(Problem(str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."))
+    return text
+
+
+def _toml(text: str, path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:

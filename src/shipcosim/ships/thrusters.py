@@ -5,6 +5,7 @@ from math import cos, pi, sin, sqrt
 from pathlib import Path
 
 from shipcosim.errors import Problem
+from shipcosim.models.propulsion.mapped import MapParameters, within_map
 from shipcosim.ships.entries import Entry
 from shipcosim.ships.estimates.estimate import Estimate, within
 from shipcosim.ships.estimates.hull import Form
@@ -23,6 +24,7 @@ from shipcosim.ships.file import Azimuth, FixedPropeller, PropellerWithRudder, T
 from shipcosim.ships.kinds import FMU_OF
 from shipcosim.ships.numbers import Numbers
 
+LARGE = 1e30
 RISE, TURNING = 10.0, 10.0 * pi / 180.0  # s; rad/s
 HALF_TURN = 0.25 * pi
 
@@ -247,8 +249,14 @@ def _mapped(one: ThrustMap, own: Numbers) -> Unit | None:
         own.give(name, getattr(one, name))
     if "thrust_table" not in own.entries:
         return None
-    thrusts = [float(row.split()[1]) for row in str(own.entries["thrust_table"].value).split(";")]
-    least, most = min(thrusts[0], 0.0), max(thrusts[-1], 0.0)
+    try:
+        made = MapParameters(x=0.0, y=0.0, thrust_table=str(own.entries["thrust_table"].value))
+        least, most = within_map(-LARGE, thruster=made), within_map(LARGE, thruster=made)
+    except (ValueError, IndexError) as error:
+        remedy = "Rows of command and thrust in N, at least two, both increasing."
+        own.problems.append(Problem(own.where, f"{error}", remedy))
+        return None
+    least, most = min(float(least), 0.0), max(float(most), 0.0)
     return _unit(one, own, least, most, max(most, -least) / RISE, number(one.direction))
 
 

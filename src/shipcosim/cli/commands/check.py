@@ -25,12 +25,13 @@ def check(
     as_json: ReportAsJson = False,
     debug: Debug = False,
 ) -> None:
-    """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables.
+    """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables,
+    of a ship file what is estimated.
 
     A table whose columns are named by roles, or one with a channel file, is measured data: it is examined for faults.
     """
-    from shipcosim.cli.checks import check_any, variables_in
-    from shipcosim.cli.console import print_report, print_variables
+    from shipcosim.cli.checks import check_any, estimates_in, variables_in
+    from shipcosim.cli.console import print_estimates, print_report, print_variables
     from shipcosim.errors import held_strictly
     from shipcosim.ssp.portability.check import check_host
 
@@ -42,5 +43,7 @@ def check(
     print_report(reports, as_json)
     for variables in () if as_json else filter(None, map(variables_in, files)):
         print_variables(variables)
+    for estimates in () if as_json else filter(None, map(estimates_in, files)):
+        print_estimates(estimates)
     if any(problem.severity == "error" for problems in reports.values() for problem in problems):
         raise typer.Exit(FAILED)

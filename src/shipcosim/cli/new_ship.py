@@ -1,0 +1,235 @@
+"""A ship of one's own: what is asked, and the files that are made."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from shipcosim import library
+from shipcosim.cli.console import print_problems, shown_path
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.ships.writing import LAYOUTS, Answers, ship_text, thruster_from, usual
+
+if TYPE_CHECKING:
+    from shipcosim.ships import Described
+
+QUESTIONS = {
+    "length": "Length between perpendiculars",
+    "breadth": "Breadth",
+    "draught": "Draught",
+    "displacement": "Displacement",
+    "speed": "Service speed",
+    "power": "Power of all main propellers together",
+}
+
+
+def answers_from(name: str, given: Mapping[str, str | None], thrusters: list[str], ask: bool) -> Answers:
+    """What the options say, and what the user answers to the rest.
+
+    Parameters
+    ----------
+    name : str
+        Of the ship.
+    given : mapping of str to str or None
+        Options.
+    thrusters : list of str
+        As `thruster_from` reads them.
+    ask : bool
+        Whether to ask; without a terminal nothing is.
+
+    Returns
+    -------
+    Answers
+
+    Raises
+    ------
+    ShipcosimError
+        If a thruster is not written as it should be.
+    """
+    answers = Answers(**{key: value for key, value in given.items() if value is not None})
+    answers.thrusters = [thruster_from(text) for text in thrusters]
+    ask = ask and sys.stdin.isatty()
+    if ask and not answers.description:
+        answers.description = typer.prompt("What is she, in a line", default=name)
+    answers.description = answers.description or name
+    if ask and given["layout"] is None and not answers.thrusters:
+        for layout, said in LAYOUTS.items():
+            typer.echo(f"  {layout}: {said}")
+        answers.layout = typer.prompt("Propulsion", default=answers.layout)
+    for key, question in QUESTIONS.items():
+        _answer(answers, key, question, ask)
+    return answers
+
+
+def _answer(answers: Answers, key: str, question: str, ask: bool) -> None:
+    """An answer, asked for until it can be read; what is usual where nobody asks."""
+    if getattr(answers, key):
+        return
+    try:
+        proposed = usual(answers, key)
+    except ValueError:
+        return  # a length that is none is said with the rest
+    while ask:
+        said = typer.prompt(question, default=proposed)
+        setattr(answers, key, proposed if said == proposed else said)
+        try:
+            usual(answers, "power")
+            return
+        except ValueError as error:
+            typer.echo(f"{error}")
+    if key != "length":
+        setattr(answers, key, proposed)
+
+
+def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -> None:
+    """Write the ship file, the systems and a scenario; all of them or none.
+
+    Parameters
+    ----------
+    name : str
+        Of the ship.
+    origin : Path or None
+        Ship file to start from.
+    answers : Answers or None
+        Without `origin` what is known of her.
+    force : bool
+        Write over what is there.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is wrong; nothing is written then.
+    """
+    from shipcosim.ships import describe, make_systems
+    from shipcosim.ships.check import check_described
+    from shipcosim.ships.described import file_from, file_of, read_file
+
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name):
+        raise ShipcosimError(Problem("NAME", f"found {name!r}.", "A letter, then letters, digits, - and _."))
+    project = library.project_of() or Path.cwd()
+    target = project / "ships" / name / "ship.toml"
+    source = file_of(library.find("ship", origin)) if origin else target
+    text = source.read_text(encoding="utf-8-sig") if origin and source.is_file() else ""
+    text = text if answers is None else ship_text(answers)
+    ship = describe(source, read_file(source) if answers is None else file_from(text, target))
+    found = check_described(ship)
+    if errors := [problem for problem in found if problem.severity == "error"]:
+        raise ShipcosimError(errors)
+    named = _renamed(ship, name, target)
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        stage = Path(folder)
+        systems = make_systems(ship if named is None else named, stage / "ssp", library.fmus())
+        files = {f"ssp/{path.name}": path for path in systems}
+        (stage / "scenario.toml").write_text(_scenario(named or ship, len(systems) > 1), encoding="utf-8")
+        files[f"scenarios/{name}.toml"] = stage / "scenario.toml"
+        again = source.resolve() == target.resolve() and origin is not None
+        if not again:
+            (stage / "ship.toml").write_text(text, encoding="utf-8")
+            files[f"ships/{name}/ship.toml"] = stage / "ship.toml"
+            files |= {f"ships/{name}/{table}": source.parent / table for table in _tables(ship)}
+        written = _put(project, files, force or again)
+    _say(written, [problem for problem in found if problem.severity == "remark"], name, len(systems) > 1)
+
+
+def _renamed(ship: Described, name: str, target: Path) -> Described | None:
+    from dataclasses import replace
+
+    return None if ship.name == name else replace(ship, name=name)
+
+
+def _tables(ship: Described) -> list[str]:
+    """CSV files that the ship file names."""
+    said = [ship.file.wind.table, ship.file.waves.table, *(getattr(one, "table", None) for one in ship.file.thrusters)]
+    return [table for table in said if isinstance(table, str) and table != "none"]
+
+
+def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
+    """Move what was made to its place."""
+    there = [project / name for name in files if (project / name).exists()]
+    if there and not over:
+        remedy = "Take another name, or --force to write over it."
+        raise ShipcosimError([Problem(str(path), "It is there already.", remedy) for path in there])
+    written = []
+    for name, made in files.items():
+        path = project / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if made.is_dir():
+            shutil.copytree(made, path, dirs_exist_ok=True)
+        else:
+            shutil.copyfile(made, path)
+        written.append(path)
+    return written
+
+
+def _scenario(ship: Described, has_dp: bool) -> str:
+    """A first scenario of a ship: she holds her place, or goes ahead."""
+    if has_dp:
+        return HOLDS.format(name=ship.name)
+    ahead = [f'"{name}" = {value:g}' for name, value in _half_ahead(ship)]
+    return GOES.format(name=ship.name, inputs="\n".join(ahead))
+
+
+def _half_ahead(ship: Described) -> list[tuple[str, float]]:
+    """Inputs that make her go ahead, where something says how much her thrusters take."""
+    found = []
+    for unit, one in zip(ship.units, ship.file.thrusters, strict=True):
+        rpm = unit.screw.rpm if unit.screw else getattr(one, "rpm", None)
+        value = rpm if isinstance(rpm, float) else rpm.value if rpm else 100.0
+        if getattr(one, "command", "") == "thrust":
+            found.append((f"{unit.name}_thrust", 0.5 * unit.most if unit.most else 1.0))
+        elif unit.kind in ("fixed", "rudder", "azimuth"):
+            found.append((f"{unit.name}_rpm", 0.5 * value))
+    return found
+
+
+def _say(written: list[Path], remarks: list[Problem], name: str, has_dp: bool) -> None:
+    for path in written:
+        typer.echo(shown_path(path))
+    print_problems(remarks)
+    steps = [
+        f"shipcosim run {name}                      {'she holds her place in wind' if has_dp else 'she goes ahead'}",
+        f"shipcosim check ships/{name}/ship.toml    what is estimated, what cannot be",
+        f"shipcosim new ship {name} --from ships/{name}/ship.toml    the systems again, after a change",
+    ]
+    typer.echo("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))
+
+
+HOLDS = """\
+description = "{name} holds her place in a fresh breeze"
+system      = "{name}_dp"
+stop_time   = 300.0
+step_size   = 0.05
+output_interval = 0.5
+
+[set]
+"environment.wind_speed" = 8.0     # m/s
+"environment.wind_from"  = 0.785   # rad, from north
+
+[[expect]]
+signal = ["vessel.x", "vessel.y"]
+near   = [0.0, 0.0]
+within = 3.0                       # m
+during = [200.0, 300.0]
+"""
+GOES = """\
+description = "{name} goes ahead"
+system      = "{name}_open"
+stop_time   = 120.0
+step_size   = 0.05
+output_interval = 0.5
+
+[set]
+{inputs}
+
+[[expect]]
+signal    = "vessel.u"
+at_least  = 0.01                   # m/s
+statistic = "final"
+"""

@@ -1,0 +1,226 @@
+"""A new ship file from a few particulars: its text, and what is usual where nothing is said."""
+
+from dataclasses import dataclass, field
+from math import sqrt
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.estimates.resistance import resistance
+from shipcosim.ships.estimates.weather import USUAL_KIND
+from shipcosim.ships.given import number_in
+
+LAYOUTS = {
+    "azimuths": "two azimuth thrusters aft, a tunnel thruster at the bow",
+    "screws": "two fixed propellers, tunnel thrusters at bow and stern",
+    "rudder": "one propeller with a rudder",
+}
+"""Usual thrusters."""
+ASSUMED = "assumed: usual of a ship of this size"
+EFFICIENCY, USUAL_BLOCK, GRAVITY = 0.5, 0.62, 9.81
+
+
+class Usual(str):
+    """An answer that nobody gave: what is usual."""
+
+
+@dataclass
+class Answers:
+    """What is known of a new ship; texts with units.
+
+    Attributes
+    ----------
+    description : str
+    length, breadth, draught, displacement, speed, power : str
+        Between perpendiculars; ...; service speed; of all propellers together. Empty where nothing is known.
+    kind : str
+        Of Blendermann's table, for the wind.
+    layout : str
+        One of `LAYOUTS`; of no account where there are thrusters.
+    thrusters : list of dict of str to str
+        Keys of each thruster.
+    """
+
+    description: str = ""
+    length: str = ""
+    breadth: str = ""
+    draught: str = ""
+    displacement: str = ""
+    speed: str = ""
+    power: str = ""
+    kind: str = USUAL_KIND
+    layout: str = "azimuths"
+    thrusters: list[dict[str, str]] = field(default_factory=list)
+
+
+def usual(answers: Answers, key: str) -> str:
+    """What is usual of a ship of which this much is known.
+
+    Parameters
+    ----------
+    answers : Answers
+    key : str
+        ``"breadth"``, ``"draught"``, ``"displacement"``, ``"speed"`` or ``"power"``.
+
+    Returns
+    -------
+    str
+        With its unit; empty where not enough is known.
+
+    Examples
+    --------
+    >>> usual(Answers(length="60 m"), "breadth"), usual(Answers(length="60 m", breadth="14 m"), "draught")
+    ('14 m', '4.7 m')
+    """
+    if not answers.length:
+        return Usual("30 m") if key == "length" else ""
+    L = number_in(answers.length, "m")
+    B = number_in(answers.breadth, "m") if answers.breadth else 1.55 * L**0.54
+    T = number_in(answers.draught, "m") if answers.draught else B / 3.0
+    if key in ("breadth", "draught"):
+        return Usual(f"{B if key == 'breadth' else T:.2g} m")
+    mass = number_in(answers.displacement, "kg") if answers.displacement else 1025.0 * USUAL_BLOCK * L * B * T
+    speed = number_in(answers.speed, "m/s") if answers.speed else 0.25 * sqrt(GRAVITY * L)
+    if key == "displacement":
+        return Usual(f"{_round(mass / 1000.0)} t")
+    if key == "speed":
+        return Usual(f"{speed * 3600.0 / 1852.0:.2g} kn")
+    block = min(max(mass / 1025.0 / (L * B * T), 0.2), 1.0)
+    form = Form(length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed)
+    return Usual(f"{_round(resistance(form) * speed / EFFICIENCY / 1000.0)} kW")
+
+
+def ship_text(answers: Answers) -> str:
+    """Text of a ship file.
+
+    Parameters
+    ----------
+    answers : Answers
+        Main dimensions are required.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is missing.
+    """
+    missing = [key for key in ("length", "breadth", "draught") if not getattr(answers, key)]
+    if missing:
+        found = f"nothing says {', '.join(missing)}."
+        raise ShipcosimError(Problem("new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'))
+    try:
+        thrusters = answers.thrusters or _thrusters(answers)
+    except ValueError as error:
+        raise ShipcosimError(Problem("new ship", f"{error}")) from None
+    shown = "\n\n".join("[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in one.items()) for one in thrusters)
+    return _TEXT.format(
+        description=_quoted(answers.description),
+        length=_line("length", answers.length),
+        breadth=_line("breadth", answers.breadth),
+        draught=_line("draught", answers.draught),
+        weight=_line("displacement", answers.displacement or usual(answers, "displacement")),
+        speed=_line("service_speed", answers.speed or usual(answers, "speed")),
+        kind=_quoted(answers.kind),
+        thrusters=shown,
+    )
+
+
+def thruster_from(text: str) -> dict[str, str]:
+    """Keys of a thruster from ``"name=port, kind=azimuth, x=-27 m"``.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is written otherwise.
+
+    Examples
+    --------
+    >>> thruster_from("name=bow, kind=tunnel, x=25 m")
+    {'name': 'bow', 'kind': 'tunnel', 'x': '25 m'}
+    """
+    parts = [part.partition("=") for part in text.split(",") if part.strip()]
+    if not parts or not all(sign and key.strip() and value.strip() for key, sign, value in parts):
+        remedy = 'Write --thruster "name=bow, kind=tunnel, x=25 m, diameter=1.7 m, power=500 kW".'
+        raise ShipcosimError(Problem("--thruster", f"found {text!r}.", remedy))
+    return {key.strip(): value.strip() for key, _, value in parts}
+
+
+def _thrusters(answers: Answers) -> list[dict[str, str]]:
+    """Usual thrusters of a ship of this size."""
+    if answers.layout not in LAYOUTS:
+        raise ValueError(f"propulsion is {answers.layout!r}. {suggestion(answers.layout, LAYOUTS)}")
+    L, B, T = (number_in(getattr(answers, key), "m") for key in ("length", "breadth", "draught"))
+    power = number_in(answers.power or usual(answers, "power"), "W") / 1000.0
+    aft, side, wheel = _m(-0.45 * L), 0.25 * B, _m(0.55 * T)
+    bow = {"kind": "tunnel", "x": _m(0.4 * L), "diameter": _m(0.35 * T), "power": _kW(0.35 * power)}
+    if answers.layout == "rudder":
+        return [{"name": "propeller", "kind": "rudder", "x": aft, "y": "0 m", "diameter": _m(0.65 * T)}]
+    half = {"x": aft, "diameter": wheel, "power": _kW(0.5 * power)}
+    pair = {"port": _m(-side), "starboard": _m(side)}
+    if answers.layout == "screws":
+        stern = bow | {"x": _m(-0.4 * L)}
+        screws = [{"name": n, "kind": "fixed", "y": y} | half for n, y in pair.items()]
+        return [*screws, {"name": "bow"} | bow, {"name": "stern"} | stern]
+    azimuths = [{"name": n, "kind": "azimuth", "y": y} | half | {"ducted": "true"} for n, y in pair.items()]
+    return [*azimuths, {"name": "bow"} | bow]
+
+
+def _m(value: float) -> str:
+    return Usual(f"{value + 0.0:.3g} m")
+
+
+def _kW(value: float) -> str:
+    return Usual(f"{_round(max(value, 1e-3))} kW")
+
+
+def _round(value: float) -> str:
+    """Two digits and a half."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def _line(key: str, value: str) -> str:
+    if isinstance(value, Usual):
+        return f'{key} = {{ value = {_quoted(value)}, origin = "{ASSUMED}" }}'
+    plain = value in ("true", "false") or value.replace(".", "", 1).removeprefix("-").isdigit()
+    return f"{key} = {value if plain else _quoted(value)}"
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ") + '"'
+
+
+_TEXT = """\
+# A ship in her own words. Numbers are in SI, or texts with a unit: "28.9 m", "12 kn", "2650 t". Where one comes from
+# and how well it is known: {{ value = "2650 t", tolerance = "50 t", origin = "stability booklet" }}. What is not said
+# is estimated by formulae: `shipcosim check` says what. All keys: docs/your-own-ship.md.
+
+description = {description}
+source = "given to `shipcosim new ship`"       # of every number that does not say its own origin
+
+[particulars]                                  # x forward of midships, y to starboard
+{length}
+{breadth}
+{draught}
+{weight}
+{speed}
+
+[mass]
+# mass = "2650 t"                              # if it is not the displacement
+# yaw_gyradius = "15 m"                        # estimated: a quarter of the length
+
+[resistance]
+# speed = "12 kn"                              # one point of the speed trial; estimated: Holtrop and Mennen
+# resistance = "85 kN"
+
+[drag]
+# cross_flow = 0.8                             # estimated: Hoerner's curve
+
+[wind]
+kind = {kind}
+# front_area = "170 m2"                        # estimated from breadth and length
+# side_area = "620 m2"
+
+{thrusters}
+"""
