@@ -53,8 +53,10 @@ def answers_from(name: str, given: Mapping[str, str | None], thrusters: list[str
     ShipcosimError
         If a thruster is not written as it should be.
     """
-    answers = Answers(**{key: value for key, value in given.items() if value is not None})
-    answers.thrusters = [thruster_from(text) for text in thrusters]
+    answers = Answers(thrusters=[thruster_from(text) for text in thrusters])
+    for key, value in given.items():
+        if value is not None:
+            setattr(answers, key, value)
     ask = ask and sys.stdin.isatty()
     if ask and not answers.description:
         answers.description = typer.prompt("What is she, in a line", default=name)
@@ -178,10 +180,11 @@ def _scenario(ship: Described, has_dp: bool) -> str:
 
 def _half_ahead(ship: Described) -> list[tuple[str, float]]:
     """Inputs that make her go ahead, where something says how much her thrusters take."""
+    from shipcosim.ships.file import number
+
     found = []
     for unit, one in zip(ship.units, ship.file.thrusters, strict=True):
-        rpm = unit.screw.rpm if unit.screw else getattr(one, "rpm", None)
-        value = rpm if isinstance(rpm, float) else rpm.value if rpm else 100.0
+        value = unit.screw.rpm if unit.screw else number(getattr(one, "rpm", None), 100.0)
         if getattr(one, "command", "") == "thrust":
             found.append((f"{unit.name}_thrust", 0.5 * unit.most if unit.most else 1.0))
         elif unit.kind in ("fixed", "rudder", "azimuth"):

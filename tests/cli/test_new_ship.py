@@ -1,0 +1,85 @@
+"""`shipcosim new ship`: from a few particulars, or a ship file, to systems and a scenario that run."""
+
+import pytest
+from typer.testing import CliRunner
+
+from shipcosim.cli.app import app
+
+ASKED = ["--length", "60 m", "--breadth", "14 m", "--draught", "4.5 m"]
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    (tmp_path / "scenarios").mkdir()
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def told(*arguments):
+    return CliRunner().invoke(app, [*arguments])
+
+
+def test_a_few_options_make_a_ship_that_is_found_checked_and_runs(project):
+    made = told("new", "ship", "tern", *ASKED, "--yes")
+    assert made.exit_code == 0, made.output
+    for name in ("ships/tern/ship.toml", "ssp/tern_open", "ssp/tern_dp", "scenarios/tern.toml"):
+        assert (project / name).exists() and name in made.stdout
+    checked = told("check", "ships/tern/ship.toml", "scenarios/tern.toml", "ssp/tern_open", "ssp/tern_dp")
+    assert checked.exit_code == 0, checked.output
+    assert "vessel.A22" in checked.stdout and "Clarke" in checked.stdout
+    assert 'origin = "assumed: usual of a ship of this size"' in (project / "ships/tern/ship.toml").read_text()
+    ran = told("run", "tern", "--until", "2")
+    assert "Traceback" not in ran.output and (project / "results/tern").is_dir(), ran.output
+
+
+def test_nothing_is_written_over_without_being_told(project):
+    assert told("new", "ship", "tern", *ASKED, "--propulsion", "rudder", "--yes").exit_code == 0
+    before = (project / "ships/tern/ship.toml").read_bytes()
+    again = told("new", "ship", "tern", *ASKED, "--propulsion", "screws", "--yes")
+    assert again.exit_code == 2 and "there already" in again.output
+    assert (project / "ships/tern/ship.toml").read_bytes() == before and not (project / "ssp/tern_dp").exists()
+    assert told("new", "ship", "tern", *ASKED, "--propulsion", "screws", "--yes", "--force").exit_code == 0
+    assert (project / "ssp/tern_dp").is_dir()
+
+
+def test_a_changed_ship_file_makes_the_systems_again(project):
+    assert told("new", "ship", "tern", *ASKED, "--yes").exit_code == 0
+    file = project / "ships/tern/ship.toml"
+    file.write_text(file.read_text().replace('"60 m"', '"62 m"'))
+    assert told("new", "ship", "tern", "--from", "ships/tern/ship.toml").exit_code == 0
+    assert 'value="62.0"' in (project / "ssp/tern_dp/resources/tern.ssv").read_text()
+
+
+def test_a_ship_that_is_shipped_is_taken_with_her_tables(project):
+    made = told("new", "ship", "mine", "--from", "otter")
+    assert made.exit_code == 0, made.output
+    assert (project / "ships/mine/wind.csv").is_file() and (project / "ssp/mine_open").is_dir()
+    assert told("check", "ships/mine").exit_code == 0
+
+
+def test_thrusters_are_told_one_by_one(project):
+    bow = "name=bow, kind=tunnel, x=24 m, diameter=1.5 m, power=300 kW"
+    aft = "name=pod, kind=azimuth, x=-27 m, y=0 m, diameter=2.4 m, power=1 MW"
+    made = told("new", "ship", "tern", *ASKED, "--thruster", bow, "--thruster", aft, "--yes")
+    assert made.exit_code == 0 and "no DP system" in made.output, made.output
+    assert (project / "ssp/tern_open").is_dir() and not (project / "ssp/tern_dp").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "found"),
+    [
+        (["tern", "--yes"], "nothing says length, breadth, draught"),
+        (["tern", *ASKED, "--propulsion", "sails", "--yes"], "'sails'"),
+        (["tern", *ASKED, "--displacement", "1 kg", "--yes"], "1 kg do not fit"),
+        (["tern", *ASKED, "--length", "sixty", "--yes"], '"sixty"'),
+        (["tern", *ASKED, "--thruster", "bow", "--yes"], "found 'bow'"),
+        (["../tern", *ASKED, "--yes"], "letters, digits"),
+        (["tern", "--from", "nowhere.toml"], "nowhere"),
+    ],
+)
+def test_what_is_wrong_is_said_and_nothing_is_written(arguments, found, project):
+    made = told("new", "ship", *arguments)
+    assert made.exit_code == 2 and found in made.output, made.output
+    assert (
+        "fault of shipcosim" not in made.output and not (project / "ssp").exists() and not (project / "ships").exists()
+    )
