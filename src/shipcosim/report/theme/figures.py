@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.theme import palette
 
 TIME: dict[str, Any] = {"ticksuffix": " s", "showticksuffix": "first"}
 """Axis of time. [s]"""
+MOST_POINTS = 3000
+"""Points of a curve: five for each pixel of a figure's width."""
 
 
 def rounded(values: ArrayLike, digits: int = 5) -> list[float | None]:
@@ -23,12 +25,56 @@ def rounded(values: ArrayLike, digits: int = 5) -> list[float | None]:
     return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, float)]
 
 
+def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[NDArray, NDArray]:
+    """A curve or track with few enough points to draw: of each stretch its ends and its extremes on both axes.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+        Points in their order; where one is not finite the curve is interrupted, and stays so.
+    most : int
+        Points that may be left, about.
+
+    Returns
+    -------
+    (array, array)
+
+    Examples
+    --------
+    >>> x, y = thinned_curve(np.arange(1000.0), np.arange(1000.0) == 500.0, 60)
+    >>> len(x) <= 60, float(x[y == 1.0][0]), float(x[0]), float(x[-1])
+    (True, 500.0, 0.0, 999.0)
+    """
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    if len(x) <= most:
+        return x, y
+    known = np.isfinite(x) & np.isfinite(y)
+    kept = []
+    for stretch in np.array_split(np.arange(len(x)), most // 6):
+        rows = stretch[known[stretch]]
+        if rows.size:
+            kept += [rows[0], rows[-1], *(rows[of(values[rows])] for values in (x, y) for of in (np.argmin, np.argmax))]
+    rows = np.unique(np.array(kept, int))
+    breaks = np.flatnonzero(np.diff(np.cumsum(~known)[rows])) + 1
+    return np.insert(x[rows], breaks, np.nan), np.insert(y[rows], breaks, np.nan)
+
+
+def _told_apart(values: NDArray) -> list[float | None]:
+    """Numbers with five significant digits, and more where they differ by little: times of a long log."""
+    known = values[np.isfinite(values)]
+    span = float(np.ptp(known)) if known.size else 0.0
+    more = np.log10(np.abs(known).max() / span) if span > 0.0 else 0.0
+    return rounded(values, 5 + int(np.clip(more, 0, 10)))
+
+
 def line(
     name: str, x: ArrayLike, y: ArrayLike, colour: str, *, width: float = 1.5, dash: str = "solid", **more: Any
 ) -> dict[str, Any]:
-    """A curve; the colour is one of `palette`."""
+    """A curve, thinned where it has more points than a figure shows; the colour is one of `palette`."""
+    x, y = thinned_curve(x, y)
+    places = {"x": _told_apart(x), "y": _told_apart(y)}
     look = {"color": colour, "width": width, "dash": dash}
-    return {"type": "scatter", "mode": "lines", "name": name, "x": rounded(x), "y": rounded(y), "line": look} | more
+    return {"type": "scatter", "mode": "lines", "name": name, **places, "line": look} | more
 
 
 def bars(name: str, categories: Sequence[str], sizes: ArrayLike, colour: str, unit: str) -> dict[str, Any]:

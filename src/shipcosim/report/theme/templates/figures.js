@@ -66,6 +66,14 @@ const report = (() => {
     };
   }
 
+  // A legend takes rows where a figure is narrow: more height, as the curves need theirs.
+  const narrow = (place) => place.clientWidth < 600;
+
+  function makeRoom(place, figure) {
+    const named = figure.data.filter((trace) => trace.showlegend !== false).length;
+    if (narrow(place) && named > 2) place.style.height = `${place.clientHeight + 17 * (named - 2)}px`;
+  }
+
   // ---- drawing
 
   const waiting = new Map();  // place -> what to do with it
@@ -76,6 +84,8 @@ const report = (() => {
     return box.bottom > -300 && box.top < innerHeight + 300;
   }
 
+  let seen = null;  // when all that is in view was drawn first
+
   function work(all) {
     const next = all || [...waiting.keys()].filter(inView);
     for (const place of next.length ? next : [...waiting.keys()].slice(0, 1)) {
@@ -83,6 +93,7 @@ const report = (() => {
       waiting.delete(place);
       if (task && place.isConnected) task();
     }
+    if (!seen && ![...waiting.keys()].some(inView)) seen = performance.mark("in view");
     if (waiting.size) schedule();
     else document.body.dataset.drawn = "all";
   }
@@ -109,5 +120,5 @@ const report = (() => {
   addEventListener("scroll", schedule, { passive: true });
   addEventListener("beforeprint", () => work([...waiting.keys()]));
   addEventListener("scheme", () => drawings.forEach((how, place) => later(place, how)));
-  return Object.assign(shared, { start, series, colour, markup, painted, traces, axis, layout, draw, later });
+  return Object.assign(shared, { start, series, colour, markup, painted, traces, axis, layout, narrow, makeRoom, draw, later });
 })();

@@ -1,6 +1,6 @@
 // Plots of a page of results: lines, dots, bars and polar plots, drawn as they come into view.
 (() => {
-  const { data, axis, draw, layout, painted, traces } = report;
+  const { data, axis, draw, layout, makeRoom, painted, traces } = report;
   const config = { responsive: true, displayModeBar: false };
 
   function layoutOf(figure) {
@@ -16,6 +16,7 @@
 
   for (const place of document.querySelectorAll(".plot")) {
     const figure = data[+place.dataset.figure];
+    makeRoom(place, figure);
     draw(place, () => Plotly.react(place, traces(figure.data), layoutOf(figure), config));
   }
 })();
