@@ -239,6 +239,45 @@ class Page:
         urls = [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]
         return [url for url in urls if not url.startswith(("file:", "data:", "blob:", "chrome:"))]
 
+    def seconds(self):
+        """When the page was loaded, and when all that is in view was drawn. [s]"""
+        self.wait("return performance.getEntriesByName('in view').length > 0")
+        script = "return [performance.getEntriesByType('navigation')[0].loadEventEnd, "
+        return [1e-3 * ms for ms in self.ask(script + "performance.getEntriesByName('in view')[0].startTime]")]
+
+    def collisions(self):
+        """Pairs of texts of one figure that lie over one another by more than 2 px."""
+        return self.ask(COLLISIONS)
+
+
+COLLISIONS = """
+const parts = ".legendtext, .gtitle, .xtick text, .ytick text, .xtitle, .ytitle, .modebar-btn, .angularaxistick text";
+const apart = (a, b) => a.right - 2 < b.left || b.right - 2 < a.left || a.bottom - 2 < b.top || b.bottom - 2 < a.top;
+const found = [];
+for (const plot of document.querySelectorAll(".js-plotly-plot")) {
+  const boxes = [...plot.querySelectorAll(parts)].filter((e) => getComputedStyle(e).visibility !== "hidden")
+    .map((e) => [e.textContent || "button", e.getBoundingClientRect()]).filter(([, box]) => box.width && box.height);
+  boxes.forEach(([one, a], k) => boxes.slice(k + 1).forEach(([other, b]) => apart(a, b) || found.push([one, other])));
+}
+return found;
+"""
+
+
+@pytest.fixture
+def shown_at(browse, chromium):
+    """Function that shows a page at a width, light or dark."""
+
+    def show(path, width, scheme="light"):
+        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 700}
+        chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        media = {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", media)
+        return browse(path)
+
+    yield show
+    chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
 
 @pytest.fixture
 def browse(chromium):

@@ -19,10 +19,15 @@ def capability(root):
 
 
 @pytest.fixture(scope="module")
-def page(capability, tmp_path_factory):
+def file(capability, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "report.html"
     write_capability(capability, path)
-    return path.read_text(encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def page(file):
+    return file.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -53,3 +58,42 @@ def test_curves_are_the_numbers_and_closed(figures, capability):
 def test_every_direction_and_assumed_particular_is_in_a_table(page):
     assert len(re.findall(r"<tr><td class=\"tight\">\d+°</td>", page)) == 36
     assert "assumed: length times draught" in page
+
+
+@pytest.mark.parametrize("width", [1280, 500])
+def test_every_figure_is_drawn_and_no_text_lies_over_another(shown_at, file, width):
+    page = shown_at(file, width)
+    assert page.errors() == [] and page.requests() == []
+    places, drawn = page.ask("return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)")
+    assert places == drawn == 5
+    assert page.collisions() == [] and page.ask("return document.documentElement.scrollWidth") <= width
+
+
+def test_page_is_small_and_soon_there(file, shown_at):
+    assert file.stat().st_size < 1.5e6
+    assert any(max(shown_at(file, 1280).seconds()) < 1.0 for _ in range(3))
+
+
+PAPER = "return [...document.querySelectorAll('.plot')].map(p => p._fullLayout.paper_bgcolor)"
+LIGHT, DARK = "#ffffff", "#182028"
+
+
+def test_the_switch_turns_page_and_figures_and_the_next_page_remembers(shown_at, file):
+    page = shown_at(file, 1280, "light")
+    assert set(page.ask(PAPER)) == {LIGHT} and page.text("#scheme") == "Dark"
+    page.ask("document.getElementById('scheme').click()")
+    page.wait("return document.body.dataset.drawn === 'all'")
+    assert set(page.ask(PAPER)) == {DARK} and page.text("#scheme") == "Light"
+    again = shown_at(file, 1280, "light")
+    assert set(again.ask(PAPER)) == {DARK}
+    again.ask("document.getElementById('scheme').click()")
+    assert set(shown_at(file, 1280, "dark").ask(PAPER)) == {DARK}, "the system is followed again"
+
+
+def test_paper_is_light_and_the_screen_is_dark_again_afterwards(shown_at, file):
+    page = shown_at(file, 1280, "dark")
+    page.ask("dispatchEvent(new Event('beforeprint'))")
+    assert set(page.ask(PAPER)) == {LIGHT}, "at once: nobody waits for paper"
+    page.ask("dispatchEvent(new Event('afterprint'))")
+    page.wait("return document.body.dataset.drawn === 'all'")
+    assert set(page.ask(PAPER)) == {DARK}

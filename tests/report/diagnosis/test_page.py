@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -130,22 +131,12 @@ def file(diagnosis, tmp_path_factory):
 
 
 @pytest.fixture
-def shown(browse, chromium, file):
+def shown(shown_at, file):
     """Function that shows the page at a width, light or dark."""
-
-    def show(width, scheme):
-        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 700}
-        chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-        media = {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
-        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", media)
-        return browse(file)
-
-    yield show
-    chromium.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    return partial(shown_at, file)
 
 
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (400, "dark")])
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (500, "dark")])
 def test_page_draws_every_figure_without_error_network_or_sideways_overflow(shown, width, scheme):
     page = shown(width, scheme)
     assert page.errors() == [] and page.requests() == []
@@ -154,6 +145,12 @@ def test_page_draws_every_figure_without_error_network_or_sideways_overflow(show
     assert page.ask("return document.documentElement.scrollWidth") <= width
     rights = page.ask("return [...document.querySelectorAll('.plot')].map(p => p.getBoundingClientRect().right)")
     assert max(rights) <= width
+    assert page.collisions() == []
+
+
+def test_page_is_small_and_soon_there(file, shown):
+    assert file.stat().st_size < 1.5e6
+    assert any(max(shown(1280, "light").seconds()) < 1.0 for _ in range(3))
 
 
 def test_first_screen_holds_verdict_figures_and_what_to_do(shown):
