@@ -1,0 +1,53 @@
+"""Calls that say in one sentence which keyword they do not have."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, TypeVar, cast
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.options import RunKeywords
+
+__all__ = ["with_known_keywords"]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def with_known_keywords(function: Function) -> Function:
+    """A function that refuses arguments it does not have with a ShipcosimError, before it does anything.
+
+    ``**options`` of a function are those of `shipcosim.options.RunKeywords`.
+
+    Examples
+    --------
+    >>> @with_known_keywords
+    ... def sail(*, speed=1.0): ...
+    >>> sail(sped=2.0)
+    Traceback (most recent call last):
+    shipcosim.errors.ShipcosimError: sail(): There is no keyword 'sped'. There is: speed. Did you mean 'speed'?
+    """
+    signature = inspect.signature(function)
+    parameters = signature.parameters.values()
+    known = [one.name for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
+    if any(one.kind is one.VAR_KEYWORD for one in parameters):
+        known += RunKeywords.__annotations__
+
+    @wraps(function)
+    def call(*arguments, **keywords):
+        where = f"{function.__name__}()"
+        unknown = [
+            Problem(where, f"There is no keyword '{k}'.", suggestion(k, known)) for k in keywords if k not in known
+        ]
+        if unknown:
+            raise ShipcosimError(unknown)
+        try:
+            signature.bind(*arguments, **keywords)
+        except TypeError as error:
+            text = str(error)
+            remedy = f"Its form is {function.__name__}({', '.join(known)})."
+            raise ShipcosimError(Problem(where, f"{text[:1].upper()}{text[1:]}.", remedy)) from None
+        return function(*arguments, **keywords)
+
+    return cast(Function, call)

@@ -1,0 +1,107 @@
+"""Diagnoses of one log and of several: what was found, and how it shows itself."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shipcosim.diagnose.reference.joint_result import JointDiagnosis
+from shipcosim.diagnose.result import Diagnosis
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.results.shown import HtmlPage, Picture, Result, made
+from shipcosim.series import write_file
+
+if TYPE_CHECKING:
+    from shipcosim.report.notebook.card import Card
+
+__all__ = ["DiagnosisOfLog", "DiagnosisOfLogs"]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class DiagnosisOfLog(Result, Diagnosis):
+    """What `shipcosim.diagnose` gives back of one log: a `Diagnosis` with a card, its page and its track.
+
+    To start with: ``.verdict``, ``.findings``, ``.gain``, ``.extended`` (the system with the causes in it, which
+    `shipcosim.simulate` runs; None where nothing was put in), ``.as_json()``.
+    """
+
+    def track(self) -> Picture:
+        """The log beside predictions of it, each from the measured state, before and after the causes went in.
+
+        Raises
+        ------
+        ShipcosimError
+            If there was too little data to predict.
+        """
+        from shipcosim.report.notebook.diagnosis_card import tracks_svg
+
+        if self.tracks is None:
+            found = "There are no predictions of this log to draw."
+            raise ShipcosimError(Problem(self._name, found, "`shipcosim.read_log(...).track()` draws the log."))
+        return Picture(f"track of {self._name}", tracks_svg(self.tracks, f"track of {self._name}"))
+
+    def page(self) -> HtmlPage:
+        """The page of the diagnosis, as `shipcosim diagnose` writes it."""
+        from shipcosim.report.diagnosis.page import render
+
+        return HtmlPage(f"Diagnosis of {self._name}", render(self))
+
+    def save(self, folder: str | os.PathLike[str]) -> Path:
+        """Write diagnosis.json and report.html; returns the folder. The extended system is in `extension`.
+
+        Raises
+        ------
+        ShipcosimError
+            If they cannot be written.
+        """
+        return _saved(self, folder)
+
+    @property
+    def _name(self) -> str:
+        return self.log.name if self.log is not None else "a log"
+
+    def _card(self) -> Card:
+        from shipcosim.report.notebook.diagnosis_card import diagnosis_card
+
+        return diagnosis_card(self, f"Diagnosis of {self._name}")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class DiagnosisOfLogs(Result, JointDiagnosis):
+    """What `shipcosim.diagnose` gives back of several logs: a `JointDiagnosis` with a card and its page."""
+
+    def page(self) -> HtmlPage:
+        """The page of the diagnosis, as `shipcosim diagnose` writes it."""
+        from shipcosim.report.joint.page import render
+
+        return HtmlPage(self._name, render(self))
+
+    def save(self, folder: str | os.PathLike[str]) -> Path:
+        """Write diagnosis.json and report.html; returns the folder. The extended system is in `extension`.
+
+        Raises
+        ------
+        ShipcosimError
+            If they cannot be written.
+        """
+        return _saved(self, folder)
+
+    @property
+    def _name(self) -> str:
+        return f"Diagnosis of {len(self.logs)} logs"
+
+    def _card(self) -> Card:
+        from shipcosim.report.notebook.diagnosis_card import joint_card
+
+        return joint_card(self, self._name)
+
+
+def _saved(found: DiagnosisOfLog | DiagnosisOfLogs, folder: str | os.PathLike[str]) -> Path:
+    """Write what the command writes but for the extended system."""
+    text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    write_file(made(folder) / "diagnosis.json", text.encode())
+    found.page().save(Path(folder) / "report.html")
+    return Path(folder)

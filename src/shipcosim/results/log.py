@@ -1,0 +1,132 @@
+"""A measured log as it was read, and how it shows itself."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.results.shown import Picture
+from shipcosim.results.signals import chosen
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+    from shipcosim.diagnose.result import Finding
+
+__all__ = ["Log"]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Log:
+    """What `shipcosim.read_log` gives back. What its table has, it has, too: ``log["heading"]``, ``log.sizes``.
+
+    Attributes
+    ----------
+    name : str
+        Of the file.
+    table : xarray.Dataset
+        Every row of the log, over `time`, by roles and in their units: see docs/measured-data.md.
+    source : path or xarray.Dataset
+        What it was read from.
+    channels : path or None
+        Channel file by which it was read.
+    """
+
+    name: str
+    table: xarray.Dataset
+    source: str | os.PathLike[str] | xarray.Dataset
+    channels: str | os.PathLike[str] | None = None
+
+    @cached_property
+    def remarks(self) -> tuple[str, ...]:
+        """What cannot be known from it, what is ordinary and gets handled, and columns that are not used."""
+        from shipcosim.diagnose.log.remarks import remarks
+
+        unused = [str(column) for column in self.table.attrs.get("unused_columns", ())]
+        said = (f"Not used: {', '.join(unused)}.",) if unused else ()
+        return (*remarks(self.table), *said)
+
+    @cached_property
+    def faults(self) -> tuple[Finding, ...]:
+        """Faults that the channels show by themselves, as ``shipcosim check`` lists them."""
+        import numpy as np
+
+        from shipcosim.diagnose.log.checks.examine import examine
+
+        with np.errstate(all="ignore"):  # numbers beyond all bounds are among what it looks for
+            return tuple(examine(self.table))
+
+    def plot(self, *channels: str) -> Picture:
+        """Channels over time, a panel for each unit.
+
+        Parameters
+        ----------
+        *channels : str
+            Each a channel, a component or a pattern: ``"heading"``, ``"port"``, ``"*.rpm"``; all without one.
+
+        Raises
+        ------
+        ShipcosimError
+            If there is no such channel.
+        """
+        from shipcosim.report.notebook.curves import panels_of, panels_svg
+        from shipcosim.report.theme.display import display_table
+
+        shown = display_table(self.table)
+        names = chosen(map(str, shown.data_vars), channels or ["*"])
+        title = f"{', '.join(channels) or 'channels'} of {self.name}"
+        return Picture(title, panels_svg(panels_of(shown, names), title))
+
+    def track(self) -> Picture:
+        """The way of the ship on a chart, north up; the ship is not to scale.
+
+        Raises
+        ------
+        ShipcosimError
+            If the log has no position.
+        """
+        from shipcosim.report.notebook.chart import Path, chart_svg
+
+        if not {"north", "east"} <= set(self.table):
+            raise ShipcosimError(Problem(self.name, "The log has no position.", "`.plot(...)` draws any channels."))
+        heading = self.table["heading"].values if "heading" in self.table else None
+        path = Path("measured", self.table["north"].values, self.table["east"].values, heading)
+        return Picture(f"track of {self.name}", chart_svg([path], f"track of {self.name}"))
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table as a DataFrame over time; units are in ``.table[name].attrs["units"]``."""
+        return self.table.to_dataframe()
+
+    def __repr__(self) -> str:
+        time = self.table["time"].values
+        span = f"{len(time)} rows from {time[0]:g} to {time[-1]:g} s" if len(time) else "no rows"
+        return f"<Log {self.name!r}: {span}, {len(self.table)} channels>"
+
+    def _repr_html_(self) -> str:
+        from shipcosim.report.notebook.card import card_html
+        from shipcosim.report.notebook.log_card import log_card
+
+        picture = self.track().svg if {"north", "east"} <= set(self.table) else ""
+        return card_html(log_card(self.name, self.table, self.faults, self.remarks, picture))
+
+    def __getitem__(self, name: Hashable) -> xarray.DataArray:
+        return self.table[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.table
+
+    def __iter__(self) -> Iterator[Hashable]:
+        return iter(self.table)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name == "table":  # a copy asks before there is a table
+            raise AttributeError(f"'Log' has no attribute '{name}'")
+        return getattr(self.table, name)

@@ -1,0 +1,175 @@
+"""A run: its table, what was expected of it, and how it shows itself."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.results.shown import HtmlPage, Picture, Result, made
+from shipcosim.results.signals import chosen
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+    from shipcosim.report.notebook.card import Card
+    from shipcosim.scenario import Expectation, Scenario, Verdict
+    from shipcosim.ssp import System
+
+__all__ = ["Run"]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Run(Result):
+    """What `shipcosim.run` and `shipcosim.simulate` give back. What its table has, it has, too.
+
+    ``run["vessel.x"]``, ``run.sizes``, ``run.sel(time=60.0)`` are those of `table`. Functions of xarray and numpy that
+    ask for a Dataset take ``run.table``.
+
+    Attributes
+    ----------
+    table : xarray.Dataset
+        One row per output interval, `time` in s; variables are named ``component.connector``.
+    scenario : Scenario
+        What happened.
+    system : System
+        What ran, flat and checked.
+    expectations : tuple of Verdict
+        Those of the scenario that lie within the run: ``.passed``, ``.worst``, ``.time``, and ``.expect`` as written.
+    not_judged : tuple of Expectation
+        Those whose times the run did not reach.
+    remarks : tuple of Problem
+        What does not stop a run and should be known.
+    """
+
+    table: xarray.Dataset
+    scenario: Scenario
+    system: System
+    expectations: tuple[Verdict, ...] = ()
+    not_judged: tuple[Expectation, ...] = ()
+    remarks: tuple[Problem, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether the run got to its end and all that was expected of it holds."""
+        from shipcosim.report.run.expectations import is_complete
+
+        return is_complete(self.table) and all(verdict.passed for verdict in self.expectations)
+
+    @property
+    def name(self) -> str:
+        """Of the scenario, or of the system where there is no scenario file."""
+        return self.scenario.name or self.system.name
+
+    def plot(self, *signals: str) -> Picture:
+        """Signals over time, a panel for each unit; moments of events are marked.
+
+        Parameters
+        ----------
+        *signals : str
+            Each a signal, a component, a connector or a pattern: ``"vessel.psi"``, ``"controller"``, ``"thrust"``,
+            ``"vessel.tau_*_X"``. Without one: position and heading of the ship, or all signals where there is none.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        ShipcosimError
+            If there is no such signal.
+        """
+        from shipcosim.report.notebook.curves import panels_of, panels_svg
+        from shipcosim.report.run.roles import find_roles
+        from shipcosim.report.theme.display import display_table
+
+        roles = find_roles(self.table.data_vars)
+        pose = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")] if roles.ship is not None else []
+        names = chosen(map(str, self.table.data_vars), signals or [n for n in pose if n] or ["*"])
+        shown = display_table(self.table, roles.signal(roles.ship, "psi"))
+        drawn = [name for name in names if name in shown]
+        if not drawn:
+            found = f"{', '.join(names)}: no signal among these is a number over time."
+            raise ShipcosimError(Problem(self.name, found, "Only those can be drawn."))
+        title = f"{', '.join(signals) or 'signals'} of {self.name}"
+        return Picture(
+            title, panels_svg(panels_of(shown, drawn), title, sorted({e.time for e in self.scenario.events}))
+        )
+
+    def track(self) -> Picture:
+        """The way of the ship on a chart, north up, with where she was to be.
+
+        Raises
+        ------
+        ShipcosimError
+            If nothing in the table is a ship: a component with x, y and psi.
+        """
+        from shipcosim.report.notebook.run_track import run_track
+
+        svg = run_track(self.table, self.expectations, f"track of {self.name}")
+        if svg is None:
+            remedy = "`.plot(...)` draws any signals."
+            raise ShipcosimError(Problem(self.name, "Nothing here is a ship, with x, y and psi over time.", remedy))
+        return Picture(f"track of {self.name}", svg)
+
+    def page(self) -> HtmlPage:
+        """The page of the run, as `shipcosim run` writes it."""
+        from shipcosim.report.run.page import render
+
+        page = render(self.table, scenario=self.scenario, verdicts=self.expectations, system=self.system)
+        return HtmlPage(self.name, page)
+
+    def save(self, folder: str | os.PathLike[str]) -> Path:
+        """Write result.nc, result.csv and report.html, as `shipcosim run` does; returns the folder.
+
+        Raises
+        ------
+        ShipcosimError
+            If they cannot be written.
+        """
+        from shipcosim.series import write_table
+
+        made(folder)
+        for name in ("result.nc", "result.csv"):
+            write_table(self.table, Path(folder) / name)
+        self.page().save(Path(folder) / "report.html")
+        return Path(folder)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table as a DataFrame over time; units are in ``.table[name].attrs["units"]``."""
+        return self.table.to_dataframe()
+
+    def __repr__(self) -> str:
+        from shipcosim.report.run.expectations import outcome
+
+        found, components = outcome(self.table, self.expectations), {n.rpartition(".")[0] for n in map(str, self.table)}
+        size = f"{self.table.sizes['time']} rows of {len(self.table)} signals of {len(components)} components"
+        return f"<Run of {self.name!r}: {found.word}. {found.sentence} {size}>"
+
+    def _card(self) -> Card:
+        from shipcosim.report.notebook.run_card import run_card
+
+        return run_card(
+            self.table, self.scenario, self.system, self.expectations, late=self.not_judged, remarks=self.remarks
+        )
+
+    def __getitem__(self, name: Hashable) -> xarray.DataArray:
+        return self.table[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.table
+
+    def __iter__(self) -> Iterator[Hashable]:
+        return iter(self.table)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name == "table":  # a copy asks before there is a table
+            raise AttributeError(f"'Run' has no attribute '{name}'")
+        return getattr(self.table, name)

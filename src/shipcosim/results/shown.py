@@ -1,0 +1,149 @@
+"""What a result shows: its page and its pictures, as values that a notebook displays and that can be saved."""
+
+from __future__ import annotations
+
+import html
+import os
+import tempfile
+import webbrowser
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import write_file
+
+if TYPE_CHECKING:
+    from shipcosim.report.notebook.card import Card
+
+__all__ = ["HtmlPage", "Picture", "Result", "made", "page_of", "parts_of"]
+
+HEIGHT = 820  # px, of a page within a notebook
+
+
+@dataclass(frozen=True)
+class HtmlPage:
+    """The page of a result: one HTML file that opens anywhere. As the last value of a notebook cell it is shown there.
+
+    Parameters
+    ----------
+    title : str
+        What it is the page of.
+    html : str
+        All of it.
+
+    Examples
+    --------
+    >>> HtmlPage("gust", "<!doctype html><title>gust</title>")
+    <page 'gust', 0.0 MB: .open() shows it in the browser, .save("page.html") writes it>
+    """
+
+    title: str
+    html: str = field(repr=False)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the page to a file; it is there completely or not at all.
+
+        Raises
+        ------
+        ShipcosimError
+            If the file cannot be written.
+        """
+        write_file(path, self.html.encode())
+        return Path(path)
+
+    def open(self) -> Path:
+        """Show the page in the browser, from a file in the folder for temporary files; returns that file."""
+        descriptor, name = tempfile.mkstemp(prefix="shipcosim-", suffix=".html")
+        os.close(descriptor)
+        webbrowser.open(self.save(name).as_uri())
+        return Path(name)
+
+    def __repr__(self) -> str:
+        size = f"{len(self.html.encode()) / 1e6:.1f} MB"
+        return f'<page {self.title!r}, {size}: .open() shows it in the browser, .save("page.html") writes it>'
+
+    def _repr_html_(self) -> str:
+        content = html.escape(self.html, quote=True)
+        frame = f'width="100%" height="{HEIGHT}" style="border:1px solid #dde3e9" title="{html.escape(self.title)}"'
+        return f'<iframe srcdoc="{content}" {frame}></iframe>'
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture as SVG: shown by notebooks and by GitHub's viewer, needs no script.
+
+    Parameters
+    ----------
+    name : str
+        What is drawn.
+    svg : str
+        All of it.
+
+    Examples
+    --------
+    >>> Picture("track of gust", "<svg/>")
+    <picture 'track of gust': .save("picture.svg") writes it>
+    """
+
+    name: str
+    svg: str = field(repr=False)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the picture to an .svg file; errors as for `HtmlPage.save`."""
+        write_file(path, self.svg.encode())
+        return Path(path)
+
+    def __repr__(self) -> str:
+        return f'<picture {self.name!r}: .save("picture.svg") writes it>'
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+
+class Result(ABC):
+    """What all results have: a line for the console, a card for notebooks."""
+
+    @abstractmethod
+    def _card(self) -> Card:
+        """What a notebook shows."""
+
+    def __repr__(self) -> str:
+        card = self._card()
+        return f"<{card.title}: {card.outcome.word}. {card.outcome.sentence}>"
+
+    def _repr_html_(self) -> str:
+        from shipcosim.report.notebook.card import card_html
+
+        return card_html(self._card())
+
+
+def made(folder: str | os.PathLike[str]) -> Path:
+    """A folder for results, made where it is not there.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be made.
+    """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        found = f"Results cannot be written here: {error.strerror}."
+        raise ShipcosimError(Problem(str(folder), found, "Choose another folder.")) from None
+    return Path(folder)
+
+
+def parts_of(found: Any) -> dict[str, Any]:
+    """Fields of a record by name, to make a result of it."""
+    return {one.name: getattr(found, one.name) for one in fields(found)}
+
+
+def page_of(title: str, write: Callable[[Path], object]) -> HtmlPage:
+    """A page from a function that writes it to a path."""
+    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        path = Path(folder) / "page.html"
+        write(path)
+        return HtmlPage(title, path.read_text(encoding="utf-8"))

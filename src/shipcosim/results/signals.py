@@ -1,0 +1,59 @@
+"""Signals of a table by what a user calls them: their names, components, patterns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fnmatch import fnmatchcase
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+
+__all__ = ["chosen"]
+
+
+def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
+    """Names that are meant, each once, in the order in which they were asked for.
+
+    Parameters
+    ----------
+    names : iterable of str
+        All signals.
+    wanted : sequence of str
+        Each a signal (``"vessel.x"``), a component (``"controller"``: all of its signals), a connector
+        (``"thrust"``: of every component that has it), or a pattern (``"*.thrust"``, ``"vessel.tau_*_X"``).
+
+    Raises
+    ------
+    ShipcosimError
+        If something asked for is none of these.
+
+    Examples
+    --------
+    >>> chosen(["vessel.x", "port.thrust", "port.rpm", "tunnel.thrust"], ["port", "*.thrust"])
+    ['port.thrust', 'port.rpm', 'tunnel.thrust']
+    """
+    known, found, problems = list(names), {}, []
+    for one in wanted:
+        matching = _matching(known, one)
+        found |= dict.fromkeys(matching)
+        if not matching:
+            problems.append(Problem(str(one), "There is no such signal or component.", _remedy(known, str(one))))
+    if problems:
+        raise ShipcosimError(problems)
+    return list(found)
+
+
+def _matching(known: Sequence[str], wanted: str) -> list[str]:
+    """Signals of one name; the nearest meaning goes first."""
+    if wanted in known:
+        return [wanted]
+    of_component = [name for name in known if name.startswith(f"{wanted}.")]
+    of_connector = [name for name in known if name.rpartition(".")[2] == wanted]
+    return of_component or of_connector or [name for name in known if fnmatchcase(name, wanted)]
+
+
+def _remedy(known: Sequence[str], wanted: str) -> str:
+    """The component's signals where that is right, else the components, or the signals where there are none."""
+    component = wanted.rpartition(".")[0]
+    of_component = [name for name in known if component and name.startswith(f"{component}.")]
+    components = {name.rpartition(".")[0] for name in known} - {""}
+    return suggestion(wanted, of_component or components or known)
