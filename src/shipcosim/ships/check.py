@@ -9,6 +9,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ships.control import mass_matrix, why_no_dp
 from shipcosim.ships.described import Described, describe, file_of, read_file
 from shipcosim.ships.estimates.propulsion import MOST_KT, most_thrust
+from shipcosim.ships.estimates.resistance import MOST_FROUDE, froude_number
 from shipcosim.ships.file import number
 from shipcosim.ships.folder import read_ship
 from shipcosim.ships.numbers import ESTIMATED
@@ -179,17 +180,27 @@ def _thrust(unit: Unit, where: str, draught: float) -> Iterator[Problem]:
 
 
 def _remarks(ship: Described) -> Iterator[Problem]:
-    form, p = ship.form, ship.file.particulars
-    assert p is not None
-    ahead = sum(u.most for u in ship.units if u.kind != "tunnel" and abs(u.direction) < 0.5 * pi)
-    drag = float(ship.vessel["X_uu"].value) if "X_uu" in ship.vessel else 0.0
-    if p.service_speed and ahead and -drag * form.speed**2 > ahead:
-        found = f"at {form.speed:.3g} m/s she has a resistance of {-drag * form.speed**2 / 1000:.4g} kN, "
-        found += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
-        yield Problem(f"{ship.path}: resistance", found, "She does not reach her service speed.", "remark")
+    yield from _speed(ship)
     if why := why_no_dp(ship):
         yield Problem(f"{ship.path}: thrusters", f"there is no DP system: {why}.", "", "remark")
     count = len(estimated(ship))
     if count:
         found = f"{count} numbers are estimated."
         yield Problem(str(ship.path), found, "Give what you know; the rest has the tolerance of its formula.", "remark")
+
+
+def _speed(ship: Described) -> Iterator[Problem]:
+    """Whether she can run at her service speed, and whether the formulae hold there."""
+    form, p, entry = ship.form, ship.file.particulars, ship.vessel.get("X_uu")
+    if entry is None or p is None or p.service_speed is None:
+        return
+    where, drag = f"{ship.path}: resistance", -float(entry.value) * form.speed**2
+    ahead = sum(unit.most for unit in ship.units if unit.kind != "tunnel" and abs(unit.direction) < 0.5 * pi)
+    if ahead and drag > ahead:
+        found = f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
+        found += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
+        yield Problem(where, found, "She does not reach her service speed.", "remark")
+    if entry.origin.startswith(ESTIMATED) and froude_number(form) > MOST_FROUDE:
+        found = f"{form.speed:.3g} m/s is Froude number {froude_number(form):.2g}, beyond the formulae of resistance."
+        remedy = "Give a point of her speed trial: resistance.speed and resistance.resistance."
+        yield Problem(where, found, remedy, "remark")

@@ -88,7 +88,7 @@ def added_masses(form: Form) -> dict[str, Estimate]:
     lever, share = 0.05 * L, form.hulls
     coupling = Estimate(0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway")
     return {
-        "A11": Estimate(share * A11, max(0.3 * share * A11, 0.05 * form.mass), f"{SODING}; tolerance 5 % of the mass"),
+        "A11": Estimate(share * A11, max(0.3 * share * A11, 0.08 * form.mass), f"{SODING}; tolerance 8 % of the mass"),
         "A22": within(share * A22, 0.4, CLARKE),
         "A26": coupling,
         "A62": coupling,
@@ -114,7 +114,7 @@ def yaw_inertia(mass: float, length: float, centre_x: float) -> Estimate:
         [kg.m2]
     """
     own = mass * (0.25 * length) ** 2
-    return Estimate(own + mass * centre_x**2, 0.12 * own, "gyration radius 0.25 L, Fossen 2021")
+    return Estimate(own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021")
 
 
 def cross_flow_drag(form: Form) -> Estimate:

@@ -14,6 +14,8 @@ from shipcosim.ships.estimates.hull import Form
 GRAVITY, VISCOSITY = 9.81, 1.19e-6  # m/s2; m2/s, sea water at 15 deg C
 APPENDAGES = 1.1
 """Resistance with rudder, thrusters and openings over that of the bare hull; assumed. [1]"""
+MOST_FROUDE = 0.4
+"""Beyond which the formula holds no more. [1]"""
 FULL_SCALE = 20.0  # m; the correlation allowance is of ships, not of models and boats
 _FINE, _BROAD = 0.11, 0.25
 
@@ -122,7 +124,7 @@ def wave_resistance(
     L, B, T = form.length, form.breadth, form.draught
     volume, Cp = form.volume / form.hulls, _prismatic(form, midship)
     Cwp = (1.0 + 2.0 * form.block) / 3.0 if waterplane is None else waterplane
-    froude = max(min(form.speed / sqrt(GRAVITY * L), 0.4), 0.05)
+    froude = max(min(froude_number(form), MOST_FROUDE), 0.05)
     slender = B / L
     c7 = 0.229577 * slender ** (1.0 / 3.0) if slender < _FINE else min(slender, 0.5 - 0.0625 / slender)
     c7 = slender if _FINE <= slender <= _BROAD else c7
@@ -174,7 +176,25 @@ def drag_coefficient(form: Form, surface: float | None = None, factor: float | N
     """
     found = -resistance(form, surface, factor) / form.speed**2
     source = f"Holtrop and Mennen 1982 with ITTC 1957 at {form.speed:.3g} m/s, and a tenth for appendages"
+    if froude_number(form) > MOST_FROUDE:
+        return within(found, 3.0, f"{source}; beyond the formula, the order of magnitude at best")
     return within(found, 0.5, source)
+
+
+def froude_number(form: Form) -> float:
+    """Of the service speed.
+
+    Parameters
+    ----------
+    form : Form
+        The hull.
+
+    Returns
+    -------
+    float
+        [1]
+    """
+    return form.speed / sqrt(GRAVITY * form.length)
 
 
 def _prismatic(form: Form, midship: float | None) -> float:
