@@ -189,7 +189,8 @@ def read_measurements(
     ship = ship_model_of(system)
     ship = ship if reference is None else with_reference(ship, reference)
     log = run_as_log(log, ship.vessel, ship.thrusters) if channels is None else log
-    return ReadLog(read_log(log, channels), ship, read_catalogue(causes))
+    drives = {name: ship.drives(name) for name in ship.thrusters}
+    return ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes))
 
 
 def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:

@@ -3,7 +3,7 @@
 import gzip
 
 import numpy as np
-import pyarrow
+import pyarrow.csv
 import pyarrow.parquet
 import pytest
 
@@ -87,7 +87,7 @@ def test_stamps_of_date_and_time_become_seconds(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("t,surge\n0,1\n1,2\n", "has no column 'time', only 't', 'surge'"),
+        ("moment,surge\n0,1\n1,2\n", "has no column 'time', only 'moment', 'surge'"),
         ("time,u\n0,1\n1,2\n", "no column but time has a role: 'time', 'u'"),
         ("time,surge [deg]\n0,1\n1,2\n", "cannot convert 'deg' into 'm/s'"),
         ("time,surge\n0,1\n1,fast\n", "holds 'fast' in row 3, not only numbers"),

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
+from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from shipcosim.diagnose.log.files.form import Form
 from shipcosim.diagnose.log.roles import ROLES, role_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import toml_of
 
-__all__ = ["Channel", "read_channels"]
+__all__ = ["Channel", "ChannelFile", "read_channels"]
 
 
 class Channel(BaseModel):
@@ -21,17 +24,57 @@ class Channel(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    column: str = Field(min_length=1, description="name of the column, without its [unit]")
+    column: str = Field(default="", description="name of the column, without its [unit]")
     unit: str | None = Field(default=None, description="unit of the column; default: the header's, else the role's")
     sign: Literal[1, -1] = 1
     offset: float = Field(default=0.0, description="added after the sign, in the unit of the column")
+    map: tuple[tuple[float, float], ...] | None = Field(
+        default=None, min_length=2, description="pairs of column and value in the role's unit, straight between them"
+    )
+    date: str | None = Field(default=None, description="of time: column with the date, beside one of clock times")
+    nanoseconds: str | None = Field(default=None, description="of time: column with these, beside one of seconds")
+    hemisphere: str | None = Field(default=None, description="of latitude and longitude: column of N and S, E and W")
+    quaternion: tuple[str, str, str, str] | None = Field(
+        default=None, description="of the heading, instead of a column: the columns of w, x, y and z"
+    )
+    frame: Literal["NED", "ENU"] = Field(default="NED", description="of the quaternion")
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of all columns that it takes."""
+        named = (self.column, self.date, self.nanoseconds, self.hemisphere, *(self.quaternion or ()))
+        return tuple(name for name in named if name)
+
+    @model_validator(mode="after")
+    def _names_a_column(self) -> Channel:
+        if bool(self.column) == (self.quaternion is not None):
+            raise ValueError("it should name a column, or the four of a quaternion")
+        if self.map is not None and any(b[0] <= a[0] for a, b in pairwise(self.map)):
+            raise ValueError("the first numbers of the pairs of a map should increase")
+        return self
 
 
-def read_channels(path: str | os.PathLike) -> dict[str, Channel]:
+@dataclass(frozen=True)
+class ChannelFile:
+    """What a channel file says.
+
+    Attributes
+    ----------
+    channels : dict of str to Channel
+        By role or connector.
+    form : Form
+        What it says of the form of the log, under ``file``.
+    """
+
+    channels: dict[str, Channel]
+    form: Form = field(default_factory=Form)
+
+
+def read_channels(path: str | os.PathLike) -> ChannelFile:
     """Read a channel file: TOML with one entry for each role, or for each connector of a system.
 
     ``surge = {column = "u", unit = "kn"}``, or ``surge = "u"`` where nothing else is to be said; a connector
-    inside the system in quotes, ``"vessel.u" = {column = "log", unit = "kn"}``.
+    inside the system in quotes, ``"vessel.u" = {column = "log", unit = "kn"}``; ``file = {decimal = ","}`` of the file.
 
     Raises
     ------
@@ -43,7 +86,13 @@ def read_channels(path: str | os.PathLike) -> dict[str, Channel]:
         content = toml_of(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
-    channels, problems = {}, []
+    channels, problems, form = {}, [], Form()
+    if "file" in content:
+        try:
+            form = Form.model_validate(content.pop("file"))
+        except ValidationError as error:
+            known = f"It can have {', '.join(Form.model_fields)}."
+            problems += [replace(_field_problem(f"{path}, file", e), remedy=known) for e in error.errors()]
     for name, entry in content.items():
         where = f"{path}, {name}"
         problems += _misspelt(where, name)
@@ -54,7 +103,7 @@ def read_channels(path: str | os.PathLike) -> dict[str, Channel]:
     problems += _together(path, content)
     if problems:
         raise ShipcosimError(problems)
-    return channels
+    return ChannelFile(channels, form)
 
 
 def _misspelt(where, name):
@@ -76,6 +125,7 @@ def _together(path, names):
 
 
 def _field_problem(where, detail):
-    field = ".".join(str(part) for part in detail["loc"])
-    remedy = "A channel has column, unit, sign, offset."
-    return Problem(f"{where}.{field}" if field else where, f"{detail['msg']}.", remedy)
+    part = ".".join(map(str, detail["loc"]))
+    remedy = f"A channel can have {', '.join(Channel.model_fields)}."
+    said = detail["msg"].removeprefix("Value error, ")
+    return Problem(f"{where}.{part}" if part else where, f"{said}.", remedy)

@@ -4,90 +4,177 @@ from __future__ import annotations
 
 import hashlib
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
-from shipcosim.diagnose.log.channels import Channel, read_channels
+from shipcosim.diagnose.log.channels import Channel, ChannelFile, read_channels
 from shipcosim.diagnose.log.earth import metres_per_degree
-from shipcosim.diagnose.log.roles import role_of
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.messages import brought_together, spread
+from shipcosim.diagnose.log.files.table import LogColumns, read_file
+from shipcosim.diagnose.log.names.guesses import Thrusters
+from shipcosim.diagnose.log.names.proposal import Proposal, propose
+from shipcosim.diagnose.log.names.units import unit_for
+from shipcosim.diagnose.log.roles import OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST
-from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.series import conversion, make_table, read_columns
+from shipcosim.diagnose.log.values import LARGEST, values_of
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import make_table
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["read_log"]
+__all__ = ["columns_of", "read_log"]
 
 
-def read_log(log: str | os.PathLike | xarray.Dataset, channels: str | os.PathLike | None = None) -> xarray.Dataset:
+_FARTHEST = {"latitude": 90.0, "longitude": 540.0}  # deg; some loggers count on beyond the date line
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A log as columns, and what says which file it is."""
+
+    columns: LogColumns
+    file: dict[str, str]
+
+
+def read_log(
+    log: str | os.PathLike | xarray.Dataset,
+    channels: str | os.PathLike | ChannelFile | None = None,
+    thrusters: Thrusters | None = None,
+) -> xarray.Dataset:
     """Read a measured log: every row of the file, in its order, in the units of the roles.
 
     Parameters
     ----------
     log : path or xarray.Dataset
-        .csv, .csv.gz, .parquet or .nc; or such a table, over `time`, with the units of its columns as ``units``.
-    channels : path, optional
-        Channel file (see `read_channels`); without one the columns are named by roles.
+        Text of any dialect, also compressed (.csv, .txt, .csv.gz, ...), .xlsx, .nc or .parquet; or such a table, over
+        `time`, with the units of its columns as ``units``.
+    channels : path or ChannelFile, optional
+        Channel file (see `read_channels`); without one columns whose names have one meaning are used.
+    thrusters : mapping of str to tuple of str, optional
+        Thrusters of the system by name, with what drives each; without, any name of a thruster is one.
 
     Returns
     -------
     xarray.Dataset
         Over `time` as it stands in the file. Latitude and longitude become `north` and `east` about the first fix,
-        which is in the attributes `latitude_origin` and `longitude_origin` [deg]. Connectors keep the unit that is
-        stated. The attribute `unused_columns` lists the columns that have no role; `source` and `sha256` of the
-        encoding are name and fingerprint of a file.
+        which is in the attributes `latitude_origin` and `longitude_origin` [deg]; speed and course, or velocities over
+        the earth, become `surge` and `sway` with the heading. Connectors keep the unit that is stated. The attribute
+        `unused_columns` lists the columns that have no role, `column_remarks` says how the file was read, which column
+        is what, and which is not used and why; `source` and `sha256` of the encoding are name and fingerprint of a
+        file.
 
     Raises
     ------
     ShipcosimError
         With all that is wrong: a column that is missing, not numeric or in a unit of something else, no time.
     """
-    source, columns, file = _columns_of(log)
-    mapping = read_channels(channels) if channels is not None else _by_header(source, columns)
-    signals = _signals(source, columns, mapping)
-    used = {channel.column for channel in mapping.values()}
-    attributes = {"unused_columns": [name for name in columns if name and name not in used]}
-    if "latitude" in signals:
-        attributes |= _local_position(signals)
+    given = read_channels(channels) if isinstance(channels, (str, os.PathLike)) else channels
+    form = given.form if given else Form()
+    source = _source_of(log, form)
+    columns, proposal = source.columns, None
+    if given is None:
+        proposal = propose(columns, thrusters, form)
+        mapping = _sure(columns, proposal)
+    else:
+        mapping = given.channels
+    signals, said = _signals(columns, mapping, form)
+    stated = {name: _stated(channel, name, columns) for name, channel in mapping.items()}
+    used = {name for channel in mapping.values() for name in channel.columns}
+    unused = [name for name in columns.values if name not in used and not _is_unnamed(name)]
+    attributes = {"unused_columns": unused}
     time, _ = signals.pop("time")
-    _check_time(source, time)
+    _check_time(columns.source, time)
+    time, signals, more = brought_together(time, signals)
+    said += more + _over_the_earth(signals)
+    if "latitude" in signals:
+        attributes |= _local_position(columns.source, signals, said)
+    said += _without_value(signals)
+    attributes["column_remarks"] = [*columns.remarks, *said, *(_told(proposal) if proposal else ())]
     table = make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
-    table.encoding |= file
-    for name, channel in mapping.items():
-        stated = channel.unit or columns[channel.column][1]
-        if stated and name in table.variables:
-            table[name].attrs["stated_unit"] = stated
+    table.encoding |= source.file
+    for name, unit in stated.items():
+        if unit and name in table.variables:
+            table[name].attrs["stated_unit"] = unit
     return table
 
 
-def _columns_of(log):
-    """Name of a log for messages, its columns as (values, unit) by name, and what says which file it is."""
+def columns_of(log: str | os.PathLike, form: Form | None = None) -> LogColumns:
+    """Columns of a file, one for each channel also where a file has one value a row.
+
+    Parameters
+    ----------
+    log : path
+    form : Form, optional
+        What was said of the file.
+    """
+    return spread(read_file(Path(log), form), form or Form())
+
+
+def _source_of(log, form):
     if isinstance(log, (str, os.PathLike)):
-        columns = read_columns(log)
-        return str(log), columns, {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()}
-    time = {"time": (np.asarray(log["time"].values, float), log["time"].attrs.get("units", ""))}
-    rest = {str(name): (np.asarray(v.values), v.attrs.get("units", "")) for name, v in log.data_vars.items()}
-    return "log", time | rest, {}
+        columns = columns_of(log, form)
+        return _Source(columns, {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()})
+    values = {"time": np.asarray(log["time"].values, float)}
+    values |= {str(name): np.asarray(v.values) for name, v in log.data_vars.items()}
+    units = {name: str(log[name].attrs.get("units", "")) for name in values}
+    return _Source(LogColumns("log", values, units), {})
 
 
-def _signals(source, columns, mapping):
-    """Values and unit of each channel, by role or connector."""
-    problems, signals = [], {}
-    for name, channel in mapping.items():
-        try:
-            signals[name] = _signal(channel, name, columns)
-        except ShipcosimError as error:
-            problems += [Problem(f"{source}, {name}", p.found, p.remedy) for p in error.problems]
-    if not problems and len(mapping) < 2:
-        remedy = "Name them by roles, or say in a channel file which is what: --channels channels.toml."
-        problems = [Problem(source, f"no column but time has a role: {_shown(columns)}.", remedy)]
+def _is_unnamed(name):
+    return name.startswith("column ") and name.removeprefix("column ").isdigit()
+
+
+def _stated(channel: Channel, name: str, columns: LogColumns) -> str:
+    """The unit that somebody stated of a channel."""
+    stated = channel.unit or columns.units.get(channel.column, "")
+    role = role_of(name)
+    return unit_for(stated, role.unit) if stated and role else stated
+
+
+def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
+    """Channels by names that have one meaning; an error that says what could be written where they do not do."""
+    mapping, source = proposal.channels(), columns.source
+    doubled = [name for name in columns.doubled if any(name in channel.columns for channel in mapping.values())]
+    problems = [Problem(f"{source}, column '{name}'", "is there twice.", _WHICH) for name in doubled]
+    help_ = f"Say in a channel file which column is what: `shipcosim channels {source} --out channels.toml` proposes one."
+    if "time" not in mapping:
+        guess = next((g for g in proposal.used if g.role == "time"), None)
+        found = f"has no column 'time', only {_shown(columns)}."
+        if guess:
+            found = f"'{guess.column}' may be the time, but {guess.why}."
+        problems.append(Problem(source, found, help_))
+    elif len(mapping) < 2:
+        problems.append(Problem(source, f"no column but time has a role: {_shown(columns)}.", help_))
     if problems:
         raise ShipcosimError(problems)
-    return signals
+    return mapping
+
+
+_WHICH = 'Rename one, or name it in a channel file; the second is "NAME (2)".'
+
+
+def _signals(columns, mapping, form):
+    """Values and unit of each channel, by role or connector, and what is to be said."""
+    problems, signals, said = [], {}, []
+    for name, channel in mapping.items():
+        try:
+            values, unit, more = values_of(channel, name, columns, form)
+            signals[name] = values, unit
+            said += more
+        except ShipcosimError as error:
+            problems += [Problem(f"{columns.source}, {name}", p.found, p.remedy) for p in error.problems]
+    if not problems and len(mapping) < 2:
+        remedy = "Name them by roles, or say in a channel file which is what: --channels channels.toml."
+        problems = [Problem(columns.source, f"no column but time has a role: {_shown(columns)}.", remedy)]
+    if problems:
+        raise ShipcosimError(problems)
+    return signals, said
 
 
 def _check_time(source, time):
@@ -99,19 +186,8 @@ def _check_time(source, time):
         raise ShipcosimError(Problem(f"{source}, time", "has fewer than two different times.", "A log has many rows."))
 
 
-def _by_header(path, columns):
-    """Channels of a file whose columns are named by roles. North and east go before latitude and longitude."""
-    if "time" not in columns:
-        remedy = "Say in a channel file which column is what: --channels channels.toml."
-        raise ShipcosimError(Problem(str(path), f"has no column 'time', only {_shown(columns)}.", remedy))
-    pairs = [("north", "east"), ("latitude", "longitude")]
-    whole = [pair for pair in pairs if set(pair) <= set(columns)][:1]
-    left_out = {name for pair in pairs if pair not in whole for name in pair}
-    return {name: Channel(column=name) for name in columns if role_of(name) and name not in left_out}
-
-
 def _shown(columns):
-    return ", ".join(repr(name) for name in list(columns)[:8])
+    return ", ".join(repr(name) for name in list(columns.values)[:8])
 
 
 def _meaning(name):
@@ -119,38 +195,86 @@ def _meaning(name):
     return role.meaning if role else f"connector {name}"
 
 
-def _signal(channel, name, columns):
-    """Values of a channel, and their unit."""
-    if channel.column not in columns:
-        found = f"there is no column '{channel.column}'."
-        raise ShipcosimError(Problem("", found, suggestion(channel.column, columns)))
-    values, stated = columns[channel.column]
-    if values.dtype.kind != "f":
-        row = next((i for i, value in enumerate(values) if value is not None and not _is_number(value)), 0)
-        found = f"column '{channel.column}' holds '{values[row]}' in row {row + 2}, not only numbers."
-        raise ShipcosimError(Problem("", found, "A missing value is an empty field or nan."))
-    role = role_of(name)
-    unit = channel.unit or stated or (role.unit if role else "")
-    target = role.unit if role else unit
-    factor, zero = conversion(unit, target)
-    # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
-    return factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0), target
+def _over_the_earth(signals):
+    """Turns speed and course, or velocities over the earth, into surge and sway; says so."""
+    given = {name: signals.pop(name)[0] for name in OVER_EARTH if name in signals}
+    if not given or ("surge" in signals and "sway" in signals):
+        return []
+    if "heading" not in signals:
+        return ["Velocities over the earth are not used: they become surge and sway by a heading, and there is none."]
+    heading = np.radians(signals["heading"][0])
+    if {"north_velocity", "east_velocity"} <= set(given):
+        velocity, of = given["north_velocity"] + 1j * given["east_velocity"], "velocities north and east"
+    elif {"speed_over_ground", "course_over_ground"} <= set(given):
+        speed = given["speed_over_ground"]
+        velocity = speed * np.exp(1j * np.radians(given["course_over_ground"]))
+        velocity = np.where(speed == 0.0, 0.0, velocity)
+        of = "speed and course over ground"
+    else:
+        return []
+    body = velocity * np.exp(-1j * heading)
+    signals["surge"], signals["sway"] = (body.real, "m/s"), (body.imag, "m/s")
+    return [f"Surge and sway come from {of} and the heading."]
 
 
-def _is_number(text):
-    try:
-        return float(text) is not None
-    except (TypeError, ValueError):
-        return False
-
-
-def _local_position(signals):
+def _local_position(source, signals, said):
     """Turn latitude and longitude into north and east in a plane about the first fix; say where that is."""
-    latitude, longitude = (np.radians(signals.pop(name)[0]) for name in ("latitude", "longitude"))
-    fixed = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude))
-    first = fixed[0] if len(fixed) else 0
+    degrees = {name: signals.pop(name)[0] for name in LARGEST}
+    for name, values in degrees.items():
+        limit = _FARTHEST[name]
+        known, beyond = np.isfinite(values), np.abs(values) > limit
+        if not known.any():
+            raise ShipcosimError(Problem(f"{source}, {name}", "has no value in any row.", "Leave the channel out."))
+        if beyond.sum() > 0.5 * known.sum():
+            row = int(np.flatnonzero(beyond)[0])
+            found = f"is {values[row]:g} in row {row + 2}, beyond {limit:g} deg, in {int(beyond.sum())} rows."
+            remedy = 'A unit can be said: unit = "ddmm.mmmm", "rad" or "1e-7 deg".'
+            raise ShipcosimError(Problem(f"{source}, {name}", found, remedy))
+    lost = np.any([np.abs(v) > _FARTHEST[n] for n, v in degrees.items()], axis=0)
+    nowhere = (degrees["latitude"] == 0.0) & (degrees["longitude"] == 0.0)
+    if nowhere.all():
+        nowhere[:] = False
+    for rows, why in ((lost, "a position beyond the earth"), (nowhere, "the position 0, 0, which is no fix")):
+        if rows.any():
+            said.append(f"{int(rows.sum())} row{'s' * int(rows.sum() > 1)} with {why}: left empty.")
+    values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
+    fixed = np.flatnonzero(np.isfinite(values[0]) & np.isfinite(values[1]))
+    if not len(fixed):
+        raise ShipcosimError(Problem(f"{source}, latitude", "has no row with a longitude.", "A fix needs both."))
+    latitude, longitude = np.radians(values[0]), np.radians(values[1])
+    first = fixed[0]
     meridian, parallel = metres_per_degree(np.degrees(latitude[first]))
     signals["north"] = meridian * np.degrees(latitude - latitude[first]), "m"
     signals["east"] = parallel * np.degrees(wrap_series(longitude - longitude[first], TURN)), "m"
     origin = np.degrees([latitude[first], longitude[first]])
     return {"latitude_origin": float(origin[0]), "longitude_origin": float(origin[1])}
+
+
+def _without_value(signals):
+    """Takes away channels without any value, and says so."""
+    empty = [name for name, (values, _) in signals.items() if not np.isfinite(values).any()]
+    for name in empty:
+        del signals[name]
+    return [f"{name}: no row has a value, so it is not used." for name in empty]
+
+
+def _told(proposal):
+    """Which column is what, where its name is not the role's; which is not used, and why."""
+    named = [g for g in proposal.used if g.rank < 2]
+    other = [f"{g.role} from '{g.column}'{_said(g)}" for g in named if g.column != g.role or g.said]
+    if other:
+        yield f"Columns used: {'; '.join(other)}."
+    for guess in proposal.used:
+        if guess.rank == 2:
+            yield f"Column '{guess.column}' is not used: it may be {guess.role}, but {guess.why}."
+    reasons = {}
+    for guess in proposal.unused:
+        if not _is_unnamed(guess.column):
+            reasons.setdefault(guess.why, []).append(f"'{guess.column}'")
+    for why, names in reasons.items():
+        yield f"Column{'s' * (len(names) > 1)} not used: {', '.join(names)}: {why}."
+
+
+def _said(guess):
+    unit = f" [{guess.channel.unit}]" if guess.channel and guess.channel.unit else ""
+    return f"{unit}{' (' + '; '.join(guess.said) + ')' if guess.said else ''}"

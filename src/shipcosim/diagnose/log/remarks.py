@@ -47,9 +47,12 @@ def remarks(log: xarray.Dataset) -> list[str]:
 
 
 def handled(log: xarray.Dataset) -> list[str]:
-    """The same, and which columns are not used."""
+    """The same, and how the file was read: which column is what, and which is not used and why."""
+    told = log.attrs.get("column_remarks", ())
     unused = ", ".join(map(str, log.attrs.get("unused_columns", ())))
-    return [*remarks(log), *([f"Columns without a role are not used: {unused}."] if unused else [])]
+    plain = [f"Columns without a role are not used: {unused}."] if unused else []
+    said = list(map(str, told))
+    return [*remarks(log), *said, *([] if any("not used" in one for one in said) else plain)]
 
 
 def _rows(count):

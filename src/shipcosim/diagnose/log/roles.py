@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-__all__ = ["NAVIGATION", "ROLES", "Role", "role_of"]
+__all__ = ["NAVIGATION", "OVER_EARTH", "ROLES", "Role", "role_of"]
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,13 @@ ROLES = {
     "wind_from": Role("deg", "direction the apparent wind comes from, clockwise from the bow"),
     "true_wind_speed": Role("m/s", "wind speed over ground"),
     "true_wind_from": Role("deg", "direction the wind over ground comes from, clockwise from true north"),
+    "speed_over_ground": Role("m/s", "speed of the antenna over ground"),
+    "course_over_ground": Role("deg", "direction the antenna moves, clockwise from true north"),
+    "north_velocity": Role("m/s", "velocity of the antenna northwards"),
+    "east_velocity": Role("m/s", "velocity of the antenna eastwards"),
 }
+OVER_EARTH = {"speed_over_ground", "course_over_ground", "north_velocity", "east_velocity"}
+"""Roles that give surge and sway with the heading, and are none of the log that is read."""
 NAVIGATION = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 
 _THRUSTER = {

@@ -111,8 +111,11 @@ def _names(path: Path) -> list[str]:
 
 
 def _is_run(signals: Mapping[str, object]) -> bool:
-    """Whether most columns are signals of components, and none is a position by its role."""
+    """Whether most columns are signals of components, one of them a ship, and none is a position by its role."""
     dotted = sum("." in name for name in signals)
+    ships = (name.removesuffix(".psi") for name in signals if name.endswith(".psi"))
+    if not any(f"{ship}.x" in signals and f"{ship}.y" in signals for ship in ships):
+        return False  # names of another tool, such as ROS
     return "time" in signals and "north" not in signals and "latitude" not in signals and 2 * dotted > len(signals)
 
 

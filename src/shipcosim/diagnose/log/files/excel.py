@@ -1,0 +1,70 @@
+"""Workbooks of Excel as text: the sheet with the most cells, tabs between them."""
+
+from __future__ import annotations
+
+import datetime
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+
+__all__ = ["is_workbook", "text_of_sheet"]
+
+
+def is_workbook(path: Path) -> bool:
+    """Whether a file is a workbook by its name.
+
+    Raises
+    ------
+    ShipcosimError
+        For the workbooks of other programs, which are not read.
+    """
+    suffix = path.suffix.lower()
+    if suffix in (".xls", ".ods", ".xlsb"):
+        raise ShipcosimError(Problem(str(path), f"'{suffix}' is not read.", "Save it as .xlsx or .csv."))
+    return suffix in (".xlsx", ".xlsm")
+
+
+def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]:
+    """Cells of a sheet as lines of text with tabs between, and what is to be said.
+
+    Parameters
+    ----------
+    path : Path
+        .xlsx or .xlsm. Formulae have the value that Excel stored.
+    sheet : str, optional
+        Name of the sheet.
+
+    Raises
+    ------
+    ShipcosimError
+        If openpyxl is missing, or the workbook cannot be read or has no such sheet.
+    """
+    try:
+        import openpyxl
+    except ImportError as error:
+        remedy = "Install it by `pip install shipcosim[excel]`, or save the sheet as .csv."
+        raise ShipcosimError(Problem(str(path), "workbooks of Excel need openpyxl.", remedy)) from error
+    try:
+        book = openpyxl.load_workbook(path, read_only=True, data_only=True)
+        sheets = {one.title: [row for row in one.iter_rows(values_only=True)] for one in book.worksheets}
+    except Exception as error:  # openpyxl raises what zip, XML and its own code do
+        raise ShipcosimError(Problem(str(path), f"is no workbook that can be read: {error}.")) from error
+    if sheet is not None and sheet not in sheets:
+        raise ShipcosimError(Problem(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets)))
+    used = sheet or max(sheets, key=lambda name: sum(len(row) for row in sheets[name]))
+    rows = [[_text(cell) for cell in row] for row in sheets[used]]
+    said = [f"Sheet '{used}' of {len(sheets)} is read."] if sheet is None and len(sheets) > 1 else []
+    return "\n".join("\t".join(row) if any(row) else "" for row in rows), said
+
+
+def _text(cell: object) -> str:
+    """A cell as a text file would have it."""
+    if cell is None:
+        return ""
+    if isinstance(cell, datetime.datetime):
+        return cell.isoformat(" ")
+    if isinstance(cell, (datetime.date, datetime.time)):
+        return cell.isoformat()
+    if isinstance(cell, datetime.timedelta):
+        return repr(cell.total_seconds())
+    return " ".join(str(cell).split())

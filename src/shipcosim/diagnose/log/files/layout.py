@@ -1,0 +1,185 @@
+"""Layout of a text that is a table: separator, lines before the header, header, row of units, first row of values."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from dataclasses import dataclass
+
+from shipcosim.diagnose.log.files.cells import is_figure, is_nothing
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["Layout", "cells_in", "is_comment", "layout_of"]
+
+_SEPARATORS = ("\t", ";", "|", ",", " ")
+_SAMPLE = 60  # lines by which a layout is judged
+_MARKS = ("#", "%", "//", "!")
+_WORD = re.compile(r"[A-Za-z_][\w./-]*")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a text is a table.
+
+    Attributes
+    ----------
+    separator : str
+        A blank stands for any number of blanks.
+    header : tuple of str
+        Names as they stand there.
+    units : tuple of str
+        From a row of units below the names; empty without one.
+    first : int
+        Index of the first line of values.
+    remarks : tuple of str
+        What is to be said of all this.
+    """
+
+    separator: str
+    header: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int
+    remarks: tuple[str, ...]
+
+
+def is_comment(line: str) -> bool:
+    """Whether a line is none of the table."""
+    return line.lstrip().startswith(_MARKS)
+
+
+def cells_in(line: str, separator: str) -> list[str]:
+    """Cells of a line, without the blanks around them.
+
+    Examples
+    --------
+    >>> cells_in('1;"a;b"; 2', ";")
+    ['1', 'a;b', '2']
+    >>> cells_in("  1   2 ", " ")
+    ['1', '2']
+    """
+    if separator == " ":
+        return line.split()
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
+
+
+def layout_of(source: str, lines: list[str], form: Form, is_unit) -> Layout:
+    """Layout of the lines of a file.
+
+    Parameters
+    ----------
+    source : str
+        The file, for messages.
+    lines : list of str
+        Its lines.
+    form : Form
+        What was said of it.
+    is_unit : callable
+        Whether a text is the spelling of a unit.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is no table, or has no names.
+    """
+    separator = form.separator or _separator(lines)
+    first, width = _first_row(source, lines, separator)
+    above = [i for i in range(first) if lines[i].strip() and not lines[i].lower().startswith("sep=")]
+    if form.names is not None:
+        return Layout(separator, form.names, (), first, _skipped(above))
+    at, units, header = _header(lines, above, separator, width, is_unit)
+    if header is None:
+        names = ", ".join(f'"column {i + 1}"' for i in range(min(width, 3)))
+        found = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
+        raise ShipcosimError(Problem(source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."))
+    if len(header) == width - 1 and cells_in(lines[first], separator)[0] in ("0", "1"):
+        header = ("", *header)
+    rest = [i for i in above if i < at]
+    return Layout(separator, tuple(header), tuple(units), first, _skipped(rest))
+
+
+def _skipped(above: list[int]) -> tuple[str, ...]:
+    count = len(above)
+    return (f"{count} line{'s' * (count > 1)} above the header left out.",) if count else ()
+
+
+def _separator(lines: list[str]) -> str:
+    """The separator that gives rows of equal length, of figures."""
+    told = next((line for line in lines[:1] if line.lower().startswith("sep=")), None)
+    if told and len(told.strip()) == 5:
+        return told.strip()[4]
+    rows = [line for line in lines if line.strip() and not is_comment(line)]
+    sample = [rows[int(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :] if rows else []
+    scores = {}
+    for separator in _SEPARATORS:
+        cells = [cells_in(line, separator) for line in sample]
+        width, count = Counter(map(len, cells)).most_common(1)[0] if cells else (0, 0)
+        flat = [cell for row in cells for cell in row if cell]
+        good = sum(1.0 if is_figure(c) or is_nothing(c) else 0.6 if _WORD.fullmatch(c) else 0.0 for c in flat)
+        scores[separator] = (count / len(cells)) * good / max(len(flat), 1) if width > 1 else 0.0
+    best = max(scores.values())
+    return next(separator for separator in _SEPARATORS if scores[separator] > 0.9 * best) if best > 0.0 else ","
+
+
+def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]:
+    """Index of the first line of values, and the number of its cells."""
+    rows = [i for i, line in enumerate(lines) if line.strip() and not is_comment(line)]
+    picked = rows[:: max(len(rows) // 2000, 1)]
+    widths = Counter(len(cells_in(lines[i], separator)) for i in picked)
+    width = widths.most_common(1)[0][0] if widths else 0
+    for i in rows:
+        cells = cells_in(lines[i], separator)
+        told = [cell for cell in cells if not is_nothing(cell)]
+        figures = sum(map(is_figure, told))
+        if width > 1 and len(cells) == width and figures and figures >= 0.5 * len(told):
+            return i, width
+    if rows and width > 1:
+        raise ShipcosimError(Problem(source, "has no row below its header.", "Each row is a time and its values."))
+    remedy = "It should be a table: a line of names, then rows of as many cells."
+    raise ShipcosimError(Problem(source, "no table is found in it: no rows of several numbers.", remedy))
+
+
+def _header(lines, above, separator, width, is_unit):
+    """Line of the names, the units of a row of units, and the names; None without names."""
+    units, below = (), None
+    for i in reversed(above):
+        text = lines[i].lstrip()
+        if is_comment(text):
+            text = text.lstrip("#%/! \t")
+        row = _header_cells(text, separator, width)
+        if row is None:
+            if below is None or i < below - 1:
+                break
+            continue
+        told = [cell for cell in row if cell]
+        if not units and told and _is_row_of_units(row, is_unit):
+            units, below = [cell.strip("[]() ") for cell in row], i
+            continue
+        if sum(map(is_figure, told)) < 0.5 * len(told):
+            return i, units, row
+        break
+    return 0, (), None
+
+
+def _is_row_of_units(row, is_unit):
+    told = [cell.strip("[]() ") for cell in row if cell.strip("[]() ")]
+    marked = sum(cell[:1] in "([" and cell[-1:] in ")]" for cell in row if cell)
+    known = sum(map(is_unit, told))
+    return bool(told) and (known >= 0.75 * len(told) or (marked == len(told) and known >= 0.5 * len(told)))
+
+
+def _header_cells(text, separator, width):
+    """Cells of what may be a header of so many columns, None where it is none."""
+    if separator != " ":
+        row = cells_in(text, separator)
+        while len(row) > width and not row[-1]:
+            row.pop()
+        return row if width - 1 <= len(row) <= width else None
+    glued = re.sub(r"\s+(?=[\[(])", "", text)
+    for row in (text.split(), glued.split(), re.split(r"\s{2,}|\t", text.strip()), cells_in(text, ",")):
+        if len(row) == width:
+            return row
+    return text.split() if len(text.split()) == width - 1 else None

@@ -1,0 +1,153 @@
+"""Logs with one value a row, or one sensor's values a row, as one table."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+
+__all__ = ["brought_together", "spread"]
+
+_NAMES = ("name", "topic", "signal", "channel", "variable", "tag", "key", "parameter", "quantity", "item", "field")
+_NAMES += ("sensor", "message", "msg", "label", "source", "id", "measurement", "type")
+_VALUES = ("value", "val", "reading", "data", "measurement", "number", "v", "y")
+_MOST_NAMES = 500
+_ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.
+_FAR = 3.0  # usual steps of a channel over which it is interpolated. Assumed.
+
+
+def spread(log: LogColumns, form: Form) -> LogColumns:
+    """A log with one value a row as one with a column for each name; any other as it is.
+
+    Parameters
+    ----------
+    log : LogColumns
+        As it stands in the file.
+    form : Form
+        May say which columns hold names and values.
+
+    Raises
+    ------
+    ShipcosimError
+        If the columns that it says are not there.
+    """
+    for name in filter(None, (form.name, form.value)):
+        if name not in log.values:
+            found = f"there is no column '{name}'."
+            raise ShipcosimError(Problem(log.source, found, suggestion(name, log.values)))
+    names, value = _long(log, form)
+    if not names or value is None:
+        return log
+    rest = [column for column in log.values if column not in (*names, value)]
+    unit = next((column for column in rest if column.strip().lower() in ("unit", "units")), None)
+    clocks = [column for column in rest if column != unit and _is_clock(log.values[column])]
+    if not clocks:
+        return log
+    clock = next((c for c in clocks if "time" in c.lower() or c.lower() in ("t", "stamp", "timestamp")), clocks[0])
+    return _wide(log, names, value, clock, unit)
+
+
+def _long(log, form):
+    """Columns that name values, and the one that holds them; none and None where the log is none of that kind."""
+    if form.name is not None and form.value is not None:
+        return [form.name], form.value
+    lower = {column.strip().lower(): column for column in log.values}
+    value = next((lower[word] for word in _VALUES if word in lower), None)
+    names = [lower[word] for word in _NAMES if word in lower and _is_of_names(log.values[lower[word]])]
+    if form.name is not None:
+        names = [form.name]
+    return [name for name in names if name != value], form.value or value
+
+
+def _is_of_names(values):
+    if values.dtype.kind != "O":
+        return False
+    told = {value for value in values if value is not None}
+    return 2 <= len(told) <= min(_MOST_NAMES, len(values) // 2)
+
+
+def _is_clock(values):
+    if values.dtype.kind == "O":
+        first = next((str(value) for value in values if value is not None), "")
+        return sum(char.isdigit() for char in first) >= 4
+    return values.dtype.kind in "fM" and len(np.unique(values[np.isfinite(values)])) > 1
+
+
+def _wide(log, names, value, clock, unit):
+    import pandas
+
+    frame = pandas.DataFrame({column: log.values[column] for column in log.values})
+    told = frame[names].notna().all(axis=1) & frame[clock].notna()
+    frame = frame[told]
+    key = frame[names[0]].astype("str")
+    for more in names[1:]:
+        key = key + "." + frame[more].astype("str")
+    rows, times = pandas.factorize(frame[clock])
+    count = len(times)
+    values: dict[str, np.ndarray] = {clock: np.asarray(times)}
+    units, again = {clock: log.units[clock]}, 0
+    for name, part in frame.groupby(key, sort=False):
+        at = rows[frame.index.get_indexer(part.index)]
+        again += len(at) - len(np.unique(at))
+        numbers = pandas.to_numeric(part[value], errors="coerce")
+        is_text = numbers.isna().mean() > 0.5 and part[value].notna().any()
+        column = np.full(count, None, object) if is_text else np.full(count, np.nan)
+        column[at[::-1]] = (part[value] if is_text else numbers).to_numpy()[::-1]
+        values[str(name)] = column
+        stated = part[unit].dropna().unique() if unit else ()
+        units[str(name)] = str(stated[0]) if len(stated) == 1 else ""
+    said = [f"One value a row: '{' and '.join(names)}' names {len(values) - 1} channels, '{value}' holds them."]
+    if again:
+        said.append(f"{again} values of a channel at a time that it has one for already: the first is kept.")
+    return LogColumns(log.source, values, units, (*log.remarks, *said))
+
+
+def brought_together(
+    time: np.ndarray, signals: dict[str, tuple[np.ndarray, str]]
+) -> tuple[np.ndarray, dict[str, tuple[np.ndarray, str]], list[str]]:
+    """Channels that no row has together at the times of one of them; others as they are.
+
+    Parameters
+    ----------
+    time : (n,) array
+        [s]
+    signals : dict of str to ((n,) array, str)
+        Values, NaN in rows of other sensors, and units by role.
+
+    Returns
+    -------
+    time, signals and list of str
+        Interpolated between a channel's own times, angles the short way round, not across holes; what is to be said.
+    """
+    finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
+    there = {name: rows for name, rows in finite.items() if rows.any()}
+    counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))
+    if len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE:
+        return time, signals, []
+    base = next((n for n in ("heading", "latitude", "north", "surge") if n in there), next(iter(there)))
+    clock = np.unique(time[there[base] & np.isfinite(time)])
+    found = {}
+    for name, (values, unit) in signals.items():
+        rows = np.flatnonzero(finite[name] & np.isfinite(time))
+        rows = rows[np.argsort(time[rows], kind="stable")]
+        rows = rows[np.diff(time[rows], prepend=-np.inf) > 0.0]
+        found[name] = _at(clock, time[rows], values[rows], unit), unit
+    said = f"Rows hold one sensor each: all channels are interpolated to the {len(clock)} times of {base}."
+    return clock, found, [said]
+
+
+def _at(clock, times, values, unit):
+    """Values at other times; NaN outside of them and across holes."""
+    if len(times) < 2:
+        return np.full(len(clock), np.nan)
+    turns = unit == "deg"
+    there = np.interp(clock, times, np.unwrap(values, period=360.0) if turns else values)
+    after = np.clip(np.searchsorted(times, clock), 1, len(times) - 1)
+    step = float(np.median(np.diff(times)))
+    before = times[after - 1]
+    is_far = (times[after] - before > _FAR * step) & (clock != before) & (clock != times[after])
+    outside = (clock < times[0] - 0.5 * step) | (clock > times[-1] + 0.5 * step)
+    back = np.mod(there, 360.0) if turns and values.min() >= 0.0 else there
+    return np.where(is_far | outside, np.nan, back)

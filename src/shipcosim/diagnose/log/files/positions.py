@@ -1,0 +1,95 @@
+"""Positions as instruments write them: ddmm.mmmm of NMEA, hemispheres, texts with degrees, minutes and seconds."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+__all__ = ["HEMISPHERES", "MINUTES", "degrees_of_minutes", "degrees_of_texts", "hemisphere_signs", "is_minutes"]
+
+MINUTES = "ddmm.mmmm"
+"""Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
+HEMISPHERES = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}
+_TEXT = re.compile(
+    r"\s*(?P<before>[NSEWnsew])?\s*(?P<degrees>[+-]?\d+(?:\.\d+)?)\s*[°ºd*]?\s*"
+    r"(?:(?P<minutes>\d+(?:\.\d+)?)\s*['′’m]?\s*(?:(?P<seconds>\d+(?:\.\d+)?)\s*(?:\"|″|''|s)?\s*)?)?"
+    r"(?P<after>[NSEWnsew])?\s*"
+)
+
+
+def is_minutes(values: np.ndarray, largest: float) -> bool:
+    """Whether numbers are no degrees, and can be degrees times 100 plus minutes.
+
+    Parameters
+    ----------
+    values : (n,) array
+    largest : float
+        Of the degrees: 90 or 180.
+
+    Examples
+    --------
+    >>> is_minutes(np.array([6324.0949]), 90.0), is_minutes(np.array([63.4]), 90.0), is_minutes(np.array([6390.0]), 90.0)
+    (True, False, False)
+    """
+    known = np.abs(values[np.isfinite(values)])
+    if not len(known) or (known > largest).mean() < 0.5:
+        return False
+    return bool((np.mod(known, 100.0) < 60.0).mean() > 0.99 and (known < 100.0 * largest + 60.0).mean() > 0.99)
+
+
+def degrees_of_minutes(values: np.ndarray) -> np.ndarray:
+    """Degrees of ddmm.mmmm.
+
+    Examples
+    --------
+    >>> degrees_of_minutes(np.array([6330.0, -1030.0])).tolist()
+    [63.5, -10.5]
+    """
+    size = np.abs(values)
+    return np.copysign(np.floor(size / 100.0) + np.mod(size, 100.0) / 60.0, values)
+
+
+def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
+    """Signs of a column of N and S, or E and W; None where it holds something else.
+
+    Parameters
+    ----------
+    cells : (n,) array of str or None
+        The column.
+    role : str
+        ``"latitude"`` or ``"longitude"``.
+    """
+    if cells.dtype.kind == "f":
+        return None
+    known = HEMISPHERES[role]
+    signs = np.array([known.get(str(cell).strip().upper()[:1], np.nan) if cell else np.nan for cell in cells])
+    told = np.array([cell is not None for cell in cells])
+    words = {str(cell).strip().upper() for cell in cells if cell}
+    allowed = {*known, "NORTH", "SOUTH", "EAST", "WEST"}
+    return signs if told.any() and words <= allowed and np.isfinite(signs[told]).all() else None
+
+
+def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
+    """Degrees of texts such as ``63° 24.09' N``, ``63 24 5.7 N`` or ``6324.0949,N``; None where they are none.
+
+    Parameters
+    ----------
+    cells : (n,) array of str or None
+    largest : float
+        Of the degrees: 90 or 180.
+    """
+    found = np.full(len(cells), np.nan)
+    for row, cell in enumerate(cells):
+        if cell is None:
+            continue
+        match = _TEXT.fullmatch(str(cell).replace(",", " "))
+        if match is None:
+            return None
+        degrees = float(match["degrees"])
+        if match["minutes"] is None and abs(degrees) > largest:
+            degrees = float(degrees_of_minutes(np.array([degrees]))[0])
+        parts = float(match["minutes"] or 0.0) / 60.0 + float(match["seconds"] or 0.0) / 3600.0
+        hemisphere = (match["before"] or match["after"] or "N").upper()
+        found[row] = np.copysign(abs(degrees) + parts, degrees) * (-1.0 if hemisphere in "SW" else 1.0)
+    return found

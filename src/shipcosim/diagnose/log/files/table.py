@@ -1,0 +1,233 @@
+"""Any file that is a log as columns: their names, values and units as they stand there, and what is to be said."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.log.files.cells import NOTHING, decimal_of, numbers_of
+from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.layout import Layout, cells_in, is_comment, layout_of
+from shipcosim.diagnose.log.files.text import text_of
+from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["LogColumns", "read_file"]
+
+_FEW = 0.01  # share of rows of another length that are left out; more make the file no table. Assumed.
+
+
+@dataclass(frozen=True)
+class LogColumns:
+    """Columns of a log as they stand in its file.
+
+    Attributes
+    ----------
+    source : str
+        The file, for messages.
+    values : dict of str to (n,) array
+        By name: float64 with NaN where there is nothing, or objects: texts, None where there is nothing. A name that
+        stands there again has its count: ``"speed (2)"``.
+    units : dict of str to str
+        As stated; empty where none is.
+    remarks : tuple of str
+        How the file was read, where that is not plain, and what of it was left out.
+    doubled : tuple of str
+        Names that several columns have.
+    """
+
+    source: str
+    values: dict[str, np.ndarray]
+    units: dict[str, str]
+    remarks: tuple[str, ...] = ()
+    doubled: tuple[str, ...] = field(default=())
+
+
+def read_file(path: Path, form: Form | None = None) -> LogColumns:
+    """Columns of a file.
+
+    Parameters
+    ----------
+    path : Path
+        Text of any dialect, also compressed by gzip; .xlsx; .nc; .parquet.
+    form : Form, optional
+        What was said of it.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file, it is no table, or could be read in two ways.
+    """
+    form = form or Form()
+    if path.is_dir():
+        raise ShipcosimError(Problem(str(path), "is a folder, no table.", "Name the file of a log."))
+    if not path.is_file():
+        raise ShipcosimError(Problem(str(path), "there is no such file."))
+    if path.suffix.lower() in (".nc", ".parquet"):
+        from shipcosim.series import read_columns
+
+        columns = read_columns(path)
+        parts = [{name: pair[i] for name, pair in columns.items()} for i in (0, 1)]
+        return LogColumns(str(path), parts[0], parts[1])
+    if is_workbook(path):
+        text, said = text_of_sheet(path, form.sheet)
+        form = form.model_copy(update={"separator": "\t"})
+    else:
+        text, said = text_of(path, form.encoding)
+    read = _of_text(str(path), text, form)
+    return replace(read, remarks=(*said, *read.remarks))
+
+
+def _of_text(source: str, text: str, form: Form) -> LogColumns:
+    lines = text.splitlines()
+    layout = layout_of(source, lines, form, is_unit)
+    rows, said = _rows(source, lines, layout)
+    width = len(layout.header)
+    frame = _frame(rows, layout.separator, width)
+    decimal, frame = _with_decimal_sign(source, frame, rows, layout.separator, form)
+    names, units, doubled = _names(layout)
+    values = {}
+    for i, name in enumerate(names):
+        values[name], more = _column(name, frame[i], decimal)
+        said += more
+    if decimal == ",":
+        said.append("Numbers are read with a decimal comma.")
+    return LogColumns(source, values, units, (*layout.remarks, *said), doubled)
+
+
+def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
+    """Names that differ, their units, and those that stand there more than once."""
+    names, units, seen = [], {}, Counter()
+    for i, header in enumerate(layout.header):
+        name, unit = name_and_unit(header)
+        name = name or f"column {i + 1}"
+        seen[name] += 1
+        name = name if seen[name] == 1 else f"{name} ({seen[name]})"
+        below = layout.units[i] if i < len(layout.units) else ""
+        names.append(name)
+        units[name] = unit or below
+    return names, units, tuple(name for name, count in seen.items() if count > 1)
+
+
+def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], list[str]]:
+    """Lines of values of the right length, and what was left out."""
+    rest, separator, width = lines[layout.first :], layout.separator, len(layout.header)
+    rows = [line for line in rest if line.strip() and not (line[0] in "#%/! " and is_comment(line))]
+    said, comments = [], sum(1 for line in rest if line.strip()) - len(rows)
+    if comments:
+        said.append(f"{comments} comment line{'s' * (comments > 1)} between rows left out.")
+    counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
+    if (counts == width + 1).mean() > 0.5 and all(not line.rstrip(" ").removesuffix(separator).endswith("\0")
+                                                  and line.rstrip(" \r").endswith(separator) for line in rows[:50]):
+        rows = [line.rstrip(" \r").removesuffix(separator) for line in rows]
+        counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
+    bad = counts != width
+    if (counts < width).mean() > _FEW and not (counts > width).any():
+        said.append(f"{int(bad.sum())} rows have fewer cells than the header: what they lack is left empty.")
+        return rows, said
+    if bad.mean() > max(_FEW, 1.5 / len(rows)):
+        raise ShipcosimError(_ragged(source, lines, layout, rows, counts, width))
+    if bad.any():
+        row = int(np.flatnonzero(bad)[0])
+        said.append(
+            f"{int(bad.sum())} row{'s' * (bad.sum() > 1)} without {width} cells left out, the first '{rows[row][:40]}'."
+        )
+        rows = [line for line, wrong in zip(rows, bad, strict=True) if not wrong]
+    header = [name for name in layout.header if name]
+    again = [i for i, line in enumerate(rows) if header and header[0] in line and
+             [c for c in cells_in(line, separator) if c] == header]
+    if again:
+        said.append(f"The header stands there again {len(again)} times: left out.")
+        rows = [line for i, line in enumerate(rows) if i not in set(again)]
+    return rows, said
+
+
+def _ragged(source, lines, layout, rows, counts, width):
+    """What is wrong where many rows have another length than the header."""
+    usual = Counter(counts.tolist()).most_common(1)[0][0]
+    row = int(np.flatnonzero(counts != width)[0])
+    line = next(i for i in range(layout.first, len(lines)) if lines[i].startswith(rows[row]))
+    found = f"has {counts[row]} cells, and the header has {width}."
+    remedy = "Each row needs one for each name."
+    if layout.separator == "," and usual in (2 * width, 2 * width - 1):
+        remedy = "Are these decimal commas between commas? Separate the columns by semicolons."
+    return Problem(f"{source}, line {line + 1}", found, remedy)
+
+
+def _width(line: str, separator: str) -> int:
+    if separator == " " or '"' in line:
+        return len(cells_in(line, separator))
+    return line.count(separator) + 1
+
+
+def _frame(rows: list[str], separator: str, width: int, texts: Any = None) -> Any:
+    import pandas
+
+    splits = {"sep": r"\s+"} if separator == " " else {"sep": separator, "skipinitialspace": True}
+    words = sorted({w for word in NOTHING for w in (word, word.upper(), word.capitalize())} | {"NaN", "NaT", "N/a"})
+    return pandas.read_csv(
+        io.StringIO("\n".join(rows)),
+        header=None,
+        names=range(width),
+        index_col=False,
+        na_values=words,
+        keep_default_na=False,
+        low_memory=False,
+        dtype=texts,
+        **splits,
+    )
+
+
+def _with_decimal_sign(source, frame, rows, separator, form):
+    """Decimal sign of a file, and its table once more where a point may group thousands."""
+    texts = [i for i in frame if frame[i].dtype.kind not in "fiub"]
+    if form.decimal is not None:
+        decimal = form.decimal
+    else:
+        decimal = decimal_of(source, _with_comma(frame[i] for i in texts)) or "."
+    if decimal == ".":
+        return decimal, frame
+    points = {i: "str" for i in frame if frame[i].dtype.kind == "f"}
+    anew = _frame(rows, separator, frame.shape[1], points)
+    for i in points:
+        cells = anew[i].dropna()
+        dotted = cells[cells.str.contains(".", regex=False)]
+        if len(dotted) and not dotted.str.fullmatch(r"\s*[+-]?\d{1,3}(\.\d{3})+\s*").all():
+            continue  # a point that cannot group thousands is a decimal point
+        if len(dotted) and form.decimal is None:
+            cell = dotted.iloc[0].strip()
+            found = f"'{cell}' can be {cell} or {cell.replace('.', '')}, as other numbers have a decimal comma."
+            remedy = 'Say which in a channel file: file = {decimal = ","} groups thousands by points.'
+            raise ShipcosimError(Problem(source, found, remedy))
+        frame[i] = anew[i]
+    return decimal, frame
+
+
+def _with_comma(columns):
+    """Cells that are figures with a comma, each once, of columns that are mostly such."""
+    cells = []
+    for column in columns:
+        text = column.dropna().astype("str").str.strip()
+        text = text[~text.str.lower().isin(NOTHING)]
+        numbers = text[text.str.fullmatch(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?")]
+        if len(numbers) > 0.9 * len(text):
+            cells += numbers[numbers.str.contains(",", regex=False)].unique().tolist()
+    return cells
+
+
+def _column(name, cells, decimal):
+    """Values of a column, and what is to be said of them."""
+    if cells.dtype.kind in "fiub":
+        return cells.to_numpy(float), []
+    values, said = numbers_of(name, cells, decimal)
+    return values, said
+
+
+_WITH_UNIT = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*([^\d\s].*)")

@@ -1,0 +1,70 @@
+"""Bytes of a log as text: compressed or not, in the encodings that loggers and spreadsheets write."""
+
+from __future__ import annotations
+
+import codecs
+import gzip
+import zlib
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["text_of"]
+
+_MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+
+
+def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
+    """Text of a file and what is to be said of its encoding.
+
+    Parameters
+    ----------
+    path : Path
+        Text, or such compressed by gzip, whatever its name ends in.
+    encoding : str, optional
+        Of the text; else by its byte order mark, UTF-8, UTF-16 where every other byte is zero, Windows-1252.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be read, is no text, or not in this encoding.
+    """
+    try:
+        content = path.read_bytes()
+        if content.startswith(b"\x1f\x8b"):
+            content = gzip.decompress(content)
+    except (OSError, EOFError, zlib.error) as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
+    if not content.strip(b"\x00 \r\n\t"):
+        raise ShipcosimError(Problem(str(path), "is empty.", "Each row is a time and its values."))
+    used = encoding or _encoding_of(content)
+    try:
+        text = content.decode(used)
+    except (UnicodeDecodeError, LookupError) as error:
+        remedy = 'Say its encoding in a channel file: file = {encoding = "latin-1"}.'
+        raise ShipcosimError(Problem(str(path), f"is no text in {used}: {error}.", remedy)) from error
+    if "\x00" in text[:4096]:
+        raise ShipcosimError(Problem(str(path), "is no text: it holds zero bytes.", "Tables are text, .xlsx or .nc."))
+    is_usual = encoding is not None or used in ("utf-8", "utf-8-sig")
+    return text.removeprefix("\ufeff"), [] if is_usual else [f"Read as {used}, as it is not UTF-8."]
+
+
+def _encoding_of(content: bytes) -> str:
+    for mark, name in _MARKS:
+        if content.startswith(mark):
+            return name
+    first = content[:400]
+    if len(first) > 3 and first[1::2].count(0) > 0.6 * len(first[1::2]):
+        return "utf-16-le"
+    if len(first) > 3 and first[0::2].count(0) > 0.6 * len(first[0::2]):
+        return "utf-16-be"
+    try:
+        content.decode("utf-8")
+        return "utf-8"
+    except UnicodeDecodeError:
+        pass
+    try:
+        content.decode("cp1252")
+        return "cp1252"
+    except UnicodeDecodeError:
+        return "latin-1"

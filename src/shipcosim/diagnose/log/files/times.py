@@ -1,0 +1,213 @@
+"""Times as people and machines write them, as seconds: dates in many orders, clock times past midnight, epochs."""
+
+from __future__ import annotations
+
+import re
+from datetime import datetime
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["EPOCHS", "epoch_unit", "seconds_of", "seconds_of_clock"]
+
+EPOCHS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+_SINCE, _UNTIL = 3e8, 4.2e9  # s after 1970 that a log can be from: 1979 to 2103
+DAY = 86400.0
+_DATES = {
+    "ymd": ("%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%Y%m%d", "%Y:%m:%d", "%y-%m-%d", "%y/%m/%d", "%y%m%d", "%Y %m %d"),
+    "dmy": ("%d/%m/%Y", "%d-%m-%Y", "%d.%m.%Y", "%d/%m/%y", "%d-%m-%y", "%d.%m.%y", "%d-%b-%Y", "%d %b %Y", "%d-%b-%y")
+    + ("%d/%b/%Y", "%d %B %Y", "%d. %b %Y", "%a %d %b %Y", "%d%m%Y", "%d%m%y"),
+    "mdy": ("%m/%d/%Y", "%m-%d-%Y", "%m/%d/%y", "%m-%d-%y", "%b %d %Y", "%b %d, %Y", "%B %d, %Y", "%a %b %d %Y"),
+}
+_CLOCKS = ("%H:%M:%S.%f", "%H:%M:%S", "%H:%M", "%I:%M:%S.%f %p", "%I:%M:%S %p", "%I:%M %p", "%H%M%S.%f", "%H%M%S")
+_BETWEEN = (" ", "T", "_", ", ", ",", "-", "  ")
+_ZONE = re.compile(r"\s*(?:Z|UTC|GMT|[+-]00:?00)$", re.IGNORECASE)
+_OTHER_ZONE = re.compile(r"(?<=:\d\d)(?P<fraction>\.\d+)?\s*(?P<zone>[+-]\d\d:?\d\d)$")
+_COLON_FRACTION = re.compile(r"^(?P<clock>.*\d\d:\d\d:\d\d):(?P<fraction>\d{1,9})$")
+_NAMES = {"dmy": "day/month/year", "mdy": "month/day/year", "ymd": "year/month/day"}
+
+
+def epoch_unit(values: np.ndarray) -> str | None:
+    """Unit of numbers that can only be a time since 1970; None for others.
+
+    Examples
+    --------
+    >>> epoch_unit(np.array([1.7110e18, 1.7111e18])), epoch_unit(np.array([1711107166.2])), epoch_unit(np.arange(9.0))
+    ('ns', 's', None)
+    """
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return None
+    first, last = np.quantile(known, [0.02, 0.98])
+    return next((unit for unit, size in EPOCHS.items() if _SINCE < first / size and last / size < _UNTIL), None)
+
+
+def seconds_of(texts: np.ndarray, order: str | None = None) -> tuple[np.ndarray, list[str]] | None:
+    """Stamps of date and time, or of time alone, as seconds after the first; None where they are none.
+
+    Parameters
+    ----------
+    texts : (n,) array of str or None
+        The stamps.
+    order : str, optional
+        ``"dmy"``, ``"mdy"`` or ``"ymd"``.
+
+    Returns
+    -------
+    (n,) array and list of str
+        NaN where there is no stamp, and what is to be said; clock times that pass midnight go on.
+
+    Raises
+    ------
+    ShipcosimError
+        If day and month can be exchanged, and that makes a difference.
+    """
+    import pandas
+
+    cells, zone = _uniform(pandas.Series(texts, dtype="object"))
+    known = cells.dropna()
+    if not len(known):
+        return None
+    if zone is not None:
+        cells = cells.astype("object")
+    for clock in _CLOCKS:
+        if _fits(known, clock):
+            parsed = pandas.to_datetime("2000-01-01 " + cells, format=f"%Y-%m-%d {clock}", errors="coerce")
+            if _whole(parsed, cells):
+                return seconds_of_clock(_since_first(parsed, "2000-01-01"))
+    readings = {}
+    for key, dates in _DATES.items():
+        for date, (between, clock) in product(dates, product(_BETWEEN, _CLOCKS)):
+            form = f"{date}{between}{clock}"
+            if key not in readings and (order or key) == key and _fits(known, form):
+                parsed = pandas.to_datetime(cells, format=form, errors="coerce")
+                if _whole(parsed, cells):
+                    readings[key] = _since_first(parsed)
+    if not readings and order is None:
+        return _other_stamps(cells)
+    if not readings:
+        return None
+    times, said = _decided(readings, str(known.iloc[0]))
+    if zone is not None:
+        times = times - zone
+        times = times - times[np.isfinite(times)][0]
+    return times, said
+
+
+def _fits(known, form):
+    """Whether the first and the last of the stamps have this form."""
+    try:
+        for cell in (known.iloc[0], known.iloc[-1]):
+            datetime.strptime(re.sub(r"(\.\d{6})\d+", r"\1", cell), form)
+    except (ValueError, TypeError):
+        return False
+    return True
+
+
+def _whole(parsed, cells):
+    """Whether nearly all cells were read."""
+    return int(parsed.notna().sum()) >= 0.99 * int(cells.notna().sum())
+
+
+def _uniform(cells) -> tuple[Any, np.ndarray | None]:
+    """Stamps without their zone, with a point before the fraction everywhere or nowhere; what zones are ahead. [s]"""
+    texts = cells.where(cells.notna(), None).astype("str").str.strip().where(cells.notna())
+    texts = texts.str.replace(_ZONE, "", regex=True)
+    first = texts.dropna().iloc[0] if texts.notna().any() else ""
+    ahead = None
+    if _OTHER_ZONE.search(first):
+        zones = texts.str.extract(_OTHER_ZONE)["zone"].str.replace(":", "")
+        sign = np.where(zones.str.startswith("-"), -1.0, 1.0)
+        ahead = (sign * (zones.str[1:3].astype(float) * 3600 + zones.str[3:5].astype(float) * 60)).to_numpy(float)
+        texts = texts.str.replace(_OTHER_ZONE, lambda found: found["fraction"] or "", regex=True)
+    if _COLON_FRACTION.match(first):
+        texts = _with_point(texts)
+    texts = texts.str.replace(r"(:\d\d),(\d+)", r"\1.\2", regex=True)
+    has_point = texts.str.contains(r":\d\d\.\d+|\d{6}\.\d+", regex=True, na=False)
+    if has_point.any() and not has_point.all():
+        bare = ~has_point & texts.notna()
+        texts = texts.where(~bare, texts.str.replace(r"(:\d\d)(?!:|\d)", r"\1.0", n=1, regex=True)
+                            if first.count(":") else texts + ".0")
+        texts = texts.str.replace(r"(:\d\d)\.0(:\d\d)", r"\1\2.0", regex=True)
+    texts = texts.str.replace(r"\s*([AaPp])\.?[Mm]\.?$", lambda found: f" {found[1].upper()}M", regex=True)
+    return texts, ahead
+
+
+def _with_point(texts):
+    """Stamps with a colon before the fraction. Fractions of many lengths are whole micro- or milliseconds."""
+    parts = texts.str.extract(_COLON_FRACTION)
+    lengths = parts["fraction"].str.len()
+    longest = int(lengths.max())
+    if lengths.nunique() > 1 and longest in (3, 6) and not parts["fraction"].str.match(r"0\d+").any():
+        parts["fraction"] = parts["fraction"].str.zfill(longest)
+    return (parts["clock"] + "." + parts["fraction"]).where(parts["clock"].notna(), texts)
+
+
+def _since_first(parsed, start=None):
+    """Seconds of parsed stamps after a date, or after the first of them."""
+    import pandas
+
+    stamps = parsed.to_numpy().astype("datetime64[ns]")
+    known = stamps[~np.isnat(stamps)]
+    base = np.datetime64(start, "ns") if start else known[0]
+    seconds = (stamps - base) / np.timedelta64(1, "s")
+    return np.where(pandas.isna(parsed), np.nan, seconds)
+
+
+def _other_stamps(cells):
+    """What pandas knows as ISO 8601."""
+    import pandas
+
+    parsed = pandas.to_datetime(cells, format="ISO8601", errors="coerce", utc=True)
+    if not _whole(parsed, cells):
+        return None
+    return _since_first(parsed.dt.tz_localize(None)), []
+
+
+def _decided(readings: dict[str, np.ndarray], shown: str) -> tuple[np.ndarray, list[str]]:
+    """The reading of dates that holds: the only one, one of several that are alike, or the one without leaps."""
+    orders = list(readings)
+    first = readings[orders[0]]
+    if all(np.allclose(readings[order], first, equal_nan=True) for order in orders[1:]):
+        names = " or ".join(_NAMES[order] for order in orders)
+        said = f"Dates such as '{shown}' can be {names}: the same for times within the log."
+        return first, [said] if len(orders) > 1 else []
+    leaps = {order: _largest_step(values) for order, values in readings.items()}
+    smooth = [order for order, leap in leaps.items() if leap < 20 * DAY]
+    if len(smooth) == 1 and len(orders) > 1:
+        return readings[smooth[0]], [f"Dates such as '{shown}' are {_NAMES[smooth[0]]}, else the log would leap."]
+    if len(orders) == 1:
+        return first, []
+    both = " or ".join(f"{_NAMES[order]} (lasting {np.nanmax(v) - np.nanmin(v):g} s)" for order, v in readings.items())
+    remedy = f'Say which in a channel file: file = {{dates = "{orders[0]}"}}.'
+    raise ShipcosimError(Problem("", f"dates such as '{shown}' can be {both}.", remedy))
+
+
+def _largest_step(values):
+    known = values[np.isfinite(values)]
+    return float(np.abs(np.diff(known)).max()) if len(known) > 1 else 0.0
+
+
+def seconds_of_clock(seconds: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Times of day that go on past midnight, and what is to be said.
+
+    Parameters
+    ----------
+    seconds : (n,) array
+        After midnight. [s]
+
+    Examples
+    --------
+    >>> seconds_of_clock(np.array([86398.0, 86399.0, 0.0, 1.0]))[0].tolist()
+    [86398.0, 86399.0, 86400.0, 86401.0]
+    """
+    known = np.flatnonzero(np.isfinite(seconds))
+    steps = np.diff(seconds[known])
+    days = np.cumsum((steps < -0.5 * DAY).astype(float) - (steps > 0.5 * DAY))
+    times = seconds.copy()
+    times[known[1:]] += DAY * days
+    passed = int(days[-1]) if len(days) else 0
+    return times, [f"Clock times pass midnight {passed} time{'s' * (passed > 1)}: they go on."] if passed else []

@@ -1,0 +1,1 @@
+"""Names of columns as the field writes them: what they mean, their units, the thrusters that they name."""

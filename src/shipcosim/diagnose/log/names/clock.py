@@ -1,0 +1,135 @@
+"""The column of time among those that may be it, and its unit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from shipcosim.diagnose.log.channels import Channel
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.files.times import epoch_unit, seconds_of
+from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
+from shipcosim.diagnose.log.names.vocabulary import words_of
+from shipcosim.diagnose.log.values import CLOCK_NUMBER
+from shipcosim.errors import ShipcosimError
+
+__all__ = ["time_of"]
+
+_STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
+_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
+
+
+def time_of(guesses: list[Guess], log: LogColumns, form: Form) -> tuple[Guess | None, list[Guess]]:
+    """The guess that is the time, and the others with why they are not.
+
+    Parameters
+    ----------
+    guesses : list of Guess
+        Columns that may be it by their names.
+    log : LogColumns
+        The file.
+    form : Form
+        What was said of it.
+
+    Raises
+    ------
+    ShipcosimError
+        If day and month of stamps can be exchanged.
+    """
+    if pair := _seconds_and_nanoseconds(log):
+        return pair, [replace(g, role="", why=f"'{pair.column}' is the time") for g in guesses]
+    usable = [one for guess in guesses if (one := _usable(guess, log, form))]
+    if not usable:
+        usable = [one for name in log.values if (one := _stamps(name, log, form))]
+    usable.sort(key=lambda g: (g.rank, log.values[g.column].dtype.kind == "O" and _is_date(g.column)))
+    best = usable[0] if usable else None
+    rest = [g for g in guesses if best is None or g.column not in best.channel.columns]
+    why = f"'{best.column}' is the time" if best else "it cannot be read as times"
+    return best, [replace(guess, role="", why=why) for guess in rest]
+
+
+def _seconds_and_nanoseconds(log):
+    """Two columns of a stamp of ROS."""
+    for name, values in log.values.items():
+        words = words_of(name)
+        if words[-1:] != ("nanoseconds",) or values.dtype.kind != "f":
+            continue
+        for other in log.values:
+            if words_of(other) == (*words[:-1], "seconds") and _all_between(values, 0.0, 1e9):
+                channel = Channel(column=other, nanoseconds=name)
+                return Guess(other, "time", channel, SURE, unit="s")
+    return None
+
+
+def _all_between(values, least, most):
+    known = values[np.isfinite(values)]
+    return bool(len(known)) and known.min() >= least and known.max() < most
+
+
+def _usable(guess: Guess, log: LogColumns, form: Form) -> Guess | None:
+    """A guess with the unit of its numbers, or with the date beside its clock; None where it is no time."""
+    values = log.values[guess.column]
+    if values.dtype.kind == "O":
+        return _stamps(guess.column, log, form, guess)
+    if values.dtype.kind == "M" or guess.unit and guess.unit.lower() not in ("utc", "local", "date"):
+        return guess
+    if guess.channel and guess.channel.nanoseconds:
+        return guess
+    known = values[np.isfinite(values)]
+    if len(np.unique(known[:1000])) < 2 and len(np.unique(known)) < 2:
+        return None if guess.rank > EXACT else guess
+    if epoch_unit(values):
+        return replace(guess, rank=min(guess.rank, SURE), why="")
+    if guess.rank == EXACT:
+        return guess
+    if _is_clock_number(known) and set(words_of(guess.column)) & {"utc", "hhmmss", "clock", "gps", "day"}:
+        unit = {"unit": CLOCK_NUMBER}
+        why = "123519 is taken for 12:35:19"
+        return replace(guess, channel=guess.channel.model_copy(update=unit), rank=GUESS, why=why, unit=CLOCK_NUMBER)
+    if _is_date(guess.column):
+        return None
+    steps = np.diff(known)
+    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
+    if step == 0.0 or _STEPS[0] <= step <= _STEPS[1]:
+        return guess
+    unit = next((u for u, size in _UNITS.items() if _STEPS[0] <= step * size <= _STEPS[1]), None)
+    if unit is None:
+        return guess
+    why = f"no unit is stated: rows are {step * _UNITS[unit]:g} s apart in {unit}, and {step:g} s in s"
+    return replace(guess, channel=guess.channel.model_copy(update={"unit": unit}), rank=GUESS, why=why, unit=unit)
+
+
+def _is_clock_number(known):
+    """Whether numbers can be hhmmss, and are no seconds, as minutes and seconds end at 60."""
+    whole = np.floor(known)
+    inside = known.min() >= 0.0 and known.max() < 240000.0
+    return bool(inside and (whole % 100 < 60).all() and (whole // 100 % 100 < 60).all() and known.max() > 100.0)
+
+
+def _is_date(name):
+    return "date" in words_of(name) and "time" not in words_of(name)
+
+
+def _stamps(name: str, log: LogColumns, form: Form, guess: Guess | None = None) -> Guess | None:
+    """A column of texts that are stamps, with the column of dates beside it where they are clock times."""
+    values = log.values[name]
+    told = [value for value in values if value is not None] if values.dtype.kind == "O" else []
+    if not told or not any(char.isdigit() for char in str(told[0])):
+        return None
+    sample = np.array([told[0], told[len(told) // 2], told[-1]], object)
+    try:
+        if seconds_of(sample, form.dates) is None:
+            return None
+    except ShipcosimError:
+        pass  # reading says how it can be read
+    guess = guess or Guess(name, "time", Channel(column=name), SURE)
+    is_clock = ":" in str(told[0]) and len(str(told[0]).split(":")[0].strip()) <= 2
+    dates = [other for other in log.values if _is_date(other) and other != name]
+    if is_clock and dates:
+        channel = guess.channel.model_copy(update={"date": dates[0]})
+        return replace(guess, channel=channel, rank=min(guess.rank, SURE), why="")
+    if ":" not in str(told[0]) and len(set(map(str, sample))) < 2:
+        return None
+    return replace(guess, rank=min(guess.rank, SURE), why="")

@@ -1,0 +1,104 @@
+"""What a log's own channels say of a unit or a frame that nobody stated: the motion they tell must be the same one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+__all__ = ["frame_of_angle", "unit_of_rate", "unit_of_speed"]
+
+_SPEEDS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}
+_RATES = {"deg/s": 1.0, "rad/s": 180.0 / np.pi, "deg/min": 1.0 / 60.0}
+_FAR = 0.15  # by which a ratio may be off a unit's, as a logarithm: units of speed differ by 1.85
+_ALIKE = 0.9  # correlation of two ways to tell a motion, from which on they are compared. Assumed.
+_SPANS = (3, 10, 30, 100)  # rows
+_CLEAR, _UNCLEAR = 0.85, 0.6  # length of the mean direction between course and bow that holds, that does not. Assumed.
+_BESIDE = 60.0  # deg, by which a course may be off the bow throughout
+
+
+def unit_of_speed(time: np.ndarray, north: np.ndarray, east: np.ndarray, speed: np.ndarray) -> str | None:
+    """Unit of a speed, by the way that positions tell; None where they do not tell it.
+
+    Parameters
+    ----------
+    time, north, east : (n,) array
+        [s, m, m]
+    speed : (n,) array
+        In the unknown unit.
+    """
+    rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(speed)
+    t, way = time[rows], (north + 1j * east)[rows]
+    return _unit_by(t, speed[rows], lambda k: np.abs(way[k:] - way[:-k]), _SPEEDS)
+
+
+def unit_of_rate(time: np.ndarray, heading: np.ndarray, rate: np.ndarray) -> str | None:
+    """Unit of a yaw rate, by the heading in degrees; None where it does not tell it.
+
+    Examples
+    --------
+    >>> t = np.arange(200.0)
+    >>> unit_of_rate(t, 30.0 * np.sin(t / 20), np.radians(1.5 * np.cos(t / 20)))
+    'rad/s'
+    """
+    rows = np.isfinite(time) & np.isfinite(heading) & np.isfinite(rate)
+    if rows.sum() < 4 * _SPANS[0]:
+        return None
+    turned = np.unwrap(heading[rows], period=360.0)
+    return _unit_by(time[rows], rate[rows], lambda k: turned[k:] - turned[:-k], _RATES)
+
+
+def _unit_by(time, rate, change, units):
+    """Unit in which the integral of a rate is the change over spans of some rows."""
+    steps = np.diff(time)
+    if len(time) < 4 * _SPANS[0] or not (steps > 0.0).all():
+        return None
+    told = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps)))
+    best, ratio = 0.0, None
+    for k in _SPANS:
+        if len(time) < 4 * k:
+            break
+        x, y = told[k:] - told[:-k], change(k)
+        norm = float(np.sqrt((x @ x) * (y @ y)))
+        if norm > 0.0 and (x @ y) / norm > max(best, _ALIKE):
+            best, ratio = (x @ y) / norm, (y @ y) / (x @ y)
+    if ratio is None:
+        return None
+    unit = min(units, key=lambda name: abs(np.log(ratio / units[name])))
+    return unit if abs(np.log(ratio / units[unit])) < _FAR else None
+
+
+def frame_of_angle(
+    time: np.ndarray, north: np.ndarray, east: np.ndarray, readings: dict[str, np.ndarray]
+) -> str | None:
+    """Which of several readings of a heading agrees with the course; None where not one alone does.
+
+    Parameters
+    ----------
+    time, north, east : (n,) array
+        [s, m, m]
+    readings : dict of str to (n,) array
+        Headings. [deg]
+
+    Examples
+    --------
+    >>> t = np.arange(300.0)
+    >>> heading = 90 * np.sin(t / 40)
+    >>> way = np.cumsum(np.exp(1j * np.radians(heading)))
+    >>> frame_of_angle(t, way.real, way.imag, {"NED": heading, "ENU": 90 - heading})
+    'NED'
+    """
+    clear, unclear = [], []
+    for name, heading in readings.items():
+        rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(heading)
+        way, bow = (north + 1j * east)[rows], np.exp(1j * np.radians(heading[rows]))
+        best = 0.0 + 0.0j
+        for k in _SPANS:
+            if len(way) < 4 * k:
+                break
+            moved, middle = way[k:] - way[:-k], bow[k // 2 : len(bow) - k + k // 2]
+            total = np.abs(moved).sum()
+            mean = (moved * np.conj(middle)).sum() / total if total > 0.0 else 0.0
+            best = max(best, complex(mean), key=abs)
+        is_clear = abs(best) > _CLEAR and abs(np.degrees(np.angle(best))) < _BESIDE
+        (clear if is_clear else unclear).append((name, abs(best), abs(np.degrees(np.angle(best)))))
+    others_out = all(length < _UNCLEAR or beside > _BESIDE for _, length, beside in unclear)
+    return clear[0][0] if len(clear) == 1 and others_out else None

@@ -1,0 +1,178 @@
+"""One column by itself: the roles that its name and its unit allow, and how sure that is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from shipcosim.diagnose.log.channels import Channel
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.names.thrusters import Drive, drive_of, thrusters_named
+from shipcosim.diagnose.log.names.units import unit_after, unit_for
+from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
+from shipcosim.diagnose.log.roles import ROLES, role_of
+from shipcosim.units import relation, spelled_unit
+
+__all__ = ["EXACT", "GUESS", "SURE", "Guess", "Thrusters", "guesses_of"]
+
+Thrusters = Mapping[str, tuple[str, ...]]
+"""Thrusters of a system by name, with what drives each: ``"rpm"``, ``"azimuth"``, ``"thrust"``."""
+EXACT, SURE, GUESS = 0, 1, 2
+_SUFFIXES = ("m/s", "deg/s", "deg", "s", "m", "rpm", "N", "%")  # units that names end in
+
+
+@dataclass(frozen=True)
+class Guess:
+    """What a column may be.
+
+    Attributes
+    ----------
+    column : str
+        Its name.
+    role : str
+        Its role; empty where it is not used.
+    channel : Channel or None
+        How it gives the role.
+    rank : int
+        `EXACT` where it has the role's name, `SURE` where its name has one meaning, else `GUESS`.
+    why : str
+        Of a guess what is not sure; of a column that is not used why.
+    kind : str
+        ``"command"``, ``"feedback"`` or empty.
+    unit : str
+        As the header or the name states it; empty where they do not.
+    said : tuple of str
+        What is to be said if it is used.
+    """
+
+    column: str
+    role: str = ""
+    channel: Channel | None = None
+    rank: int = GUESS
+    why: str = ""
+    kind: str = ""
+    unit: str = ""
+    said: tuple[str, ...] = field(default=())
+
+
+def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> list[Guess]:
+    """What a column may be, by itself; one guess without a role where it is nothing.
+
+    Parameters
+    ----------
+    column : str
+    log : LogColumns
+        The file.
+    thrusters : mapping, optional
+        Of the system; without, any name of a thruster is one.
+    """
+    values, stated = log.values[column], log.units[column]
+    role = role_of(column)
+    if role and (column in ROLES or thrusters is None or column.rpartition("_")[0] in thrusters):
+        if refused := _of_a_map(column, stated, thrusters):
+            return [refused]
+        return [Guess(column, column, Channel(column=column), EXACT, unit=stated)]
+    if _is_empty(values):
+        return [Guess(column, why="it has no value")]
+    words = words_of(column)
+    if words == ("column", words[-1]) and column.startswith("column "):
+        return [Guess(column, why="it has no name")]
+    if drive := drive_of(words, stated, values):
+        found = _of_thruster(column, drive, stated, thrusters)
+        if found[0].role or meaning_of(words).role is None:
+            return found
+    return [_by_meaning(column, words, stated, values)]
+
+
+def _is_empty(values):
+    if values.dtype.kind == "f":
+        return not np.isfinite(values).any()
+    return values.dtype.kind == "O" and all(value is None for value in values)
+
+
+def _by_meaning(column, words, stated, values):
+    """By the words of the name, with a unit at its end or without."""
+    meaning, unit = meaning_of(words), stated
+    if meaning.role is None and not stated:
+        for target in _SUFFIXES:
+            rest, suffix = unit_after(words, target)
+            again = meaning_of(rest) if suffix else meaning
+            if again.role and _measures(unit_for(suffix, ROLES[again.role].unit), again.role):
+                meaning, unit = again, unit_for(suffix, ROLES[again.role].unit)
+                break
+            if suffix and again.reason and not meaning.reason:
+                meaning = again
+    if meaning.role is None:
+        return Guess(column, why=meaning.reason or "its name is not known")
+    role = meaning.role
+    if unit and role not in ("time", "latitude", "longitude") and not _measures(unit, role):
+        return Guess(column, why=f"its unit '{unit}' is none of {role}, which is in {ROLES[role].unit}")
+    if values.dtype.kind == "O" and role not in ("time", "latitude", "longitude"):
+        shown = next(str(value) for value in values if value is not None)[:20]
+        return Guess(column, why=f"it holds texts such as '{shown}'")
+    given = unit if unit and not stated else None
+    channel = Channel(column=column, unit=unit_for(given, ROLES[role].unit) if given else None)
+    rank = GUESS if meaning.doubt else SURE
+    return Guess(column, role, channel, rank, meaning.doubt, unit=unit)
+
+
+def _measures(unit, role):
+    given, wanted = spelled_unit(unit_for(unit, ROLES[role].unit)), spelled_unit(ROLES[role].unit)
+    if given is None or wanted is None:
+        return unit_for(unit, ROLES[role].unit) in ("ft", "ft/s", "km")
+    return relation(given, wanted) in ("same", "convertible")
+
+
+def _of_thruster(column: str, drive: Drive, stated: str, thrusters: Thrusters | None) -> list[Guess]:
+    """What a thruster's column may be."""
+    if thrusters is None:
+        name = "_".join(sorted(drive.place)) or "propeller"
+        names, doubt = [name], ""
+    else:
+        names, doubt = thrusters_named(drive.place, thrusters)
+    there = ", ".join(thrusters) if thrusters else ""
+    if not names:
+        return [Guess(column, why=f"no thruster of the system is meant by it: there is {there}")]
+    if drive.quantity in ("pwm", "percent"):
+        return [Guess(column, why=_needs_a_map(column, drive.quantity, names[0], thrusters))]
+    if not drive.quantity:
+        return [Guess(column, why=f"it says no quantity of {names[0]}: rpm, azimuth or thrust")]
+    found = []
+    for name in names:
+        role = f"{name}_{drive.quantity}"
+        unit = role_of(role).unit
+        wanted = (thrusters or {}).get(name, (drive.quantity,))
+        if drive.quantity not in wanted:
+            found.append(Guess(column, why=f"the system drives {name} by {' and '.join(wanted) or 'nothing logged'}"))
+            continue
+        known = spelled_unit(unit_for(stated, unit)) if stated else None
+        if stated and (known is None or relation(known, spelled_unit(unit)) not in ("same", "convertible")):
+            found.append(Guess(column, why=f"its unit '{stated}' is none of {role}, which is in {unit}"))
+            continue
+        why = doubt or drive.doubt
+        channel = Channel(column=column)
+        said = ("a command; there is no feedback",) if drive.kind == "command" else ()
+        found.append(Guess(column, role, channel, GUESS if why else SURE, why, drive.kind, stated, said))
+    used = [guess for guess in found if guess.role]
+    return used or found[:1]
+
+
+def _of_a_map(column, stated, thrusters):
+    """A guess without a role for a thruster's channel in per cent or pulses, None for others."""
+    quantity = {"%": "percent", "pct": "percent", "percent": "percent", "us": "pwm", "µs": "pwm", "pwm": "pwm"}
+    kind = quantity.get(stated.strip().lower())
+    if kind is None or column in ROLES:
+        return None
+    return Guess(column, why=_needs_a_map(column, kind, column.rpartition("_")[0], thrusters))
+
+
+def _needs_a_map(column, quantity, name, thrusters):
+    """Why a command in pulses or per cent is not used, and what to write."""
+    wanted = next(iter((thrusters or {}).get(name, ())), "rpm")
+    unit = {"rpm": "rpm", "thrust": "N", "azimuth": "deg"}[wanted]
+    pairs = "[[1100, A], [1500, 0], [1900, B]]" if quantity == "pwm" else "[[-100, A], [0, 0], [100, B]]"
+    word = "pulses (PWM)" if quantity == "pwm" else "per cent"
+    entry = f'{name}_{wanted} = {{column = "{column}", map = {pairs}}}'
+    return f"{word} become {wanted} by a map only: write {entry}, A and B in {unit}"

@@ -1,0 +1,187 @@
+"""All columns of a log together: which one has which role, what is sure, what a guess, and what is not used and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.diagnose.log.channels import Channel
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.positions import hemisphere_signs
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.names.clock import time_of
+from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess, Thrusters, guesses_of
+from shipcosim.diagnose.log.names.settled import settled
+from shipcosim.diagnose.log.names.vocabulary import words_of
+
+__all__ = ["Proposal", "propose"]
+
+_POSITIONS = (("north", "east"), ("latitude", "longitude"))
+_PAIRS = (*_POSITIONS, ("speed_over_ground", "course_over_ground"), ("north_velocity", "east_velocity"))
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What the columns of a log are.
+
+    Attributes
+    ----------
+    used : tuple of Guess
+        One for each role, in the order of the file.
+    unused : tuple of Guess
+        The other columns, each with why.
+    form : Form
+        What was said of the file.
+    """
+
+    used: tuple[Guess, ...]
+    unused: tuple[Guess, ...]
+    form: Form
+
+    def channels(self, guessed: bool = False) -> dict[str, Channel]:
+        """Channels by role: those that are sure, or the guesses as well."""
+        return {g.role: g.channel for g in self.used if g.channel and (guessed or g.rank < GUESS)}
+
+
+def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | None = None) -> Proposal:
+    """Roles of the columns of a log, by their names, units and values.
+
+    Parameters
+    ----------
+    log : LogColumns
+        As from `read_file`.
+    thrusters : mapping of str to tuple of str, optional
+        Of the system, and what drives each; any without.
+    form : Form, optional
+        What was said of the file.
+    """
+    form = form or Form()
+    every = [guess for column in log.values for guess in guesses_of(column, log, thrusters)]
+    every = _known_together(every)
+    chosen, left = _chosen([g for g in every if g.role and g.role != "time"])
+    left += [g for g in every if not g.role]
+    clock, others = time_of([g for g in every if g.role == "time"], log, form)
+    chosen |= {"time": clock} if clock else {}
+    left += others
+    left = _with_quaternion(chosen, log, left)
+    left = _with_hemispheres(chosen, log, left)
+    settled(chosen, log, form)
+    left += _of_one_kind(chosen)
+    taken = {name for guess in chosen.values() if guess.channel for name in guess.channel.columns}
+    unused = {guess.column: guess for guess in reversed(left) if guess.column not in taken}
+    order = list(log.values)
+    used = sorted(chosen.values(), key=lambda g: (g.role != "time", order.index(g.column)))
+    return Proposal(tuple(used), tuple(unused[name] for name in order if name in unused), form)
+
+
+def _known_together(every):
+    """Letters that have one meaning where all of them are there: N and E; u, v and r."""
+    letters = {guess.column: words_of(guess.column) for guess in every}
+    single = {words[0] for words in letters.values() if len(words) == 1}
+    sure = set()
+    if {"n", "e"} <= single:
+        sure |= {"n", "e"}
+    if {"u", "v", "r"} <= single:
+        sure |= {"u", "v", "r"}
+    roles = {"n": "north", "e": "east"}
+    found = []
+    for guess in every:
+        words = letters[guess.column]
+        letter = words[0] if len(words) == 1 else ""
+        if letter in sure and (guess.role not in ("", roles.get(letter, guess.role)) or not guess.role):
+            guess = Guess(guess.column, roles.get(letter, ""), Channel(column=guess.column), unit=guess.unit)
+        found.append(replace(guess, rank=min(guess.rank, SURE), why="") if letter in sure and guess.role else guess)
+    return found
+
+
+def _chosen(guesses):
+    """The best guess for each role, and the others with why they are not used."""
+    kinds = {"feedback": 0, "": 1, "command": 2}
+    chosen, left = {}, []
+    for role in dict.fromkeys(guess.role for guess in guesses):
+        ranked = sorted((g for g in guesses if g.role == role), key=lambda g: (g.rank, kinds[g.kind]))
+        best, rest = ranked[0], ranked[1:]
+        beside = [g for g in rest if g.kind == "command" and best.kind != "command"]
+        if beside and best.rank != EXACT:
+            best = replace(best, said=(f"measured; the command beside it, '{beside[0].column}', is not used",))
+        elif best.kind == "command" and rest:
+            best = replace(best, said=())
+        same = [g for g in rest if g.rank == best.rank == SURE and g.kind == best.kind]
+        if same:
+            best = replace(best, rank=GUESS, why=f"'{same[0].column}' says the same")
+        chosen[role] = best
+        for guess in rest:
+            why = "a command, and there is what was measured" if guess in beside else f"'{best.column}' is the {role}"
+            left.append(replace(guess, role="", why=why))
+    return chosen, left
+
+
+def _with_quaternion(chosen, log, left):
+    """A heading from the four columns of an attitude, where there is no other."""
+    if "heading" in chosen and chosen["heading"].rank < GUESS:
+        return left
+    ends = {"w": "w", "x": "x", "y": "y", "z": "z", "0": "w", "1": "x", "2": "y", "3": "z"}
+    groups: dict[tuple, dict[str, str]] = {}
+    for column in log.values:
+        words = words_of(column)
+        last = words[-1] if words else ""
+        before = words[:-1]
+        if len(words) == 1 and len(last) == 2 and last[0] == "q" and last[1] in "wxyz":
+            before, last = ("q",), last[1]
+        if last in ends and (set(before) & {"q", "quaternion", "quat", "orientation", "attitude", "qw", "qx"}):
+            groups.setdefault(before, {})[ends[last]] = column
+    for parts in groups.values():
+        if set(parts) == set("wxyz") and all(log.values[c].dtype.kind == "f" for c in parts.values()):
+            channel = Channel(quaternion=tuple(parts[k] for k in "wxyz"))
+            why = "of a quaternion; it may be of another frame (ENU)"
+            chosen["heading"] = Guess(parts["w"], "heading", channel, GUESS, why)
+            return [guess for guess in left if guess.column not in parts.values()]
+    return left
+
+
+def _with_hemispheres(chosen, log, left):
+    """Latitude and longitude with the columns of N and S, E and W that stand behind them."""
+    order = list(log.values)
+    for role in ("latitude", "longitude"):
+        if role not in chosen:
+            continue
+        guess = chosen[role]
+        after = order[order.index(guess.column) + 1 :][:1]
+        named = [name for name in order if set(words_of(name)) & {"hemisphere", "hemi", "ns", "ew", "hem"}]
+        for name in (*after, *named):
+            if hemisphere_signs(log.values[name], role) is not None:
+                channel = guess.channel.model_copy(update={"hemisphere": name})
+                chosen[role] = replace(guess, channel=channel)
+                left = [one for one in left if one.column != name]
+                break
+    return left
+
+
+def _of_one_kind(chosen):
+    """Takes away what is there twice in another form, or without its other half; these guesses, with why."""
+    left = []
+
+    def drop(roles, why):
+        for role in roles:
+            if role in chosen:
+                left.append(replace(chosen.pop(role), role="", channel=None, why=why))
+
+    for pair in _PAIRS:
+        there = [role for role in pair if role in chosen]
+        if len(there) == 1:
+            other = next(role for role in pair if role not in there)
+            drop(there, f"it is {there[0].replace('_', ' ')}, and no column is {other.replace('_', ' ')}")
+    whole = [pair for pair in _POSITIONS if pair[0] in chosen]
+    if len(whole) == 2:
+        ranks = [max(chosen[role].rank for role in pair) for pair in whole]
+        worse = whole[1] if ranks[0] <= ranks[1] or ranks[0] < GUESS else whole[0]
+        best = whole[0] if worse is whole[1] else whole[1]
+        drop(worse, f"{best[0]} and {best[1]} are used instead")
+    ways = [pair for pair in (("surge", "sway"), *_PAIRS[:1:-1]) if all(role in chosen for role in pair)]
+    ways.sort(key=lambda pair: max(chosen[role].rank for role in pair) == GUESS)
+    for pair in ways[1:]:
+        drop(pair, f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead")
+    if ways and ways[0] != ("surge", "sway"):
+        drop(("surge", "sway"), f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead")
+    return left

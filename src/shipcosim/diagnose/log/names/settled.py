@@ -1,0 +1,208 @@
+"""Units and frames that nobody stated: by what the channels say of each other, or left as guesses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from shipcosim.angles import TURN, wrap_series
+from shipcosim.diagnose.log.earth import metres_per_degree
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
+from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
+from shipcosim.diagnose.log.roles import ROLES
+from shipcosim.diagnose.log.values import values_of
+from shipcosim.errors import ShipcosimError
+
+__all__ = ["settled"]
+
+_DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
+_IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
+_LEFT_OPEN = {"yaw_rate": "deg/s", "speed_over_ground": "kn", "wind_speed": "kn", "true_wind_speed": "kn"}
+
+
+def settled(chosen: dict[str, Guess], log: LogColumns, form: Form) -> None:
+    """Settle what names leave open, in place: units and frames.
+
+    Parameters
+    ----------
+    chosen : dict of str to Guess
+        By role.
+    log : LogColumns
+        The file.
+    form : Form
+        What was said of it.
+    """
+    motion = _motion(chosen, log, form)
+    _settle_heading(chosen, log, form, motion)
+    _settle_axes(chosen, log, form, motion)
+    for role in ("surge", "sway", "speed_over_ground", "north_velocity", "east_velocity"):
+        if _is_open(chosen, role):
+            _settle_speed(chosen, role, log, form, motion)
+    if _is_open(chosen, "yaw_rate"):
+        _settle_rate(chosen, log, form, motion)
+    for role in ("wind_speed", "true_wind_speed"):
+        if _is_open(chosen, role) and _is_short(chosen[role]):
+            _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
+    for role, guess in list(chosen.items()):
+        is_angle = role in ("wind_from", "true_wind_from", "course_over_ground") or role.endswith("_azimuth")
+        if is_angle and _is_open(chosen, role):
+            known = np.abs(_finite(log.values[guess.column]))
+            if len(known) and known.max() <= np.pi + 0.01 and known.max() > 0.0:
+                _guess(chosen, role, "rad", "no unit is stated: rad or deg")
+
+
+def _is_open(chosen, role):
+    """Whether a channel's unit is stated nowhere, and its column is not named by its role."""
+    guess = chosen.get(role)
+    return bool(guess and guess.rank != EXACT and not guess.unit and guess.channel and guess.channel.quaternion is None)
+
+
+def _is_short(guess):
+    """Whether a wind speed has a sailor's short name, whose unit is mostly knots."""
+    return len(guess.column.strip()) <= 4
+
+
+def _finite(values):
+    return values[np.isfinite(values)] if values.dtype.kind == "f" else np.empty(0)
+
+
+def _guess(chosen, role, unit, why):
+    guess = chosen[role]
+    channel = guess.channel.model_copy(update={"unit": unit})
+    chosen[role] = replace(guess, channel=channel, rank=GUESS, why="; ".join(filter(None, (guess.why, why))))
+
+
+def _told(chosen, role, why, **update):
+    """Settled by the log itself."""
+    guess = chosen[role]
+    channel = guess.channel.model_copy(update=update)
+    chosen[role] = replace(guess, channel=channel, rank=SURE, why="", said=(*guess.said, why))
+
+
+def _values(chosen, role, log, form):
+    if role not in chosen:
+        return None
+    try:
+        return values_of(chosen[role].channel, role, log, form)[0]
+    except ShipcosimError:
+        return None  # reading it says what is wrong
+
+
+def _motion(chosen, log, form):
+    """Times and positions of the log [s, m, m], None where it has none."""
+    time = _values(chosen, "time", log, form)
+    if time is None:
+        return None
+    position = [_values(chosen, role, log, form) for role in ("north", "east")]
+    if any(values is None for values in position):
+        latitude, longitude = (_values(chosen, role, log, form) for role in ("latitude", "longitude"))
+        if latitude is None or longitude is None:
+            return time, None, None
+        known = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude) & (np.abs(latitude) < 90.0))
+        if not len(known):
+            return time, None, None
+        meridian, parallel = metres_per_degree(latitude[known[0]])
+        turned = wrap_series(np.radians(longitude - longitude[known[0]]), TURN)
+        position = [meridian * (latitude - latitude[known[0]]), parallel * np.degrees(turned)]
+    rows = np.concatenate(([True], np.diff(time) > 0.0))
+    return time, *(np.where(rows, values, np.nan) for values in position)
+
+
+def _settle_heading(chosen, log, form, motion):
+    """Unit of a heading without one, and whether a yaw is clockwise from north."""
+    if "heading" not in chosen or chosen["heading"].rank == EXACT:
+        return
+    guess = chosen["heading"]
+    is_open = _is_open(chosen, "heading")
+    is_yaw = guess.why.startswith(("yaw", "of a quaternion"))
+    if not is_open and not is_yaw:
+        return
+    raw = _values(chosen, "heading", log, form)
+    if raw is None or not len(_finite(raw)):
+        return
+    units = {"deg": 1.0, "rad": 180.0 / np.pi}
+    if not is_open or np.abs(_finite(raw)).max() > _DEGREES:
+        units = {"deg": 1.0}
+    readings = {(unit, "NED"): size * raw for unit, size in units.items()}
+    if is_yaw:
+        readings |= {(unit, "ENU"): 90.0 - size * raw for unit, size in units.items()}
+    if len(readings) == 1:
+        return
+    found = None
+    if motion is not None and motion[1] is not None:
+        found = frame_of_angle(*motion, readings)
+    if found is None:
+        if is_open and len(units) == 2:
+            _guess(chosen, "heading", "rad", "no unit is stated, and no value is beyond 2 pi: rad or deg")
+        return
+    unit, frame = found
+    said = f"in {unit} and {'clockwise from north' if frame == 'NED' else 'anticlockwise from east'}, as the course says"
+    update = {} if not is_open else {"unit": unit}
+    if guess.channel.quaternion is not None:
+        update, said = {"frame": frame}, f"the quaternion is of {frame}, as the course says"
+    elif frame == "ENU":
+        update |= {"sign": -1, "offset": 90.0 if unit == "deg" else np.pi / 2}
+    _told(chosen, "heading", said, **update)
+
+
+def _settle_axes(chosen, log, form, motion):
+    """Whether x is north and y east, or the other way round, by the heading."""
+    pair = [chosen.get(role) for role in ("north", "east")]
+    if motion is None or motion[1] is None or "heading" not in chosen or not all(pair):
+        return
+    if not all(guess.why.startswith("x north") for guess in pair):
+        return
+    if chosen["heading"].rank == GUESS:
+        return
+    heading = _values(chosen, "heading", log, form)
+    time, x, y = motion
+    readings = {"NED": heading, "ENU": 90.0 - heading}
+    found = frame_of_angle(time, x, y, readings)
+    if found == "NED":
+        for role in ("north", "east"):
+            _told(chosen, role, "x is north and y east, as the heading says")
+    elif found == "ENU":
+        north, east = pair
+        chosen["north"] = replace(north, column=east.column, channel=east.channel)
+        chosen["east"] = replace(east, column=north.column, channel=north.channel)
+        for role in ("north", "east"):
+            _told(chosen, role, "x is east and y north, as the heading says")
+
+
+def _settle_speed(chosen, role, log, form, motion):
+    """Unit of a speed by the positions."""
+    raw = log.values[chosen[role].column]
+    unit = None
+    if motion is not None and motion[1] is not None and raw.dtype.kind == "f":
+        speed = raw
+        if role in ("surge", "sway", "north_velocity", "east_velocity"):
+            other = {"surge": "sway", "sway": "surge", "north_velocity": "east_velocity"}.get(role, "north_velocity")
+            beside = log.values[chosen[other].column] if other in chosen else np.zeros_like(raw)
+            speed = np.hypot(raw, beside) if beside.dtype.kind == "f" else np.abs(raw)
+        unit = unit_of_speed(*motion, speed)
+    if unit == "m/s":
+        chosen[role] = replace(chosen[role], said=(*chosen[role].said, "in m/s, as positions say"))
+    elif unit is not None:
+        guess = chosen[role]
+        channel = guess.channel.model_copy(update={"unit": unit})
+        chosen[role] = replace(guess, channel=channel, said=(*guess.said, f"in {unit}, as positions say"))
+    elif role in _IN_KNOTS:
+        _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
+
+
+def _settle_rate(chosen, log, form, motion):
+    """Unit of a yaw rate by the heading."""
+    heading, raw = _values(chosen, "heading", log, form), log.values[chosen["yaw_rate"].column]
+    unit = None
+    if heading is not None and motion is not None and raw.dtype.kind == "f":
+        unit = unit_of_rate(motion[0], heading, raw)
+    guess = chosen["yaw_rate"]
+    if unit is None:
+        is_rot = guess.column.strip().lower() in ("rot", "rateofturn", "rate of turn", "rate_of_turn")
+        _guess(chosen, "yaw_rate", "deg/min" if is_rot else ROLES["yaw_rate"].unit, "no unit is stated")
+        return
+    channel = guess.channel.model_copy(update={"unit": unit})
+    chosen["yaw_rate"] = replace(guess, channel=channel, said=(*guess.said, f"in {unit}, as the heading says"))

@@ -1,0 +1,153 @@
+"""Columns of thrusters: which thruster of the system, which quantity of it, command or feedback."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
+
+__all__ = ["Drive", "drive_of", "thrusters_named"]
+
+_PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
+_SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What the name of a thruster's column says.
+
+    Attributes
+    ----------
+    quantity : str
+        ``"rpm"``, ``"azimuth"``, ``"thrust"``, ``"pwm"``, ``"percent"``; empty where it says none.
+    place : frozenset of str
+        Words for the thruster: port, bow, 1; empty where there are none but "thruster" and the like.
+    kind : str
+        ``"command"``, ``"feedback"`` or empty.
+    doubt : str
+        Why the quantity is not sure; empty where it is.
+    """
+
+    quantity: str
+    place: frozenset[str]
+    kind: str = ""
+    doubt: str = ""
+
+
+def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | None:
+    """What a column says of a thruster; None where it says nothing of one.
+
+    Parameters
+    ----------
+    words : tuple of str
+        Of its name, see `words_of`.
+    unit : str
+        As stated, or empty.
+    values : (n,) array
+        Its numbers.
+
+    Examples
+    --------
+    >>> drive_of(words_of("stbd_rpm_fb"), "", np.zeros(2))
+    Drive(quantity='rpm', place=frozenset({'starboard'}), kind='feedback', doubt='')
+    >>> drive_of(words_of("wind speed"), "", np.zeros(2)) is None
+    True
+    """
+    told = vocabulary()["words"]
+    kind = next((k for k in ("feedback", "command") if any(w in told[k] for w in words)), "")
+    rest = [w for w in words if w not in told["command"] and w not in told["feedback"] and w not in told["filler"]]
+    if any(word in told["other"] for word in rest):
+        return None
+    generic = set(vocabulary()["thruster"]["generic"]["words"])
+    quantity, word, rest = _quantity(rest)
+    place = frozenset(_places().get(w, w) for w in rest if w not in generic)
+    is_named = len(rest) > len(place) or word in _SURE or bool(set(rest) & set(_places()))
+    known = set(_places().values())
+    if not is_named or any(w not in known and not w.isdigit() and len(w) > 1 for w in place):
+        return None
+    if not quantity and not (place or generic & set(rest)):
+        return None
+    quantity, doubt = _by_values(quantity, word, unit.strip().lower(), values)
+    return Drive(quantity, place, kind, doubt)
+
+
+def thrusters_named(place: frozenset[str], thrusters: Mapping[str, tuple[str, ...]]) -> tuple[list[str], str]:
+    """Thrusters of a system that some words can mean, and why that is a guess; empty where it is none.
+
+    Parameters
+    ----------
+    place : frozenset of str
+        See `Drive`.
+    thrusters : mapping of str to tuple of str
+        Names of the system's, and what drives each.
+
+    Examples
+    --------
+    >>> ship = {"port": ("rpm", "azimuth"), "starboard": ("rpm", "azimuth"), "tunnel": ("rpm",)}
+    >>> thrusters_named(frozenset({"starboard"}), ship)
+    (['starboard'], '')
+    >>> thrusters_named(frozenset({"bow"}), ship)[0], thrusters_named(frozenset({"stern"}), ship)[0]
+    (['tunnel'], [])
+    """
+    placed = {name: _place_of(name) for name in thrusters}
+    if same := [name for name, words in placed.items() if words == place]:
+        return same, "" if len(same) == 1 else "it names several"
+    if not place:
+        main = [name for name, drives in thrusters.items() if len(thrusters) == 1 or "azimuth" in drives]
+        return main or list(thrusters), "" if len(thrusters) == 1 else "one value for all of these is assumed"
+    near = [name for name, words in placed.items() if words and (words < place or place < words)]
+    if len(near) == 1:
+        return near, ""
+    if len(place) == 1 and (number := next(iter(place))).isdigit() and 0 < int(number) <= len(thrusters):
+        return [list(thrusters)[int(number) - 1]], f"they are counted in the order of the system: {', '.join(thrusters)}"
+    if place & {"bow"}:
+        across = [name for name, words in placed.items() if "tunnel" in words]
+        if len(across) == 1:
+            return across, "the tunnel thruster is assumed to be the one at the bow"
+    return near, "it can be any of these" if near else ""
+
+
+def _place_of(name):
+    generic = set(vocabulary()["thruster"]["generic"]["words"]) | set(vocabulary()["words"]["filler"])
+    return frozenset(_places().get(word, word) for word in words_of(name) if word not in generic)
+
+
+@cache
+def _places() -> dict[str, str]:
+    return {word: place for place, words in vocabulary()["thruster"]["places"].items() for word in words}
+
+
+def _quantity(words):
+    """The quantity that some words name, the words for it, and those that are left."""
+    told = vocabulary()["thruster"]
+    phrases = sorted(
+        (tuple(words_of(p)), quantity)
+        for quantity in ("rpm", "azimuth", "thrust", "pwm", "percent")
+        for p in told[quantity]
+    )
+    for phrase, quantity in sorted(phrases, key=lambda pair: -len(pair[0])):
+        for start in range(len(words) - len(phrase), -1, -1):
+            if tuple(words[start : start + len(phrase)]) == phrase:
+                rest = words[:start] + words[start + len(phrase) :]
+                return quantity, phrase[-1], rest
+    return "", "", list(words)
+
+
+def _by_values(quantity, word, unit, values):
+    """The quantity by its unit and its numbers besides."""
+    known = values[np.isfinite(values)] if values.dtype.kind == "f" else np.empty(0)
+    if unit in ("%", "pct", "percent"):
+        return "percent", ""
+    if unit in ("us", "µs", "pwm"):
+        return "pwm", ""
+    inside = len(known) and known.min() >= _PWM[0] and known.max() <= _PWM[1]
+    if quantity == "" and inside:
+        return "pwm", ""
+    if quantity == "" and len(known) and np.abs(known).max() <= 100.0:
+        return "percent", ""
+    is_sure = word in _SURE or unit in ("rpm", "1/min", "deg", "°", "rad", "n", "kn", "rev/s", "rps", "1/s")
+    return quantity, "" if is_sure or quantity in ("", "pwm", "percent") else f"'{word}' may be something else"

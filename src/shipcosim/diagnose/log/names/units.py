@@ -1,0 +1,103 @@
+"""Units as headers of logs write them."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from shipcosim.diagnose.log.names.vocabulary import vocabulary
+from shipcosim.units import relation, spelled_unit
+
+__all__ = ["is_unit", "name_and_unit", "unit_after", "unit_for"]
+
+_BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
+_OTHERS = re.compile(r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$")
+_LONGEST_SUFFIX = 3  # words
+_NO_SUFFIX = {"n", "rpm", "1", "none", "raw", "date", "utc", "local", "iso", "text", "h", "d", "int", "grad", "flag"}
+"""Spellings of units that at the end of a name, after an underscore, mean something else."""
+
+
+def name_and_unit(header: str) -> tuple[str, str]:
+    """Parts of a header: ``name [unit]``, and where it is one ``name (unit)``, ``name {unit}``, ``name, unit``.
+
+    Examples
+    --------
+    >>> name_and_unit("surge (m/s)"), name_and_unit("time [s]"), name_and_unit("heading (true)")
+    (('surge', 'm/s'), ('time', 's'), ('heading (true)', ''))
+    """
+    header = header.strip().strip("'\"").strip()
+    if found := _BRACKETS.match(header):
+        return found["name"].strip(), found["unit"].strip()
+    if found := _OTHERS.match(header):
+        unit = next(text for text in found.group("a", "b", "c", "d") if text is not None).strip()
+        if is_unit(unit) and found["name"].strip():
+            return found["name"].strip(), unit
+    return header, ""
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is the spelling of a unit, as headers have them."""
+    return bool(text.strip()) and (_plain(text) in _spellings() or spelled_unit(text.strip()) is not None)
+
+
+def unit_for(spelling: str, target: str) -> str:
+    """A unit as shipcosim spells it: of several that a spelling can be the one that measures what `target` does.
+
+    Examples
+    --------
+    >>> unit_for("knots", "m/s"), unit_for("ms", "m/s"), unit_for("ms", "s"), unit_for("°/s", "deg/s")
+    ('kn', 'm/s', 'ms', 'deg/s')
+    >>> unit_for("kN", "N"), unit_for("parsec", "m")
+    ('kN', 'parsec')
+    """
+    spelling = spelling.strip()
+    wanted = spelled_unit(target)
+    options = [unit for unit in (spelling, *_spellings().get(_plain(spelling), ())) if spelled_unit(unit) is not None]
+    for unit in options:
+        given = spelled_unit(unit)
+        if wanted is None or given is None or relation(given, wanted) in ("same", "convertible"):
+            return unit
+    return options[-1] if options else _spellings().get(_plain(spelling), (spelling,))[0]
+
+
+def unit_after(words: tuple[str, ...], target: str) -> tuple[tuple[str, ...], str]:
+    """A name's words without the unit at their end, and this unit; empty where there is none.
+
+    Parameters
+    ----------
+    words : tuple of str
+        As from `words_of`.
+    target : str
+        Unit of what the name may mean.
+
+    Examples
+    --------
+    >>> unit_after(("surge", "m", "s"), "m/s"), unit_after(("yaw", "rate", "deg", "s"), "deg/s")
+    ((('surge',), 'm/s'), (('yaw', 'rate'), 'deg/s'))
+    """
+    wanted = spelled_unit(target)
+    for count in range(min(_LONGEST_SUFFIX, len(words) - 1), 0, -1):
+        last = words[-count:]
+        for text in dict.fromkeys(("_".join(last), "/".join(last), "".join(last))):
+            if text in _NO_SUFFIX:
+                continue
+            for unit in _spellings().get(text, ()):
+                given = spelled_unit(unit)
+                if wanted and given and relation(given, wanted) in ("same", "convertible"):
+                    return words[:-count], unit
+    return words, ""
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"\s+", "", text).lower()
+
+
+@cache
+def _spellings() -> dict[str, tuple[str, ...]]:
+    """Units by every spelling of names.toml; some stand for several."""
+    found: dict[str, tuple[str, ...]] = {}
+    for unit, spellings in vocabulary()["units"].items():
+        for spelling in (unit.lower(), *spellings):
+            if unit not in found.get(spelling, ()):
+                found[spelling] = (*found.get(spelling, ()), unit)
+    return found

@@ -1,0 +1,119 @@
+"""The names and units of names.toml, as look-ups."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+__all__ = ["Meaning", "meaning_of", "vocabulary", "words_of"]
+
+_WORDS = re.compile(r"[^\W\d_]+|\d+")
+_HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2,})")
+_SHORTEST = 3  # letters of a name that is sought within another
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a name says.
+
+    Attributes
+    ----------
+    role : str or None
+        Its role; None where it has none.
+    doubt : str
+        Why that is not sure; empty where it is.
+    reason : str
+        Why there is no role; empty where nothing is known of the name.
+    """
+
+    role: str | None
+    doubt: str = ""
+    reason: str = ""
+
+
+@cache
+def vocabulary() -> dict[str, Any]:
+    """Content of names.toml."""
+    return tomllib.loads((Path(__file__).parent / "names.toml").read_text(encoding="utf-8"))
+
+
+def words_of(name: str) -> tuple[str, ...]:
+    """Words of a name in lower case, short forms written out.
+
+    Examples
+    --------
+    >>> words_of("HDG_True"), words_of("windSpeed"), words_of("/nav/SOG")
+    (('heading', 'true'), ('wind', 'speed'), ('nav', 'sog'))
+    >>> words_of("thr1_stbd")
+    ('thruster', '1', 'starboard')
+    """
+    same = vocabulary()["words"]["same"]
+    found = [word.lower() for part in _HUMP.split(name) for word in _WORDS.findall(part)]
+    return tuple(same.get(word, word) for word in found)
+
+
+def meaning_of(words: tuple[str, ...]) -> Meaning:
+    """What the words of a name say, those of thrusters apart.
+
+    Examples
+    --------
+    >>> meaning_of(words_of("GPS Latitude")).role
+    'latitude'
+    >>> meaning_of(words_of("yaw")).doubt
+    'yaw may be counted the other way or from east'
+    >>> meaning_of(words_of("surge_dot")).reason
+    'a rate of change'
+    """
+    told = vocabulary()["words"]
+    fillers = set(told["filler"])
+    whole = " ".join(words)
+    for phrase in (whole, " ".join(w for w in words if w not in fillers)):
+        if found := _phrases().get(phrase):
+            return found
+    for word in words:
+        if word in told["other"]:
+            return Meaning(None, reason=told["other"][word])
+    if any(word in told["command"] for word in words):
+        rest = tuple(w for w in words if w not in told["command"])
+        if rest and meaning_of(rest).role:
+            return Meaning(None, reason="a set point, not a measurement")
+        return Meaning(None)
+    plain = tuple(w for w in words if w not in fillers and w not in told["feedback"])
+    if found := _phrases().get(" ".join(plain)):
+        return found
+    return _within(plain)
+
+
+def _within(words):
+    """The longest name that stands within the words, as a guess."""
+    for length in range(len(words) - 1, 0, -1):
+        for start in range(len(words) - length + 1):
+            phrase = " ".join(words[start : start + length])
+            found = _phrases().get(phrase)
+            if found and len(phrase) >= _SHORTEST and (found.role or found.reason):
+                if found.role is None:
+                    return Meaning(None, reason=found.reason)
+                if found.role == "time" or phrase in ("course", "position", "speed"):
+                    continue
+                return Meaning(found.role, doubt=f"it says more than '{phrase}'")
+    return Meaning(None)
+
+
+@cache
+def _phrases() -> dict[str, Meaning]:
+    """Every name of names.toml, in the words that `words_of` gives."""
+    found = {}
+    for role, entry in vocabulary().items():
+        if isinstance(entry, dict) and "names" in entry:
+            found |= {" ".join(words_of(name)): Meaning(role) for name in entry["names"]}
+    for role, entry in vocabulary().items():
+        if isinstance(entry, dict) and "names" in entry:
+            for name, doubt in entry.get("maybe", {}).items():
+                found.setdefault(" ".join(words_of(name)), Meaning(role, doubt))
+    for name, reason in vocabulary()["none"].items():
+        found.setdefault(" ".join(words_of(name)), Meaning(None, reason=reason))
+    return found

@@ -1,0 +1,199 @@
+"""Values of a channel: what its columns hold, in the unit of its role."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from shipcosim.diagnose.log.channels import Channel
+from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.positions import (
+    MINUTES,
+    degrees_of_minutes,
+    degrees_of_texts,
+    hemisphere_signs,
+    is_minutes,
+)
+from shipcosim.diagnose.log.files.table import LogColumns
+from shipcosim.diagnose.log.files.times import EPOCHS, epoch_unit, seconds_of, seconds_of_clock
+from shipcosim.diagnose.log.names.units import name_and_unit, unit_for
+from shipcosim.diagnose.log.roles import role_of
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.series import conversion
+
+__all__ = ["CLOCK_NUMBER", "LARGEST", "heading_of_quaternion", "values_of"]
+
+CLOCK_NUMBER = "hhmmss"
+"""Spelling of the unit of clock times as numbers: 123519.5 is 12:35:19.5."""
+LARGEST = {"latitude": 90.0, "longitude": 180.0}
+
+
+def values_of(channel: Channel, name: str, log: LogColumns, form: Form) -> tuple[np.ndarray, str, list[str]]:
+    """Values of a channel, their unit, and what is to be said of them.
+
+    Parameters
+    ----------
+    channel : Channel
+        Where it comes from.
+    name : str
+        Its role, or a connector, which keeps its unit.
+    log : LogColumns
+        Columns of the file.
+    form : Form
+        What was said of the file.
+
+    Raises
+    ------
+    ShipcosimError
+        A column that is missing, holds texts, or is in a unit of something else.
+    """
+    if channel.quaternion is not None:
+        parts = [_numbers(log, _found(log, column)) for column in channel.quaternion]
+        return heading_of_quaternion(np.array(parts), channel.frame), "deg", []
+    column = _found(log, channel.column)
+    stated = channel.unit or log.units[column]
+    if name == "time":
+        values, said = _time(channel, column, stated, log, form)
+        return channel.sign * values + (channel.offset or -0.0), "s", said
+    if name in LARGEST and (found := _position(channel, column, stated, name, log)) is not None:
+        return found[0], "deg", found[1]
+    values = _numbers(log, column)
+    if channel.map is not None:
+        role = role_of(name)
+        return _mapped(values, channel, column), role.unit if role else channel.unit or "", []
+    role = role_of(name)
+    unit = stated or (role.unit if role else "")
+    target = role.unit if role else unit
+    factor, zero = conversion(unit_for(unit, target) if role else unit, target)
+    # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
+    return factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0), target, []
+
+
+def heading_of_quaternion(parts: np.ndarray, frame: str) -> np.ndarray:
+    """Heading of an attitude. [deg]
+
+    Parameters
+    ----------
+    parts : (4, n) array
+        w, x, y, z of the turn from the frame to the body, of any length.
+    frame : str
+        ``"NED"``, body forward-right-down, or ``"ENU"``, body forward-left-up.
+
+    Examples
+    --------
+    >>> quarter = np.array([[0.5**0.5], [0.0], [0.0], [0.5**0.5]])
+    >>> heading_of_quaternion(quarter, "NED").round(9).tolist(), heading_of_quaternion(quarter, "ENU").round(9).tolist()
+    ([90.0], [0.0])
+    """
+    w, x, y, z = parts
+    size = w * w + x * x + y * y + z * z
+    with np.errstate(all="ignore"):
+        yaw = np.degrees(np.arctan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z))
+    yaw = np.where(size > 0.0, yaw, np.nan)
+    return np.mod(yaw if frame == "NED" else 90.0 - yaw, 360.0)
+
+
+def _found(log: LogColumns, name: str) -> str:
+    """A column's name as the log has it, also of one that was written with its unit."""
+    if name in log.values:
+        return name
+    plain = name_and_unit(name)[0]
+    if plain in log.values:
+        return plain
+    raise ShipcosimError(Problem("", f"there is no column '{name}'.", suggestion(name, log.values)))
+
+
+def _numbers(log: LogColumns, column: str) -> np.ndarray:
+    values = log.values[column]
+    if values.dtype.kind in "iub":
+        return values.astype(float)
+    if values.dtype.kind != "f":
+        row = next((i for i, value in enumerate(values) if value is not None and not _is_number(value)), 0)
+        found = f"column '{column}' holds '{values[row]}' in row {row + 2}, not only numbers."
+        raise ShipcosimError(Problem("", found, "A missing value is an empty field or nan."))
+    return values
+
+
+def _is_number(text):
+    try:
+        return float(text) is not None
+    except (TypeError, ValueError):
+        return False
+
+
+def _time(channel, column, stated, log, form):
+    """Times in seconds and what is to be said."""
+    values = log.values[column]
+    if values.dtype.kind == "M":
+        values = np.array([None if np.isnat(v) else str(v) for v in values], object)
+    if values.dtype.kind == "O":
+        if channel.date is not None:
+            values = _joined(log, _found(log, channel.date), values)
+        read = seconds_of(values, form.dates)
+        if read is not None:
+            return read
+    numbers = _numbers(log, column)
+    if stated.lower() == CLOCK_NUMBER:
+        return seconds_of_clock(_of_clock(numbers))
+    if channel.nanoseconds is not None:
+        return numbers + 1e-9 * _numbers(log, _found(log, channel.nanoseconds)), []
+    unit = unit_for(stated, "s") if stated else ""
+    if unit in ("", "date") and (epoch := epoch_unit(numbers)) is not None:
+        said = [f"Times in '{column}' are {epoch} since 1970."] if epoch != "s" or unit else []
+        return numbers / EPOCHS[epoch], said
+    factor, zero = conversion(unit or "s", "s")
+    return factor * numbers + (zero or -0.0), []
+
+
+def _joined(log, date, clocks):
+    """Stamps of a column of dates and one of clock times."""
+    dates = log.values[date]
+    if dates.dtype.kind == "f":
+        width = 8 if np.nanmax(dates) > 999999 else 6
+        dates = [None if not np.isfinite(d) else f"{int(d):0{width}d}" for d in dates]
+    return np.array([f"{_day(d)} {c}" if d and c else None for d, c in zip(dates, clocks, strict=True)], object)
+
+
+def _day(text):
+    """A date without the midnight that workbooks write after it."""
+    return str(text).removesuffix(" 00:00:00").removesuffix("T00:00:00")
+
+
+def _of_clock(numbers):
+    hours, minutes, seconds = numbers // 10000, numbers // 100 % 100, numbers % 100
+    return 3600.0 * hours + 60.0 * minutes + seconds
+
+
+def _position(channel, column, stated, name, log):
+    """Degrees of latitude or longitude that are not plain numbers; None for those."""
+    values, said = log.values[column], []
+    if values.dtype.kind == "O":
+        degrees = degrees_of_texts(values, LARGEST[name])
+        if degrees is None:
+            return None
+    elif stated.lower() == MINUTES or (not stated and is_minutes(values, LARGEST[name])):
+        degrees = degrees_of_minutes(values)
+        said = [] if stated else [f"'{column}' is {name} in {MINUTES}, as it is beyond {LARGEST[name]:g}."]
+    elif channel.hemisphere is None:
+        return None
+    else:
+        unit = unit_for(stated or "deg", "deg")
+        degrees = conversion(unit, "deg")[0] * values
+    if channel.hemisphere is not None:
+        hemisphere = _found(log, channel.hemisphere)
+        signs = hemisphere_signs(log.values[hemisphere], name)
+        if signs is None:
+            found = f"column '{hemisphere}' is none of hemispheres."
+            raise ShipcosimError(Problem("", found, "It should hold N and S, or E and W."))
+        degrees = np.abs(degrees) * signs
+    return channel.sign * degrees + channel.offset, said
+
+
+def _mapped(values, channel, column):
+    """Values by a map, straight between its pairs."""
+    given, wanted = np.array(channel.map).T
+    known = np.isfinite(values)
+    if (beyond := known & ((values < given[0]) | (values > given[-1]))).any():
+        row = int(np.flatnonzero(beyond)[0])
+        found = f"column '{column}' holds {values[row]:g} in row {row + 2}, beyond its map."
+        raise ShipcosimError(Problem("", found, f"The map goes from {given[0]:g} to {given[-1]:g}."))
+    return channel.sign * np.interp(values, given, wanted, left=np.nan, right=np.nan) + channel.offset
