@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -122,31 +121,38 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
     rows = [line for line in rest if line.strip() and not (line[0] in "#%/! " and is_comment(line))]
     said, comments = [], sum(1 for line in rest if line.strip()) - len(rows)
     if comments:
-        said.append(f"{comments} comment line{'s' * (comments > 1)} between rows left out.")
-    counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
-    if (counts == width + 1).mean() > 0.5 and all(not line.rstrip(" ").removesuffix(separator).endswith("\0")
-                                                  and line.rstrip(" \r").endswith(separator) for line in rows[:50]):
-        rows = [line.rstrip(" \r").removesuffix(separator) for line in rows]
-        counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
+        said.append(f"{_count(comments, 'comment line')} between rows left out.")
+    rows, counts = _without_last_separator(rows, separator, width)
     bad = counts != width
-    if (counts < width).mean() > _FEW and not (counts > width).any():
-        said.append(f"{int(bad.sum())} rows have fewer cells than the header: what they lack is left empty.")
+    if (counts < width).mean() > _FEW and bad.sum() > 1 and not (counts > width).any():
+        said.append(f"{_count(bad.sum(), 'row')} with fewer cells than the header: what they lack is left empty.")
         return rows, said
     if bad.mean() > max(_FEW, 1.5 / len(rows)):
         raise ShipcosimError(_ragged(source, lines, layout, rows, counts, width))
     if bad.any():
-        row = int(np.flatnonzero(bad)[0])
-        said.append(
-            f"{int(bad.sum())} row{'s' * (bad.sum() > 1)} without {width} cells left out, the first '{rows[row][:40]}'."
-        )
+        shown = rows[int(np.flatnonzero(bad)[0])][:40]
+        said.append(f"{_count(bad.sum(), 'row')} without {width} cells left out, the first '{shown}'.")
         rows = [line for line, wrong in zip(rows, bad, strict=True) if not wrong]
-    header = [name for name in layout.header if name]
-    again = [i for i, line in enumerate(rows) if header and header[0] in line and
-             [c for c in cells_in(line, separator) if c] == header]
+    header = list(layout.header)
+    again = {i for i, line in enumerate(rows) if header[-1] in line and cells_in(line, separator) == header}
     if again:
-        said.append(f"The header stands there again {len(again)} times: left out.")
-        rows = [line for i, line in enumerate(rows) if i not in set(again)]
+        said.append(f"The header stands there again in {_count(len(again), 'row')}: left out.")
+        rows = [line for i, line in enumerate(rows) if i not in again]
     return rows, said
+
+
+def _count(number: int, what: str) -> str:
+    """``1 row``, ``2 rows``."""
+    return f"{int(number)} {what}{'s' if number > 1 else ''}"
+
+
+def _without_last_separator(rows, separator, width):
+    """Rows without the separator that each ends with, where that makes one cell too many, and their lengths."""
+    counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
+    if (counts == width + 1).mean() > 0.5 and all(line.rstrip(" ").endswith(separator) for line in rows[:50]):
+        rows = [line.rstrip(" ").removesuffix(separator) for line in rows]
+        counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
+    return rows, counts
 
 
 def _ragged(source, lines, layout, rows, counts, width):
@@ -229,5 +235,3 @@ def _column(name, cells, decimal):
     values, said = numbers_of(name, cells, decimal)
     return values, said
 
-
-_WITH_UNIT = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*([^\d\s].*)")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from datetime import datetime
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -27,6 +28,7 @@ _BETWEEN = (" ", "T", "_", ", ", ",", "-", "  ")
 _ZONE = re.compile(r"\s*(?:Z|UTC|GMT|[+-]00:?00)$", re.IGNORECASE)
 _OTHER_ZONE = re.compile(r"(?<=:\d\d)(?P<fraction>\.\d+)?\s*(?P<zone>[+-]\d\d:?\d\d)$")
 _COLON_FRACTION = re.compile(r"^(?P<clock>.*\d\d:\d\d:\d\d):(?P<fraction>\d{1,9})$")
+_WORD = re.compile(r"[A-Za-z0-9]+")
 _NAMES = {"dmy": "day/month/year", "mdy": "month/day/year", "ymd": "year/month/day"}
 
 
@@ -97,8 +99,16 @@ def seconds_of(texts: np.ndarray, order: str | None = None) -> tuple[np.ndarray,
     return times, said
 
 
+@cache
+def _marks_of(form: str) -> str:
+    """What stands between the letters and digits of stamps of a form."""
+    return _WORD.sub("", datetime(2022, 10, 27, 23, 57, 30).strftime(form))
+
+
 def _fits(known, form):
     """Whether the first and the last of the stamps have this form."""
+    if _WORD.sub("", known.iloc[0]) != _marks_of(form):
+        return False
     try:
         for cell in (known.iloc[0], known.iloc[-1]):
             datetime.strptime(re.sub(r"(\.\d{6})\d+", r"\1", cell), form)

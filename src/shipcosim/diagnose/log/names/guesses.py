@@ -95,7 +95,7 @@ def _is_empty(values):
 def _by_meaning(column, words, stated, values):
     """By the words of the name, with a unit at its end or without."""
     meaning, unit = meaning_of(words), stated
-    if meaning.role is None and not stated:
+    if (meaning.role is None or meaning.doubt) and not stated:
         for target in _SUFFIXES:
             rest, suffix = unit_after(words, target)
             again = meaning_of(rest) if suffix else meaning

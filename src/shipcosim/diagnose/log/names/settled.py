@@ -180,7 +180,7 @@ def _settle_speed(chosen, role, log, form, motion):
         speed = raw
         if role in ("surge", "sway", "north_velocity", "east_velocity"):
             other = {"surge": "sway", "sway": "surge", "north_velocity": "east_velocity"}.get(role, "north_velocity")
-            beside = log.values[chosen[other].column] if other in chosen else np.zeros_like(raw)
+            beside = log.values[chosen[other].column] if _is_open(chosen, other) else np.zeros_like(raw)
             speed = np.hypot(raw, beside) if beside.dtype.kind == "f" else np.abs(raw)
         unit = unit_of_speed(*motion, speed)
     if unit == "m/s":
