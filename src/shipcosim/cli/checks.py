@@ -14,6 +14,7 @@ from shipcosim.errors import Problem, ShipcosimError
 LATE, SMALLEST_STEP = 1e9, 1e-6  # s; beyond what any run has
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
+LOGS = (".txt", ".dat", ".tsv", ".log", ".xlsx", ".txt.gz", ".dat.gz", ".tsv.gz", ".log.gz")
 
 
 def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()) -> list[Problem]:
@@ -50,6 +51,8 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
             return check_scenario_file(path)
         if path.suffix.lower() in OSP_SCENARIOS:
             return check_osp_scenario(path)
+        if path.name.lower().endswith(LOGS):
+            return check_log(path, channels)
         if path.name.endswith(TABLES):
             return check_log(path, channels) if channels or _is_log(path) else check_table(path)
         return _check_system_file(file, path)
@@ -154,22 +157,26 @@ def check_osp_scenario(path: Path) -> list[Problem]:
 
 
 def _is_log(path: Path) -> bool:
-    """Whether a table has a column of the navigation, by its role, so that it reads as measured data."""
+    """Whether a table has a column of the navigation, by its name, so that it reads as measured data."""
+    from shipcosim.diagnose.log.names.proposal import propose
+    from shipcosim.diagnose.log.reader import columns_of
     from shipcosim.diagnose.log.roles import NAVIGATION
-    from shipcosim.series import read_columns
 
-    columns = read_columns(path)
-    return "time" in columns and not {*NAVIGATION, "latitude"}.isdisjoint(columns)
+    columns = columns_of(path)
+    if any("." in name for name in columns.values):
+        return False  # signals of components
+    found = propose(columns).channels()
+    return "time" in found and not {*NAVIGATION, "latitude"}.isdisjoint(found)
 
 
 def check_log(path: Path, channels: Path | None = None) -> list[Problem]:
     """Faults of measured data as errors; what is ordinary in a log and handled, as remarks."""
     from shipcosim.diagnose.log.checks.examine import examine
     from shipcosim.diagnose.log.reader import read_log
-    from shipcosim.diagnose.log.remarks import remarks
+    from shipcosim.diagnose.log.remarks import handled
 
     log = read_log(path, channels)
-    problems = [Problem(str(path), said, severity="remark") for said in remarks(log)]
+    problems = [Problem(str(path), said, severity="remark") for said in handled(log)]
     with np.errstate(all="ignore"):  # numbers beyond all bounds are among what it looks for
         found = examine(log)
     for finding in found:

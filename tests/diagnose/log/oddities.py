@@ -136,8 +136,16 @@ def units_in_a_second_row(table, folder):
 
 @case
 def units_in_parentheses(table, folder):
-    return save(folder, lines(renamed(table | {"surge": table["surge"] / KNOT}, {"surge": "surge (knots)"} | {
-        role: f"{role} ({unit})" for role, unit in UNITS.items() if role != "surge"})))
+    return save(
+        folder,
+        lines(
+            renamed(
+                table | {"surge": table["surge"] / KNOT},
+                {"surge": "surge (knots)"}
+                | {role: f"{role} ({unit})" for role, unit in UNITS.items() if role != "surge"},
+            )
+        ),
+    )
 
 
 @case
@@ -358,8 +366,11 @@ def one_sensor_a_row(table, folder):
     for i, t in enumerate(table["time"]):
         for k, group in enumerate(groups):
             later = [name if name == "time" or name in group else None for name in table]
-            rows.append(",".join("" if n is None else f"{t + 0.001 * k:.3f}" if n == "time" else number(table[n][i])
-                                 for n in later))
+            rows.append(
+                ",".join(
+                    "" if n is None else f"{t + 0.001 * k:.3f}" if n == "time" else number(table[n][i]) for n in later
+                )
+            )
     return save(folder, rows)
 
 

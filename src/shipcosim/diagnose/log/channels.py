@@ -100,7 +100,7 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
             channels[name] = Channel.model_validate({"column": entry} if isinstance(entry, str) else entry)
         except ValidationError as error:
             problems += [_field_problem(where, detail) for detail in error.errors()]
-    problems += _together(path, content)
+    problems += _together(path, content) if content or form == Form() else ()
     if problems:
         raise ShipcosimError(problems)
     return ChannelFile(channels, form)

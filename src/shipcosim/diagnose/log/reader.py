@@ -78,7 +78,7 @@ def read_log(
     form = given.form if given else Form()
     source = _source_of(log, form)
     columns, proposal = source.columns, None
-    if given is None:
+    if given is None or not given.channels:
         proposal = propose(columns, thrusters, form)
         mapping = _sure(columns, proposal)
     else:
@@ -142,7 +142,9 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
     mapping, source = proposal.channels(), columns.source
     doubled = [name for name in columns.doubled if any(name in channel.columns for channel in mapping.values())]
     problems = [Problem(f"{source}, column '{name}'", "is there twice.", _WHICH) for name in doubled]
-    help_ = f"Say in a channel file which column is what: `shipcosim channels {source} --out channels.toml` proposes one."
+    help_ = (
+        f"Say in a channel file which column is what: `shipcosim channels {source} --out channels.toml` proposes one."
+    )
     if "time" not in mapping:
         guess = next((g for g in proposal.used if g.role == "time"), None)
         found = f"has no column 'time', only {_shown(columns)}."

@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import xarray
 
+from shipcosim.diagnose.log.channels import Channel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table, read_columns
 
-__all__ = ["run_as_log"]
+__all__ = ["channels_of_run", "run_as_log"]
 
 _SHIP = {
     "north": ("x", "m"),
@@ -88,6 +89,33 @@ def run_as_log(
     )
     table.encoding |= file
     return table
+
+
+def channels_of_run(
+    signals: Collection[str], ship: str | None, thrusters: Collection[str] | None
+) -> dict[str, Channel]:
+    """Channels of the table of a run, by role; none where it is another table.
+
+    Parameters
+    ----------
+    signals : collection of str
+        Names of its columns.
+    ship : str, optional
+        Name of the ship's component; else the first with a position and a heading.
+    thrusters : collection of str, optional
+        Names of those of her thrusters; else all components with a speed.
+    """
+    if not _is_run(dict.fromkeys(signals)):
+        return {}
+    ships = [name.removesuffix(".psi") for name in signals if name.endswith(".psi")]
+    ship = ship or next(name for name in ships if f"{name}.x" in signals and f"{name}.y" in signals)
+    drives = [name.removesuffix(".rpm") for name in signals if name.endswith(".rpm")]
+    named = {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items()}
+    named |= {f"{name}_{kind}": f"{name}.{kind}" for name in thrusters or drives for kind in ("rpm", "azimuth")}
+    units = {role: unit for role, (_, unit) in _SHIP.items()}
+    there = {"time": "time"} | {role: signal for role, signal in named.items() if signal in signals}
+    turn = {role: "rad" for role in there if role.endswith("_azimuth")}
+    return {role: Channel(column=signal, unit=(units | turn).get(role)) for role, signal in there.items()}
 
 
 def _names_components(path: Path) -> bool:

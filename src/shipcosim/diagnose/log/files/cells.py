@@ -19,7 +19,9 @@ NOTHING = frozenset(
 """Words that loggers write where they have no value, in lower case."""
 
 _NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
-_FIGURE = re.compile(rf"\s*(?:{_NUMBER}|[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?|[+-]?(?:inf|nan))\s*", re.IGNORECASE)
+_FIGURE = re.compile(
+    rf"\s*(?:{_NUMBER}|[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?|[+-]?(?:inf|nan))\s*", re.IGNORECASE
+)
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:[,.]\d{3})+")
 _MOST_DAMAGED = 0.01  # share of a column's cells that may be no numbers; more make it a column of texts. Assumed.
 

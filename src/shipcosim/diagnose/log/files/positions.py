@@ -29,8 +29,8 @@ def is_minutes(values: np.ndarray, largest: float) -> bool:
 
     Examples
     --------
-    >>> is_minutes(np.array([6324.0949]), 90.0), is_minutes(np.array([63.4]), 90.0), is_minutes(np.array([6390.0]), 90.0)
-    (True, False, False)
+    >>> [is_minutes(np.array([value]), 90.0) for value in (6324.0949, 63.4, 6390.0)]
+    [True, False, False]
     """
     known = np.abs(values[np.isfinite(values)])
     if not len(known) or (known > largest).mean() < 0.5:

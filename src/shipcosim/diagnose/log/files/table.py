@@ -234,4 +234,3 @@ def _column(name, cells, decimal):
         return cells.to_numpy(float), []
     values, said = numbers_of(name, cells, decimal)
     return values, said
-

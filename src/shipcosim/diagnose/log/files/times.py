@@ -139,8 +139,9 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     has_point = texts.str.contains(r":\d\d\.\d+|\d{6}\.\d+", regex=True, na=False)
     if has_point.any() and not has_point.all():
         bare = ~has_point & texts.notna()
-        texts = texts.where(~bare, texts.str.replace(r"(:\d\d)(?!:|\d)", r"\1.0", n=1, regex=True)
-                            if first.count(":") else texts + ".0")
+        texts = texts.where(
+            ~bare, texts.str.replace(r"(:\d\d)(?!:|\d)", r"\1.0", n=1, regex=True) if first.count(":") else texts + ".0"
+        )
         texts = texts.str.replace(r"(:\d\d)\.0(:\d\d)", r"\1\2.0", regex=True)
     texts = texts.str.replace(r"\s*([AaPp])\.?[Mm]\.?$", lambda found: f" {found[1].upper()}M", regex=True)
     return texts, ahead

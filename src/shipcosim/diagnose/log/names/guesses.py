@@ -56,6 +56,17 @@ class Guess:
     unit: str = ""
     said: tuple[str, ...] = field(default=())
 
+    @property
+    def is_guess(self) -> bool:
+        """Whether a channel file has to confirm it."""
+        return self.rank == GUESS
+
+    @property
+    def in_unit(self) -> str:
+        """``"in kn: "`` where its unit is known; else empty."""
+        unit = (self.channel.unit if self.channel else None) or self.unit
+        return f"in {unit}: " if unit else ""
+
 
 def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> list[Guess]:
     """What a column may be, by itself; one guess without a role where it is nothing.

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.form import Form
 from shipcosim.diagnose.log.files.positions import hemisphere_signs
@@ -67,7 +65,7 @@ def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | No
     left = _with_quaternion(chosen, log, left)
     left = _with_hemispheres(chosen, log, left)
     settled(chosen, log, form)
-    left += _of_one_kind(chosen)
+    left += _of_one_kind(chosen, log)
     taken = {name for guess in chosen.values() if guess.channel for name in guess.channel.columns}
     unused = {guess.column: guess for guess in reversed(left) if guess.column not in taken}
     order = list(log.values)
@@ -158,7 +156,12 @@ def _with_hemispheres(chosen, log, left):
     return left
 
 
-def _of_one_kind(chosen):
+def _never_changes(guess, log):
+    values = log.values[guess.column]
+    return values.dtype.kind == "f" and len(np.unique(values[np.isfinite(values)])) < 2
+
+
+def _of_one_kind(chosen, log):
     """Takes away what is there twice in another form, or without its other half; these guesses, with why."""
     left = []
 
@@ -179,7 +182,8 @@ def _of_one_kind(chosen):
         best = whole[0] if worse is whole[1] else whole[1]
         drop(worse, f"{best[0]} and {best[1]} are used instead")
     ways = [pair for pair in (("surge", "sway"), *_PAIRS[:1:-1]) if all(role in chosen for role in pair)]
-    ways.sort(key=lambda pair: max(chosen[role].rank for role in pair) == GUESS)
+    dead = {pair: all(_never_changes(chosen[role], log) for role in pair) for pair in ways}
+    ways.sort(key=lambda pair: (dead[pair], max(chosen[role].rank for role in pair) == GUESS))
     for pair in ways[1:]:
         drop(pair, f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead")
     if ways and ways[0] != ("surge", "sway"):

@@ -139,7 +139,9 @@ def _settle_heading(chosen, log, form, motion):
             _guess(chosen, "heading", "rad", "no unit is stated, and no value is beyond 2 pi: rad or deg")
         return
     unit, frame = found
-    said = f"in {unit} and {'clockwise from north' if frame == 'NED' else 'anticlockwise from east'}, as the course says"
+    said = (
+        f"in {unit} and {'clockwise from north' if frame == 'NED' else 'anticlockwise from east'}, as the course says"
+    )
     update = {} if not is_open else {"unit": unit}
     if guess.channel.quaternion is not None:
         update, said = {"frame": frame}, f"the quaternion is of {frame}, as the course says"

@@ -66,6 +66,7 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     quantity, word, rest = _quantity(rest)
     place = frozenset(_places().get(w, w) for w in rest if w not in generic)
     is_named = len(rest) > len(place) or word in _SURE or bool(set(rest) & set(_places()))
+    is_named = is_named or bool(quantity and rest and all(w.isdigit() for w in rest))
     known = set(_places().values())
     if not is_named or any(w not in known and not w.isdigit() and len(w) > 1 for w in place):
         return None
@@ -103,7 +104,9 @@ def thrusters_named(place: frozenset[str], thrusters: Mapping[str, tuple[str, ..
     if len(near) == 1:
         return near, ""
     if len(place) == 1 and (number := next(iter(place))).isdigit() and 0 < int(number) <= len(thrusters):
-        return [list(thrusters)[int(number) - 1]], f"they are counted in the order of the system: {', '.join(thrusters)}"
+        return [
+            list(thrusters)[int(number) - 1]
+        ], f"they are counted in the order of the system: {', '.join(thrusters)}"
     if place & {"bow"}:
         across = [name for name, words in placed.items() if "tunnel" in words]
         if len(across) == 1:

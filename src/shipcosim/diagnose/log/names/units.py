@@ -11,7 +11,9 @@ from shipcosim.units import relation, spelled_unit
 __all__ = ["is_unit", "name_and_unit", "unit_after", "unit_for"]
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
-_OTHERS = re.compile(r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$")
+_OTHERS = re.compile(
+    r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$"
+)
 _LONGEST_SUFFIX = 3  # words
 _NO_SUFFIX = {"n", "rpm", "1", "none", "raw", "date", "utc", "local", "iso", "text", "h", "d", "int", "grad", "flag"}
 """Spellings of units that at the end of a name, after an underscore, mean something else."""

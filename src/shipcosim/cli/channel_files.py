@@ -1,0 +1,120 @@
+"""The command `channels`: what each column of a log is, and the channel file that says so."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs
+from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.log.names.proposal import Proposal
+
+
+@dataclass(frozen=True)
+class ProposedFile:
+    """A proposal, what is to be said of the log, and the text of the channel file.
+
+    Attributes
+    ----------
+    proposal : Proposal
+    remarks : tuple of str
+        How the file is read, and what reading it by the proposal says.
+    text : str
+        The channel file.
+    """
+
+    proposal: Proposal
+    remarks: tuple[str, ...]
+    text: str
+
+
+def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.PathLike | None = None) -> ProposedFile:
+    """What the columns of a log are.
+
+    Parameters
+    ----------
+    log : path
+        Measured data, or the table of a run.
+    system : str, optional
+        The ship, by whose thrusters columns are named; the open Gunnerus without.
+    form : path, optional
+        Channel file of which the entry ``file`` is used.
+
+    Raises
+    ------
+    ShipcosimError
+        If the log or the system cannot be read.
+    """
+    from shipcosim.cli.requests import system_of
+    from shipcosim.diagnose.log.channels import ChannelFile, read_channels
+    from shipcosim.diagnose.log.files.form import Form
+    from shipcosim.diagnose.log.names.guesses import SURE, Guess
+    from shipcosim.diagnose.log.names.proposal import propose
+    from shipcosim.diagnose.log.names.written import channel_file
+    from shipcosim.diagnose.log.reader import columns_of, read_log
+    from shipcosim.diagnose.log.runs import channels_of_run
+    from shipcosim.diagnose.ship.model import ship_model_of
+
+    check_inputs([log], form)
+    given = read_channels(form).form if form is not None else Form()
+    columns = columns_of(log, given)
+    ship = ship_model_of(system_of(system or DEFAULT_SYSTEM, option="--system"))
+    thrusters = {name: ship.drives(name) for name in ship.thrusters}
+    proposal = propose(columns, thrusters, given)
+    if own := channels_of_run(list(columns.values), ship.vessel, ship.thrusters):
+        used = tuple(Guess(channel.column, role, channel, SURE) for role, channel in own.items())
+        rest = [name for name in columns.values if name not in {guess.column for guess in used}]
+        unused = tuple(Guess(name, why="another signal of the run") for name in rest)
+        proposal = replace(proposal, used=used, unused=unused)
+    remarks = list(columns.remarks)
+    try:
+        mapping = ChannelFile(proposal.channels(guessed=True), given)
+        remarks += [said for said in read_log(log, mapping, thrusters).attrs["column_remarks"] if said not in remarks]
+    except ShipcosimError as error:
+        remarks += [f"The log cannot be read by this proposal yet: {problem}" for problem in error.problems]
+    return ProposedFile(proposal, tuple(remarks), channel_file(str(log), proposal, remarks))
+
+
+def print_channels(proposed: ProposedFile) -> None:
+    """What each column is, on stdout."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    from shipcosim.cli.console import WIDTH
+
+    console = Console(highlight=False)
+    console = console if console.is_terminal else Console(highlight=False, width=WIDTH)
+    listed = Table(box=None, pad_edge=False)
+    for heading in ("column", "is", "", "because"):
+        listed.add_column(heading, overflow="fold")
+    for guess in proposed.proposal.used:
+        sure = Text("guess", style="yellow") if guess.is_guess else Text("used", style="green")
+        why = guess.why or "; ".join(guess.said) or "its name has one meaning"
+        listed.add_row(Text(" + ".join(guess.channel.columns)), Text(guess.role), sure, Text(f"{guess.in_unit}{why}"))
+    for guess in proposed.proposal.unused:
+        listed.add_row(Text(guess.column), Text("-"), Text("not used", style="dim"), Text(guess.why))
+    console.print(listed)
+    for said in proposed.remarks:
+        console.print(Text(said, style="yellow"))
+
+
+def write_channels(proposed: ProposedFile, out: Path, force: bool = False) -> None:
+    """Write the channel file, and say where it is.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is a file already, or it cannot be written.
+    """
+    from shipcosim.cli.console import shown_path
+    from shipcosim.series import write_file
+
+    if out.exists() and not force:
+        raise ShipcosimError(Problem(str(out), "There is such a file already.", "--force writes over it."))
+    write_file(out, proposed.text.encode())
+    print(f"Channel file: {shown_path(out)}")
