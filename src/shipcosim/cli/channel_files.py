@@ -40,7 +40,7 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     log : path
         Measured data, or the table of a run.
     system : str, optional
-        The ship, by whose thrusters columns are named; the open Gunnerus without.
+        The ship, by whose thrusters columns are named; the default of `diagnose` without.
     form : path, optional
         Channel file of which the entry ``file`` is used.
 
@@ -94,7 +94,7 @@ def print_channels(proposed: ProposedFile) -> None:
         listed.add_column(heading, overflow="fold")
     for guess in proposed.proposal.used:
         sure = Text("guess", style="yellow") if guess.is_guess else Text("used", style="green")
-        why = guess.why or "; ".join(guess.said) or "its name has one meaning"
+        why = "; ".join(filter(None, (guess.why, *guess.said))) or "its name has one meaning"
         listed.add_row(Text(" + ".join(guess.channel.columns)), Text(guess.role), sure, Text(f"{guess.in_unit}{why}"))
     for guess in proposed.proposal.unused:
         listed.add_row(Text(guess.column), Text("-"), Text("not used", style="dim"), Text(guess.why))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from shipcosim.diagnose.log.files.cells import is_figure, is_nothing
@@ -66,7 +67,7 @@ def cells_in(line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
 
 
-def layout_of(source: str, lines: list[str], form: Form, is_unit) -> Layout:
+def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str], bool]) -> Layout:
     """Layout of the lines of a file.
 
     Parameters

@@ -11,6 +11,7 @@ _RATES = {"deg/s": 1.0, "rad/s": 180.0 / np.pi, "deg/min": 1.0 / 60.0}
 _FAR = 0.15  # by which a ratio may be off a unit's, as a logarithm: units of speed differ by 1.85
 _ALIKE = 0.9  # correlation of two ways to tell a motion, from which on they are compared. Assumed.
 _SPANS = (3, 10, 30, 100)  # rows
+_LEAP = 3.0  # times what nine in ten changes stay below, from which on one is no motion. Assumed.
 _CLEAR, _UNCLEAR = 0.85, 0.6  # length of the mean direction between course and bow that holds, that does not. Assumed.
 _BESIDE = 60.0  # deg, by which a course may be off the bow throughout
 
@@ -56,7 +57,7 @@ def _unit_by(time, rate, change, units):
     for k in _SPANS:
         if len(time) < 4 * k:
             break
-        x, y = told[k:] - told[:-k], change(k)
+        x, y = _without_leaps(told[k:] - told[:-k], change(k))
         norm = float(np.sqrt((x @ x) * (y @ y)))
         if norm > 0.0 and (x @ y) / norm > max(best, _ALIKE):
             best, ratio = (x @ y) / norm, (y @ y) / (x @ y)
@@ -66,8 +67,19 @@ def _unit_by(time, rate, change, units):
     return unit if abs(np.log(ratio / units[unit])) < _FAR else None
 
 
+def _without_leaps(x, y):
+    """Two kinds of changes without those that are far larger than most: start-up rows, and rows that were lost."""
+    usual = [np.quantile(np.abs(values), 0.9) for values in (x, y)]
+    kept = (np.abs(x) <= _LEAP * usual[0]) & (np.abs(y) <= _LEAP * usual[1])
+    return x[kept], y[kept]
+
+
 def frame_of_angle(
-    time: np.ndarray, north: np.ndarray, east: np.ndarray, readings: dict[str, np.ndarray]
+    time: np.ndarray,
+    north: np.ndarray,
+    east: np.ndarray,
+    readings: dict[str, np.ndarray],
+    drift: np.ndarray | None = None,
 ) -> str | None:
     """Which of several readings of a heading agrees with the course; None where not one alone does.
 
@@ -77,6 +89,8 @@ def frame_of_angle(
         [s, m, m]
     readings : dict of str to (n,) array
         Headings. [deg]
+    drift : (n,) array, optional
+        Direction of the velocity against the bow, where that is known; else ahead is assumed. [rad]
 
     Examples
     --------
@@ -88,8 +102,9 @@ def frame_of_angle(
     """
     clear, unclear = [], []
     for name, heading in readings.items():
-        rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(heading)
-        way, bow = (north + 1j * east)[rows], np.exp(1j * np.radians(heading[rows]))
+        course = np.radians(heading) + (0.0 if drift is None else drift)
+        rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(course)
+        way, bow = (north + 1j * east)[rows], np.exp(1j * course[rows])
         best = 0.0 + 0.0j
         for k in _SPANS:
             if len(way) < 4 * k:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.form import Form
 from shipcosim.diagnose.log.files.positions import hemisphere_signs

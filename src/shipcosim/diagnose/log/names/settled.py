@@ -133,7 +133,9 @@ def _settle_heading(chosen, log, form, motion):
         return
     found = None
     if motion is not None and motion[1] is not None:
-        found = frame_of_angle(*motion, readings)
+        body = [_values(chosen, role, log, form) for role in ("surge", "sway")]
+        is_known = all(v is not None for v in body) and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
+        found = frame_of_angle(*motion, readings, np.arctan2(body[1], body[0]) if is_known else None)
     if found is None:
         if is_open and len(units) == 2:
             _guess(chosen, "heading", "rad", "no unit is stated, and no value is beyond 2 pi: rad or deg")
