@@ -245,7 +245,7 @@ def _local_position(source, signals, said):
         raise ShipcosimError(Problem(f"{source}, latitude", "has no row with a longitude.", "A fix needs both."))
     latitude, longitude = np.radians(values[0]), np.radians(values[1])
     first = fixed[0]
-    meridian, parallel = metres_per_degree(np.degrees(latitude[first]))
+    meridian, parallel = metres_per_degree(float(np.degrees(latitude[first])))
     signals["north"] = meridian * np.degrees(latitude - latitude[first]), "m"
     signals["east"] = parallel * np.degrees(wrap_series(longitude - longitude[first], TURN)), "m"
     origin = np.degrees([latitude[first], longitude[first]])
@@ -278,5 +278,5 @@ def _told(proposal):
 
 
 def _said(guess):
-    unit = f" [{guess.channel.unit}]" if guess.channel and guess.channel.unit else ""
+    unit = f" [{guess.channel.unit}]" if guess.channel.unit else ""
     return f"{unit}{' (' + '; '.join(guess.said) + ')' if guess.said else ''}"

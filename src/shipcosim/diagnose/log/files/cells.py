@@ -69,11 +69,11 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
         is_grouped = plain.str.fullmatch(rf"[+-]?\d{{1,3}}(?:[{grouping}]\d{{3}})+(?:[{decimal}]\d*)?")
         plain = plain.where(~is_grouped, plain.str.replace(grouping, "", regex=False))
         plain = plain.str.replace(decimal, ".", regex=False) if decimal == "," else plain
-    numbers = pandas.to_numeric(plain.where(~missing), errors="coerce")
-    damaged = numbers.isna() & ~missing
+    numbers: Any = pandas.to_numeric(plain.where(~missing), errors="coerce")
+    damaged: Any = numbers.isna() & ~missing
     count, there = int(damaged.sum()), int((~missing).sum())
     if count > _MOST_DAMAGED * there and count > 0:
-        return np.where(missing, None, text).astype(object), []
+        return text.astype(object).where(~missing, None).to_numpy(object), []
     said = []
     if count:
         row = int(np.flatnonzero(damaged)[0])

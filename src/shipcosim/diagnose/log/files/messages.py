@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from shipcosim.diagnose.log.files.form import Form
@@ -78,7 +80,7 @@ def _is_clock(values):
 def _wide(log, names, value, clock, unit):
     import pandas
 
-    frame = pandas.DataFrame({column: log.values[column] for column in log.values})
+    frame: Any = pandas.DataFrame({column: log.values[column] for column in log.values})
     told = frame[names].notna().all(axis=1) & frame[clock].notna()
     frame = frame[told]
     key = frame[names[0]].astype("str")
@@ -91,7 +93,7 @@ def _wide(log, names, value, clock, unit):
     for name, part in frame.groupby(key, sort=False):
         at = rows[frame.index.get_indexer(part.index)]
         again += len(at) - len(np.unique(at))
-        numbers = pandas.to_numeric(part[value], errors="coerce")
+        numbers: Any = pandas.to_numeric(part[value], errors="coerce")
         is_text = numbers.isna().mean() > 0.5 and part[value].notna().any()
         column = np.full(count, None, object) if is_text else np.full(count, np.nan)
         column[at[::-1]] = (part[value] if is_text else numbers).to_numpy()[::-1]

@@ -73,8 +73,8 @@ def read_file(path: Path, form: Form | None = None) -> LogColumns:
         from shipcosim.series import read_columns
 
         columns = read_columns(path)
-        parts = [{name: pair[i] for name, pair in columns.items()} for i in (0, 1)]
-        return LogColumns(str(path), parts[0], parts[1])
+        values = {name: values for name, (values, _) in columns.items()}
+        return LogColumns(str(path), values, {name: unit for name, (_, unit) in columns.items()})
     if is_workbook(path):
         text, said = text_of_sheet(path, form.sheet)
         form = form.model_copy(update={"separator": "\t"})
@@ -176,7 +176,7 @@ def _width(line: str, separator: str) -> int:
 def _frame(rows: list[str], separator: str, width: int, texts: Any = None) -> Any:
     import pandas
 
-    splits = {"sep": r"\s+"} if separator == " " else {"sep": separator, "skipinitialspace": True}
+    splits: dict[str, Any] = {"sep": r"\s+"} if separator == " " else {"sep": separator, "skipinitialspace": True}
     words = sorted({w for word in NOTHING for w in (word, word.upper(), word.capitalize())} | {"NaN", "NaT", "N/a"})
     return pandas.read_csv(
         io.StringIO("\n".join(rows)),

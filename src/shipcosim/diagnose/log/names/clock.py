@@ -75,7 +75,7 @@ def _usable(guess: Guess, log: LogColumns, form: Form) -> Guess | None:
         return _stamps(guess.column, log, form, guess)
     if values.dtype.kind == "M" or guess.unit and guess.unit.lower() not in ("utc", "local", "date"):
         return guess
-    if guess.channel and guess.channel.nanoseconds:
+    if guess.channel.nanoseconds:
         return guess
     known = values[np.isfinite(values)]
     if len(np.unique(known[:1000])) < 2 and len(np.unique(known)) < 2:

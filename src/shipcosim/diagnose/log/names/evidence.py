@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 __all__ = ["frame_of_angle", "unit_of_rate", "unit_of_speed"]
@@ -78,17 +80,17 @@ def frame_of_angle(
     time: np.ndarray,
     north: np.ndarray,
     east: np.ndarray,
-    readings: dict[str, np.ndarray],
+    readings: dict[Any, np.ndarray],
     drift: np.ndarray | None = None,
-) -> str | None:
+) -> Any:
     """Which of several readings of a heading agrees with the course; None where not one alone does.
 
     Parameters
     ----------
     time, north, east : (n,) array
         [s, m, m]
-    readings : dict of str to (n,) array
-        Headings. [deg]
+    readings : dict of (n,) array
+        Headings, by what they are called. [deg]
     drift : (n,) array, optional
         Direction of the velocity against the bow, where that is known; else ahead is assumed. [rad]
 

@@ -15,11 +15,13 @@ from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.roles import ROLES, role_of
 from shipcosim.units import relation, spelled_unit
 
-__all__ = ["EXACT", "GUESS", "SURE", "Guess", "Thrusters", "guesses_of"]
+__all__ = ["EXACT", "GUESS", "SURE", "UNUSED", "Guess", "Thrusters", "guesses_of"]
 
 Thrusters = Mapping[str, tuple[str, ...]]
 """Thrusters of a system by name, with what drives each: ``"rpm"``, ``"azimuth"``, ``"thrust"``."""
 EXACT, SURE, GUESS = 0, 1, 2
+UNUSED = Channel(column="-")
+_THRUSTER_UNITS = {"rpm": "rpm", "azimuth": "deg", "thrust": "N"}
 _SUFFIXES = ("m/s", "deg/s", "deg", "s", "m", "rpm", "N", "%")  # units that names end in
 
 
@@ -33,8 +35,8 @@ class Guess:
         Its name.
     role : str
         Its role; empty where it is not used.
-    channel : Channel or None
-        How it gives the role.
+    channel : Channel
+        How it gives the role; `UNUSED` of a column that is not used.
     rank : int
         `EXACT` where it has the role's name, `SURE` where its name has one meaning, else `GUESS`.
     why : str
@@ -49,7 +51,7 @@ class Guess:
 
     column: str
     role: str = ""
-    channel: Channel | None = None
+    channel: Channel = UNUSED
     rank: int = GUESS
     why: str = ""
     kind: str = ""
@@ -64,7 +66,7 @@ class Guess:
     @property
     def in_unit(self) -> str:
         """``"in kn: "`` where its unit is known; else empty."""
-        unit = (self.channel.unit if self.channel else None) or self.unit
+        unit = self.channel.unit or self.unit
         return f"in {unit}: " if unit else ""
 
 
@@ -130,10 +132,12 @@ def _by_meaning(column, words, stated, values):
 
 
 def _measures(unit, role):
-    given, wanted = spelled_unit(unit_for(unit, ROLES[role].unit)), spelled_unit(ROLES[role].unit)
-    if given is None or wanted is None:
-        return unit_for(unit, ROLES[role].unit) in ("ft", "ft/s", "km")
-    return relation(given, wanted) in ("same", "convertible")
+    return _converts(unit, ROLES[role].unit) or unit_for(unit, ROLES[role].unit) in ("ft", "ft/s")
+
+
+def _converts(unit, target):
+    given, wanted = spelled_unit(unit_for(unit, target)), spelled_unit(target)
+    return given is not None and wanted is not None and relation(given, wanted) in ("same", "convertible")
 
 
 def _of_thruster(column: str, drive: Drive, stated: str, thrusters: Thrusters | None) -> list[Guess]:
@@ -153,13 +157,12 @@ def _of_thruster(column: str, drive: Drive, stated: str, thrusters: Thrusters | 
     found = []
     for name in names:
         role = f"{name}_{drive.quantity}"
-        unit = role_of(role).unit
+        unit = _THRUSTER_UNITS[drive.quantity]
         wanted = (thrusters or {}).get(name, (drive.quantity,))
         if drive.quantity not in wanted:
             found.append(Guess(column, why=f"the system drives {name} by {' and '.join(wanted) or 'nothing logged'}"))
             continue
-        known = spelled_unit(unit_for(stated, unit)) if stated else None
-        if stated and (known is None or relation(known, spelled_unit(unit)) not in ("same", "convertible")):
+        if stated and not _converts(stated, unit):
             found.append(Guess(column, why=f"its unit '{stated}' is none of {role}, which is in {unit}"))
             continue
         why = doubt or drive.doubt
@@ -182,7 +185,7 @@ def _of_a_map(column, stated, thrusters):
 def _needs_a_map(column, quantity, name, thrusters):
     """Why a command in pulses or per cent is not used, and what to write."""
     wanted = next(iter((thrusters or {}).get(name, ())), "rpm")
-    unit = {"rpm": "rpm", "thrust": "N", "azimuth": "deg"}[wanted]
+    unit = _THRUSTER_UNITS[wanted]
     pairs = "[[1100, A], [1500, 0], [1900, B]]" if quantity == "pwm" else "[[-100, A], [0, 0], [100, B]]"
     word = "pulses (PWM)" if quantity == "pwm" else "per cent"
     entry = f'{name}_{wanted} = {{column = "{column}", map = {pairs}}}'

@@ -11,7 +11,7 @@ from shipcosim.diagnose.log.files.form import Form
 from shipcosim.diagnose.log.files.positions import hemisphere_signs
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
-from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess, Thrusters, guesses_of
+from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, UNUSED, Guess, Thrusters, guesses_of
 from shipcosim.diagnose.log.names.settled import settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
 
@@ -41,7 +41,7 @@ class Proposal:
 
     def channels(self, guessed: bool = False) -> dict[str, Channel]:
         """Channels by role: those that are sure, or the guesses as well."""
-        return {g.role: g.channel for g in self.used if g.channel and (guessed or g.rank < GUESS)}
+        return {g.role: g.channel for g in self.used if guessed or g.rank < GUESS}
 
 
 def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | None = None) -> Proposal:
@@ -68,7 +68,7 @@ def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | No
     left = _with_hemispheres(chosen, log, left)
     settled(chosen, log, form)
     left += _of_one_kind(chosen, log)
-    taken = {name for guess in chosen.values() if guess.channel for name in guess.channel.columns}
+    taken = {name for guess in chosen.values() for name in guess.channel.columns}
     unused = {guess.column: guess for guess in reversed(left) if guess.column not in taken}
     order = list(log.values)
     used = sorted(chosen.values(), key=lambda g: (g.role != "time", order.index(g.column)))
@@ -133,7 +133,7 @@ def _with_quaternion(chosen, log, left):
             groups.setdefault(before, {})[ends[last]] = column
     for parts in groups.values():
         if set(parts) == set("wxyz") and all(log.values[c].dtype.kind == "f" for c in parts.values()):
-            channel = Channel(quaternion=tuple(parts[k] for k in "wxyz"))
+            channel = Channel(quaternion=(parts["w"], parts["x"], parts["y"], parts["z"]))
             why = "of a quaternion; it may be of another frame (ENU)"
             chosen["heading"] = Guess(parts["w"], "heading", channel, GUESS, why)
             return [guess for guess in left if guess.column not in parts.values()]
@@ -170,7 +170,7 @@ def _of_one_kind(chosen, log):
     def drop(roles, why):
         for role in roles:
             if role in chosen:
-                left.append(replace(chosen.pop(role), role="", channel=None, why=why))
+                left.append(replace(chosen.pop(role), role="", channel=UNUSED, why=why))
 
     for pair in _PAIRS:
         there = [role for role in pair if role in chosen]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -57,7 +58,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: Form) -> None:
 def _is_open(chosen, role):
     """Whether a channel's unit is stated nowhere, and its column is not named by its role."""
     guess = chosen.get(role)
-    return bool(guess and guess.rank != EXACT and not guess.unit and guess.channel and guess.channel.quaternion is None)
+    return bool(guess and guess.rank != EXACT and not guess.unit and guess.channel.quaternion is None)
 
 
 def _is_short(guess):
@@ -82,7 +83,7 @@ def _told(chosen, role, why, **update):
     chosen[role] = replace(guess, channel=channel, rank=SURE, why="", said=(*guess.said, why))
 
 
-def _values(chosen, role, log, form):
+def _values(chosen, role, log, form) -> Any:
     if role not in chosen:
         return None
     try:
@@ -91,7 +92,7 @@ def _values(chosen, role, log, form):
         return None  # reading it says what is wrong
 
 
-def _motion(chosen, log, form):
+def _motion(chosen, log, form) -> Any:
     """Times and positions of the log [s, m, m], None where it has none."""
     time = _values(chosen, "time", log, form)
     if time is None:
@@ -104,7 +105,7 @@ def _motion(chosen, log, form):
         known = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude) & (np.abs(latitude) < 90.0))
         if not len(known):
             return time, None, None
-        meridian, parallel = metres_per_degree(latitude[known[0]])
+        meridian, parallel = metres_per_degree(float(latitude[known[0]]))
         turned = wrap_series(np.radians(longitude - longitude[known[0]]), TURN)
         position = [meridian * (latitude - latitude[known[0]]), parallel * np.degrees(turned)]
     rows = np.concatenate(([True], np.diff(time) > 0.0))
@@ -133,9 +134,11 @@ def _settle_heading(chosen, log, form, motion):
         return
     found = None
     if motion is not None and motion[1] is not None:
-        body = [_values(chosen, role, log, form) for role in ("surge", "sway")]
+        body: list[Any] = [_values(chosen, role, log, form) for role in ("surge", "sway")]
         is_known = all(v is not None for v in body) and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
-        found = frame_of_angle(*motion, readings, np.arctan2(body[1], body[0]) if is_known else None)
+        found = frame_of_angle(
+            motion[0], motion[1], motion[2], readings, np.arctan2(body[1], body[0]) if is_known else None
+        )
     if found is None:
         if is_open and len(units) == 2:
             _guess(chosen, "heading", "rad", "no unit is stated, and no value is beyond 2 pi: rad or deg")
@@ -186,7 +189,7 @@ def _settle_speed(chosen, role, log, form, motion):
             other = {"surge": "sway", "sway": "surge", "north_velocity": "east_velocity"}.get(role, "north_velocity")
             beside = log.values[chosen[other].column] if _is_open(chosen, other) else np.zeros_like(raw)
             speed = np.hypot(raw, beside) if beside.dtype.kind == "f" else np.abs(raw)
-        unit = unit_of_speed(*motion, speed)
+        unit = unit_of_speed(motion[0], motion[1], motion[2], speed)
     if unit == "m/s":
         chosen[role] = replace(chosen[role], said=(*chosen[role].said, "in m/s, as positions say"))
     elif unit is not None:
