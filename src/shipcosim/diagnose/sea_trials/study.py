@@ -251,7 +251,9 @@ def study(
     ShipcosimError
         Data that cannot be used; no turning circle.
     """
-    read = checked(ReadLog(read_log(log, channels), ship_model_of(system), read_catalogue(causes)))
+    ship = ship_model_of(system)
+    drives = {name: ship.drives(name) for name in ship.thrusters}
+    read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
         raise ShipcosimError(Problem(system.file, found, "Sea trials are sailed with thrusters of ours."))
