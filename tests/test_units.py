@@ -1,6 +1,7 @@
 """Units against numbers from outside: pint, the BIPM SI brochure (9th ed.), definitions of the nautical units."""
 
 import math
+import re
 import subprocess
 import sys
 
@@ -12,8 +13,10 @@ from shipcosim.units import (
     SYMBOLS,
     Unit,
     UnitError,
+    amount,
     conversion,
     fmi_unit,
+    number_in,
     relation,
     spelled_conversion,
     spelled_unit,
@@ -170,3 +173,63 @@ def test_what_nobody_knows_is_refused(spelling, said):
 def test_units_of_the_table_are_converted_without_importing_pint():
     code = "import sys; from shipcosim.series import conversion; conversion('kn', 'm/s'); print('pint' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "False\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("45 deg", "rad", math.pi / 4),
+        ("45°", "rad", math.pi / 4),
+        ("-90deg", "rad", -math.pi / 2),
+        ("10 kn", "m/s", 10 * 1852 / 3600),
+        ("1.5e2 kN", "N", 150e3),
+        (" .5 t ", "kg", 500.0),
+        ("20 degC", "K", 293.15),
+        ("68 degF", "degC", 20.0),
+        ("100 ft", "m", 30.48),
+        ("10 lbf", "N", 44.4822161526),
+        ("50 %", "1", 0.5),
+        ("2 1/s", "Hz", 2.0),
+        ("10 min", "s", 600.0),
+    ],
+)
+def test_an_amount_is_the_number_that_its_unit_says(text, unit, expected):
+    assert number_in(text, spelled_unit(unit)) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("text", ["45", "kaimal", "", "deg", "4,5 m", "1_0 m", "nan m", "inf m", "1e5", "--1 m"])
+def test_other_texts_are_no_amounts(text):
+    assert amount(text) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "said"),
+    [
+        ("45 deg", "m", "'45 deg' is in deg, where m is wanted: they measure different things. Write a number in m"),
+        ("10 %", "rad", "in %, where rad is wanted"),
+        ("3 rad", "1", "in rad, where 1 is wanted"),
+        ("5 rpm", "1/s", "in rpm, where 1/s is wanted"),
+        ("3 parsnip", "m", "the unit 'parsnip' is not known"),
+        ("3 __import__('os')", "m", "is not known"),
+        ("kaimal", "m/s", "is no number with a unit. Write a number in m/s"),
+    ],
+)
+def test_an_amount_of_another_kind_is_refused(text, unit, said):
+    with pytest.raises(UnitError, match=re.escape(said)):
+        number_in(text, spelled_unit(unit))
+
+
+def test_what_has_no_unit_takes_no_amount():
+    with pytest.raises(UnitError, match="no unit is wanted.*Write a number"):
+        number_in("3 m", None)
+
+
+def test_an_angle_is_taken_where_a_file_defines_it_without_the_radian():
+    assert number_in("180 deg", Unit("rad", (0,) * 8)) == pytest.approx(math.pi)
+    assert number_in("180 deg", Unit("deg", (0,) * 8, math.pi / 180)) == pytest.approx(180.0)
+    with pytest.raises(UnitError):
+        number_in("180 deg", Unit("ratio", (0,) * 8))
+
+
+def test_a_difference_has_no_offset():
+    assert number_in("1 degC", spelled_unit("K"), difference=True) == 1.0

@@ -95,3 +95,15 @@ def unwrap_series(angle: np.ndarray) -> np.ndarray:
     found, known = np.array(angle, float), np.isfinite(angle)
     found[known] = np.unwrap(found[known])
     return found
+
+
+def compass(degrees: float) -> str:
+    """A direction as it is read off a compass: three digits from 000 to 359, with a decimal where there is one.
+
+    Examples
+    --------
+    >>> compass(45.0), compass(-90.0), compass(359.97), compass(7.25)
+    ('045', '270', '000', '007.2')
+    """
+    text = f"{round(degrees % 360.0, 1) % 360.0:05.1f}"
+    return text.removesuffix(".0")

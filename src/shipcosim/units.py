@@ -116,6 +116,7 @@ SYMBOLS = {
     )
 }
 """Units by their symbol, for spellings that no file defines."""
+RADIAN = SYMBOLS["rad"]
 
 PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "h": 1e2, "d": 1e-1, "c": 1e-2, "m": 1e-3, "u": 1e-6, "n": 1e-9}
 WITH_PREFIX = {"g", "m", "s", "A", "K", "mol", "rad", "Hz", "N", "Pa", "bar", "J", "W", "C", "V", "Ohm", "l"}
@@ -296,6 +297,100 @@ def spelled_conversion(source: str, target: str) -> tuple[float, float]:
     if relation(given, wanted) == "incompatible":
         raise UnitError(f"cannot convert '{source}' into '{target}': they measure different things.")
     return conversion(given, wanted)
+
+
+_AMOUNT = re.compile(
+    r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+    r"(?P<unit>\s+\S.*|(?![eE][+-]?\d)[A-Za-z%°µΩ].*)"
+)
+
+
+def amount(text: str) -> tuple[float, str] | None:
+    """Number and unit of an amount as people write it, or None for any other text.
+
+    Examples
+    --------
+    >>> amount("45 deg"), amount("-1.5e3kN"), amount("kaimal"), amount("45")
+    ((45.0, 'deg'), (-1500.0, 'kN'), None, None)
+    """
+    match = _AMOUNT.fullmatch(text)
+    return (float(match["number"]), match["unit"].strip()) if match else None
+
+
+def number_in(text: str, target: Unit | None, *, difference: bool = False) -> float:
+    """Number of an amount with a unit, in another unit.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``"45 deg"``, also in a unit that pint alone knows.
+    target : Unit or None
+        In which the number is wanted; None where what it is for has no unit.
+    difference : bool
+        Whether it is a difference of two values: 1 degC is 1 K then, not 274.15 K.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    UnitError
+        If the text is no amount, or measures another thing.
+
+    Examples
+    --------
+    >>> number_in("2 kn", spelled_unit("km/h"))
+    3.704
+    """
+    found, name = amount(text), target.name if target else "1"
+    if found is None:
+        raise UnitError(f"{text!r} is no number with a unit.", f"Write a number in {name}, or such as '2.5 {name}'.")
+    number, spelling = found
+    source = spelled_unit(spelling) or _pint_unit(spelling)
+    if source is None:
+        raise UnitError(f"{text!r}: the unit {spelling!r} is not known.", "Units are written like deg, kn or N.m.")
+    if target is None or not _same_kind(source, target):
+        wanted = f"{name} is wanted" if target else "no unit is wanted"
+        raise UnitError(f"{text!r} is in {spelling}, where {wanted}: they measure different things.", _instead(target))
+    factor, offset = source.factor / target.factor, (source.offset - target.offset) / target.factor
+    return number * factor + (0.0 if difference else offset)
+
+
+def _instead(target: Unit | None) -> str:
+    return f"Write a number in {target.name}, or one with a unit that converts to it." if target else "Write a number."
+
+
+def _same_kind(source: Unit, target: Unit) -> bool:
+    """Whether an amount in one unit can be meant where the other is wanted.
+
+    An angle is no ratio, but files that define rad or deg without the radian mean the angle.
+    """
+    if (related := relation(source, target)) != "angle":
+        return related in ("same", "convertible")
+    named = spelled_unit(target.name)
+    return named is not None and named.exponents == source.exponents
+
+
+_NAMES = ("kilogram", "meter", "second", "ampere", "kelvin", "mole", "candela", "radian")
+_IN_PINT: dict[str, str] = dict(zip(_NAMES, BASE_UNITS, strict=True))
+
+
+def _pint_unit(spelling: str) -> Unit | None:
+    """Unit of a spelling that pint alone knows, such as "ft" or "°"; None where it does not know it either."""
+    import pint
+
+    try:
+        registry = _registry()
+        unit = registry(_pint_spelling(spelling)).units
+        offset, one = (float(registry.Quantity(value, unit).to_base_units().magnitude) for value in (0.0, 1.0))
+        in_base = registry.Quantity(1.0, unit).to_base_units()
+        powers = {str(name): float(str(power)) for name, power in in_base.unit_items()}
+    except (pint.PintError, UnitError, AttributeError, TypeError, ValueError):
+        return None
+    if any(name not in _IN_PINT or not power.is_integer() for name, power in powers.items()):
+        return None
+    return _unit(spelling, one - offset, offset, **{_IN_PINT[name]: int(power) for name, power in powers.items()})
 
 
 def _pint_conversion(source: str, target: str) -> tuple[float, float]:

@@ -21,7 +21,9 @@ Parameters = Annotated[
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others; repeatable."),
+    typer.Option(
+        "--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others, such as 5 or '10 kn'; repeatable."
+    ),
 ]
 OspEvents = Annotated[
     Path | None,

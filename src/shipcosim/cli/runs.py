@@ -13,8 +13,8 @@ from shipcosim.cli.exits import FAILED, INTERRUPTED
 from shipcosim.cli.results import check_targets, save
 from shipcosim.cosim import Interrupted, RunError, RunOptions, Snapshot, simulate, write_snapshot
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Scenario, Verdict, judge
-from shipcosim.ssp import System
+from shipcosim.scenario import Scenario, Verdict, check_scenario, judge, units_of, with_numbers
+from shipcosim.ssp import System, with_values
 
 if TYPE_CHECKING:
     import xarray
@@ -68,13 +68,17 @@ def simulated_and_saved(
         If the input cannot be used or the results cannot be written.
     """
     check_targets(out, store)
+    problems = check_scenario(scenario, with_values(system, scenario.set, str(scenario.path or "scenario")))
+    if errors := [problem for problem in problems if problem.severity == "error"]:
+        raise ShipcosimError(errors)
+    print_problems(problems)
     print_problems(problem for problem in system.remarks if problem.where not in system.components)
     snapshots: list[Snapshot] = []
     if store:
         options = replace(options, store=snapshots.append)
     table = _simulated(system, scenario, out, options)
     scenario = _within(scenario, table)
-    verdicts = judge(table, scenario)
+    verdicts = judge(table, with_numbers(scenario, units_of(system)))
     page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)
     print_summary(table, verdicts, page)
     if store:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ from shipcosim import library
 from shipcosim.cosim.engines.registry import ENGINES, OWN_OPTIONS
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
-from shipcosim.scenario import Scenario, check_scenario
+from shipcosim.scenario import Scenario, check_scenario, odd_values, units_of, with_numbers
 from shipcosim.ssp import System, read_system, with_values
 
 if TYPE_CHECKING:
@@ -53,7 +54,10 @@ def simulate(
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
         raise ShipcosimError(errors)
+    odd = [f"{remark.found} {remark.remedy}" for remark in odd_values(scenario, system)]
+    scenario = with_numbers(scenario, units_of(system))
     if options.engine != "fmpy" and (unknown := options.changed(OWN_OPTIONS)):
         found = f"It does not know {', '.join(unknown)}."
         raise ShipcosimError(Problem(f"engine '{options.engine}'", found, "The engine 'fmpy' does."))
-    return ENGINES[options.engine](system, scenario, options)
+    table = ENGINES[options.engine](system, scenario, options)
+    return table.assign_attrs(remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))]))

@@ -4,9 +4,11 @@ A scenario is data. `read_scenario` reads and checks a file, `check_scenario` ch
 `judge` compares a run's table with the expectations.
 """
 
+from shipcosim.scenario.amounts import units_of, with_numbers
 from shipcosim.scenario.check import check_files, check_scenario, check_times, whole_steps
 from shipcosim.scenario.judge import Verdict, judge
 from shipcosim.scenario.model import Event, Expectation, Scenario
+from shipcosim.scenario.plausible import odd_values
 from shipcosim.scenario.reader import read_scenario, toml_of
 
 __all__ = [
@@ -18,7 +20,10 @@ __all__ = [
     "check_scenario",
     "check_times",
     "judge",
+    "odd_values",
     "read_scenario",
     "toml_of",
+    "units_of",
     "whole_steps",
+    "with_numbers",
 ]

@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario.amounts import unit_complaints, units_of
 from shipcosim.scenario.locations import problem_at
 from shipcosim.scenario.model import Scenario, Value
+from shipcosim.scenario.plausible import odd_values
+from shipcosim.units import UnitError, amount, number_in
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -100,15 +103,21 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
         That it runs. Start values are checked by `shipcosim.ssp.with_values`.
     """
     problems = [*check_times(scenario), *check_parameters(scenario, system)]
-    for number, event in enumerate(scenario.events):
-        for verb, signal, value in event.changes:
-            if complaint := _event_complaint(system, verb, signal, value):
-                problems.append(problem_at(scenario, ("events", number, verb, signal), *complaint))
+    wrong_changes = [
+        problem_at(scenario, ("events", number, verb, signal), *complaint)
+        for number, event in enumerate(scenario.events)
+        for verb, signal, value in event.changes
+        if (complaint := _event_complaint(system, verb, signal, value))
+    ]
+    problems += wrong_changes or odd_values(scenario, system)
     changed = {signal for event in scenario.events for _, signal, _ in event.changes}
     for number, expect in enumerate(scenario.expect):
-        for signal in expect.signals:
-            if complaint := _expect_complaint(system, signal, changed):
-                problems.append(problem_at(scenario, ("expect", number, "signal"), *complaint))
+        keys = "expect", number
+        complaints = [c for signal in expect.signals if (c := _expect_complaint(system, signal, changed))]
+        problems += [problem_at(scenario, (*keys, "signal"), *complaint) for complaint in complaints]
+        if not complaints:
+            wrong = unit_complaints(expect, units_of(system))
+            problems += [problem_at(scenario, (*keys, key), *complaint) for key, *complaint in wrong]
     return problems
 
 
@@ -128,10 +137,22 @@ def _event_complaint(system: System, verb: str, signal: str, value: Value | None
         if not _may_change(variable):
             remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
             return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
+    if kind == "Real" and isinstance(value, str) and amount(value) is not None:
+        return _unit_complaint(system, verb, signal, value, (component, name))
     if verb != "reset" and not _fits(value, kind, items, verb):
         listed = f" Its items are {', '.join(items)}." if items else ""
         found = f"{verb} of '{signal}' with {value!r}: the signal is {kind or None}."
         return found, f"{_WANTED.get(kind, 'It cannot be changed.')}{listed}"
+    return None
+
+
+def _unit_complaint(
+    system: System, verb: str, signal: str, value: str, end: tuple[str | None, str]
+) -> tuple[str, str] | None:
+    try:
+        number_in(value, system.unit_of(*end), difference=verb == "bias")
+    except UnitError as error:
+        return f"{verb} of '{signal}': {error.found}", error.remedy
     return None
 
 

@@ -9,7 +9,10 @@ import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario.amounts import UnitOf, expectation_in_numbers, unit_complaints
+from shipcosim.scenario.locations import problem_at
 from shipcosim.scenario.model import Expectation, Scenario
+from shipcosim.units import RADIAN, conversion, find_unit, relation
 
 if TYPE_CHECKING:
     import xarray
@@ -22,7 +25,7 @@ class Verdict:
     Parameters
     ----------
     expect : Expectation
-        What was expected.
+        What was expected, in plain numbers in the units of the signals.
     passed : bool
         Whether it holds.
     worst : float
@@ -50,7 +53,7 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     Raises
     ------
     ShipcosimError
-        If a signal is not in the table.
+        If a signal is not in the table, or an expectation takes different things together: metres and radians.
     """
     missing = [
         Problem(scenario.name, f"the table has no signal '{signal}'.", suggestion(signal, map(str, table.data_vars)))
@@ -60,33 +63,46 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     ]
     if missing:
         raise ShipcosimError(missing)
-    return [_verdict(table, expect) for expect in scenario.expect]
+    unit_of = lambda signal: find_unit(table[signal].attrs.get("units") or None)  # noqa: E731
+    wrong = [
+        problem_at(scenario, ("expect", number, key), *complaint)
+        for number, expect in enumerate(scenario.expect)
+        for key, *complaint in unit_complaints(expect, unit_of)
+    ]
+    if wrong:
+        raise ShipcosimError(wrong)
+    return [_verdict(table, expectation_in_numbers(expect, unit_of), unit_of) for expect in scenario.expect]
 
 
-def _verdict(table: xarray.Dataset, expect: Expectation) -> Verdict:
+def _verdict(table: xarray.Dataset, expect: Expectation, unit_of: UnitOf) -> Verdict:
     times = table["time"].values
     start, end = expect.during or (-np.inf, np.inf)
     tolerance = 1e-9 * max(1.0, abs(times[-1])) if len(times) else 0.0
     rows = np.flatnonzero((times >= start - tolerance) & (times <= end + tolerance))
     if len(rows) == 0:
         return Verdict(expect, False, np.nan, np.nan)
-    rows, values = _reduced(rows, _values(table, expect, rows), expect.statistic)
+    rows, values = _reduced(rows, _values(table, expect, rows, unit_of), expect.statistic)
     excess = _excess(values, expect)
     worst = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
     measure = values[worst, 0] if expect.near is None else np.linalg.norm(values[worst])
     return Verdict(expect, bool(excess[worst] <= 0.0), float(measure), float(times[rows[worst]]))
 
 
-def _values(table: xarray.Dataset, expect: Expectation, rows: np.ndarray) -> np.ndarray:
-    """The signals, or their differences from `near`; (n, signals)."""
+def _values(table: xarray.Dataset, expect: Expectation, rows: np.ndarray, unit_of: UnitOf) -> np.ndarray:
+    """The signals, or their differences from `near` in the unit of the first; (n, signals)."""
     values = np.column_stack([table[s].values[rows].astype(float) for s in expect.signal])
     if expect.near is None:
         return values
-    targets = [table[v].values[rows].astype(float) if isinstance(v, str) else v for v in expect.near]
-    for i, (signal, target) in enumerate(zip(expect.signal, targets, strict=True)):
+    first = unit_of(expect.signal[0])
+    for i, (signal, target) in enumerate(zip(expect.signal, expect.near, strict=True)):
+        unit = unit_of(signal)
+        if isinstance(target, str):
+            factor, offset = conversion(unit_of(target), unit)
+            target = factor * table[target].values[rows].astype(float) + offset
         values[:, i] -= target
-        if table[signal].attrs.get("units") == "rad":
-            values[:, i] = wrap_series(values[:, i], TURN)
+        if unit is not None and relation(unit, RADIAN) in ("same", "convertible"):
+            values[:, i] = wrap_series(values[:, i], TURN / unit.factor)
+        values[:, i] *= conversion(unit, first)[0]
     return values
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, PrivateAttr, model_validator
 
 from shipcosim import library
+from shipcosim.units import UnitError, amount, find_unit, number_in
 
 
 def _plain(value: Any) -> bool | int | float | str:
@@ -19,8 +20,31 @@ def _plain(value: Any) -> bool | int | float | str:
     raise ValueError(f"{value!r} is no value. A value is a number, true or false, or a text.")
 
 
+def _amount(value: Any) -> float | str:
+    plain = _plain(value)
+    if isinstance(plain, bool) or (isinstance(plain, str) and amount(plain) is None):
+        raise ValueError(f"{value!r} is no amount. It should be a number without quotes, or such as '2.5 deg'.")
+    return plain if isinstance(plain, str) else float(plain)
+
+
+def _seconds(value: Any) -> Any:
+    """Texts such as "10 min" as seconds; the rest is left to pydantic."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return number_in(value, find_unit("s"))
+    except UnitError as error:
+        raise ValueError(str(error)) from None
+
+
+Amount = Annotated[float | str, PlainValidator(_amount)]
+"""A number in the signal's unit, or a text with another unit."""
+Seconds = Annotated[float, BeforeValidator(_seconds)]
 Value = Annotated[bool | int | float | str, PlainValidator(_plain)]
 ListOfNames = Annotated[list[str], BeforeValidator(lambda names: [names] if isinstance(names, str) else names)]
+
+
+POSITION = ["x", "y"]  # names of signals that make a position: north, east
 
 
 class _Part(BaseModel):
@@ -30,9 +54,9 @@ class _Part(BaseModel):
 class Event(_Part):
     """What changes at a time, in the words of OSP. An event at time t acts on the step that starts at t."""
 
-    time: float = Field(ge=0.0, description="s")
+    time: Seconds = Field(ge=0.0, description="s")
     override: dict[str, Value] = Field(default={}, description="signals held at a value instead of what they would be")
-    bias: dict[str, float] = Field(default={}, description="values added to signals")
+    bias: dict[str, Amount] = Field(default={}, description="values added to signals")
     reset: ListOfNames = Field(default=[], description="signals that follow their source, or their start value, again")
 
     @model_validator(mode="after")
@@ -57,11 +81,11 @@ class Expectation(_Part):
     signal: ListOfNames = Field(min_length=1)
     near: Annotated[
         list[float | str] | None, BeforeValidator(lambda v: v if isinstance(v, list) or v is None else [v])
-    ] = Field(default=None, description="numbers, or names of signals")
-    within: float | None = Field(default=None, gt=0.0, description="largest distance from `near`")
-    at_least: float | None = None
-    at_most: float | None = None
-    during: Annotated[list[float], Field(min_length=2, max_length=2)] | None = Field(
+    ] = Field(default=None, description="amounts, or names of signals")
+    within: Amount | None = Field(default=None, description="largest distance from `near`, greater than 0")
+    at_least: Amount | None = None
+    at_most: Amount | None = None
+    during: Annotated[list[Seconds], Field(min_length=2, max_length=2)] | None = Field(
         default=None, description="from, to in s"
     )
     statistic: Literal["mean", "max", "min", "final"] | None = Field(default=None, description="instead of every row")
@@ -69,6 +93,9 @@ class Expectation(_Part):
     @model_validator(mode="after")
     def _is_one_claim(self) -> Expectation:
         limits = self.at_least is not None or self.at_most is not None
+        size = amount(self.within) if isinstance(self.within, str) else (self.within, "")
+        if size is not None and size[0] is not None and not size[0] > 0.0:
+            raise ValueError(f"within = {self.within}. It should be greater than 0.")
         if (self.near is None) != (self.within is None):
             raise ValueError("`near` and `within` come together.")
         if (self.near is not None) == limits:
@@ -82,21 +109,42 @@ class Expectation(_Part):
         return self
 
     def __str__(self) -> str:
-        subject = f"{self.statistic} of " if self.statistic else ""
-        subject += self.signal[0] if len(self.signal) == 1 else f"({', '.join(self.signal)})"
-        claims = [
-            f"{word} {limit:g}" for word, limit in (("≥", self.at_least), ("≤", self.at_most)) if limit is not None
-        ]
-        if self.near is not None:
-            target = ", ".join(v if isinstance(v, str) else f"{v:g}" for v in self.near)
-            claims = [f"within {self.within:g} of {target if len(self.near) == 1 else f'({target})'}"]
+        limits = {"≥": self.at_least, "≤": self.at_most}
+        claims = [f"{word} {_text(limit)}" for word, limit in limits.items() if limit is not None]
+        if self.near is not None and self.within is not None:
+            target = ", ".join(map(_text, self.near))
+            claims = [f"within {_text(self.within)} of {target if len(self.near) == 1 else f'({target})'}"]
         window = f" during {self.during[0]:g} to {self.during[1]:g} s" if self.during else ""
-        return f"{subject} {' and '.join(claims)}{window}"
+        return f"{self.subject} {' and '.join(claims)}{window}"
+
+    @property
+    def subject(self) -> str:
+        """What is looked at, in words: 'position of vessel', 'mean of port.power'."""
+        owners = {signal.rpartition(".")[0] for signal in self.signal}
+        names = [signal.rpartition(".")[2] for signal in self.signal]
+        if names == POSITION and len(owners) == 1:
+            what = "position"
+        elif self.is_heading:
+            what = "heading"
+        else:
+            owners, what = {""}, ", ".join(self.signal)
+            what = what if len(names) == 1 else f"({what})"
+        of = f" of {owner}" if (owner := next(iter(owners))) else ""
+        return (f"{self.statistic} of " if self.statistic else "") + what + of
+
+    @property
+    def is_heading(self) -> bool:
+        """Whether it looks at a heading, by the name that headings have here."""
+        return [signal.rpartition(".")[2] for signal in self.signal] == ["psi"]
 
     @property
     def signals(self) -> list[str]:
         """Every signal the expectation looks at."""
-        return [*self.signal, *(v for v in self.near or () if isinstance(v, str))]
+        return [*self.signal, *(v for v in self.near or () if isinstance(v, str) and amount(v) is None)]
+
+
+def _text(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 class Scenario(_Part):
@@ -110,9 +158,9 @@ class Scenario(_Part):
     parameters: ListOfNames = Field(
         default=[], description="names of parameter sets in the system's resources, or paths"
     )
-    stop_time: float = Field(gt=0.0, description="s")
-    step_size: float = Field(gt=0.0, description="s")
-    output_interval: float | None = Field(default=None, gt=0.0, description="s; every step where it is not given")
+    stop_time: Seconds = Field(gt=0.0, description="s")
+    step_size: Seconds = Field(gt=0.0, description="s")
+    output_interval: Seconds | None = Field(default=None, gt=0.0, description="s; every step where it is not given")
     set: dict[str, Value] = Field(default={}, description="start values")
     events: list[Event] = []
     expect: list[Expectation] = []

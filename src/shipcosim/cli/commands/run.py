@@ -91,7 +91,7 @@ def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptio
 def _prepared(path: Path, reading: _Reading) -> "tuple[System, Scenario]":
     """System and scenario of a file, checked, with the values that are set for this run."""
     from shipcosim.cli.console import print_problems
-    from shipcosim.scenario import check_files, check_times, read_scenario
+    from shipcosim.scenario import check_files, read_scenario
     from shipcosim.ssp import fitting_values, read_system, with_values
 
     happening = read_scenario(path)
@@ -100,7 +100,6 @@ def _prepared(path: Path, reading: _Reading) -> "tuple[System, Scenario]":
     path, fmus = happening.system_path, library.fmus(happening.system_path)
     system = read_system(path, happening.parameter_paths, fmus=fmus, strict=reading.strict)
     with_values(system, reading.given, "--set")
-    print_problems(check_times(happening))
     fitting = {}
     for file in reading.parameters:
         values, left_out = fitting_values(file, system)

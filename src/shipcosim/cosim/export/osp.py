@@ -12,7 +12,7 @@ from shipcosim.cosim.master.events import Change
 from shipcosim.cosim.master.plan import KINDS
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
-from shipcosim.scenario import Scenario, check_scenario
+from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.scenario.osp import scenario_text
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.xml.markup import free_name
@@ -51,6 +51,7 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     wrong = [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]
     if wrong:
         raise ShipcosimError(wrong)
+    scenario = with_numbers(scenario, units_of(system))
     job = Job(system, scenario, RunOptions())
     problems = [*unsupported_by_libcosim(job), *_values_problems(job)]
     if problems:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from xarray import Dataset
 
+from shipcosim.angles import compass
 from shipcosim.report.theme.views import Outcome
 from shipcosim.scenario import Expectation, Verdict
 
@@ -78,12 +79,17 @@ def _judged(verdict: Verdict, shown_as: dict[str, Any]) -> Judged:
 
 
 def _claim(expect: Expectation, unit: str, factor: float) -> str:
-    """What is expected: 'vessel.psi: 0 ± 1 deg'."""
-    text = lambda value: value if isinstance(value, str) else f"{round(factor * value, 4):.4g}"  # noqa: E731
-    subject = f"{expect.statistic} of " * bool(expect.statistic) + ", ".join(expect.signal)
-    if expect.near is not None and expect.within is not None:
+    """What is expected: 'position of vessel: (20, 0) ± 1 m', 'heading of vessel: 045 ± 1 deg'."""
+
+    def text(value: float | str) -> str:
+        if isinstance(value, str):
+            return value
+        return compass(factor * value) if expect.is_heading and unit == "deg" else f"{round(factor * value, 4):.4g}"
+
+    if expect.near is not None and isinstance(expect.within, float):
         target = ",\u00a0".join(map(text, expect.near))
         target = f"({target})" if len(expect.near) > 1 else target
-        return f"{subject}: {target}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}".rstrip()
+        return f"{expect.subject}: {target}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}".rstrip()
     limits = {"≥": expect.at_least, "≤": expect.at_most}
-    return f"{subject} " + ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None).rstrip()
+    claims = ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None)
+    return f"{expect.subject} {claims}".rstrip()

@@ -9,6 +9,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.structure import Experiment
 from shipcosim.ssp.xml.values import Value
+from shipcosim.units import Unit, find_unit
 
 
 @dataclass(frozen=True)
@@ -136,6 +137,20 @@ class System:
             if signal[len(name) + 1 :] in self.components[name].fmu.variables:
                 return name, signal[len(name) + 1 :]
         raise ShipcosimError(self._no_signal(signal, owners, where))
+
+    def unit_of(self, component: str | None, name: str) -> Unit | None:
+        """Unit of a variable as its FMU defines it, or of a connector of the outermost system; None without one.
+
+        Parameters
+        ----------
+        component, name : str or None, str
+            As `split` returns them.
+        """
+        if component is not None:
+            fmu = self.components[component].fmu
+            return find_unit(fmu.variables[name].unit or None, fmu.units)
+        groups = (self.inputs, self.outputs, self.parameters)
+        return next((find_unit(group[name].unit or None) for group in groups if name in group), None)
 
     def _no_signal(self, signal: str, owners: list[str], where: str) -> Problem:
         if owners:

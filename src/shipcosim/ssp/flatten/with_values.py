@@ -10,6 +10,7 @@ from shipcosim.ssp.flatten.system import Signal, System
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
+from shipcosim.units import Unit, UnitError, amount, number_in
 
 
 def with_values(system: System, values: Mapping[str, Value], where: str = "") -> System:
@@ -20,7 +21,8 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
     system : System
         As read.
     values : mapping of str to value
-        By signal (``"vessel.mass"``), in the FMU's unit; items of enumerations by name or number.
+        By signal (``"vessel.mass"``): a number in the FMU's unit, or a text with another one (``"550 t"``); items of
+        enumerations by name or number.
     where : str
         Where the values come from, for messages.
 
@@ -48,8 +50,10 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
             remedy = "Set what feeds it, or hold it with an event (override)."
             findings.error(place, f"It is connected: {source} gives its value.", remedy)
         elif component is not None:
-            _set(starts[component], system.components[component].fmu.variables[name], value, place, findings)
+            variable, unit = system.components[component].fmu.variables[name], system.unit_of(component, name)
+            _set(starts[component], variable, _number(value, variable.kind, unit), place, findings)
         elif name in inputs:
+            value = _number(value, inputs[name].type, system.unit_of(None, name))
             if _fits(value, inputs[name], inputs[name].type, place, findings):
                 inputs[name] = replace(inputs[name], start=value)
         else:
@@ -69,6 +73,16 @@ WANTED = {
 LARGEST = 2**31  # FMI's integers have 32 bits
 
 
+def _number(value: Value, kind: str | None, unit: Unit | None) -> Value | UnitError:
+    """A value in the unit of what it is for, where it is an amount with a unit; what is wrong where it has another."""
+    if kind != "Real" or not isinstance(value, str) or amount(value) is None:
+        return value
+    try:
+        return number_in(value, unit)
+    except UnitError as error:
+        return error
+
+
 def _set(start: dict[str, Value], variable: Variable, value: Value, place: str, findings: Findings) -> None:
     """Put a value for a variable into `start`, checked and in the variable's type."""
     if variable.items and isinstance(value, str):
@@ -84,6 +98,9 @@ def _set(start: dict[str, Value], variable: Variable, value: Value, place: str, 
 
 def _fits(value: Value, owner: Variable | Signal, kind: str | None, place: str, findings: Findings) -> bool:
     """Whether a value is of a kind, with an error if not; `owner` has the items of an enumeration."""
+    if isinstance(value, UnitError):
+        findings.error(place, value.found, value.remedy)
+        return False
     right = kind is None or isinstance(value, TYPES_OF.get(kind, (bytes,)))
     if not right or (isinstance(value, bool) and kind not in ("Boolean", None)):
         remedy = f"Items: {', '.join(owner.items)}." if owner.items else _wanted(kind, owner.unit)

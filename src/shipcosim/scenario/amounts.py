@@ -1,0 +1,113 @@
+"""Amounts with a unit in events and expectations (``"45 deg"``), brought to the units of their signals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from shipcosim.scenario.model import Event, Expectation, Scenario
+from shipcosim.units import Unit, UnitError, amount, number_in, relation
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
+
+UnitOf = Callable[[str], Unit | None]
+"""Unit of a signal, None where it has none."""
+
+
+def units_of(system: System) -> UnitOf:
+    """Units of a system's signals, as their FMUs define them."""
+    return lambda signal: system.unit_of(*system.split(signal))
+
+
+def with_numbers(scenario: Scenario, unit_of: UnitOf) -> Scenario:
+    """Scenario whose events and expectations hold plain numbers in the units of their signals.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Checked. Its start values are left as they are: `shipcosim.ssp.with_values` reads them.
+    unit_of : callable
+        Unit of a signal.
+
+    Raises
+    ------
+    UnitError
+        If an amount measures another thing than its signal.
+    """
+    events = [_event(event, unit_of) for event in scenario.events]
+    expect = [expectation_in_numbers(one, unit_of) for one in scenario.expect]
+    return scenario.model_copy(update={"events": events, "expect": expect})
+
+
+def _event(event: Event, unit_of: UnitOf) -> Event:
+    override = {signal: _number(value, signal, unit_of) for signal, value in event.override.items()}
+    bias = {signal: _number(value, signal, unit_of, True) for signal, value in event.bias.items()}
+    return event.model_copy(update={"override": override, "bias": bias})
+
+
+def expectation_in_numbers(expect: Expectation, unit_of: UnitOf) -> Expectation:
+    """Expectation with plain numbers: those of `near` in the units of its signals, the others in that of the first.
+
+    Raises
+    ------
+    UnitError
+        If an amount measures another thing than its signal.
+    """
+    values = {}
+    for key, signal, value in _amounts(expect):
+        number = _number(value, signal, unit_of, key == "within")
+        values[key] = [*values.get(key, ()), number] if key == "near" else number
+    return expect.model_copy(update=values)
+
+
+def _amounts(expect: Expectation) -> Iterator[tuple[str, str, Any]]:
+    """(key, signal, value) of each value of an expectation, names of signals in `near` included."""
+    for signal, value in zip(expect.signal, expect.near or (), strict=False):
+        yield "near", signal, value
+    for key in ("within", "at_least", "at_most"):
+        if (value := getattr(expect, key)) is not None:
+            yield key, expect.signal[0], value
+
+
+def _number(value: Any, signal: str, unit_of: UnitOf, difference: bool = False) -> Any:
+    """A value with its unit converted; other texts, such as items of enumerations, as they are."""
+    if not isinstance(value, str) or amount(value) is None:
+        return value
+    return number_in(value, unit_of(signal), difference=difference)
+
+
+def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with the units of an expectation: (its key, what was found, what would be right).
+
+    Parameters
+    ----------
+    expect : Expectation
+        All of whose signals there are.
+    unit_of : callable
+        Unit of a signal.
+    """
+    first = expect.signal[0]
+    for other in expect.signal[1:]:
+        if _differ(first, other, unit_of):
+            found = f"{_in(first, unit_of)} and {_in(other, unit_of)}: no distance spans the two."
+            yield "signal", found, "Write an expectation for each."
+    for key, signal, value in _amounts(expect):
+        if key == "near" and value in expect.signals and _differ(signal, value, unit_of):
+            found = f"{_in(signal, unit_of)} and {_in(value, unit_of)}: they measure different things."
+            yield key, found, f"Compare {signal} with a signal of its unit."
+        try:
+            _number(value, signal, unit_of, key == "within")
+        except UnitError as error:
+            yield key, f"{key} of {signal}: {error.found}", error.remedy
+
+
+def _differ(one: str, other: str, unit_of: UnitOf) -> bool:
+    """Whether two signals cannot be compared; signals without a unit can be, since nothing is known of them."""
+    units = unit_of(one), unit_of(other)
+    return units[0] is not None and units[1] is not None and relation(units[0], units[1]) == "incompatible"
+
+
+def _in(signal: str, unit_of: UnitOf) -> str:
+    unit = unit_of(signal)
+    return f"{signal} is in {unit.name if unit else '1'}"

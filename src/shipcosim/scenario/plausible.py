@@ -1,0 +1,111 @@
+"""Values that are allowed and hardly meant: an angle of 45 rad, a ship of 1 kg. They earn a remark, never a refusal.
+
+All bounds are here, each with its reason.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from shipcosim.errors import Problem
+from shipcosim.scenario.locations import problem_at
+from shipcosim.scenario.model import Scenario, Value
+from shipcosim.units import RADIAN, Unit, relation, spelled_unit
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
+
+SHIP = ("x", "y", "psi", "mass")  # variables by which a component is a ship
+
+
+@dataclass(frozen=True)
+class Range:
+    """What the values of a kind of variable lie in.
+
+    Parameters
+    ----------
+    name : str
+        Pattern of the variable's name.
+    unit : str
+        Of the bounds; variables of another kind are not meant.
+    low, high : float
+        Values beyond them earn a remark.
+    reason : str
+        What the bounds stand for, as the end of a sentence.
+    of_ship : bool
+        Whether it holds for components alone that are ships.
+    """
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    reason: str
+    of_ship: bool = False
+
+
+RANGES = (
+    Range("mass", "kg", 5.0, 1e9, "survey craft have 15 kg and more, the largest ship had 6.6e8 kg", of_ship=True),
+    Range("(apparent_)?wind_speed", "m/s", 0.0, 60.0, "a hurricane of category 4 has 58 m/s"),
+    Range("current_speed", "m/s", 0.0, 10.0, "the strongest tidal currents reach 10 m/s"),
+    Range("(significant_)?wave_height", "m", 0.0, 25.0, "the largest significant height ever measured is 19 m"),
+)
+
+
+def odd_values(scenario: Scenario, system: System) -> Iterator[Problem]:
+    """Remarks on values that are allowed and hardly meant.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its start values are those of the system already.
+    system : System
+        With its start values.
+    """
+    for component in system.components.values():
+        for name, value in component.start.items():
+            signal = f"{component.name}.{name}"
+            written = scenario.set.get(signal, value)
+            if not isinstance(written, str) and (said := _odd(system, component.name, name, value)):
+                yield _remark(scenario, ("set", signal), signal, said, system.file)
+    for number, event in enumerate(scenario.events):
+        for verb, signal, value in event.changes:
+            if verb == "override" and (said := _odd(system, *system.split(signal), value)):
+                yield _remark(scenario, ("events", number, verb, signal), signal, said, system.file)
+
+
+def _remark(scenario: Scenario, keys: tuple[str | int, ...], signal: str, said: tuple[str, str], file: str) -> Problem:
+    found, remedy = said
+    if keys[0] == "set" and signal not in scenario.set:
+        return Problem(file, f"{signal} = {found}", remedy, "remark")
+    return problem_at(scenario, keys, f"{signal} = {found}", remedy, "remark")
+
+
+def _odd(system: System, component: str | None, name: str, value: Value | None) -> tuple[str, str] | None:
+    """What is odd about a value in the unit of its variable, and what may be meant; None where nothing is."""
+    unit = system.unit_of(component, name)
+    if unit is None or isinstance(value, (bool, str)) or not isinstance(value, (int, float)):
+        return None
+    if _turns(value, unit) > 1.0:
+        return f"{value:g} {unit.name} is more than a whole turn.", f'If degrees are meant, write "{value:g} deg".'
+    variables = system.components[component].fmu.variables if component is not None else {}
+    is_ship = all(one in variables for one in SHIP)
+    for known in RANGES:
+        bounds = spelled_unit(known.unit)
+        if bounds is None or relation(unit, bounds) not in ("same", "convertible") or (known.of_ship and not is_ship):
+            continue
+        size = value * unit.factor / bounds.factor
+        if re.fullmatch(known.name, name) and not known.low <= size <= known.high:
+            few = "little" if size < known.low else "much"
+            return f"{value:g} {unit.name} is very {few}: {known.reason}.", "Check number and unit."
+    return None
+
+
+def _turns(value: float, unit: Unit) -> float:
+    """Size of a value in rad in whole turns; 0 for other units."""
+    named = unit.name == "rad" or relation(unit, RADIAN) == "same"
+    return abs(value) / (2.0 * math.pi) if named else 0.0
