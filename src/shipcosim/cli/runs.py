@@ -68,11 +68,11 @@ def simulated_and_saved(
         If the input cannot be used or the results cannot be written.
     """
     check_targets(out, store)
+    print_problems(problem for problem in system.remarks if problem.where not in system.components)
     problems = check_scenario(scenario, with_values(system, scenario.set, str(scenario.path or "scenario")))
     if errors := [problem for problem in problems if problem.severity == "error"]:
         raise ShipcosimError(errors)
     print_problems(problems)
-    print_problems(problem for problem in system.remarks if problem.where not in system.components)
     snapshots: list[Snapshot] = []
     if store:
         options = replace(options, store=snapshots.append)

@@ -54,7 +54,7 @@ def simulate(
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
         raise ShipcosimError(errors)
-    odd = [f"{remark.found} {remark.remedy}" for remark in odd_values(scenario, system)]
+    odd = [str(remark) for remark in odd_values(scenario, system)]
     scenario = with_numbers(scenario, units_of(system))
     if options.engine != "fmpy" and (unknown := options.changed(OWN_OPTIONS)):
         found = f"It does not know {', '.join(unknown)}."

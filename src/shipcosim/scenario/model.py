@@ -6,7 +6,17 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, PrivateAttr, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    PrivateAttr,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
 
 from shipcosim import library
 from shipcosim.units import UnitError, amount, find_unit, number_in
@@ -23,18 +33,25 @@ def _plain(value: Any) -> bool | int | float | str:
 def _amount(value: Any) -> float | str:
     plain = _plain(value)
     if isinstance(plain, bool) or (isinstance(plain, str) and amount(plain) is None):
-        raise ValueError(f"{value!r} is no amount. It should be a number without quotes, or such as '2.5 deg'.")
+        raise PydanticCustomError("float_type", "Input should be a number, or a text such as '2.5 deg'")
     return plain if isinstance(plain, str) else float(plain)
 
 
 def _seconds(value: Any) -> Any:
     """Texts such as "10 min" as seconds; the rest is left to pydantic."""
-    if not isinstance(value, str):
+    if not isinstance(value, str) or amount(value) is None:
         return value
     try:
         return number_in(value, find_unit("s"))
     except UnitError as error:
         raise ValueError(str(error)) from None
+
+
+def _positive(value: float | str | None) -> float | str | None:
+    number = amount(value) if isinstance(value, str) else (value, "")
+    if number is not None and number[0] is not None and not number[0] > 0.0:
+        raise PydanticCustomError("greater_than", "Input should be greater than 0")
+    return value
 
 
 Amount = Annotated[float | str, PlainValidator(_amount)]
@@ -82,7 +99,9 @@ class Expectation(_Part):
     near: Annotated[
         list[float | str] | None, BeforeValidator(lambda v: v if isinstance(v, list) or v is None else [v])
     ] = Field(default=None, description="amounts, or names of signals")
-    within: Amount | None = Field(default=None, description="largest distance from `near`, greater than 0")
+    within: Annotated[Amount | None, AfterValidator(_positive)] = Field(
+        default=None, description="largest distance from `near`, greater than 0"
+    )
     at_least: Amount | None = None
     at_most: Amount | None = None
     during: Annotated[list[Seconds], Field(min_length=2, max_length=2)] | None = Field(
@@ -93,9 +112,6 @@ class Expectation(_Part):
     @model_validator(mode="after")
     def _is_one_claim(self) -> Expectation:
         limits = self.at_least is not None or self.at_most is not None
-        size = amount(self.within) if isinstance(self.within, str) else (self.within, "")
-        if size is not None and size[0] is not None and not size[0] > 0.0:
-            raise ValueError(f"within = {self.within}. It should be greater than 0.")
         if (self.near is None) != (self.within is None):
             raise ValueError("`near` and `within` come together.")
         if (self.near is not None) == limits:

@@ -71,18 +71,12 @@ def odd_values(scenario: Scenario, system: System) -> Iterator[Problem]:
             signal = f"{component.name}.{name}"
             written = scenario.set.get(signal, value)
             if not isinstance(written, str) and (said := _odd(system, component.name, name, value)):
-                yield _remark(scenario, ("set", signal), signal, said, system.file)
+                yield Problem(signal, *said, "remark")
     for number, event in enumerate(scenario.events):
         for verb, signal, value in event.changes:
             if verb == "override" and (said := _odd(system, *system.split(signal), value)):
-                yield _remark(scenario, ("events", number, verb, signal), signal, said, system.file)
-
-
-def _remark(scenario: Scenario, keys: tuple[str | int, ...], signal: str, said: tuple[str, str], file: str) -> Problem:
-    found, remedy = said
-    if keys[0] == "set" and signal not in scenario.set:
-        return Problem(file, f"{signal} = {found}", remedy, "remark")
-    return problem_at(scenario, keys, f"{signal} = {found}", remedy, "remark")
+                found, remedy = said
+                yield problem_at(scenario, ("events", number, verb, signal), f"{signal}: {found}", remedy, "remark")
 
 
 def _odd(system: System, component: str | None, name: str, value: Value | None) -> tuple[str, str] | None:
