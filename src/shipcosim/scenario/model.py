@@ -12,6 +12,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    PlainSerializer,
     PlainValidator,
     PrivateAttr,
     model_validator,
@@ -54,8 +55,8 @@ def _positive(value: float | str | None) -> float | str | None:
     return value
 
 
-Amount = Annotated[float | str, PlainValidator(_amount)]
-"""A number in the signal's unit, or a text with another unit."""
+Amount = Annotated[float, PlainValidator(_amount), PlainSerializer(lambda value: value)]
+"""A number in the signal's unit. One with another unit stays a text until `with_numbers` or `judge` converts it."""
 Seconds = Annotated[float, BeforeValidator(_seconds)]
 Value = Annotated[bool | int | float | str, PlainValidator(_plain)]
 ListOfNames = Annotated[list[str], BeforeValidator(lambda names: [names] if isinstance(names, str) else names)]
