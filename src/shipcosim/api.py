@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
@@ -16,6 +16,7 @@ from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.calls import with_known_keywords
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
+from shipcosim.results.shown import made, parts_of
 from shipcosim.scenario import Scenario, check_files, check_times, judge
 from shipcosim.scenario import read_scenario as _read_scenario
 from shipcosim.series import read_table, write_table
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.pipeline import Progress
     from shipcosim.diagnose.reference.reference import Reference
     from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
+    from shipcosim.results.studies import Calibration, EngineComparison, Replay, SeaTrials
 
     AnyLog = str | os.PathLike[str] | xarray.Dataset | Log | Run
     AnySystem = str | os.PathLike[str] | SystemStructure | System
@@ -40,6 +42,8 @@ __all__ = [
     "ShipcosimError",
     "System",
     "SystemStructure",
+    "calibrate",
+    "compare",
     "diagnose",
     "judge",
     "new",
@@ -48,7 +52,9 @@ __all__ = [
     "read_log",
     "read_scenario",
     "read_table",
+    "replay",
     "run",
+    "sea_trials",
     "simulate",
     "write_ssv",
     "write_table",
@@ -267,8 +273,7 @@ def read_log(log: AnyLog, channels: str | os.PathLike[str] | None = None) -> Log
     from shipcosim.diagnose.log.reader import read_log
 
     source, channels = _source(log, channels)
-    name = "log" if not isinstance(source, (str, os.PathLike)) else Path(source).name
-    return Log(name, read_log(source, channels), source, channels)
+    return Log(_name(source), read_log(source, channels), source, channels)
 
 
 @overload
@@ -338,18 +343,200 @@ def diagnose(
     from shipcosim.diagnose.pipeline import diagnose
     from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
 
-    ship = _system(SYSTEM_OF_LOGS if system is None else system)
+    ship = _ship(system)
+    if out is not None:
+        made(out)
     if isinstance(log, Sequence) and not isinstance(log, str):
         sources = [_source(one, channels)[0] for one in log]
         found = diagnose_jointly(sources, ship, channels, causes, progress, out=out, reference=reference)
-        result = DiagnosisOfLogs.of(found)
+        result = DiagnosisOfLogs(**parts_of(found))
     else:
         source, channels = _source(log, channels)
         found = diagnose(source, ship, channels, causes, progress, out=out, reference=reference)
-        result = DiagnosisOfLog.of(found)
+        result = DiagnosisOfLog(**parts_of(found))
     if out is not None:
         result.save(out)
     return result
+
+
+@with_known_keywords
+def replay(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    before: AnySystem | None = None,
+    channels: str | os.PathLike[str] | None = None,
+    *,
+    horizon: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Replay:
+    """Predict a log piece by piece, each from the measured state, with one system or with two.
+
+    Parameters
+    ----------
+    log
+        As for `diagnose`, one log.
+    system : path, name, SystemStructure or System, optional
+        The ship, or the ``extended`` system of a diagnosis; gunnerus_open if not given.
+    before : like `system`, optional
+        The system to compare with.
+    channels : path, optional
+        Channel file.
+    horizon : float, optional
+        Length of each prediction; one that fits the craft and the log if not given. [s]
+    progress : callable, optional
+        Called with (predictions done, predictions in all).
+
+    Returns
+    -------
+    Replay
+
+    Raises
+    ------
+    ShipcosimError
+        Data or systems that cannot be used.
+    """
+    from shipcosim.diagnose.replays import replay_log
+    from shipcosim.results.studies import Replay
+
+    source, channels = _source(log, channels)
+    after = _system(SYSTEM_OF_LOGS if system is None else system)
+    systems = {"simulated": after} if before is None else {"before": _system(before), "after": after}
+    found = replay_log(source, systems, channels, horizon=horizon, progress=progress)
+    return Replay(**parts_of(found), name=_name(source), systems=tuple(one.name for one in systems.values()))
+
+
+@with_known_keywords
+def calibrate(
+    logs: AnyLog | Sequence[AnyLog],
+    system: AnySystem | None = None,
+    channels: str | os.PathLike[str] | None = None,
+    causes: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+) -> Calibration:
+    """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
+
+    Parameters
+    ----------
+    logs, system, channels, causes, progress
+        As for `diagnose`.
+    out : path, optional
+        Folder that gets calibrated.ssv, reference.json and report.html, the page alone where the logs are refused;
+        nothing is written without.
+
+    Returns
+    -------
+    Calibration
+        Its ``reference`` is what `diagnose` takes.
+
+    Raises
+    ------
+    ShipcosimError
+        Data, system or causes that cannot be used.
+    """
+    from shipcosim.diagnose.calibration_pipeline import calibrate
+    from shipcosim.results.studies import Calibration
+
+    if out is not None:
+        made(out)
+    several = logs if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
+    sources = [_source(one, channels)[0] for one in several]
+    result = Calibration(**parts_of(calibrate(sources, _ship(system), channels, causes, progress, out=out)))
+    if out is not None:
+        result.save(out)
+    return result
+
+
+@with_known_keywords
+def sea_trials(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    channels: str | os.PathLike[str] | None = None,
+    causes: str | os.PathLike[str] | None = None,
+    *,
+    orders: bool = False,
+) -> SeaTrials:
+    """Say what a simulation gets wrong of a ship's trials: straight runs, turning circles, zig-zags.
+
+    Parameters
+    ----------
+    log, system, channels, causes
+        As for `diagnose`, one log.
+    orders : bool
+        Whether the thrusters' channels are orders, which the units follow, instead of feedback.
+
+    Returns
+    -------
+    SeaTrials
+
+    Raises
+    ------
+    ShipcosimError
+        Data that cannot be used; no turning circle.
+    """
+    from shipcosim.diagnose.sea_trials.study import study
+    from shipcosim.results.studies import SeaTrials
+
+    source, channels = _source(log, channels)
+    ship = _system(SYSTEM_OF_LOGS if system is None else system)
+    found = study(source, ship, channels, causes, orders=orders)
+    return SeaTrials(**parts_of(found), name=_name(source), system=ship.name)
+
+
+@with_known_keywords
+def compare(
+    what: Scenario | AnySystem,
+    *,
+    stop_time: float | None = None,
+    step_size: float | None = None,
+    set: Mapping[str, object] | None = None,
+    tolerance: float = 1e-9,
+    progress: Callable[[int, int], None] | None = None,
+) -> EngineComparison:
+    """Run on every engine that is installed, and on ours with half the step; say by how much each signal differs.
+
+    Parameters
+    ----------
+    what : Scenario, SystemStructure, System, path or name
+        A scenario or a system; a name is a scenario's where there is one.
+    stop_time, step_size : float, optional
+        In place of the scenario's, or of the system's default experiment. [s]
+    set : mapping of str to value, optional
+        Start values by full name, in the FMUs' units.
+    tolerance : float
+        Difference from which on a signal differs, relative to its range.
+    progress : callable, optional
+        Called with (parts done, parts in all).
+
+    Returns
+    -------
+    EngineComparison
+
+    Raises
+    ------
+    ShipcosimError
+        If our own engine cannot run it.
+    """
+    from shipcosim.cosim.compare import compare
+    from shipcosim.results.studies import EngineComparison
+
+    given = what if isinstance(what, Scenario) else None
+    if isinstance(what, (str, os.PathLike)) and _is_scenario(what):
+        given = read_scenario(what)
+    system = _system(what if given is None else None, given)
+    times = _given({"stop_time": stop_time, "step_size": step_size})
+    scenario = _scenario(given, system.experiment, times | {"set": _mapping("set", set), "events": []})
+    found = compare(system, scenario, RunOptions(progress=progress), tolerance=tolerance)
+    return EngineComparison(**parts_of(found), name=scenario.name or system.name)
+
+
+def _is_scenario(given: str | os.PathLike[str]) -> bool:
+    return os.fspath(given).endswith(".toml") or library.named("scenario", os.fspath(given)) is not None
+
+
+def _name(source):
+    return Path(source).name if isinstance(source, (str, os.PathLike)) else "log"
 
 
 def _run(system, scenario, options, out, *, remarks=(), planned=0.0):
@@ -384,6 +571,14 @@ def _system(system, scenario=None):
             return read_system(system, parameters)
         system = read(system)
     return system.checked(parameters)
+
+
+def _ship(system):
+    """The ship of a diagnosis: a structure stays one, so that what was changed in it is in the extended system too."""
+    if isinstance(system, (System, SystemStructure)):
+        return system
+    path = _found("system", SYSTEM_OF_LOGS if system is None else system)
+    return read_system(path) if osp_file(path) else read(path)
 
 
 def _source(log, channels):

@@ -110,6 +110,10 @@ class System:
     given: tuple[Connection, ...] = ()
     _packages: tuple[Package, ...] = field(default=(), repr=False, compare=False)  # keeps what was unpacked on disk
 
+    def __repr__(self) -> str:
+        counts = f"{len(self.components)} components, {len(self.connections)} connections"
+        return f"<System {self.name!r}: {counts}>"
+
     def split(self, signal: str, where: str = "") -> tuple[str | None, str]:
         """Component and variable that a signal's name means.
 

@@ -1,0 +1,189 @@
+"""A run as Python gives it back: read like its table, judged, drawn, and nothing written unless asked."""
+
+import copy
+import pickle
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import xarray
+
+import shipcosim as sc
+
+SHORT = {"stop_time": 10.0, "output_interval": 0.5}
+
+
+@pytest.fixture(scope="module")
+def gust():
+    return sc.run("gust", **SHORT)
+
+
+@pytest.fixture
+def empty(tmp_path, monkeypatch):
+    """An empty folder to work in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def texts(picture):
+    """All texts in a picture."""
+    return [element.text for element in ElementTree.fromstring(picture.svg).iter() if element.text]
+
+
+def test_a_scenario_runs_by_its_name_in_an_empty_folder_and_writes_nothing(empty):
+    found = sc.run("gust", stop_time=1.0)
+    assert found.name == "gust" and found.table["time"].values[-1] == 1.0
+    assert list(empty.iterdir()) == []
+
+
+def test_out_gets_what_the_command_writes(empty):
+    found = sc.run("gust", stop_time=1.0, out="results/gust")
+    assert {path.name for path in Path("results/gust").iterdir()} == {"result.nc", "result.csv", "report.html"}
+    assert sc.read_table("results/gust/result.nc").equals(found.table)
+
+
+def test_a_run_reads_like_its_table(gust):
+    table = gust.table
+    assert isinstance(table, xarray.Dataset)
+    assert gust["vessel.x"].identical(table["vessel.x"]) and gust[["vessel.x"]].identical(table[["vessel.x"]])
+    assert gust.sizes == table.sizes and list(gust) == list(table) and len(gust) == len(table)
+    assert "vessel.x" in gust and "vessel.nothing" not in gust
+    assert gust.sel(time=5.0).identical(table.sel(time=5.0)) and gust.attrs == table.attrs
+    with pytest.raises(AttributeError, match="'Dataset' object has no attribute 'vesel'"):
+        gust.vesel  # noqa: B018
+
+
+def test_functions_on_tables_take_a_run(gust, tmp_path):
+    sc.write_table(gust, tmp_path / "gust.nc")
+    sc.write_report(gust, tmp_path / "gust.html")
+    assert sc.read_table(tmp_path / "gust.nc").equals(gust.table)
+    assert sc.judge(gust, gust.scenario.model_copy(update={"expect": []})) == []
+
+
+def test_a_run_can_be_copied(gust):
+    assert copy.copy(gust).table is gust.table
+    with pytest.raises(AttributeError):
+        object.__new__(sc.Run).anything  # noqa: B018
+    assert pickle.loads(pickle.dumps(gust.table)).equals(gust.table)
+
+
+def test_pandas_has_the_signals_over_time(gust):
+    frame = gust.to_pandas()
+    assert frame.index.name == "time"
+    assert frame["vessel.psi"].to_numpy() == pytest.approx(gust["vessel.psi"].values)
+
+
+def test_expectations_are_judged_as_the_scenario_says(tmp_path):
+    text = Path(sc.read_scenario("gust").path).read_text(encoding="utf-8").partition("[[expect]]")[0]
+    limits = '[[expect]]\nsignal = "vessel.x"\nat_most = {}\n'
+    (tmp_path / "own.toml").write_text(text + limits.format("100.0") + limits.format("-100.0"), encoding="utf-8")
+    found = sc.run(tmp_path / "own.toml", **SHORT)
+    assert [one.passed for one in found.expectations] == [True, False]
+    assert not found.passed and "FAIL. 1 of 2 expectations missed." in repr(found)
+    assert "FAILS" in found._repr_html_()
+
+
+def test_expectations_beyond_a_shortened_run_are_told_and_not_judged(gust):
+    assert gust.expectations == () and len(gust.not_judged) == 4
+    assert gust._repr_html_().count("not reached: ") == 4
+
+
+def test_start_values_events_and_sets_go_over_the_scenarios(tmp_path):
+    values = [sc.parameter("environment.wind_speed", 9.0), sc.parameter("no.where", 1.0)]
+    sc.write_ssv(tmp_path / "wind.ssv", "wind", values)
+    events = [{"time": 0.5, "override": {"tunnel.failed": True}}]
+    found = sc.run("gust", stop_time=1.0, set={"environment.seed": 7}, parameters=tmp_path / "wind.ssv", events=events)
+    assert found.scenario.set["environment.wind_speed"] == 9.0 and found.scenario.set["environment.seed"] == 7
+    assert not found["tunnel.failed"][0] and found["tunnel.failed"][-1]
+    assert any("no.where" in str(remark) for remark in found.remarks)
+
+
+def test_signals_are_drawn_by_component_connector_and_pattern(gust):
+    controller = texts(gust.plot("controller"))
+    assert "tau_X_cmd" in controller and "controller [kN]" in controller
+    assert {"port.thrust", "starboard.thrust", "tunnel.thrust"} <= set(texts(gust.plot("thrust")))
+    assert {"tau_wind_X", "tau_hull_X"} <= set(texts(gust.plot("vessel.tau_*_X")))
+    assert {"x", "y", "psi"} <= set(texts(gust.plot()))
+
+
+def test_a_curve_goes_through_its_values(gust):
+    """The surge speed: 21 rows, the least drawn lowest."""
+    drawing = ElementTree.fromstring(gust.plot("vessel.u").svg)
+    lines = [e.get("points") for e in drawing.iter() if e.tag.endswith("polyline")]
+    points = np.array([[float(v) for v in pair.split(",")] for pair in lines[-1].split()])
+    values = gust["vessel.u"].values
+    assert len(points) == len(values)
+    assert np.corrcoef(points[:, 1], -values)[0, 1] > 0.9999
+    assert np.allclose(np.diff(points[:, 0]), np.diff(points[:, 0])[0], atol=0.11)
+
+
+def test_more_signals_than_can_be_seen_are_counted(gust):
+    assert "more panels are not drawn: name fewer signals." in " ".join(texts(gust.plot("*")))
+
+
+def test_an_unknown_signal_is_said_with_what_there_is(gust):
+    with pytest.raises(sc.ShipcosimError, match="Did you mean 'controller'?"):
+        gust.plot("contoller")
+    with pytest.raises(sc.ShipcosimError, match="Did you mean 'vessel.psi'?"):
+        gust.plot("vessel.psy")
+
+
+def test_the_track_shows_where_she_was_to_be(gust):
+    svg = gust.track().svg
+    ElementTree.fromstring(svg)
+    assert svg.count("<polygon") >= 2 and "reference" in svg
+
+
+def test_a_system_without_a_ship_has_no_track(tmp_path):
+    table = xarray.Dataset({"a.b": ("time", [1.0, 2.0], {"units": "m"})}, {"time": [0.0, 1.0]})
+    run = sc.Run(table, sc.Scenario(stop_time=1.0, step_size=1.0), sc.read("gunnerus_open").checked())
+    with pytest.raises(sc.ShipcosimError, match="Nothing here is a ship"):
+        run.track()
+    assert "<img" not in run._repr_html_() and "b" in texts(run.plot())
+
+
+def test_the_card_says_what_ran_and_escapes_what_users_write(gust):
+    from dataclasses import replace
+
+    shown = replace(gust, scenario=gust.scenario.model_copy(update={"description": "<script>alert(1)</script>"}))
+    assert "<script" not in shown._repr_html_() and "gunnerus_dp" in shown._repr_html_()
+
+
+def test_the_page_is_that_of_the_command_and_shown_in_a_frame(gust, tmp_path, monkeypatch):
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    page = gust.page()
+    assert page.html.startswith("<!doctype html>") or page.html.startswith("<!DOCTYPE html>")
+    assert page._repr_html_().startswith('<iframe srcdoc="') and "<script" not in page._repr_html_()
+    assert page.save(tmp_path / "page.html").read_text(encoding="utf-8") == page.html
+    path = page.open()
+    assert opened == [path.as_uri()]
+    path.unlink()
+
+
+REFUSED = {
+    "keyword": ({"scenario": "gust", "stp_time": 3.0}, "no keyword 'stp_time'.* Did you mean 'stop_time'"),
+    "nothing": ({}, "run\\(\\): Missing a required argument: 'scenario'"),
+    "name": ({"scenario": "gsut"}, "There is no such scenario file.* Did you mean 'gust'"),
+    "number": ({"scenario": 3}, "3 is neither a path nor a name"),
+    "set": ({"scenario": "gust", "set": 3}, "set = 3"),
+    "text": ({"scenario": "gust", "stop_time": "long"}, "stop_time = 'long'"),
+    "key": ({"scenario": "gust", "events": [{"tim": 1.0}]}, "tim: There is no such key"),
+    "value": ({"scenario": "gust", "set": {"vessel.mas": 1.0}}, "Did you mean 'mass'"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_cannot_be_used_is_one_error_without_a_wall(case):
+    keywords, words = REFUSED[case]
+    with pytest.raises(sc.ShipcosimError, match=words) as caught:
+        sc.run(**keywords)
+    assert "pydantic" not in str(caught.value) and len(str(caught.value)) < 1000
+
+
+def test_a_notebook_shows_the_problems_and_no_traceback():
+    error = sc.ShipcosimError([sc.Problem("a.toml, line 3", "x is wrong.", "Right is y."), sc.Problem("", "and z.")])
+    shown = error._render_traceback_()
+    assert [line.strip() for line in shown[1:]] == ["a.toml, line 3: x is wrong. Right is y.", "and z."]
+    assert "ShipcosimError: 2 problems" in shown[0]
