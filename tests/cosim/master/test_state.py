@@ -18,13 +18,16 @@ from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import Component, read_fmu, read_system, with_values
 
 FMUS = (
-    "allocator azimuth_thruster dp_controller drift_force earth_force environment fixed_thruster instruments predictor "
-    "propeller_rudder reference sensors thruster_monitor tunnel_thruster varying_current vessel"
+    "allocator azimuth_thruster dp_controller drift_force earth_force environment fixed_angle_allocator fixed_thruster "
+    "instruments mapped_thruster predictor propeller_rudder reference sensors thruster_monitor tunnel_thruster "
+    "varying_current vessel"
 ).split()
 NOT_NEUTRAL = {
     "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0, "yaw_arm": -1.5},
     "earth_force": {"x": -17.0, "north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
+    "fixed_angle_allocator": {"thrust_min_1": -5.0, "thrust_max_1": 5.0, "thrust_rate_1": 0.5, "yaw_lever": 10.0},
     "instruments": {"lag": 1.33},
+    "mapped_thruster": {"x": 1.0, "y": 0.5, "thrust_table": "-1 -5; 1 5", "time_constant": 2.0, "speed_loss": 0.1},
     "thruster_monitor": {"position_limit": 0.15, "alarm_delay": 0.2},
     "varying_current": {"north_end": 0.5},
 }
