@@ -7,6 +7,7 @@ import zipfile
 from fuzz import damage, damage_archives, damage_xml
 from fuzz.endless import endless_connections, endless_systems
 from fuzz.seeds import seeds, zipped
+from fuzz.typed import write_typed
 
 KINDS = (
     ("ssp",) * 5
@@ -35,6 +36,8 @@ def write_input(number, folder, seed=0):
     (Path, str)
         What a user would give to the program, and how it was made.
     """
+    if str(seed).startswith("typed"):
+        return write_typed(number, folder, seed)
     rng = random.Random(f"{seed} {number}")
     kind = rng.choice(KINDS)
     name, sound = rng.choice(seeds()[kind])

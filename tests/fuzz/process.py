@@ -18,11 +18,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from fuzz.inputs import write_input
 from fuzz.seeds import seeds, zipped
+from fuzz.typed import running
 
 import shipcosim as sc
 import shipcosim.report
 from shipcosim.cli.checks import check_any
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.reference.reference import read_reference
 from shipcosim.errors import ShipcosimError
+from shipcosim.series import read_columns
 
 LONGEST = 10.0  # s
 LARGEST = 2**30  # bytes
@@ -38,6 +42,7 @@ def main(seed, first, last, around):
     inside = around / "a" / "b" / "c" / "inside"
     tempfile.tempdir = str(inside / "tmp")
     _warm_up(inside)
+    running()
     limit = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize() + LARGEST
     for number in range(int(first), int(last)):
         _empty(inside)
@@ -84,7 +89,7 @@ def _warm_up(inside):
 
 def _ended(path, inside, is_sabotaged=True):
     """How the program ends on an input, and the time of the longest of its commands. [s]"""
-    actions = [lambda: check_any(str(path))]
+    actions = _actions_on(path)
     if is_sabotaged:
         actions.insert(0, lambda: exec(os.environ.get("SHIPCOSIM_FUZZ_SABOTAGE", "")))
     if path.suffix in (".ssp", ".ssd"):
@@ -103,6 +108,20 @@ def _ended(path, inside, is_sabotaged=True):
             return what, time.monotonic() - start
         longest = max(longest, time.monotonic() - start)
     return _judged(problems), longest
+
+
+def _actions_on(path):
+    """What a user does with a file of a kind; what is said of it comes back."""
+    if path.suffix == ".state":
+        system = sc.read(running()[0])
+        return [lambda: sc.simulate(system, stop_time=2.0, step_size=0.25, resume=path) and None]
+    if path.suffix == ".reference":
+        return [lambda: read_reference(path) and None]
+    channels = path.with_name("channels.toml")
+    actions = [lambda: check_any(str(path), channels if channels.exists() else None)]
+    if path.suffix == ".nc":
+        actions += [lambda: read_columns(path) and None, lambda: read_log(path) and None]
+    return actions
 
 
 def _judged(problems):
