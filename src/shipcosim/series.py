@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 __all__ = ["conversion", "make_table", "read_columns", "read_table", "write_file", "write_table"]
 
 _NOTHING = {"", "#n/a", "#na", "-nan", "n/a", "na", "nan", "null"}  # in lower case: cells without a value
+LARGEST_TABLE = 8 << 30
+"""Most bytes that a table is read with: a file can declare more than any memory holds."""
+
 _HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
 
 
@@ -126,7 +129,10 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
     """
     path = Path(path)
     if _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet")) == ".nc":
-        return _netcdf_columns(_open_netcdf(path))
+        columns = _netcdf_columns(_open_netcdf(path))
+        if empty := [name for name, (values, _) in columns.items() if not len(values)]:
+            raise ShipcosimError(Problem(str(path), f"has no row of {', '.join(empty[:8])}.", "Leave the column out."))
+        return columns
     columns = _read_columns(path)
     problems = _repeated(path, [name for name, _, _ in columns])
     if problems:
@@ -234,15 +240,29 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
 
     try:
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
+            declared = sum(variable.nbytes for variable in table.variables.values())
+            if declared > LARGEST_TABLE:
+                raise ValueError(f"it declares {declared / 2**30:.3g} GiB, at most {LARGEST_TABLE >> 30} are read")
             return table.load()
-    except (OSError, ValueError) as error:
-        raise ShipcosimError(Problem(str(path), f"is no NetCDF 4 file: {error}.")) from error
+    except Exception as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too
+        said = "".join(c if c.isprintable() else " " for c in str(error))[:200].rstrip(".")
+        found = f"is no NetCDF 4 file that can be read: {said or type(error).__name__}."
+        raise ShipcosimError(Problem(str(path), found, "Write or copy it again.")) from error
 
 
 def _read_netcdf(path: Path) -> xarray.Dataset:
     table = _open_netcdf(path)
     if "time" not in table.coords:
         raise ShipcosimError(_no_time(path, list(map(str, table.variables))))
+    problems = [
+        Problem(f"{path}, '{name}'", f"holds values of the type {variable.dtype}, not numbers.", "Leave it out.")
+        for name, variable in table.variables.items()
+        if variable.dtype.kind not in "fiub"
+    ]
+    if table["time"].dims != ("time",) or table["time"].size == 0:
+        problems.append(Problem(f"{path}, 'time'", "holds no times of rows.", "Each row is a time and its values."))
+    if problems:
+        raise ShipcosimError(problems)
     return table
 
 
@@ -277,6 +297,8 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
         rows = [row for row in csv.reader(io.StringIO(text, newline=""), strict=True) if row]
     except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
         raise ShipcosimError(_unreadable(path, error)) from error
+    except MemoryError as error:
+        raise ShipcosimError(Problem(str(path), "is larger than the memory.", "Read a part of it.")) from error
     if not rows:
         raise ShipcosimError(_unreadable(path, ValueError("Empty CSV file")))
     width = len(rows[0])

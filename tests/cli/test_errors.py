@@ -122,7 +122,6 @@ def test_options_of_a_run(call, gunnerus, arguments, said):
         (["run", SSV], [f"{SSV}, line 1:", "is no TOML", "Scenarios are text files in TOML"]),
         (["simulate", "absent.ssp"], ["absent.ssp:", "There is no such system. There is: ", "gunnerus_dp"]),
         (["simulate", SHORT], ["This is no system.", f"`shipcosim run {SHORT}`"]),
-        (["simulate", FMU], ["This is one FMU, not a system.", f"`shipcosim check {FMU}`"]),
         (["simulate", "scenarios"], ["scenarios/SystemStructure.ssd:", "No such file"]),
         ([*OPEN[:-1], "0"], ["--step-size:", "greater than 0"]),
         ([*OPEN[:-1], "-0.05"], ["--step-size:", "greater than 0"]),

@@ -11,6 +11,8 @@ from fuzz.survive import survive
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="memory is limited and measured as Linux does it")
 SEED, NUMBER, IN_CI = 0, 10_000, 300
+TYPED, TYPED_NUMBER, TYPED_IN_CI = "typed-0", 3000, 100
+"""Seed and numbers of well-formed files whose types and sizes are not those meant: `fuzz.typed`."""
 
 
 def shown(failures):
@@ -30,6 +32,19 @@ def test_ten_thousand_damaged_files_end_in_a_clear_error_or_are_harmless():
     failures, counts = survive(SEED, IN_CI, NUMBER)
     assert failures == [], shown(failures)
     assert sum(counts.values()) == NUMBER - IN_CI
+
+
+def test_a_hundred_files_of_wrong_types_and_sizes_end_in_a_clear_error_or_are_harmless():
+    failures, counts = survive(TYPED, 0, TYPED_IN_CI)
+    assert failures == [], shown(failures)
+    assert counts["clear error"] > TYPED_IN_CI / 3 and counts["success"] > 0
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+def test_three_thousand_files_of_wrong_types_and_sizes_end_in_a_clear_error_or_are_harmless():
+    failures, _ = survive(TYPED, TYPED_IN_CI, TYPED_NUMBER)
+    assert failures == [], shown(failures)
 
 
 def test_an_input_is_the_same_whenever_it_is_made(tmp_path):

@@ -184,21 +184,18 @@ def _variable(rng, file, name):
             made = file.create_dataset(name, data=values.astype(type_) if type_ not in ("V8", "O") else values)
     if rng.random() < 0.6 and isinstance(made, h5py.Dataset):
         made.make_scale(rng.choice((name, "time", "")))
-    for key in (
-        "units",
-        "_FillValue",
-        "scale_factor",
-        "missing_value",
-        "DIMENSION_LIST",
-        "_Netcdf4Dimid",
-        "coordinates",
-    ):
+    if isinstance(made, h5py.Dataset) and name != "time" and rng.random() < 0.7 and _is_scale(file.get("time")):
+        made.dims[0].attach_scale(file["time"])
+    for key in ("units", "_FillValue", "scale_factor", "missing_value", "_Netcdf4Dimid", "coordinates"):
         if rng.random() < 0.15:
             made.attrs[key] = rng.choice(
                 (b"\xff", "s", "furlongs", 1e400, 0, np.arange(5), "time", "days since x", [""])
             )
-    if isinstance(made, h5py.Dataset) and name != "time" and rng.random() < 0.7 and "time" in file:
-        made.dims[0].attach_scale(file["time"])
+
+
+def _is_scale(made):
+    """Whether something is a scale of a dimension; h5py dies of attaching anything else."""
+    return isinstance(made, h5py.Dataset) and made.is_scale
 
 
 def odd_numbers(rng, n):

@@ -85,9 +85,6 @@ def check_is_system(given: str) -> None:
     if suffix == ".toml":
         remedy = f"If it is a scenario, `shipcosim run {given}` runs it."
         raise ShipcosimError(Problem(given, "This is no system.", remedy))
-    if suffix == ".fmu":
-        remedy = f"Connect it in a system (.ssp, .ssd). `shipcosim check {given}` says what is in it."
-        raise ShipcosimError(Problem(given, "This is one FMU, not a system.", remedy))
 
 
 def _check_kind(kind: str, text: str) -> None:

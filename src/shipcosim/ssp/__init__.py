@@ -12,6 +12,7 @@ from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
+from shipcosim.ssp.single_fmu import settings_of_one
 from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
 
@@ -35,6 +36,7 @@ __all__ = [
     "read_fmu",
     "read_system",
     "seconds_text",
+    "settings_of_one",
     "structure_text",
     "unpack",
     "with_values",

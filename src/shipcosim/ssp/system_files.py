@@ -9,6 +9,7 @@ from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterSets
+from shipcosim.ssp.single_fmu import assemble_fmu, single_fmu
 from shipcosim.ssp.xml.document import Findings
 
 
@@ -25,7 +26,7 @@ def read_system(
     ----------
     path : path
         A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, a .ssd, or an
-        OspSystemStructure.xml (a folder with one).
+        OspSystemStructure.xml (a folder with one); or one .fmu, whose inputs are those of the system.
     parameters : path or ParameterSet, or iterable of them
         Parameter sets (.ssv) applied over those of the system, the last one last.
     fmus : iterable of path
@@ -68,5 +69,8 @@ def assemble(
     osp = osp_file(path)
     if osp is not None:
         return assemble_osp(osp, parameters, fmus, findings), findings
+    fmu = single_fmu(path)
+    if fmu is not None:
+        return assemble_fmu(fmu, parameters, fmus, findings), findings
     package = open_package(path, findings, fmus)
     return None if package is None else assemble_package(package, parameters, str(path), findings), findings

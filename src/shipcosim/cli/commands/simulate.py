@@ -24,7 +24,8 @@ from shipcosim.cli.options import (
 )
 
 System = Annotated[
-    str, typer.Argument(metavar="SSP", help="A .ssp, a .ssd, an OspSystemStructure.xml, or a folder with one.")
+    str,
+    typer.Argument(metavar="SSP", help="A .ssp, a .ssd, an OspSystemStructure.xml, a folder with one; or one .fmu."),
 ]
 Inputs = Annotated[
     Path | None, typer.Option("--inputs", metavar="TABLE", help="CSV or NetCDF that feeds the system's inputs.")
@@ -71,9 +72,10 @@ def simulate(
     from shipcosim.cli.requests import experiment_of, inputs_of, isolation, parsed_settings, system_of, with_osp_events
     from shipcosim.cli.runs import simulate_and_save
     from shipcosim.options import RunOptions
-    from shipcosim.ssp import with_values
+    from shipcosim.ssp import settings_of_one, with_values
 
-    system = with_values(system_of(ssp, parameters, strict=strict), parsed_settings(settings or []), "--set")
+    system = system_of(ssp, parameters, strict=strict)
+    system = with_values(system, settings_of_one(system, parsed_settings(settings or [])), "--set")
     scenario = experiment_of(system, stop_time, step_size)
     table = inputs_of(inputs, system, interpolate or (), max_gap)
     if start_time is None:

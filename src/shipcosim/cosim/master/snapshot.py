@@ -7,14 +7,17 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from functools import partial
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
 from shipcosim.cosim.master.time_grid import step_times
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import write_file
+from shipcosim.ssp.xml.archive import BROKEN
 
 SCHEMA = "shipcosim-snapshot/1"
+LARGEST_VALUE = 1e300
 LARGEST = 1 << 30  # bytes of one FMU's state
 
 
@@ -95,10 +98,12 @@ def read_snapshot(path: str | os.PathLike) -> Snapshot:
             if facts.pop("schema") != SCHEMA:
                 raise ValueError(f"its schema is not {SCHEMA}")
             states = {name: archive.read(f"{number}.state") for number, name in enumerate(facts.pop("components"))}
+        if set(states) != set(facts.get("fmus", ())):
+            raise ValueError("its components are others than those whose FMUs it names")
         return Snapshot(**_typed(facts), states=states)
     except OSError as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror or error}.")) from error
-    except (zipfile.BadZipFile, KeyError, TypeError, ValueError, AttributeError, RuntimeError) as error:
+    except (KeyError, TypeError, AttributeError, RecursionError, MemoryError, *BROKEN) as error:
         remedy = "Snapshots come from --store or simulate(..., store=...)."
         raise ShipcosimError(Problem(str(path), f"is no snapshot of a run: {error}.", remedy)) from error
 
@@ -139,5 +144,14 @@ def _typed(facts):
         raise ValueError(f"it lacks or adds {', '.join(sorted(set(facts) ^ set(kinds)))}")
     for name, kind in kinds.items():
         if not isinstance(facts[name], (int, float) if kind is float else kind) or isinstance(facts[name], bool):
-            raise ValueError(f"{name} is {facts[name]!r}")
+            raise ValueError(f"{name} is {str(facts[name])[:100]}")
+    if not (isfinite(facts["start_time"]) and 0.0 < facts["step_size"] < inf and facts["step"] >= 0):
+        raise ValueError("its times are none of a run")
+    held = [
+        *facts["outputs"].values(),
+        *facts["inputs"].values(),
+        *(v for two in facts["changes"].values() for v in two),
+    ]
+    if not all(isinstance(value, (int, float)) and abs(value) < LARGEST_VALUE for value in held):
+        raise ValueError("it holds values that no signal has")
     return facts | {"changes": {signal: (scale, shift) for signal, (scale, shift) in facts["changes"].items()}}
