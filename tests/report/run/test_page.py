@@ -225,3 +225,15 @@ def test_open_page_follows_when_the_browser_turns_dark(browse, chromium, file):
     page.wait("return document.body.dataset.drawn === 'all'")
     assert page.ask("return document.getElementById('panel-0')._fullLayout.xaxis.range") == [200, 300]
     set_scheme("light")
+
+
+@pytest.mark.parametrize("width", [1280, 500])
+def test_no_text_of_a_panel_lies_over_another_and_nothing_sticks_out(shown_at, file, width):
+    page = shown_at(file, width)
+    assert page.errors() == [] and page.collisions() == []
+    assert page.ask("return document.documentElement.scrollWidth") <= width
+
+
+def test_page_is_small_and_soon_there(file, shown_at):
+    assert file.stat().st_size < 1.5e6
+    assert any(max(shown_at(file, 1280).seconds()) < 1.0 for _ in range(3))

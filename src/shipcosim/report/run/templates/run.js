@@ -3,7 +3,8 @@
   const { data, axis, colour, draw, later, layout, markup, painted, series, traces } = report;
   const time = series(data.time), decoded = {};
   const values = (name) => (decoded[name] ??= series(data.signals[name].values, time.length));
-  const config = { responsive: true, displaylogo: false, scrollZoom: false, displayModeBar: "hover", modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]] };
+  const touch = matchMedia("(pointer: coarse)").matches;  // a finger on a plot scrolls the page
+  const config = { responsive: true, displaylogo: false, scrollZoom: false, displayModeBar: touch ? false : "hover", modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]] };
   const whole = [time[0], time[time.length - 1]];
   let shownWindow = whole;
 
@@ -39,14 +40,20 @@
     ]);
   }
 
-  function layoutOf(panel) {
+  function headroom(place, panel) {  // for the title, and a legend of one or more rows. [px]
+    const entry = 50 + 6.5 * Math.max(...panel.lines.map((line) => line.label.length));
+    const inRow = Math.max(1, Math.floor((place.clientWidth - 80) / entry));
+    return Math.max(54, 30 + 18 * Math.ceil(panel.lines.length / inRow));
+  }
+
+  function layoutOf(place, panel) {
     const title = { text: `<b>${markup(panel.title)}</b>` + markup(panel.unit ? ` [${panel.unit}]` : ""), x: 0, xanchor: "left", y: 0.98, yanchor: "top", font: { size: 13 } };
     const yaxis = panel.states
       ? axis({ tickvals: panel.lines.map((_, k) => panel.lines.length - 0.6 - k), ticktext: panel.lines.map((l) => markup(l.label)), range: [-0.1, panel.lines.length], showgrid: false, zeroline: false })
       : axis();
     const event = (t) => ({ type: "line", x0: t, x1: t, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: colour("faint"), width: 1, dash: "dot" } });
     return layout({
-      title, yaxis, margin: { l: 56, r: 24, t: 54, b: 34 }, hovermode: "x unified", dragmode: "zoom", uirevision: "keep",
+      title, yaxis, margin: { l: 56, r: 24, t: panel.states ? 54 : headroom(place, panel), b: 34 }, hovermode: "x unified", dragmode: touch ? false : "zoom", uirevision: "keep",
       legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom", font: { size: 11 } },
       xaxis: axis({ automargin: false, range: shownWindow.slice(), ticksuffix: " s", showticksuffix: "last", hoverformat: ".6~g", unifiedhovertitle: { text: "%{x} s" } }),
       shapes: data.events.filter((t) => t > whole[0]).map(event),
@@ -55,7 +62,7 @@
 
   function drawPanel(place, panel) {
     const traces = panel.states ? stateTraces(panel) : [...bandTraces(panel), ...lineTraces(panel)];
-    Plotly.newPlot(place, traces, layoutOf(panel), config);
+    Plotly.newPlot(place, traces, layoutOf(place, panel), config);
     place.on("plotly_relayout", (change) => follow(place, change));
     const timeOf = (event) => +(event.xvals ? event.xvals[0] : event.points[0].x);
     place.on("plotly_hover", (event) => tell("scene-ghost", timeOf(event)));
