@@ -1,7 +1,7 @@
 """The page of a run: what it shows, and the functions that write it or say it in words."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
@@ -55,6 +55,8 @@ class RunPage(Page):
         Panels over time.
     details : tuple of Detail
         Tables to unfold.
+    figures_title : str
+        Heading of the key figures.
     """
 
     remarks: tuple[str, ...]
@@ -64,6 +66,7 @@ class RunPage(Page):
     thinned: Thinned | None
     sections: tuple[Section, ...]
     details: tuple[Detail, ...]
+    figures_title: str = "Key figures"
 
 
 class Digest(NamedTuple):
@@ -131,34 +134,35 @@ def digest(table: Dataset, verdicts: Sequence[Verdict] = ()) -> Digest:
     -------
     Digest
     """
-    roles, shown = _shown(table, verdicts)
+    roles, shown = shown_table(table, verdicts)
     return Digest(outcome(table, verdicts), remarks(table, shown, roles), judged(verdicts, shown))
 
 
 def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict], system: System | None) -> RunPage:
-    roles, shown = _shown(table, verdicts)
-    varying = [v.values for v in shown.data_vars.values() if not is_constant(v.values)]
-    drawn, span = thinned(shown, most_rows(varying, BYTES_FOR_SIGNALS))
+    roles, shown = shown_table(table, verdicts)
+    drawn, thin = drawn_rows(shown)
     run = make_run(table, verdicts)
     runs = () if run is None else (run,)
     sections = make_sections(shown, roles, verdicts)
+    choice = [str(name) for name in table.data_vars if name in drawn]
+    events = [event.time for event in scenario.events] if scenario else []
     return RunPage(
         title=_title(scenario, system),
         facts=_facts(table, scenario),
         outcome=outcome(table, verdicts),
-        links=_links(runs, sections),
-        data=_drawn(drawn, table, runs, sections, scenario),
+        links=links(runs, sections),
+        data=drawn_data(drawn, choice, runs, sections, events),
         remarks=tuple(remarks(table, shown, roles)),
         weather=weather(shown, roles),
         expectations=judged(verdicts, shown),
         key_figures=key_figures(shown, roles),
-        thinned=Thinned(drawn.sizes["time"], shown.sizes["time"], span) if span > 1 else None,
+        thinned=thin,
         sections=sections,
         details=details(table, scenario, system),
     )
 
 
-def _shown(table: Dataset, verdicts: Sequence[Verdict]) -> tuple[Roles, Dataset]:
+def shown_table(table: Dataset, verdicts: Sequence[Verdict]) -> tuple[Roles, Dataset]:
     """What the signals stand for, and the table in the units of the page with the derived signals."""
     roles = find_roles(table.data_vars)
     return roles, add_derived(display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts)
@@ -185,16 +189,42 @@ def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
     return tuple(Fact(name, text) for name, text in facts if text)
 
 
-def _links(runs: Sequence[Run], sections: Sequence[Section]) -> tuple[Link, ...]:
+def links(runs: Sequence[Run], sections: Sequence[Section]) -> tuple[Link, ...]:
+    """Navigation of the page."""
     chart = [Link("scene", "Scene")] if runs else []
     panels = [Link(f"section-{k}", section.title) for k, section in enumerate(sections)]
     return (*chart, *panels, Link("choose", "All signals"), Link("details", "Parameters"))
 
 
-def _drawn(
-    drawn: Dataset, table: Dataset, runs: Sequence[Run], sections: Sequence[Section], scenario: Scenario | None
+def drawn_rows(shown: Dataset) -> tuple[Dataset, Thinned | None]:
+    """The rows that a page has room for, and what was left out; None where every row is drawn."""
+    varying = [v.values for v in shown.data_vars.values() if not is_constant(v.values)]
+    drawn, span = thinned(shown, most_rows(varying, BYTES_FOR_SIGNALS))
+    return drawn, Thinned(drawn.sizes["time"], shown.sizes["time"], span) if span > 1 else None
+
+
+def drawn_data(
+    drawn: Dataset, choice: Sequence[str], runs: Sequence[Run], sections: Sequence[Section], events: Iterable[float]
 ) -> dict[str, Any]:
-    """What the script of the page draws."""
+    """What the script of the page draws.
+
+    Parameters
+    ----------
+    drawn : xarray.Dataset
+        Signals in the page's units.
+    choice : sequence of str
+        Those to choose from.
+    runs : sequence of Run
+        The scene.
+    sections : sequence of Section
+        Panels over time.
+    events : iterable of float
+        When something happens. [s]
+
+    Returns
+    -------
+    dict
+    """
     return {
         "time": packed_series(drawn["time"].values, EXACT),
         "signals": {
@@ -205,9 +235,9 @@ def _drawn(
             }
             for name, v in drawn.data_vars.items()
         },
-        "choice": [str(name) for name in table.data_vars if name in drawn],
+        "choice": list(choice),
         "scene": [asdict(run) for run in runs],
         "panels": [asdict(panel) for section in sections for panel in section.panels],
-        "events": sorted({event.time for event in scenario.events}) if scenario else [],
+        "events": sorted(set(events)),
         "colours": {"passed": palette.PASSED, "failed": palette.FAILED, "cycle": palette.CYCLE},
     }

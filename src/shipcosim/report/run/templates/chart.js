@@ -137,7 +137,7 @@
     const { vessel, hull } = state;
     path(c, p, hull.east, hull.north, true);
     if (ghost) { c.fillStyle = colour(`${run.colour}/0.1`); c.fill(); stroke(c, run.colour, 1.2, [4, 3]); return { what: "ghost", run: run.label, vessel: vessel.name, ...hull }; }
-    c.fillStyle = colour("hull"); c.fill();
+    if (runs.length === 1) { c.fillStyle = colour("hull"); c.fill(); }  // of two, both are seen
     c.fillStyle = colour(`${run.colour}/0.3`); c.fill(); stroke(c, run.colour, 2);
     const s = Math.sin((state.heading * Math.PI) / 180), n = Math.cos((state.heading * Math.PI) / 180), x = p.x(state.east), y = p.y(state.north), bow = 0.5 * size(vessel) * p.scale;
     c.beginPath(); c.moveTo(x + s * bow, y - n * bow); c.lineTo(x + s * (bow + 16), y - n * (bow + 16)); stroke(c, run.colour, 2);

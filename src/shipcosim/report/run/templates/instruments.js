@@ -3,6 +3,7 @@
   if (!scene) return;
   const { runs, colour, compass, wrapped, arrow, stroke } = scene, two = runs.length > 1;
   const three = (degrees) => `${compass(+degrees.toFixed(1)).toFixed(1).padStart(5, "0")}°`;
+  const whole = (degrees) => `${String(Math.round(compass(degrees)) % 360).padStart(3, "0")}°`;
   const signed = (v, digits = 2) => (Number.isFinite(v) ? (v < -0.5 * 10 ** -digits ? "−" : v > 0.5 * 10 ** -digits ? "+" : " ") + Math.abs(v).toFixed(digits) : "–");
   const plain = (v, digits = 2) => (Number.isFinite(v) ? v.toFixed(digits).replace(/^-(0\.0*)$/, "$1").replace("-", "−") : "–");
   const FLOW = { wind: "sky", current: "blue", waves: "green" };
@@ -65,8 +66,12 @@
   const table = document.getElementById("scene-figures");
   scene.writes((states) => {
     const rows = two ? compared(states) : single(chosen(states)[0]?.state);
-    for (const { what, size, unit, sense, degrees } of (states.find((s) => s.flows.length) || { flows: [] }).flows) {
-      rows.push([what[0].toUpperCase() + what.slice(1), `${plain(size, 1)} ${unit} ${sense} ${three(degrees).replace(/\..*/, "°")}`]);
+    for (const what of Object.keys(FLOW)) {
+      const found = states.map(({ flows }) => flows.find((flow) => flow.what === what));
+      if (!found.some(Boolean)) continue;
+      const said = found.map((flow) => (flow ? `${plain(flow.size, 1)} ${flow.unit} ${flow.sense} ${whole(flow.degrees)}` : "–"));
+      const same = said.every((text) => text === said[0]);
+      rows.push([what[0].toUpperCase() + what.slice(1), same ? said[0] : said.map((text, k) => `${runs[k].label} ${text}`).join(", ")]);
     }
     write(rows);
   });
@@ -79,9 +84,9 @@
     line("North [m]", plain(state.north), plain(aim.north), signed(off?.north));
     line("East [m]", plain(state.east), plain(aim.east), signed(off?.east));
     line("Heading", three(state.heading), Number.isFinite(aim.heading) ? three(aim.heading) : "–", Number.isFinite(off?.heading) ? `${signed(off.heading, 1)}°` : "–");
-    if (off) rows.push(["Off", `${plain(off.distance)} m: ${plain(Math.abs(off.ahead))} m ${off.ahead < 0 ? "aft" : "ahead"}, ${plain(Math.abs(off.starboard))} m to ${off.starboard < 0 ? "port" : "starboard"}`]);
-    if (Number.isFinite(state.u + state.v)) rows.push(["Speed", `${plain(state.u)} m/s ahead, ${plain(Math.abs(state.v))} m/s to ${state.v < 0 ? "port" : "starboard"}`]);
-    if (Number.isFinite(state.r)) rows.push(["Turning", `${plain(Math.abs(state.r))}°/s to ${state.r < 0 ? "port" : "starboard"}`]);
+    if (off) rows.push(["Off", `${plain(off.distance)} m: ${plain(Math.abs(off.ahead))} ${off.ahead < 0 ? "aft" : "fwd"}, ${plain(Math.abs(off.starboard))} ${off.starboard < 0 ? "port" : "stbd"}`]);
+    if (Number.isFinite(state.u + state.v)) rows.push(["Speed", `${plain(Math.hypot(state.u, state.v))} m/s: ${plain(Math.abs(state.u))} ${state.u < 0 ? "aft" : "fwd"}, ${plain(Math.abs(state.v))} ${state.v < 0 ? "port" : "stbd"}`]);
+    if (Number.isFinite(state.r)) rows.push(["Turning", `${plain(Math.abs(state.r))}°/s to ${state.r < 0 ? "port" : "stbd"}`]);
     return rows;
   }
 
@@ -114,21 +119,21 @@
 
   const units = () => runs.flatMap((run) => run.vessels.filter((v) => v.name === scene.vessels[scene.chosen]).flatMap((v) => v.units));
   const names = () => [...new Set(units().map((unit) => unit.name))];
-  const BAR = 30, bars = scene.canvas("thrust", () => names().length * BAR + (names().length ? 24 : 0));
+  const BAR = two ? 44 : 30, bars = scene.canvas("thrust", () => names().length * BAR + (names().length ? 24 : 0));
 
   scene.paints((states) => {
     const { context: c, width } = bars(), drawn = [], all = names();
     if (!all.length) return drawn;
     const left = Math.min(90, 0.28 * width), right = width - 104, middle = (left + right) / 2, half = (right - left) / 2;
     c.textBaseline = "middle"; c.fillStyle = colour("soft"); c.textAlign = "left"; c.fillText("Thrusters", 0, 10);
-    const tall = two ? 8 : 14;
+    const tall = two ? 12 : 14;
     all.forEach((name, k) => {
       const y = 24 + k * BAR + BAR / 2;
       c.fillStyle = colour("ink"); c.textAlign = "left"; c.fillText(fitted(c, name, left - 8), 0, y);
       chosen(states).forEach(({ run, state }, rank) => {
         const found = state.units.find(({ unit }) => unit.name === name);
         if (!found) return;
-        const { thrust, command, limits, azimuth, state: how, unit } = found, most = Math.max(Math.abs(limits[0]), limits[1]) || 1, top = y - (two ? (rank ? -1 : tall + 1) : tall / 2);
+        const { thrust, command, limits, azimuth, state: how, unit } = found, most = Math.max(Math.abs(limits[0]), limits[1]) || 1, top = y - (two ? (rank ? -3 : tall + 3) : tall / 2);
         const at = (kN) => middle + (half * Math.max(-1, Math.min(1, kN / most)));
         c.fillStyle = colour("chart-grid"); c.fillRect(at(limits[0]), top, at(limits[1]) - at(limits[0]), tall);
         c.fillStyle = colour(how === "runs" ? run.colour : how === "limit" ? "caution" : "alarm");
@@ -137,7 +142,7 @@
         c.beginPath(); c.moveTo(middle, top - 2); c.lineTo(middle, top + tall + 2); stroke(c, "soft", 1);
         if (Number.isFinite(command)) { c.beginPath(); c.moveTo(at(command), top + tall / 2); c.lineTo(at(command) - 4, top - 4); c.lineTo(at(command) + 4, top - 4); c.closePath(); c.fillStyle = colour("ink"); c.fill(); }
         c.fillStyle = colour(how === "runs" ? "ink" : how === "limit" ? "caution-text" : "alarm"); c.textAlign = "right";
-        const angle = Number.isFinite(azimuth) && !two ? ` ${three(azimuth).replace(/\..*/, "°")}` : "";
+        const angle = Number.isFinite(azimuth) && !two ? ` ${whole(azimuth)}` : "";
         c.fillText(how === "failed" ? "failed" : `${plain(thrust, 1)} kN${angle}`, width, two ? top + tall / 2 : y);
         drawn.push({ what: "bar", run: run.label, unit: unit.name, thrust, command, share: thrust / (thrust < 0 ? -limits[0] : limits[1]), from: middle, to: at(thrust), state: how });
       });

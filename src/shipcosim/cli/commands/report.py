@@ -1,0 +1,62 @@
+"""The command `shipcosim report`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.options import Debug, Out
+
+
+def report(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Results of a run: its folder, or a table (.nc, .csv).")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Those of another.")],
+    out: Out = None,
+    debug: Debug = False,
+) -> None:
+    """Lay two runs over each other: both ships in one scene, both runs in every plot, and by how much they differ.
+
+    Leaves report.html in results/A-B. Example: shipcosim report results/four_corner results/four_corner_rough
+    """
+    from shipcosim.cli.results import check_targets, staged
+    from shipcosim.report import write_comparison
+    from shipcosim.series import read_table
+
+    names = _names(first, second)
+    folder = out or Path("results") / f"{names[0]}-{names[1]}"
+    check_targets(folder)
+    tables = read_table(_table(first)), read_table(_table(second))
+    with staged(folder) as stage:
+        outcome, found = write_comparison(tables, names, stage / "report.html")
+    typer.echo(f"{outcome.word} {outcome.sentence}")
+    for one in found[:5]:
+        typer.echo(f"  {one.signal}: {one.rms:.3g} {one.unit} rms, {one.largest:.3g} {one.unit} at {one.time:g} s")
+    typer.echo(f"Page: {folder / 'report.html'}")
+
+
+def _table(given: Path) -> Path:
+    """The table of a run: a file, or the one in a folder of results."""
+    from shipcosim.errors import Problem, ShipcosimError
+
+    if not given.is_dir():
+        return given
+    for name in ("result.nc", "result.csv", "result-partial.nc", "result-partial.csv"):
+        if (given / name).is_file():
+            return given / name
+    raise ShipcosimError(Problem(str(given), "There is no result.nc in this folder.", "Give the --out of a run."))
+
+
+def _names(first: Path, second: Path) -> tuple[str, str]:
+    """What tells the two apart in few letters: names of their folders or files, else A and B."""
+    for depth in (1, 2, 3):
+        names = [_said(path.resolve(), depth) for path in (first, second)]
+        if names[0] != names[1]:
+            return names[0], names[1]
+    return "A", "B"
+
+
+def _said(path: Path, depth: int) -> str:
+    parts = list(path.parts[1:]) if path.is_dir() else [*path.parts[1:-1], path.stem]
+    if len(parts) > 1 and parts[-1] in ("result", "result-partial"):
+        parts.pop()
+    return "-".join(parts[-depth:])

@@ -1,0 +1,339 @@
+"""The page of two runs: both in one scene, both in every plot, and in figures how far they differ."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from xarray import Dataset
+
+from shipcosim.angles import wrap_series
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
+from shipcosim.report.run.details import Detail, parsed
+from shipcosim.report.run.page import RunPage, drawn_data, drawn_rows, links, shown_table
+from shipcosim.report.run.panels import Panel, Section, make_sections
+from shipcosim.report.run.scene import make_run
+from shipcosim.report.theme import palette
+from shipcosim.report.theme.numbers import plain
+from shipcosim.report.theme.pages import render
+from shipcosim.report.theme.views import Fact, Outcome, Table
+from shipcosim.series import write_file
+
+COLOURS = (palette.BLUE, palette.PURPLE)
+THE_LINE = (
+    "ship",
+    "delivered",
+    "ship − reference",
+    "from the reference",
+)  # where a panel shows more than the run
+MOST_DIFFERENCES = 25  # signals in the table of differences
+SAME = 1e-9  # of a signal's range: a difference below it is rounding
+
+
+class Difference(NamedTuple):
+    """By how much a signal differs: root mean square, largest, when, in its unit and over its range."""
+
+    signal: str
+    unit: str
+    rms: float
+    largest: float
+    time: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two runs on common times.
+
+    Attributes
+    ----------
+    names : (str, str)
+    tables : (Dataset, Dataset)
+        As they were given. [SI]
+    shown : (Dataset, Dataset)
+        In the units of the page, on common times; no number where a run has none.
+    shift : float
+        Added to the times of the second. [s]
+    """
+
+    names: tuple[str, str]
+    tables: tuple[Dataset, Dataset]
+    shown: tuple[Dataset, Dataset]
+    shift: float
+
+
+def write_comparison(
+    tables: tuple[Dataset, Dataset], names: tuple[str, str], path: str | os.PathLike[str]
+) -> tuple[Outcome, list[Difference]]:
+    """Write the page of two runs.
+
+    Parameters
+    ----------
+    tables : (xarray.Dataset, xarray.Dataset)
+        Runs of any systems. They are laid over each other by their times; where these have nothing in common, the
+        second is moved to start with the first, and the page says so.
+    names : (str, str)
+        What they are called on the page.
+    path : path
+        HTML file; it is there completely or not at all.
+
+    Returns
+    -------
+    (Outcome, list of Difference)
+        What the page says first, and the differences: of pose, errors and thrust, then the largest over its signal's
+        range first.
+
+    Raises
+    ------
+    ShipcosimError
+        If a run has no rows, the two have no signal in common, or the file cannot be written.
+    """
+    pair = lay_over(tables, names)
+    found = _ordered(pair, differences(pair))
+    page = _page(pair, found)
+    write_file(path, render("run/templates/run.html.jinja", page).encode())
+    return page.outcome, found
+
+
+def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
+    """Two runs on common times.
+
+    Raises
+    ------
+    ShipcosimError
+        If a run has no rows, or the two have no signal in common.
+    """
+    empty = [name for name, table in zip(names, tables, strict=True) if not table.sizes["time"]]
+    problems = [Problem(name, "The run has no rows.", "Give one that has.") for name in empty]
+    if not problems and not set(tables[0].data_vars) & set(tables[1].data_vars):
+        found = "The two have no signal in common."
+        problems = [Problem(" and ".join(names), found, "Give two runs of one system, or of systems that are alike.")]
+    if problems:
+        raise ShipcosimError(problems)
+    times = [np.asarray(table["time"].values, float) for table in tables]
+    apart = times[1][0] > times[0][-1] or times[1][-1] < times[0][0]
+    shift = float(times[0][0] - times[1][0]) if apart else 0.0
+    common = np.union1d(np.round(times[0], 9), np.round(times[1] + shift, 9))
+    first, second = (shown_table(table, ())[1] for table in tables)
+    second = second.assign_coords(time=second["time"].values + shift)
+    return Pair(names, tables, (_on(first, common), _on(_like(second, first), common)), shift)
+
+
+def differences(pair: Pair) -> list[Difference]:
+    """By how much the signals that both have differ where both are; angles the short way round.
+
+    Parameters
+    ----------
+    pair : Pair
+
+    Returns
+    -------
+    list of Difference
+        The largest over its signal's range first; signals that are the same are left out.
+    """
+    first, second = pair.shown
+    time, found = first["time"].values, []
+    for name in (str(n) for n in first.data_vars if n in second):
+        a, b, unit = first[name].values, second[name].values, first[name].attrs["units"]
+        gap = wrap_series(b - a) if unit == "deg" else b - a
+        both = np.isfinite(gap)
+        if not both.any():
+            continue
+        size = np.abs(gap[both])
+        most = int(np.argmax(size))
+        span = max(float(np.ptp(v[both])) for v in (a, b)) or float(np.max(np.abs(a[both]))) or float(size[most])
+        if size[most] > SAME * max(span, np.finfo(float).tiny):
+            rms = float(np.sqrt(np.mean(size**2)))
+            found.append(Difference(name, unit, rms, float(size[most]), float(time[both][most]), float(rms / span)))
+    return sorted(found, key=lambda one: -one.share)
+
+
+def _on(shown: Dataset, time: NDArray) -> Dataset:
+    """A table at other times: on straight lines between its rows, logical signals as they were last."""
+    own = np.round(shown["time"].values, 9)
+    inside = (time >= own[0]) & (time <= own[-1])
+    rows = np.clip(np.searchsorted(own, time, side="right") - 1, 0, len(own) - 1)
+    found = {}
+    for name, v in shown.data_vars.items():
+        values = v.values.astype(float)
+        read = values[rows] if v.attrs.get("logical") or len(own) == 1 else np.interp(time, own, values)
+        found[name] = ("time", np.where(inside, read, np.nan), v.attrs)
+    return xr.Dataset(found, {"time": time})
+
+
+def _like(shown: Dataset, other: Dataset) -> Dataset:
+    """The table in the other's units, its angles moved by whole turns to lie beside the other's."""
+    found = {}
+    for name, v in shown.data_vars.items():
+        values, attributes = v.values.astype(float), dict(v.attrs)
+        if name in other and other[name].attrs["units"] != attributes["units"]:
+            values = values * other[name].attrs["factor"] / attributes["factor"]
+            attributes |= {key: other[name].attrs[key] for key in ("units", "factor")}
+        if name in other and attributes["units"] == "deg" and np.isfinite(values).any():
+            gap = np.nanmedian(values) - np.nanmedian(other[name].values)
+            values = values - 360.0 * np.round(gap / 360.0) if np.isfinite(gap) else values
+        found[name] = ("time", values, attributes)
+    return xr.Dataset(found, {"time": shown["time"].values})
+
+
+# What the page shows.
+
+
+def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
+    merged = _merged(pair)
+    drawn, thinned = drawn_rows(merged)
+    runs = [
+        run
+        for table, name, shift in zip(pair.tables, pair.names, (0.0, pair.shift), strict=True)
+        if (run := make_run(table, (), name, shift)) is not None
+    ]
+    sections = _sections(pair)
+    choice = [str(name) for name in merged.data_vars]
+    return RunPage(
+        title=f"{pair.names[0]} and {pair.names[1]}",
+        facts=_facts(pair),
+        outcome=_outcome(pair, found),
+        links=links(runs, sections),
+        data=drawn_data(drawn, choice, runs, sections, ()),
+        remarks=tuple(_remarks(pair)),
+        weather=(),
+        expectations=(),
+        key_figures=_table(found),
+        thinned=thinned,
+        sections=sections,
+        details=_details(pair),
+        figures_title="Differences",
+    )
+
+
+def _merged(pair: Pair) -> Dataset:
+    """Signals of both by the names of their runs."""
+    return xr.Dataset(
+        {
+            f"{run}: {name}": v.assign_attrs(long_name=f"{v.attrs['long_name']}, {run}")
+            for run, shown in zip(pair.names, pair.shown, strict=True)
+            for name, v in shown.data_vars.items()
+        }
+    )
+
+
+def _sections(pair: Pair) -> tuple[Section, ...]:
+    """The panels of the first run with both runs in each."""
+    roles = shown_table(pair.tables[0], ())[0]
+    made = []
+    for section in make_sections(pair.shown[0], roles, ()):
+        panels = tuple(doubled for panel in section.panels if (doubled := _doubled(panel, pair)) is not None)
+        if panels:
+            made.append(replace(section, panels=panels))
+    return tuple(made)
+
+
+def _doubled(panel: Panel, pair: Pair) -> Panel | None:
+    """A panel with both runs: each in its colour, or where there are several curves the second run dashed."""
+    lines = [line for line in panel.lines if line.signal in pair.shown[1]]
+    own = [line for line in lines if line.label in THE_LINE] or lines
+    if not own:
+        return None
+    if len(own) == 1:
+        pairs = zip(pair.names, COLOURS, strict=True)
+        both = [replace(own[0], signal=f"{n}: {own[0].signal}", label=n, colour=c, dash="solid") for n, c in pairs]
+    else:
+        both = [
+            replace(line, signal=f"{name}: {line.signal}", label=f"{line.label}, {name}", dash=dash)
+            for line in own
+            for name, dash in zip(pair.names, ("solid", "dot"), strict=True)
+        ]
+    return replace(panel, lines=tuple(both), bands=())
+
+
+def _facts(pair: Pair) -> tuple[Fact, ...]:
+    return tuple(
+        Fact(name, f"{parsed(table.attrs.get('scenario', '')) or 'run'}, {_span(table)}")
+        for name, table in zip(pair.names, pair.tables, strict=True)
+    )
+
+
+def _span(table: Dataset) -> str:
+    time = table["time"].values
+    return f"{time[0]:g} to {time[-1]:g} s"
+
+
+def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
+    """One sentence: how far apart the ships get, else by how much the signal that differs most does."""
+    common = sum(1 for name in pair.shown[0].data_vars if name in pair.shown[1])
+    if not found:
+        return Outcome("passed", "SAME", f"All {common} signals that both have are the same.")
+    roles = shown_table(pair.tables[0], ())[0]
+    position = [roles.signal(roles.ship, axis) for axis in "xy"]
+    if all(name in pair.shown[1] and name in pair.shown[0] for name in position):
+        gap = np.hypot(*(pair.shown[1][name].values - pair.shown[0][name].values for name in position))
+        if np.isfinite(gap).any() and np.nanmax(gap) > 0.0:
+            when = pair.shown[0]["time"].values[int(np.nanargmax(gap))]
+            rms = np.sqrt(np.nanmean(gap**2))
+            most, usual = plain(float(np.nanmax(gap))), plain(float(rms))
+            text = f"The ships lie up to {most} m apart, at {when:g} s; {usual} m rms."
+            return Outcome("plain", "DIFFER", f"{text} {len(found)} of {common} signals differ.")
+    worst = max(found, key=lambda one: one.share)
+    return Outcome("plain", "DIFFER", f"{len(found)} of {common} signals differ, most of all {worst.signal}.")
+
+
+def _remarks(pair: Pair) -> list[str]:
+    said = []
+    first, second = pair.names
+    if pair.shift:
+        said.append(f"The runs have no time in common: {second} is moved by {pair.shift:g} s to start with {first}.")
+    ends = [table["time"].values[[0, -1]] for table in pair.tables]
+    spans = [ends[0], ends[1] + pair.shift]
+    if not np.allclose(*spans):
+        start, end = max(span[0] for span in spans), min(span[1] for span in spans)
+        said.append(f"Differences are those between {start:g} and {end:g} s, where both runs are.")
+    for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
+        if alone := [str(signal) for signal in own.data_vars if signal not in other]:
+            more = f" and {len(alone) - 5} more" if len(alone) > 5 else ""
+            said.append(f"Only in {name}: {', '.join(alone[:5])}{more}.")
+    return said
+
+
+def _ordered(pair: Pair, found: Sequence[Difference]) -> list[Difference]:
+    """Differences of what people compare runs by, then the others as they come."""
+    roles = shown_table(pair.tables[0], ())[0]
+    pose = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
+    wanted = [*pose, FROM_REFERENCE, ERRORS["psi"], *(roles.signal(unit, "thrust") for unit in roles.thrusters)]
+    by_name = {one.signal: one for one in found}
+    first = [by_name[name] for name in dict.fromkeys(wanted) if name in by_name]
+    return [*first, *(one for one in found if one not in first)]
+
+
+def _table(found: Sequence[Difference]) -> Table:
+    """The first of the differences as texts."""
+    rows = [
+        (d.signal, f"{plain(d.rms)} {d.unit}", f"{plain(d.largest)} {d.unit}", f"{d.time:g} s")
+        for d in found[:MOST_DIFFERENCES]
+    ]
+    return Table(tuple(rows), ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
+
+
+def _details(pair: Pair) -> tuple[Detail, ...]:
+    """What is not the same in what the tables say of their runs: start values, events, versions."""
+    attributes = [{str(key): parsed(value) for key, value in table.attrs.items()} for table in pair.tables]
+    found = [_unlike("Start values that differ", pair, [_known(a, "start_values") for a in attributes])]
+    rest = [{k: v for k, v in a.items() if k not in ("start_values", "remarks", "fmus")} for a in attributes]
+    found.append(_unlike("Runs that differ", pair, rest))
+    return tuple(detail for detail in found if detail is not None)
+
+
+def _known(attributes: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    value = attributes.get(key)
+    return value if isinstance(value, dict) else {}
+
+
+def _unlike(title: str, pair: Pair, contents: Sequence[Mapping[str, Any]]) -> Detail | None:
+    """A table of the entries that are not the same in both, or None."""
+    names: Iterable[str] = dict.fromkeys([*contents[0], *contents[1]])
+    said = [(name, *(str(content.get(name, "–")) for content in contents)) for name in names]
+    rows = tuple(row for row in said if row[1] != row[2])
+    return Detail(title, Table(rows, ("", *pair.names))) if rows else None

@@ -1,0 +1,41 @@
+"""`shipcosim report A B`."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+from shipcosim.cli.app import app
+from shipcosim.series import write_table
+
+
+@pytest.fixture
+def results(tmp_path):
+    """Folders of two runs that differ by 2 m."""
+    time = np.linspace(0.0, 10.0, 21)
+    for name, east in (("calm", 0.0), ("windy", 2.0)):
+        signals = {"boat.x": (time, "m"), "boat.y": (0.0 * time + east, "m"), "boat.psi": (0.0 * time, "rad")}
+        table = xr.Dataset({k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": ("time", time, {"units": "s"})})
+        (tmp_path / name).mkdir()
+        write_table(table, tmp_path / name / "result.nc")
+        write_table(table, tmp_path / name / "result.csv")
+    return tmp_path
+
+
+@pytest.mark.parametrize("file", ["", "result.nc", "result.csv"])
+def test_folders_and_tables_make_a_page_that_says_how_they_differ(results, file):
+    given = [str(results / name / file) for name in ("calm", "windy")]
+    told = CliRunner().invoke(app, ["report", *given, "--out", str(results / "both")])
+    assert told.exit_code == 0, told.output
+    assert "2.00 m apart" in told.output and "boat.y: 2 m rms" in told.output
+    page = (results / "both" / "report.html").read_text()
+    assert "<h1>calm and windy</h1>" in page
+
+
+def test_folder_without_results_is_said(results):
+    (results / "empty").mkdir()
+    told = CliRunner().invoke(
+        app, ["report", str(results / "calm"), str(results / "empty"), "--out", str(results / "o")]
+    )
+    assert told.exit_code == 2 and "no result.nc in this folder" in told.output
+    assert not (results / "o").exists()

@@ -1,0 +1,95 @@
+"""Two runs on one page: both drawn, laid over each other in time, and their differences said."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.report import write_comparison
+from shipcosim.report.run.comparison import differences, lay_over
+
+
+def boat(north=0.0, turn=0.0, start=0.0, stop=100.0, **start_values):
+    """A boat that sails 1 m/s north, set off to the side and turned."""
+    time = np.arange(start, stop + 0.25, 0.5)
+    signals = {
+        "boat.x": (time + north, "m"),
+        "boat.y": (0.0 * time, "m"),
+        "boat.psi": (np.radians(turn) + 0.0 * time, "rad"),
+        "bow.thrust": (1000.0 + 10.0 * time, "N"),
+        "bow.rpm": (0.0 * time + 50.0, "rpm"),
+    }
+    table = xr.Dataset({k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": time})
+    known = {"boat.length": 20.0, "boat.breadth": 5.0} | start_values
+    return table.assign_attrs(start_values=json.dumps(known))
+
+
+def test_two_runs_give_two_outlines_each_in_its_colour(browse, tmp_path):
+    write_comparison((boat(), boat(north=3.0, turn=10.0)), ("calm", "windy"), tmp_path / "report.html")
+    page = browse(tmp_path / "report.html")
+    items = page.ask("scene.time = 40; scene.paint(); return scene.drawn.filter(item => item.what === 'hull')")
+    hulls = {item["run"]: item for item in items}
+    assert hulls["calm"]["position"] == pytest.approx([40.0, 0.0], abs=0.02)
+    assert hulls["windy"]["position"] == pytest.approx([43.0, 0.0], abs=0.02)
+    assert hulls["windy"]["heading"] == pytest.approx(10.0, abs=0.05)
+    assert hulls["calm"]["colour"] != hulls["windy"]["colour"]
+    assert page.panels()["North [m]"] == ["calm", "windy"]
+    assert "3.00 m apart" in page.text("#verdict")
+    assert page.errors() == []
+
+
+def test_differences_are_those_between_the_runs_and_the_largest_is_found():
+    other = boat(north=3.0)
+    other["boat.y"][120] = 7.0
+    found = {one.signal: one for one in differences(lay_over((boat(), other), ("a", "b")))}
+    assert set(found) == {"boat.x", "boat.y"}
+    assert (found["boat.x"].rms, found["boat.x"].largest) == (pytest.approx(3.0), pytest.approx(3.0))
+    assert (found["boat.y"].largest, found["boat.y"].time) == (7.0, 60.0)
+
+
+def test_angles_differ_the_short_way_round():
+    (one,) = differences(lay_over((boat(turn=179.0), boat(turn=-179.0)), ("a", "b")))
+    assert one.signal == "boat.psi" and one.largest == pytest.approx(2.0)
+
+
+def test_same_run_does_not_differ(tmp_path):
+    outcome, found = write_comparison((boat(), boat()), ("a", "b"), tmp_path / "report.html")
+    assert outcome.word == "SAME" and found == []
+
+
+def test_other_steps_and_units_do_not_make_a_difference():
+    """A straight line sampled elsewhere is the same line; thrust in kN is that in N."""
+    coarse = boat().isel(time=slice(None, None, 4))
+    coarse["bow.thrust"] = coarse["bow.thrust"] / 1000.0
+    coarse["bow.thrust"].attrs["units"] = "kN"
+    assert differences(lay_over((boat(), coarse), ("a", "b"))) == []
+
+
+def test_runs_of_other_lengths_are_compared_where_both_are(tmp_path):
+    pair = lay_over((boat(), boat(stop=60.0)), ("long", "short"))
+    assert np.isnan(pair.shown[1]["boat.x"].values[-1]) and differences(pair) == []
+
+
+def test_runs_without_a_common_time_start_together_and_the_page_says_so(browse, tmp_path):
+    write_comparison((boat(), boat(start=500.0, stop=600.0)), ("first", "later"), tmp_path / "report.html")
+    page = browse(tmp_path / "report.html")
+    assert "later is moved by -500 s" in page.text("#remarks")
+    hulls = page.ask("scene.time = 20; scene.paint(); return scene.drawn.filter(item => item.what === 'hull')")
+    assert [hull["position"][0] for hull in hulls] == pytest.approx([20.0, 520.0], abs=0.02)
+
+
+def test_start_values_that_differ_are_listed(browse, tmp_path):
+    tables = boat(**{"bow.gain": 1.0, "bow.time": 2.0}), boat(**{"bow.gain": 1.5, "bow.time": 2.0})
+    write_comparison(tables, ("a", "b"), tmp_path / "report.html")
+    page = browse(tmp_path / "report.html")
+    details = page.ask("return document.getElementById('details').textContent")
+    assert "bow.gain" in details and "1.5" in details and "bow.time" not in details
+
+
+def test_runs_with_nothing_in_common_are_refused(tmp_path):
+    other = boat().rename({name: f"other.{name}" for name in boat().data_vars})
+    with pytest.raises(ShipcosimError, match="no signal in common"):
+        write_comparison((boat(), other), ("a", "b"), tmp_path / "report.html")
+    assert list(tmp_path.iterdir()) == []
