@@ -15,7 +15,8 @@ def results(tmp_path):
     time = np.linspace(0.0, 10.0, 21)
     for name, east in (("calm", 0.0), ("windy", 2.0)):
         signals = {"boat.x": (time, "m"), "boat.y": (0.0 * time + east, "m"), "boat.psi": (0.0 * time, "rad")}
-        table = xr.Dataset({k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": ("time", time, {"units": "s"})})
+        columns = {k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}
+        table = xr.Dataset(columns, {"time": ("time", time, {"units": "s"})})
         (tmp_path / name).mkdir()
         write_table(table, tmp_path / name / "result.nc")
         write_table(table, tmp_path / name / "result.csv")
