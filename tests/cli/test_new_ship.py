@@ -83,3 +83,14 @@ def test_what_is_wrong_is_said_and_nothing_is_written(arguments, found, project)
     assert (
         "fault of shipcosim" not in made.output and not (project / "ssp").exists() and not (project / "ships").exists()
     )
+
+
+def test_in_a_terminal_it_asks_for_what_is_not_said_and_proposes_what_is_usual(project, monkeypatch):
+    monkeypatch.setattr("shipcosim.cli.new_ship._is_terminal", lambda: True)
+    answers = ["a ferry", "screws", "sixty", "40 m", "", "2.9 m", "", "11 kn", ""]
+    made = CliRunner().invoke(app, ["new", "ship", "tern"], input="\n".join(answers) + "\n")
+    assert made.exit_code == 0, made.output
+    assert '"sixty"' in made.output and "Breadth [11 m]" in made.output
+    text = (project / "ships/tern/ship.toml").read_text()
+    assert 'description = "a ferry"' in text and 'length = "40 m"' in text and 'draught = "2.9 m"' in text
+    assert 'breadth = { value = "11 m", origin = "assumed' in text and text.count('kind = "tunnel"') == 2

@@ -57,17 +57,30 @@ def answers_from(name: str, given: Mapping[str, str | None], thrusters: list[str
     for key, value in given.items():
         if value is not None:
             setattr(answers, key, value)
-    ask = ask and sys.stdin.isatty()
+    ask = ask and _is_terminal()
     if ask and not answers.description:
-        answers.description = typer.prompt("What is she, in a line", default=name)
+        answers.description = _asked("What is she, in a line", name)
     answers.description = answers.description or name
     if ask and given["layout"] is None and not answers.thrusters:
         for layout, said in LAYOUTS.items():
             typer.echo(f"  {layout}: {said}")
-        answers.layout = typer.prompt("Propulsion", default=answers.layout)
+        answers.layout = _asked("Propulsion", answers.layout)
+        while answers.layout not in LAYOUTS:
+            answers.layout = _asked("Propulsion", "azimuths")
     for key, question in QUESTIONS.items():
         _answer(answers, key, question, ask)
     return answers
+
+
+def _asked(question: str, proposed: str) -> str:
+    try:
+        return typer.prompt(question, default=proposed, type=str)
+    except typer.Abort:
+        raise KeyboardInterrupt from None
+
+
+def _is_terminal() -> bool:
+    return sys.stdin.isatty()
 
 
 def _answer(answers: Answers, key: str, question: str, ask: bool) -> None:
@@ -79,7 +92,7 @@ def _answer(answers: Answers, key: str, question: str, ask: bool) -> None:
     except ValueError:
         return  # a length that is none is said with the rest
     while ask:
-        said = typer.prompt(question, default=proposed)
+        said = _asked(question, str(proposed))
         setattr(answers, key, proposed if said == proposed else said)
         try:
             usual(answers, "power")

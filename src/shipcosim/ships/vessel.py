@@ -54,7 +54,7 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> Form | None:
     B = number(p.hull_breadth if p.hulls > 1 else p.breadth)
     density = number(p.water_density, SEA_WATER)
     filled = number(heavy) / (density * p.hulls * L * B * T)
-    block = number(p.block_coefficient, filled)
+    block = min(max(number(p.block_coefficient, filled), 0.05), 1.0)  # what cannot be is said by the check
     speed = number(p.service_speed, USUAL_FROUDE * sqrt(GRAVITY * L))
     return Form(length=L, breadth=B, draught=T, block=block, hulls=p.hulls, density=density, speed=speed)
 

@@ -123,7 +123,7 @@ def wave_resistance(
     """
     L, B, T = form.length, form.breadth, form.draught
     volume, Cp = form.volume / form.hulls, _prismatic(form, midship)
-    Cwp = (1.0 + 2.0 * form.block) / 3.0 if waterplane is None else waterplane
+    Cwp = min((1.0 + 2.0 * form.block) / 3.0, 0.98) if waterplane is None else waterplane
     froude = max(min(froude_number(form), MOST_FROUDE), 0.05)
     slender = B / L
     c7 = 0.229577 * slender ** (1.0 / 3.0) if slender < _FINE else min(slender, 0.5 - 0.0625 / slender)
@@ -134,7 +134,7 @@ def wave_resistance(
     m1 = 0.0140407 * L / T - 1.75254 * volume ** (1.0 / 3.0) / L - 4.79323 * B / L - c16
     m2 = -1.69385 * Cp**2 * exp(-0.1 / froude**2)
     length = 1.446 * Cp - 0.03 * L / B if L / B < 12.0 else 1.446 * Cp - 0.36
-    shape = exp(m1 * froude**-0.9 + m2 * cos(length / froude**2))
+    shape = exp(min(m1 * froude**-0.9 + m2 * cos(length / froude**2), 5.0))  # beyond it there is no such ship
     return form.hulls * c1 * volume * form.density * GRAVITY * shape
 
 
