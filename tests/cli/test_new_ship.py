@@ -71,7 +71,7 @@ def test_thrusters_are_told_one_by_one(project):
         (["tern", "--yes"], "nothing says length, breadth, draught"),
         (["tern", *ASKED, "--propulsion", "sails", "--yes"], "'sails'"),
         (["tern", *ASKED, "--displacement", "1 kg", "--yes"], "1 kg do not fit"),
-        (["tern", *ASKED, "--length", "sixty", "--yes"], '"sixty"'),
+        (["tern", *ASKED, "--length", "sixty", "--yes"], "'sixty'"),
         (["tern", *ASKED, "--thruster", "bow", "--yes"], "found 'bow'"),
         (["../tern", *ASKED, "--yes"], "letters, digits"),
         (["tern", "--from", "nowhere.toml"], "nowhere"),
@@ -90,7 +90,7 @@ def test_in_a_terminal_it_asks_for_what_is_not_said_and_proposes_what_is_usual(p
     answers = ["a ferry", "screws", "sixty", "40 m", "", "2.9 m", "", "11 kn", ""]
     made = CliRunner().invoke(app, ["new", "ship", "tern"], input="\n".join(answers) + "\n")
     assert made.exit_code == 0, made.output
-    assert '"sixty"' in made.output and "Breadth [11 m]" in made.output
+    assert "'sixty'" in made.output and "Breadth [11 m]" in made.output
     text = (project / "ships/tern/ship.toml").read_text()
     assert 'description = "a ferry"' in text and 'length = "40 m"' in text and 'draught = "2.9 m"' in text
     assert 'breadth = { value = "11 m", origin = "assumed' in text and text.count('kind = "tunnel"') == 2

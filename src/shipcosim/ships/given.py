@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from shipcosim.units import conversion, relation, spelled_unit
+from shipcosim import units
 
-_AMOUNT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z%°/1][^\s]*)?\s*")
+_PLAIN = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
 _KEYS = ("value", "unit", "tolerance", "uncertainty", "origin")
 PLAIN = "given in the ship file"
 
@@ -90,29 +90,15 @@ def number_in(found: Any, unit: str) -> float:
     >>> number_in(2650, "kg")
     2650.0
     """
-    if isinstance(found, (int, float)) and not isinstance(found, bool):
+    if isinstance(found, str) and not _PLAIN.fullmatch(found):
+        value = units.number_in(found, units.spelled_unit(unit))
+    elif isinstance(found, (int, float, str)) and not isinstance(found, bool):
         value = float(found)
     else:
-        match = _AMOUNT.fullmatch(found) if isinstance(found, str) else None
-        if match is None:
-            raise ValueError(f'found {_text(found)}. Write a number in {unit}, or a text such as "12.5 {unit}".')
-        value = float(match[1])
-        if match[2]:
-            value = _converted(value, match[2], unit)
+        raise ValueError(f"found {_text(found)}. Write a number in {unit}, or a text such as '12.5 {unit}'.")
     if not math.isfinite(value) or abs(value) > 1e20:
         raise ValueError(f"found {_text(found)}. Give a finite number.")
     return value
-
-
-def _converted(value: float, spelling: str, wanted: str) -> float:
-    source, target = spelled_unit(spelling), spelled_unit(wanted)
-    assert target is not None, wanted
-    if source is None or source.exponents is None:
-        raise ValueError(f"the unit '{spelling}' is not known. Write it as {wanted}, kn, deg, t, kW or the like.")
-    if relation(source, target) == "incompatible" or relation(source, target) == "angle":
-        raise ValueError(f"found a number in {spelling}. It is measured in {wanted}, or a unit that converts to it.")
-    factor, offset = conversion(source, target)
-    return factor * value + offset
 
 
 def given_in_unit(found: Any, unit: str) -> Given:

@@ -99,7 +99,7 @@ def friction(speed: float, length: float) -> float:
     Examples
     --------
     >>> round(1e3 * friction(10.0, 119.0), 3)
-    1.53
+    1.531
     """
     return 0.075 / (log10(max(speed * length / VISCOSITY, 1e3)) - 2.0) ** 2
 
