@@ -13,6 +13,9 @@ from shipcosim.cli.commands import (
     compare,
     diagnose,
     export,
+    init,
+    list,
+    new,
     new_ship,
     replay,
     report,
@@ -25,10 +28,8 @@ from shipcosim.cli.exits import EXIT_CODES, guarded
 app = typer.Typer(
     help="Co-simulation of ships: FMUs, system structures, scenarios.",
     epilog=EXIT_CODES,
-    add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    no_args_is_help=True,
 )
 exporting = typer.Typer(
     help="Write a system in a form that other tools run.", rich_markup_mode=None, no_args_is_help=True
@@ -36,7 +37,9 @@ exporting = typer.Typer(
 making = typer.Typer(
     help="Make a new file that runs, in the project around.", rich_markup_mode=None, no_args_is_help=True
 )
+app.command("list", epilog=EXIT_CODES)(guarded(list.list_))
 for _function in (
+    init.init,
     build.build,
     run.run,
     simulate.simulate,
@@ -53,7 +56,7 @@ for _function in (
     app.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (export.fmu, export.osp):
     exporting.command(epilog=EXIT_CODES)(guarded(_function))
-for _function in (new_ship.ship,):
+for _function in (new.fmu, new.scenario, new_ship.ship, new.system):
     making.command(epilog=EXIT_CODES)(guarded(_function))
 app.add_typer(exporting, name="export")
 app.add_typer(making, name="new")
@@ -61,6 +64,7 @@ app.add_typer(making, name="new")
 
 @app.callback(invoke_without_command=True)
 def options(
+    context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
 ) -> None:
     """Co-simulation of ships: FMUs, system structures, scenarios."""
@@ -69,3 +73,7 @@ def options(
 
         typer.echo(f"shipcosim {__version__}")
         raise typer.Exit()
+    if context.invoked_subcommand is None:
+        from shipcosim.cli.start.listing import overview
+
+        typer.echo(f"{context.get_help()}\n{overview()}")

@@ -23,8 +23,8 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
     Parameters
     ----------
     file : str
-        A scenario (.toml; of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a system (see
-        `shipcosim.ssp.check_file`).
+        A scenario (.toml; of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a
+        system (see `shipcosim.ssp.check_file`).
     channels : path, optional
         Channel file of tables that are measured data.
     hosts : iterable of str

@@ -64,6 +64,7 @@ def reading(
     ShipcosimError
         If it is none of these, or something happens in the scenario.
     """
+    given = library.find_any(given)
     path, fmus = Path(given), library.fmus(given)
     if parameters:
         raise ShipcosimError(Problem("--parameters", "A tool that reads the file itself does not know them."))

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -36,6 +37,11 @@ def default_folder(data: str | os.PathLike, ending: str = "") -> Path:
     'results/monday-replay'
     """
     return Path("results") / f"{Path(Path(data).name.removesuffix('.gz')).stem}{ending}"
+
+
+def logs_of(given: Iterable[Path]) -> list[Path]:
+    """Files of measured data: paths, or names of the examples that the package ships."""
+    return [path if path.exists() else library.named("example", str(path)) or path for path in given]
 
 
 def diagnose_log(

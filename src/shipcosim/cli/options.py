@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from shipcosim.cli.start.completion import ENGINES, names_of, words_of
+
 
 def finite(value: float | None) -> float | None:
     """The value of an option in seconds; a number that is no time is refused."""
@@ -29,12 +31,25 @@ OspEvents = Annotated[
     Path | None,
     typer.Option("--scenario", metavar="FILE", help="Scenario file of OSP (.json, .yaml): what happens in the run."),
 ]
+SystemOrScenario = Annotated[
+    str,
+    typer.Argument(
+        metavar="SSP_OR_SCENARIO",
+        help="A scenario, as for run, or a system.",
+        autocompletion=names_of("scenario", "system"),
+    ),
+]
 Channels = Annotated[
     Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
 ]
 Ship = Annotated[
     str | None,
-    typer.Option("--system", metavar="SSP", help="The ship: a path, or its name in ssp/. [default: gunnerus_open]"),
+    typer.Option(
+        "--system",
+        metavar="SSP",
+        help="The ship: a path, or a system's name. [default: gunnerus_open]",
+        autocompletion=names_of("system"),
+    ),
 ]
 Effects = Annotated[
     Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
@@ -44,7 +59,12 @@ SystemsStepSize = Annotated[float | None, typer.Option("--step-size", help="[s] 
 ScenariosStopTime = Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the scenario's.")]
 ScenariosStepSize = Annotated[float | None, typer.Option("--step-size", help="[s] Default: the scenario's.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
-Engine = Annotated[str, typer.Option("--engine", help="What runs the FMUs: fmpy (ours), libcosim or ecos.")]
+Engine = Annotated[
+    str,
+    typer.Option(
+        "--engine", help="What runs the FMUs: fmpy (ours), libcosim or ecos.", autocompletion=words_of(*ENGINES)
+    ),
+]
 Until = Annotated[float | None, typer.Option("--until", callback=finite, help="[s] End here, before the stop time.")]
 Store = Annotated[
     Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")

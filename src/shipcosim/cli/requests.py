@@ -16,7 +16,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import Scenario, check_files, check_times, read_scenario
 from shipcosim.scenario.osp import read_osp_scenario
 from shipcosim.series import read_table
-from shipcosim.ssp import System, read_system
+from shipcosim.ssp import System, read_system, with_values
 
 
 def system_of(given: str, parameters: Iterable[Path] | None = None, option: str = "", strict: bool = False) -> System:
@@ -85,6 +85,34 @@ def system_and_scenario(
     if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
         raise ShipcosimError(problems)
     return system, with_osp_events(scenario, events)
+
+
+def system_to_export(
+    given: str, parameters: Sequence[Path] | None, step_size: float | None, strict: bool = False
+) -> tuple[System, float]:
+    """System of an argument that is a system or a scenario, with the scenario's start values, and its step size. [s]
+
+    Parameters
+    ----------
+    given : str
+        As for `system_and_scenario`.
+    parameters : sequence of Path or None
+        Parameter sets over those of the scenario or the system.
+    step_size : float or None
+        In place of that of the scenario or the system. [s]
+    strict : bool
+        Whether flaws of form are errors.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such thing, or nothing says a step size.
+    """
+    if is_scenario(given):
+        system, scenario = system_and_scenario(given, parameters, step_size=step_size, strict=strict)
+        return with_values(system, scenario.set, given), scenario.step_size
+    system = system_of(given, parameters, strict=strict)
+    return system, experiment_of(system, system.experiment.stop_time or step_size or 1.0, step_size).step_size
 
 
 def is_scenario(given: str) -> bool:

@@ -5,8 +5,8 @@ in what the package ships. `entries` lists them, `fmus` gives the folders of bui
 """
 
 from shipcosim.library.building import build_stale, built_fmus, fmus
-from shipcosim.library.finding import SYSTEMS, check_is_system, find, find_parameters, scenarios
-from shipcosim.library.names import KINDS, Entry, entries, fmu_sources, named, names
+from shipcosim.library.finding import SYSTEMS, check_is_system, find, find_any, find_parameters, scenarios
+from shipcosim.library.names import KINDS, Entry, entries, fmu_sources, line_of, named, names
 from shipcosim.library.places import project_of, roots, shipped
 
 __all__ = [
@@ -18,7 +18,9 @@ __all__ = [
     "check_is_system",
     "entries",
     "find",
+    "find_any",
     "find_parameters",
+    "line_of",
     "fmu_sources",
     "fmus",
     "named",

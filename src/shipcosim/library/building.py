@@ -5,7 +5,6 @@ import hashlib
 import os
 import shutil
 import tempfile
-from importlib.metadata import version
 from pathlib import Path
 
 from shipcosim import __version__
@@ -113,6 +112,8 @@ def _build_into_cache(root: Path, folder: Path) -> None:
 @functools.cache
 def _digest(root: Path) -> str:
     """Of everything that goes into the FMUs that are shipped."""
+    from importlib.metadata import version
+
     digest = hashlib.sha256(version("pythonfmu").encode())
     for path in (root / "fmus", *(PACKAGE / part for part in IN_EVERY_FMU)):
         for file in sorted(path.rglob("*")) if path.is_dir() else [path]:

@@ -1,11 +1,12 @@
 """What a user means: a path, or a name that is looked up; where there is no such thing, what there is."""
 
 import os
+from difflib import get_close_matches
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.library.building import built_fmu
-from shipcosim.library.names import SYSTEM_STRUCTURE, names
+from shipcosim.library.names import KINDS, SYSTEM_STRUCTURE, names
 from shipcosim.library.places import StrPath, roots
 
 SYSTEMS = (".ssp", ".ssd", ".xml")
@@ -53,6 +54,24 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
         return built_fmu(known[text]) if kind == "fmu" else known[text]
     where = f"{option} {text}" if option else text
     raise ShipcosimError(Problem(where, f"There is no such {WHAT[kind]}.", suggestion(_bare(text), known)))
+
+
+def find_any(given: str) -> str:
+    """Path of a thing of any kind, as for `find`; of what has the same name a scenario goes before a system.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file, folder or name.
+    """
+    if Path(given.partition("#")[0]).exists():
+        return given
+    kinds = [kind for kind in KINDS if given in names(kind)]
+    if kinds:
+        return str(find(kinds[0], given))
+    close = get_close_matches(given, [name for kind in KINDS for name in names(kind)], n=1)
+    remedy = f"Did you mean '{close[0]}'?" if close else "Give the path of one, or a name of `shipcosim list`."
+    raise ShipcosimError(Problem(given, "There is no such file or folder.", remedy))
 
 
 def scenarios(given: str) -> list[Path]:

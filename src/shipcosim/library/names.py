@@ -5,7 +5,6 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
-from xml.etree import ElementTree
 
 from shipcosim.library.places import StrPath, roots, shipped
 
@@ -105,6 +104,8 @@ def _description_in_ssd(path: Path) -> str:
     """Description of the structure or of its system; what comes after its first element is not read."""
     if path.suffix == ".ssp":
         return "a packed system"
+    from xml.etree import ElementTree
+
     ssd = path / SYSTEM_STRUCTURE if path.is_dir() else path
     try:
         for _, element in ElementTree.iterparse(ssd, events=("start",)):

@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from shipcosim import library
 from shipcosim.cli.options import Debug
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -20,14 +19,14 @@ def build(
     debug: Debug = False,
 ) -> None:
     """Build the FMUs in fmus/ and pack each system in ssp/."""
+    from shipcosim import library
     from shipcosim.cli.building import build_named
     from shipcosim.cli.console import progress_of, shown_path
 
     project = library.project_of()
     if project is None:
-        raise ShipcosimError(
-            Problem(str(Path.cwd()), "There is no project here.", "A project has a folder fmus/ or ssp/; go there.")
-        )
+        remedy = "A project has a folder fmus/ or ssp/: go there, or make one with `shipcosim init DIR`."
+        raise ShipcosimError(Problem(str(Path.cwd()), "There is no project here.", remedy))
     with progress_of("Building") as progress:
         built = build_named(project, names or [], out or project / "build", progress)
     for path in built:

@@ -30,8 +30,9 @@ def calibrate(
     changed since. Exit code 1 if these logs make no reference: only the page is left then, which says why.
     """
     from shipcosim.cli.calibration import calibrate_ship, print_calibration
+    from shipcosim.cli.diagnosis import logs_of
 
-    ship, folder = calibrate_ship(logs, out, system=system, channels=channels, effects=effects)
+    ship, folder = calibrate_ship(logs_of(logs), out, system=system, channels=channels, effects=effects)
     print_calibration(ship, folder, as_json)
     if ship.refusals:
         raise typer.Exit(FAILED)

@@ -6,13 +6,19 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import Debug, Out
+from shipcosim.cli.start.completion import names_of
 
 DEFAULT_SYSTEM = "gunnerus_dp"
 
 
 def capability(
     system: Annotated[
-        str, typer.Argument(metavar="SYSTEM", help="A system with thrusters: a path, or its name in ssp/.")
+        str,
+        typer.Argument(
+            metavar="SYSTEM",
+            help="A system with thrusters: a path or a name.",
+            autocompletion=names_of("system"),
+        ),
     ] = DEFAULT_SYSTEM,
     parameters: Annotated[
         list[Path] | None,

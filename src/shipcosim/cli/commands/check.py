@@ -7,12 +7,17 @@ import typer
 
 from shipcosim.cli.exits import FAILED
 from shipcosim.cli.options import Debug, ReportAsJson, Strict
+from shipcosim.cli.start.completion import names_of
 
 
 def check(
     files: Annotated[
         list[str],
-        typer.Argument(metavar="FILE...", help=".ssp .ssd .ssv .ssm .ssb .fmu .xml .toml .json .yaml .csv .nc"),
+        typer.Argument(
+            metavar="FILE...",
+            help="A name, or .ssp .ssd .ssv .ssm .ssb .fmu .xml .toml .json .yaml .csv .nc",
+            autocompletion=names_of("scenario", "system", "fmu", "ship", "example"),
+        ),
     ],
     channels: Annotated[
         Path | None, typer.Option("--channels", metavar="X.toml", help="Channel file of measured data.")
@@ -30,6 +35,7 @@ def check(
 
     A table whose columns are named by roles, or one with a channel file, is measured data: it is examined for faults.
     """
+    from shipcosim import library
     from shipcosim.cli.checks import check_any, estimates_in, variables_in
     from shipcosim.cli.console import print_estimates, print_report, print_variables
     from shipcosim.errors import held_strictly
@@ -37,13 +43,14 @@ def check(
 
     for host in hosts or ():
         check_host(host)
-    reports = {file: check_any(file, channels, hosts or ()) for file in files}
+    paths = [library.find_any(file) for file in files]
+    reports = {file: check_any(path, channels, hosts or ()) for file, path in zip(files, paths, strict=True)}
     if strict:
         reports = {file: held_strictly(problems) for file, problems in reports.items()}
     print_report(reports, as_json)
-    for variables in () if as_json else filter(None, map(variables_in, files)):
+    for variables in () if as_json else filter(None, map(variables_in, paths)):
         print_variables(variables)
-    for estimates in () if as_json else filter(None, map(estimates_in, files)):
+    for estimates in () if as_json else filter(None, map(estimates_in, paths)):
         print_estimates(estimates)
     if any(problem.severity == "error" for problems in reports.values() for problem in problems):
         raise typer.Exit(FAILED)

@@ -13,11 +13,12 @@ from shipcosim.cli.options import (
     ScenariosStepSize,
     ScenariosStopTime,
     Strict,
+    SystemOrScenario,
 )
 
 
 def compare(
-    what: Annotated[str, typer.Argument(metavar="SCENARIO_OR_SSP", help="A scenario, as for run, or a system.")],
+    what: SystemOrScenario,
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,

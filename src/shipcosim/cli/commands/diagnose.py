@@ -7,13 +7,16 @@ import typer
 
 from shipcosim.cli.exits import FAILED
 from shipcosim.cli.options import Channels, Debug, Effects, Ship
+from shipcosim.cli.start.completion import names_of
 
 
 def diagnose(
     data: Annotated[
         list[Path],
         typer.Argument(
-            metavar="DATA...", help="Measured data: .csv, .csv.gz, .parquet or .nc; several logs of one ship."
+            metavar="DATA...",
+            help="Measured data: .csv, .csv.gz, .parquet or .nc; several logs of one ship.",
+            autocompletion=names_of("example"),
         ),
     ],
     channels: Channels = None,
@@ -35,10 +38,11 @@ def diagnose(
     code 0 if simulation and log agree, 1 if something was found. Several logs are weighed together: the ship is common,
     the weather each log's own, and each is predicted by what the others say.
     """
-    from shipcosim.cli.diagnosis import default_folder, diagnose_log, print_diagnosis
+    from shipcosim.cli.diagnosis import default_folder, diagnose_log, logs_of, print_diagnosis
     from shipcosim.cli.joint_diagnosis import diagnose_logs, print_joint
     from shipcosim.cli.results import check_targets
 
+    data = logs_of(data)
     folder = out or default_folder(data[0])
     check_targets(folder)
     given = {"system": system, "channels": channels, "effects": effects, "reference": reference}

@@ -12,11 +12,12 @@ from shipcosim.cli.options import (
     ScenariosStepSize,
     ScenariosStopTime,
     Strict,
+    SystemOrScenario,
 )
 
 
 def fmu(
-    ssp: Annotated[str, typer.Argument(metavar="SSP", help="A .ssp, a .ssd, or a folder with a SystemStructure.ssd.")],
+    what: SystemOrScenario,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.fmu.")] = Path("."),
     step_size: Annotated[
         float | None, typer.Option("--step-size", help="[s] Of the exchange inside. Default: the system's.")
@@ -33,22 +34,22 @@ def fmu(
 ) -> None:
     """Make one FMU of a whole system, a block in anyone's tool. FMPy's container FMU does the work in it.
 
-    FMU and system are run side by side for some steps first; where they differ, no FMU is written.
+    FMU and system are run side by side for some steps first; where they differ, no FMU is written. Of a scenario its
+    parameter sets and start values go into the FMU; its events and expectations do not.
     """
     from shipcosim.cli.console import print_problems, shown_path
-    from shipcosim.cli.requests import experiment_of, system_of
+    from shipcosim.cli.requests import system_to_export
     from shipcosim.cosim import export_fmu
 
-    system = system_of(ssp, parameters, strict=strict)
+    system, step = system_to_export(what, parameters, step_size, strict)
     print_problems(problem for problem in system.remarks if problem.flaw)
-    step = experiment_of(system, system.experiment.stop_time or step_size or 1.0, step_size).step_size
     target = out / f"{system.name}.fmu"
     print_problems(export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked))
     typer.echo(shown_path(target))
 
 
 def osp(
-    what: Annotated[str, typer.Argument(metavar="SSP_OR_SCENARIO", help="A scenario, as for run, or a system.")],
+    what: SystemOrScenario,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the files; made if needed.")],
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,

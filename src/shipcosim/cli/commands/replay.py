@@ -41,9 +41,10 @@ def replay(
     The system is started again and again from the measured state and driven by what the log says of its thrusters.
     Leaves report.html, errors.csv and replay.nc.
     """
-    from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, default_folder
+    from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, default_folder, logs_of
     from shipcosim.cli.replaying import print_replay, replay_and_save, systems_of
 
+    (log,) = logs_of([log])
     systems = systems_of(system or DEFAULT_SYSTEM, before, parameters or [])
     folder = out or default_folder(log, "-replay")
     replayed = replay_and_save(log, systems, channels, horizon, folder)

@@ -8,6 +8,7 @@ import typer
 
 from shipcosim import library
 from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Parameters, Settings, Store, Strict, Timeout, Until
+from shipcosim.cli.start.completion import names_of
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -20,7 +21,9 @@ def run(
     scenario: Annotated[
         str,
         typer.Argument(
-            metavar="SCENARIO", help="A scenario file, or its name in scenarios/; or a folder, for all scenarios in it."
+            metavar="SCENARIO",
+            help="A scenario: a file or a name; or a folder, for all scenarios in it.",
+            autocompletion=names_of("scenario"),
         ),
     ],
     out: Out = None,

@@ -29,9 +29,11 @@ def sea_trials(
     circles to one side and judged on those to the other. Leaves sea_trials.json, and where causes were found
     extended.ssp and extended.ssv. Exit code 0 if simulation and trials agree, 1 if something was found.
     """
+    from shipcosim.cli.diagnosis import logs_of
     from shipcosim.cli.sea_trials import print_study, study_log
 
-    found, folder = study_log(data, out, system=system, channels=channels, effects=effects, orders=orders)
+    (log,) = logs_of([data])
+    found, folder = study_log(log, out, system=system, channels=channels, effects=effects, orders=orders)
     print_study(found, folder, as_json)
     if found.verdict != "consistent":
         raise typer.Exit(FAILED)

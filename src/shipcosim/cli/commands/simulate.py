@@ -22,10 +22,15 @@ from shipcosim.cli.options import (
     Until,
     finite,
 )
+from shipcosim.cli.start.completion import names_of
 
 System = Annotated[
     str,
-    typer.Argument(metavar="SSP", help="A .ssp, a .ssd, an OspSystemStructure.xml, a folder with one; or one .fmu."),
+    typer.Argument(
+        metavar="SSP",
+        help="A name, a .ssp, a .ssd, an OspSystemStructure.xml, a folder with one; or one .fmu.",
+        autocompletion=names_of("system", "fmu"),
+    ),
 ]
 Inputs = Annotated[
     Path | None, typer.Option("--inputs", metavar="TABLE", help="CSV or NetCDF that feeds the system's inputs.")

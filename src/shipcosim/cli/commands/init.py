@@ -1,0 +1,24 @@
+"""The command `shipcosim init`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.options import Debug
+
+
+def init(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the project; made if needed.")],
+    debug: Debug = False,
+) -> None:
+    """Lay out a project of your own that runs as it is: system, scenarios, parameter set, test, notebook.
+
+    Example: shipcosim init my-project
+    """
+    from shipcosim.cli.start.files import project_files, write_new
+
+    for path in write_new(folder, project_files(folder.resolve().name)):
+        typer.echo(path)
+    inside = "" if folder.resolve() == Path.cwd() else f"cd {folder} && "
+    typer.echo(f"\nGo on with: {inside}shipcosim run hold_position\nREADME.md says what is what.")

@@ -1,0 +1,219 @@
+"""New files from templates: a project of one's own, an FMU, a system, a scenario. Nothing is overwritten."""
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from shipcosim import library
+from shipcosim.errors import Problem, ShipcosimError
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
+
+ORIGIN = "gunnerus_dp"  # what a new system is a copy of, and a new scenario runs, where nobody says otherwise
+SHIP = "my_ship"  # system of a new project
+HELD = "The ship keeps her place while the wind rises"
+LOADED = 'parameters      = "loaded"                        # a set in the system\'s resources/, over her own numbers\n'
+STRUCTURE = "SystemStructure.ssd"
+
+Files = dict[str, str | bytes]
+"""Contents by path in the project."""
+
+
+def write_new(folder: Path, new: Mapping[str, str | bytes]) -> list[Path]:
+    """Write files that are not there yet, all or none.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if needed.
+    new : mapping of str to str or bytes
+        Contents by path in it.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    ShipcosimError
+        If one is there already, or cannot be written.
+    """
+    there = [folder / name for name in new if (folder / name).exists()]
+    if there:
+        remedy = "Nothing is overwritten: take another name, or move it away."
+        raise ShipcosimError([Problem(str(path), "It is there already.", remedy) for path in there])
+    written: list[Path] = []
+    try:
+        for name, content in new.items():
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            written.append(path)
+            path.write_bytes(content.encode() if isinstance(content, str) else content)
+    except OSError as error:
+        for path in written:
+            path.unlink(missing_ok=True)
+        where = str(written[-1] if written else folder)
+        raise ShipcosimError(Problem(where, f"cannot be written: {error.strerror}.")) from None
+    return written
+
+
+def project_files(name: str) -> Files:
+    """A project that runs as it is: a system, two scenarios, a parameter set, a test, a notebook."""
+
+    def held(name: str, description: str, parameters: str) -> str:
+        return _filled("scenario.toml", name=name, description=description, system=SHIP, parameters=parameters)
+
+    return {
+        "README.md": _filled("readme.md", name=name, origin=ORIGIN),
+        ".gitignore": _filled("gitignore"),
+        **system_files(SHIP, ORIGIN),
+        f"ssp/{SHIP}/resources/loaded.ssv": _filled("set.ssv", system=SHIP),
+        "scenarios/hold_position.toml": held("hold_position", HELD, ""),
+        "scenarios/loaded.toml": held("loaded", f"{HELD}, with cargo on deck", LOADED),
+        "tests/test_scenarios.py": _filled("test_scenarios.py"),
+        ".github/workflows/scenarios.yml": _filled("workflow.yml"),
+        "first_run.ipynb": notebook(_filled("notebook.md")),
+    }
+
+
+def fmu_files(name: str) -> Files:
+    """An FMU that can be built as it is."""
+    if not (name.isidentifier() and name.isascii()):
+        remedy = "Its name is one of Python: letters, digits and '_', no digit at the start."
+        raise ShipcosimError(Problem(name, "This cannot name an FMU.", remedy))
+    class_name = "".join(part[:1].upper() + part[1:] for part in name.split("_")) or name
+    values = {"name": name, "class_name": class_name}
+    return {
+        f"fmus/{name}/{name}.py": _filled("fmu.py", **values),
+        f"fmus/{name}/README.md": _filled("fmu.md", **values),
+    }
+
+
+def system_files(name: str, origin: str) -> Files:
+    """A copy of a system under another name, with the parameter sets and files that it names.
+
+    Parameters
+    ----------
+    name : str
+        Of the new system. Where the old one has one parameter set of its own, that gets this name, too.
+    origin : str
+        Path or name of a system that is a folder.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such system, or the name cannot be one of a folder.
+    """
+    _check_name(name, "system")
+    folder = library.find("system", origin, "--from")
+    if not (folder / STRUCTURE).is_file():
+        remedy = f"Unpack it into ssp/{name}; an .ssp is a ZIP archive."
+        raise ShipcosimError(Problem(origin, f"This is no folder with a {STRUCTURE}, so it is not copied.", remedy))
+    text = (folder / STRUCTURE).read_text(encoding="utf-8")
+    named = re.search(r'<(?:\w+:)?System\b[^>]*?\sname="([^"]*)"', text)
+    if named:
+        text = text.replace(f'name="{named[1]}"', f'name="{name}"', 2)
+    sources = [one for one in dict.fromkeys(re.findall(r'source="([^"]+)"', text)) if (folder / one).is_file()]
+    sets = [one for one in sources if one.endswith(".ssv")]
+    copied: Files = {}
+    for source in sources:
+        target, content = source, (folder / source).read_bytes()
+        if sets == [source]:
+            target = f"resources/{name}.ssv"
+            text = text.replace(f'source="{source}"', f'source="{target}"')
+            content = content.replace(f'name="{Path(source).stem}"'.encode(), f'name="{name}"'.encode(), 1)
+        copied[f"ssp/{name}/{target}"] = content
+    return {f"ssp/{name}/{STRUCTURE}": text} | copied
+
+
+def scenario_files(name: str, system: str | None) -> Files:
+    """A scenario that runs as it is; of a ship that keeps her place, or else of whatever the system is.
+
+    Parameters
+    ----------
+    name : str
+        Of the file, perhaps with folders before it.
+    system : str, optional
+        Path or name; the first one of the project without, else the ship in DP that the package ships.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such system, or it cannot be read.
+    """
+    from shipcosim.cli.requests import system_of
+
+    for part in name.split("/"):
+        _check_name(part, "scenario")
+    system = system or _own_system() or ORIGIN
+    read = system_of(system)
+    text = _filled("scenario.toml", name=name, description=HELD, system=system, parameters="")
+    if not _fits(text, read):
+        experiment = read.experiment
+        text = _filled(
+            "plain_scenario.toml",
+            name=name,
+            system=system,
+            stop_time=experiment.stop_time or 60.0,
+            step_size=experiment.step_size or 0.05,
+            input=next(iter(read.inputs), "component.input"),
+            output=next(_outputs(read), "component.output"),
+        )
+    return {f"scenarios/{name}.toml": text}
+
+
+def notebook(text: str) -> str:
+    """A notebook of a text: its fenced Python blocks are cells of code, the rest cells of Markdown."""
+    cells = []
+    for number, part in enumerate(re.split(r"^```(?:python)?\n", text, flags=re.MULTILINE)):
+        lines = part.strip("\n").splitlines(keepends=True)
+        kind = (
+            {"cell_type": "code", "execution_count": None, "outputs": []} if number % 2 else {"cell_type": "markdown"}
+        )
+        cells += [{"id": f"cell-{number}", **kind, "metadata": {}, "source": lines}] if lines else []
+    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    content = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
+    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+
+
+def _fits(text: str, system: "System") -> bool:
+    """Whether a system has all that a scenario names."""
+    from shipcosim.scenario import Scenario, check_scenario
+    from shipcosim.scenario.reader import toml_of
+    from shipcosim.ssp import with_values
+
+    scenario = Scenario.model_validate(toml_of(text))
+    try:
+        system = with_values(system, scenario.set, "scenario")
+    except ShipcosimError:
+        return False
+    return not any(problem.severity == "error" for problem in check_scenario(scenario, system))
+
+
+def _outputs(system: "System") -> Iterator[str]:
+    for component in system.components.values():
+        names = (v.name for v in component.fmu.variables.values() if v.causality == "output")
+        yield from (f"{component.name}.{name}" for name in names)
+
+
+def _own_system() -> str | None:
+    """First system of the project around the working folder."""
+    project = library.project_of()
+    own = (name for name, path in library.names("system").items() if project and path.is_relative_to(project))
+    return next(own, None)
+
+
+def _check_name(name: str, kind: str) -> None:
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", name):
+        found = f"This cannot name a {kind}: '{name}'."
+        raise ShipcosimError(Problem("NAME", found, "Use letters, digits, '_', '-' and '.'."))
+
+
+def _filled(template: str, **values: object) -> str:
+    text = files("shipcosim.cli.start").joinpath("templates", f"{template}.txt").read_text(encoding="utf-8")
+    return Template(text).substitute(values)

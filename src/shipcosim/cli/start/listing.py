@@ -1,0 +1,71 @@
+"""What there is: everything that has a name, a line each, and what the command says without arguments."""
+
+from collections.abc import Iterable, Sequence
+
+from shipcosim import library
+from shipcosim.cli.start.completion import LISTED
+
+Row = tuple[str, str]
+BEGIN = """
+Begin with:
+  shipcosim run four_corner         a ship in DP moves in a square of 20 m; makes a page
+  shipcosim diagnose gunnerus_log   what a simulation gets wrong of a measured log, and why
+  shipcosim init my-project         a project of your own: system, scenario, test, notebook
+  shipcosim list                    everything that is there, a line each
+"""
+
+
+def overview() -> str:
+    """Where to begin, and how much there is of each kind in the project around and in the package."""
+    project, shipped = library.project_of(), library.shipped()
+    lines = []
+    for kind in library.KINDS:
+        paths = library.names(kind)
+        own = [name for name, path in paths.items() if project not in (None, shipped) and path.is_relative_to(project)]
+        others = [name for name in paths if name not in own]
+        for where, found in (("here", own), ("shipcosim", others)):
+            if found:
+                first = sorted(found, key=lambda name: "/" in name)[:4]
+                shown = ", ".join(first) + (", ..." if len(found) > 4 else "")
+                lines.append((f"{kind}s", f"{len(found):>3} {where + ':':<11}{shown}"))
+    return f"{BEGIN}\nWhat is there:\n" + "\n".join(f"  {kind:<11}{text}" for kind, text in lines)
+
+
+def listed(kinds: Sequence[str]) -> str:
+    """Everything of some kinds as text, a heading for each and a line for each thing."""
+    return "\n\n".join(_section(kind) for kind in kinds or LISTED)
+
+
+def _section(kind: str) -> str:
+    if kind == "causes":
+        return _table("causes (what `diagnose` can name)", _causes())
+    if kind == "engines":
+        return _table("engines (--engine of `run` and `simulate`)", _engines())
+    project, shipped = library.project_of(), library.shipped()
+    entries = library.entries(kind.removesuffix("s"))
+    own = [e for e in entries if project not in (None, shipped) and e.path.is_relative_to(project)]
+    others = [e for e in entries if e not in own]
+    tables = [(f"{kind} of {project.name}", own)] if own and project else []
+    tables += [(f"{kind} of shipcosim" if own else kind, others)] if others or not own else []
+    return "\n\n".join(_table(heading, ((e.name, e.line) for e in found)) for heading, found in tables)
+
+
+def _causes() -> list[Row]:
+    from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+
+    return [(cause.cause, cause.sentence) for cause in read_catalogue().values()]
+
+
+def _engines() -> list[Row]:
+    from shipcosim.cosim.engines.registry import ENGINES, engines_missing
+
+    missing = engines_missing()
+    said = {name: f"{problem.found} {problem.remedy}" for name, problem in missing.items()}
+    return [(name, said.get(name, "our own" if name == "fmpy" else "installed")) for name in ENGINES]
+
+
+def _table(heading: str, rows: Iterable[Row]) -> str:
+    found = list(rows)
+    width = max((len(name) for name, _ in found), default=0)
+    lines = [f"  {name:<{width}}  {text}".rstrip() for name, text in found]
+    return "\n".join([heading, *(lines or ["  none"])])
