@@ -1,0 +1,186 @@
+"""Where a user begins: what is there, a project of one's own, new files, completion of names."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from shipcosim.cli.start.completion import LISTED
+from shipcosim.cli.start.files import notebook, project_files, scenario_files, system_files, write_new
+from shipcosim.library import names
+
+
+@pytest.fixture
+def empty(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def files_in(folder):
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_without_arguments_it_says_what_it_can_do_and_what_is_there(call, empty):
+    said = call()
+    assert said.code == 0
+    assert all(text in said.out for text in ("diagnose", "init", "four_corner", "gunnerus_dp", "33 shipcosim"))
+
+
+def test_each_kind_is_listed_with_a_line_for_each_thing(call, empty):
+    said = call("list").out
+    assert all(f"{kind}" in said for kind in LISTED)
+    assert "  four_corner " in said and "  libcosim " in said and "  wave_drift " in said
+    only = call("list", "systems").out.splitlines()
+    assert len(only) == 1 + len(names("system")) and only[0] == "systems"
+
+
+def test_things_of_the_project_are_listed_first_and_apart(call, empty):
+    call("init", ".")
+    said = call("list", "scenarios").out
+    assert said.index(f"scenarios of {empty.name}") < said.index("hold_position") < said.index("four_corner")
+
+
+def test_kind_that_is_none_is_refused(call, empty):
+    failed = call("list", "scenario")
+    assert failed.code == 2 and "Did you mean 'scenarios'?" in failed.err
+
+
+def test_project_has_no_fault_and_is_not_laid_out_twice(call, empty):
+    done = call("init", "mine")
+    assert done.code == 0 and "cd mine" in done.out
+    os.chdir("mine")
+    assert call("check", "my_ship", "hold_position", "loaded", "ssp/my_ship/resources/loaded.ssv").code == 0
+    before = files_in(empty)
+    (empty / "mine" / "README.md").unlink()
+    again = call("init", ".")
+    assert again.code == 2 and "It is there already" in again.err
+    assert files_in(empty) == {name: text for name, text in before.items() if name != "mine/README.md"}
+
+
+def test_parameter_set_of_a_project_reaches_the_run(call, empty):
+    from shipcosim.ssp import read_system
+
+    call("init", ".")
+    files = {name: empty / "ssp" / "my_ship" / "resources" / f"{name}.ssv" for name in ("my_ship", "loaded")}
+    ship = read_system(empty / "ssp" / "my_ship", fmus=())
+    assert ship is not None and all(file.is_file() for file in files.values())
+
+
+def test_notebook_of_a_project_runs(call, empty):
+    call("init", ".")
+    cells = json.loads((empty / "first_run.ipynb").read_text(encoding="utf-8"))["cells"]
+    scope = {"display": lambda *shown: None}
+    code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    assert len(code) == 3 and all("".join(cell["source"]).strip() for cell in cells)
+    for text in code:
+        exec(text, scope)
+
+
+def test_fenced_blocks_are_cells_of_code():
+    cells = json.loads(notebook("# A\n\n```python\nx = 1\n```\n\nB\n"))["cells"]
+    assert [(cell["cell_type"], "".join(cell["source"])) for cell in cells] == [
+        ("markdown", "# A"),
+        ("code", "x = 1"),
+        ("markdown", "B"),
+    ]
+
+
+def test_new_fmu_is_built_and_checked_by_name(call, empty):
+    done = call("new", "fmu", "deck_winch")
+    assert done.code == 0 and "Go on with" in done.out
+    assert call("build", "deck_winch").code == 0
+    assert "time_constant" in call("check", "deck_winch").out
+
+
+def test_new_scenario_of_a_controlled_ship_runs_by_name(call, empty):
+    assert call("new", "scenario", "storms/squall").code == 0
+    done = call("run", "storms/squall", "--until", "1", "--out", "out")
+    assert done.code == 0 and (empty / "out" / "report.html").is_file()
+
+
+@pytest.mark.parametrize("system", sorted(names("system")))
+def test_new_scenario_and_copy_of_every_system_have_no_fault(call, empty, system):
+    assert call("new", "system", "copy", "--from", system).code == 0
+    assert call("new", "scenario", "first").code == 0  # of the project's own system
+    assert 'system          = "copy"' in (empty / "scenarios" / "first.toml").read_text(encoding="utf-8")
+    assert call("check", "copy", "first").code == 0
+
+
+def test_copied_parameter_set_has_the_new_name_and_the_old_values(root, empty):
+    write_new(empty, system_files("ferry", "gunnerus_dp"))
+    copied = (empty / "ssp" / "ferry" / "resources" / "ferry.ssv").read_text(encoding="utf-8")
+    old = (root / "ssp" / "gunnerus_dp" / "resources" / "gunnerus-33m9.ssv").read_text(encoding="utf-8")
+    assert copied == old.replace('name="gunnerus-33m9"', 'name="ferry"') and "gunnerus" not in copied[:400]
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["fmu", "2winch"], "cannot name an FMU"),
+        (["fmu", "a/b"], "cannot name an FMU"),
+        (["scenario", "../out"], "cannot name a scenario"),
+        (["scenario", "x", "--system", "gunnerus"], "Did you mean 'gunnerus_dp'?"),
+        (["system", "a b"], "cannot name a system"),
+        (["system", "x", "--from", "absent"], "There is no such system"),
+    ],
+)
+def test_what_cannot_be_made_is_refused_and_nothing_is_written(call, empty, arguments, said):
+    failed = call("new", *arguments)
+    assert failed.code == 2 and said in failed.err
+    assert files_in(empty) == {}
+
+
+def test_nothing_new_overwrites_what_is_there(call, empty):
+    call("new", "fmu", "winch")
+    before = files_in(empty)
+    assert call("new", "fmu", "winch").code == 2
+    assert files_in(empty) == before
+
+
+def test_files_that_cannot_be_written_leave_none(call, empty):
+    (empty / "scenarios").write_text("a file", encoding="utf-8")
+    assert call("init", ".").code == 2
+    assert set(files_in(empty)) == {"scenarios"}
+
+
+def test_every_file_of_a_project_ends_with_one_line_end():
+    for name, content in project_files("mine").items():
+        text = content.decode() if isinstance(content, bytes) else content
+        assert text.endswith("\n") and not text.endswith("\n\n") and "$" not in text, name
+
+
+def test_scenario_of_a_system_without_control_names_its_own_signals(empty):
+    (text,) = scenario_files("still", "otter_open").values()
+    assert '"left_rpm"' in text and "[[events]]" in text
+
+
+def completed(shell, line):
+    words = line.split(" ")
+    asked = {
+        "bash": {"COMP_WORDS": line, "COMP_CWORD": str(len(words) - 1)},
+        "zsh": {"_TYPER_COMPLETE_ARGS": line},
+        "fish": {"_TYPER_COMPLETE_ARGS": line, "_TYPER_COMPLETE_FISH_ACTION": "get-args"},
+    }[shell]
+    environment = os.environ | asked | {"_SHIPCOSIM_COMPLETE": f"complete_{shell}"}
+    start = [sys.executable, "-c", "from shipcosim.cli import main; main()"]
+    return subprocess.run(start, env=environment, capture_output=True, text=True, check=False).stdout
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_names_are_completed(shell, empty):
+    assert "four_corner_rough" in completed(shell, "shipcosim run four_c")
+
+
+@pytest.mark.parametrize(
+    "line, expected",
+    [
+        ("shipcosim new system x --from kv", "kvlcc2_open"),
+        ("shipcosim diagnose gunn", "gunnerus_log"),
+        ("shipcosim list sc", "scenarios"),
+        ("shipcosim run nothing_of_this_name", ""),
+    ],
+)
+def test_each_argument_completes_its_own_kind(line, expected, empty):
+    assert completed("bash", line).split() == expected.split()
