@@ -7,9 +7,11 @@ import sys
 
 import pytest
 
+from shipcosim import library
 from shipcosim.cli.start.completion import LISTED
 from shipcosim.cli.start.files import notebook, project_files, scenario_files, system_files, write_new
 from shipcosim.library import names
+from shipcosim.ssp import read_system
 
 
 @pytest.fixture
@@ -59,13 +61,12 @@ def test_project_has_no_fault_and_is_not_laid_out_twice(call, empty):
     assert files_in(empty) == {name: text for name, text in before.items() if name != "mine/README.md"}
 
 
-def test_parameter_set_of_a_project_reaches_the_run(call, empty):
-    from shipcosim.ssp import read_system
-
+def test_parameter_set_of_a_project_reaches_the_ship(call, empty):
     call("init", ".")
-    files = {name: empty / "ssp" / "my_ship" / "resources" / f"{name}.ssv" for name in ("my_ship", "loaded")}
-    ship = read_system(empty / "ssp" / "my_ship", fmus=())
-    assert ship is not None and all(file.is_file() for file in files.values())
+    path = library.find("system", "my_ship")
+    ship, fmus = path / "resources" / "loaded.ssv", library.fmus(path)
+    mass = [read_system(path, sets, fmus=fmus).components["vessel"].start["mass"] for sets in ((), [ship])]
+    assert mass == [531e3, 561e3]
 
 
 def test_notebook_of_a_project_runs(call, empty):
