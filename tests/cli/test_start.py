@@ -93,6 +93,8 @@ def test_new_fmu_is_built_and_checked_by_name(call, empty):
     assert done.code == 0 and "Go on with" in done.out
     assert call("build", "deck_winch").code == 0
     assert "time_constant" in call("check", "deck_winch").out
+    alone = call("simulate", "deck_winch", "--stop-time", "10", "--step-size", "0.1", "--set", "deck_winch.u=1")
+    assert alone.code == 0 and "results" in alone.out
 
 
 def test_new_scenario_of_a_controlled_ship_runs_by_name(call, empty):

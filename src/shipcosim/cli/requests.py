@@ -25,7 +25,7 @@ def system_of(given: str, parameters: Iterable[Path] | None = None, option: str 
     Parameters
     ----------
     given : str
-        A name, or as for `shipcosim.ssp.read_system`.
+        A name of a system or of an FMU, which then runs alone, or as for `shipcosim.ssp.read_system`.
     parameters : iterable of Path, optional
         Parameter sets over those of the system.
     option : str
@@ -38,7 +38,8 @@ def system_of(given: str, parameters: Iterable[Path] | None = None, option: str 
     ShipcosimError
         If it is no system, or a faulty one.
     """
-    path = library.find("system", given, option)
+    is_fmu = not Path(given).exists() and library.named("system", given) is None and library.named("fmu", given)
+    path = library.find("fmu" if is_fmu else "system", given, option)
     return read_system(path, parameters or (), fmus=library.fmus(path), strict=strict)
 
 

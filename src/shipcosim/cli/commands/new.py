@@ -23,10 +23,9 @@ def fmu(name: Name, debug: Debug = False) -> None:
 
     _write(
         fmu_files(name),
-        f"shipcosim build {name}              makes build/fmus/{name}.fmu",
-        f"shipcosim check {name}              lists its variables",
-        "Its equations are in `step`. A system takes it as a component with"
-        f' source="resources/{name}.fmu", or in Python: system.add_component("{name}", ...).',
+        f"shipcosim simulate {name} --stop-time 10 --step-size 0.1 --set {name}.u=1",
+        f"shipcosim check {name}      lists its variables",
+        f'Its equations are in `step`. A system takes it as a component with source="resources/{name}.fmu".',
     )
 
 
