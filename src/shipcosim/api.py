@@ -17,10 +17,20 @@ from shipcosim.results.calls import with_known_keywords
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
 from shipcosim.results.shown import made, parts_of
-from shipcosim.scenario import Scenario, check_files, check_times, judge
+from shipcosim.scenario import Scenario, check_files, check_scenario, check_times, judge
 from shipcosim.scenario import read_scenario as _read_scenario
 from shipcosim.series import read_table, write_table
-from shipcosim.ssp import System, SystemStructure, fitting_values, new, osp_file, parameter, read_system, write_ssv
+from shipcosim.ssp import (
+    System,
+    SystemStructure,
+    fitting_values,
+    new,
+    osp_file,
+    parameter,
+    read_system,
+    with_values,
+    write_ssv,
+)
 from shipcosim.ssp import read as _read
 
 if TYPE_CHECKING:
@@ -545,7 +555,8 @@ def _run(system, scenario, options, out, *, remarks=(), planned=0.0):
     `planned` is the stop time for which the expectations were written. [s]
     """
     remarks = [*remarks, *(one for one in system.remarks if one.where not in system.components)]
-    remarks += [one for one in check_times(scenario) if one.severity != "error"]
+    happening = with_values(system, scenario.set, str(scenario.path or "scenario"))
+    remarks += [one for one in check_scenario(scenario, happening) if one.severity != "error"]
     table = _simulate(system, scenario, options)
     first, last = table["time"].values[[0, -1]]
     is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9

@@ -148,7 +148,8 @@ class Run(Result):
 
         found, components = outcome(self.table, self.expectations), {n.rpartition(".")[0] for n in map(str, self.table)}
         size = f"{self.table.sizes['time']} rows of {len(self.table)} signals of {len(components)} components"
-        return f"<Run of {self.name!r}: {found.word}. {found.sentence} {size}>"
+        late = f" {len(self.not_judged)} expectations lie beyond its end." if self.not_judged else ""
+        return f"<Run of {self.name!r}: {found.word}. {found.sentence}{late} {size}>"
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.run_card import run_card

@@ -26,6 +26,7 @@ COLOURS = {
 }
 """The light ones of `theme.css`: a picture in a notebook stands on white, whatever the notebook's own colours."""
 _FONT = "system-ui, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif"
+_APART = 0.7  # px, points of a curve
 _LETTER = 6.3  # px, mean width at 11 px
 
 
@@ -142,8 +143,17 @@ def _text(value: str | float) -> str:
 
 
 def _runs(x: NDArray, y: NDArray) -> Iterable[str]:
-    """Points between gaps, as SVG writes them."""
+    """Points between gaps, as SVG writes them, without those that lie on the one before."""
     known = np.isfinite(x) & np.isfinite(y)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
-        yield " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x[first:last], y[first:last], strict=True))
+        yield " ".join(f"{a:.1f},{b:.1f}" for a, b in _apart(list(zip(x[first:last], y[first:last], strict=True))))
+
+
+def _apart(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Points of which each is apart from the one before; the last one stays."""
+    kept = points[:1]
+    for point in points[1:-1]:
+        if max(abs(point[0] - kept[-1][0]), abs(point[1] - kept[-1][1])) >= _APART:
+            kept.append(point)
+    return kept + points[1:][-1:]
