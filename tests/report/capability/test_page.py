@@ -91,9 +91,11 @@ def test_the_switch_turns_page_and_figures_and_the_next_page_remembers(shown_at,
 
 
 def test_paper_is_light_and_the_screen_is_dark_again_afterwards(shown_at, file):
-    page = shown_at(file, 1280, "dark")
+    page = shown_at(file, 500, "dark")
     page.ask("dispatchEvent(new Event('beforeprint'))")
     assert set(page.ask(PAPER)) == {LIGHT}, "at once: nobody waits for paper"
+    widths = page.ask("return [...document.querySelectorAll('.plot')].map(p => [p.clientWidth, p._fullLayout.width])")
+    assert all(place == drawn > 500 for place, drawn in widths), "as wide as paper, not as the screen"
     page.ask("dispatchEvent(new Event('afterprint'))")
     page.wait("return document.body.dataset.drawn === 'all'")
     assert set(page.ask(PAPER)) == {DARK}

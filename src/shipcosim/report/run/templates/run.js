@@ -186,12 +186,4 @@
   });
   choices();
   if (!data.panels.length) for (const box of [...document.querySelectorAll("#choices input")].slice(0, 6)) box.click();
-  addEventListener("beforeprint", () => {  // paper has a width of its own, see @page; plotly would resize too late
-    document.body.classList.add("printing");
-    for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: place.clientWidth, height: place.clientHeight });
-  });
-  addEventListener("afterprint", () => {
-    document.body.classList.remove("printing");
-    for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: null, height: null, autosize: true });
-  });
 })();

@@ -118,7 +118,15 @@ const report = (() => {
   }
 
   addEventListener("scroll", schedule, { passive: true });
-  addEventListener("beforeprint", () => work([...waiting.keys()]));
+  addEventListener("beforeprint", () => {  // paper has a width of its own, see @page; plotly would resize too late
+    document.body.classList.add("printing");
+    work([...waiting.keys()]);
+    for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: place.clientWidth, height: place.clientHeight });
+  });
+  addEventListener("afterprint", () => {
+    document.body.classList.remove("printing");
+    for (const place of document.querySelectorAll(".js-plotly-plot")) Plotly.relayout(place, { width: null, height: null, autosize: true });
+  });
   addEventListener("scheme", () => drawings.forEach((how, place) => later(place, how)));
   return Object.assign(shared, { start, series, colour, markup, painted, traces, axis, layout, narrow, makeRoom, draw, later });
 })();
