@@ -41,6 +41,7 @@ def outcome(path, table, thrusters, lacking=()):
 
 def compared(log, table, lacking=()):
     """What of a log is wrong, and the roles that it lacks."""
+    log = log.sortby("time")
     time = log["time"].values - log["time"].values[0]
     offsets, missing = [], [role for role in table if role != "time" and role not in lacking and role not in log]
     for role, right in table.items():

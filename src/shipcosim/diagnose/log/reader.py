@@ -164,6 +164,8 @@ _WHICH = 'Rename one, or name it in a channel file; the second is "NAME (2)".'
 def _signals(columns, mapping, form):
     """Values and unit of each channel, by role or connector, and what is to be said."""
     problems, signals, said = [], {}, []
+    if "time" not in mapping:
+        problems.append(Problem(columns.source, f"has no column 'time', only {_shown(columns)}."))
     for name, channel in mapping.items():
         try:
             values, unit, more = values_of(channel, name, columns, form)

@@ -20,10 +20,12 @@ from shipcosim.diagnose.log.roles import role_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.series import conversion
 
-__all__ = ["CLOCK_NUMBER", "LARGEST", "heading_of_quaternion", "values_of"]
+__all__ = ["CLOCK_NUMBER", "LARGEST", "TEN_MILLIONTHS", "heading_of_quaternion", "values_of"]
 
 CLOCK_NUMBER = "hhmmss"
 """Spelling of the unit of clock times as numbers: 123519.5 is 12:35:19.5."""
+TEN_MILLIONTHS = "1e-7 deg"
+"""Spelling of the unit of latitudes and longitudes that autopilots write as whole numbers."""
 LARGEST = {"latitude": 90.0, "longitude": 180.0}
 
 
@@ -128,7 +130,7 @@ def _time(channel, column, stated, log, form):
     if values.dtype.kind == "O":
         if channel.date is not None:
             values = _joined(log, _found(log, channel.date), values)
-        read = seconds_of(values, form.dates)
+        read = seconds_of(values, form.dates, stated)
         if read is not None:
             return read
     numbers = _numbers(log, column)
@@ -170,6 +172,8 @@ def _position(channel, column, stated, name, log):
         degrees = degrees_of_texts(values, LARGEST[name])
         if degrees is None:
             return None
+    elif stated.replace(" ", "").lower() == TEN_MILLIONTHS.replace(" ", ""):
+        degrees = 1e-7 * values
     elif stated.lower() == MINUTES or (not stated and is_minutes(values, LARGEST[name])):
         degrees = degrees_of_minutes(values)
         said = [] if stated else [f"'{column}' is {name} in {MINUTES}, as it is beyond {LARGEST[name]:g}."]

@@ -9,7 +9,7 @@ import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["NOTHING", "is_figure", "is_nothing", "numbers_of"]
+__all__ = ["NOTHING", "decimal_of", "is_figure", "is_nothing", "numbers_of", "with_unit", "without_fillers"]
 
 NOTHING = frozenset(
     ("", "n/a", "na", "#n/a", "#na", "nan", "nat", "null", "none", "nil", "-", "--", "---", "?", "*", "**", "***")
@@ -19,9 +19,12 @@ NOTHING = frozenset(
 """Words that loggers write where they have no value, in lower case."""
 
 _NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
-_FIGURE = re.compile(
-    rf"\s*(?:{_NUMBER}|[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?|[+-]?(?:inf|nan))\s*", re.IGNORECASE
-)
+_STAMP = r"[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?"
+_WITH_UNIT = r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµ°º%][A-Za-z0-9µ°º%/^.·-]{0,7})"
+_FIGURE = re.compile(rf"\s*(?:{_NUMBER}|{_STAMP}|{_WITH_UNIT}|[+-]?(?:inf|nan))\s*", re.IGNORECASE)
+_SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
+_FILLERS = (-99.0, -999.0, -9999.0, -99999.0, -999999.0, 99.0, 999.0, 9999.0, 99999.0, 999999.0, -32768.0, 32767.0)
+"""Numbers that loggers write where they have none."""
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:[,.]\d{3})+")
 _MOST_DAMAGED = 0.01  # share of a column's cells that may be no numbers; more make it a column of texts. Assumed.
 
@@ -37,7 +40,7 @@ def is_figure(cell: str) -> bool:
     Examples
     --------
     >>> [is_figure(cell) for cell in ("1,5", "-.3", "27.10.2022 08:00", "1e-3", "heading", "12 kn")]
-    [True, True, True, True, False, False]
+    [True, True, True, True, False, True]
     """
     return _FIGURE.fullmatch(cell) is not None
 
@@ -65,6 +68,7 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
     missing = cells.isna() | text.str.lower().isin(NOTHING)
     grouping = "," if decimal == "." else "."
     plain = text.str.replace("\u2212", "-", regex=False)
+    plain = plain.str.replace(r"(?<=[\d.])[dD](?=[+-]?\d+$)", "e", regex=True)
     if decimal == "," or plain.str.contains(",", regex=False).any():
         is_grouped = plain.str.fullmatch(rf"[+-]?\d{{1,3}}(?:[{grouping}]\d{{3}})+(?:[{decimal}]\d*)?")
         plain = plain.where(~is_grouped, plain.str.replace(grouping, "", regex=False))
@@ -80,6 +84,47 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
         shown = text.iloc[row][:30]
         said = [f"Column '{name}': {count} cells that are no number, the first '{shown}' in row {row + 2}: left empty."]
     return numbers.to_numpy(float), said
+
+
+def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """A column without the number that stands for nothing in it, and what is to be said.
+
+    It is one of those that loggers take for it, stands there more than once, and is further from all other values
+    than these are from each other.
+
+    Examples
+    --------
+    >>> without_fillers("surge", np.array([1.0, -9999.0, 1.5, -9999.0]))[0].tolist()
+    [1.0, nan, 1.5, nan]
+    """
+    known = values[np.isfinite(values)]
+    for filler in (known.min(), known.max()) if len(known) > 2 else ():
+        rest = known[known != filler]
+        if filler not in _FILLERS or len(known) - len(rest) < 2 or not len(rest):
+            continue
+        if np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
+            said = f"Column '{name}': {filler:g} stands for nothing in {len(known) - len(rest)} rows."
+            return np.where(values == filler, np.nan, values), [said]
+    return values, []
+
+
+def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
+    """Numbers of cells that all have the same unit behind them, and this unit; None for others.
+
+    Examples
+    --------
+    >>> with_unit(np.array(["5.5 kn", None, "6 kn"], object), ".")
+    (array([5.5, nan, 6. ]), 'kn')
+    """
+    found = [None if cell is None else re.fullmatch(_WITH_UNIT, cell) for cell in cells]
+    told = {match["unit"] for match in found if match}
+    if len(told) != 1 or any(m is None and cell is not None for m, cell in zip(found, cells, strict=True)):
+        return None
+    unit = told.pop()
+    if unit in _SIDES:
+        return None
+    numbers = [np.nan if m is None else float(m["number"].replace(decimal, ".")) for m in found]
+    return np.array(numbers), unit
 
 
 def decimal_of(source: str, cells: list[str]) -> str | None:

@@ -96,7 +96,7 @@ def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str]
         names = ", ".join(f'"column {i + 1}"' for i in range(min(width, 3)))
         found = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
         raise ShipcosimError(Problem(source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."))
-    if len(header) == width - 1 and cells_in(lines[first], separator)[0] in ("0", "1"):
+    if separator != "," and len(header) == width - 1 and cells_in(lines[first], separator)[0] in ("0", "1"):
         header = ("", *header)
     rest = [i for i in above if i < at]
     return Layout(separator, tuple(header), tuple(units), first, _skipped(rest))

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.log.files.cells import NOTHING, decimal_of, numbers_of
+from shipcosim.diagnose.log.files.cells import NOTHING, decimal_of, numbers_of, with_unit, without_fillers
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.form import Form
 from shipcosim.diagnose.log.files.layout import Layout, cells_in, is_comment, layout_of
@@ -96,6 +96,8 @@ def _of_text(source: str, text: str, form: Form) -> LogColumns:
     for i, name in enumerate(names):
         values[name], more = _column(name, frame[i], decimal)
         said += more
+        if values[name].dtype.kind == "O" and not units[name] and (found := with_unit(values[name], decimal)):
+            values[name], units[name] = found
     if decimal == ",":
         said.append("Numbers are read with a decimal comma.")
     return LogColumns(source, values, units, (*layout.remarks, *said), doubled)
@@ -162,7 +164,7 @@ def _ragged(source, lines, layout, rows, counts, width):
     line = next(i for i in range(layout.first, len(lines)) if lines[i].startswith(rows[row]))
     found = f"has {counts[row]} cells, and the header has {width}."
     remedy = "Each row needs one for each name."
-    if layout.separator == "," and usual in (2 * width, 2 * width - 1):
+    if layout.separator == "," and width < usual <= 2 * width:
         remedy = "Are these decimal commas between commas? Separate the columns by semicolons."
     return Problem(f"{source}, line {line + 1}", found, remedy)
 
@@ -231,6 +233,9 @@ def _with_comma(columns):
 def _column(name, cells, decimal):
     """Values of a column, and what is to be said of them."""
     if cells.dtype.kind in "fiub":
-        return cells.to_numpy(float), []
+        return without_fillers(name, cells.to_numpy(float))
     values, said = numbers_of(name, cells, decimal)
+    if values.dtype.kind == "f":
+        values, more = without_fillers(name, values)
+        said = [*said, *more]
     return values, said

@@ -27,6 +27,7 @@ _CLOCKS = ("%H:%M:%S.%f", "%H:%M:%S", "%H:%M", "%I:%M:%S.%f %p", "%I:%M:%S %p", 
 _BETWEEN = (" ", "T", "_", ", ", ",", "-", "  ")
 _ZONE = re.compile(r"\s*(?:Z|UTC|GMT|[+-]00:?00)$", re.IGNORECASE)
 _OTHER_ZONE = re.compile(r"(?<=:\d\d)(?P<fraction>\.\d+)?\s*(?P<zone>[+-]\d\d:?\d\d)$")
+_ONE_COLON = re.compile(r"^(?P<minutes>\d{1,3}):(?P<seconds>[0-5]?\d)(?P<fraction>\.\d+)?$")
 _COLON_FRACTION = re.compile(r"^(?P<clock>.*\d\d:\d\d:\d\d):(?P<fraction>\d{1,9})$")
 _WORD = re.compile(r"[A-Za-z0-9]+")
 _NAMES = {"dmy": "day/month/year", "mdy": "month/day/year", "ymd": "year/month/day"}
@@ -47,7 +48,7 @@ def epoch_unit(values: np.ndarray) -> str | None:
     return next((unit for unit, size in EPOCHS.items() if _SINCE < first / size and last / size < _UNTIL), None)
 
 
-def seconds_of(texts: np.ndarray, order: str | None = None) -> tuple[np.ndarray, list[str]] | None:
+def seconds_of(texts: np.ndarray, order: str | None = None, unit: str = "") -> tuple[np.ndarray, list[str]] | None:
     """Stamps of date and time, or of time alone, as seconds after the first; None where they are none.
 
     Parameters
@@ -56,6 +57,8 @@ def seconds_of(texts: np.ndarray, order: str | None = None) -> tuple[np.ndarray,
         The stamps.
     order : str, optional
         ``"dmy"``, ``"mdy"`` or ``"ymd"``.
+    unit : str, optional
+        ``"hh:mm"`` or ``"mm:ss"`` of stamps with one colon.
 
     Returns
     -------
@@ -75,6 +78,8 @@ def seconds_of(texts: np.ndarray, order: str | None = None) -> tuple[np.ndarray,
         return None
     if zone is not None:
         cells = cells.astype("object")
+    if (short := _minutes_and_seconds(cells, unit)) is not None:
+        return short
     for clock in _CLOCKS:
         if _fits(known, clock):
             parsed = pandas.to_datetime("2000-01-01 " + cells, format=f"%Y-%m-%d {clock}", errors="coerce")
@@ -157,6 +162,23 @@ def _with_point(texts):
     return (parts["clock"] + "." + parts["fraction"]).where(parts["clock"].notna(), texts)
 
 
+def _minutes_and_seconds(cells, unit):
+    """Stamps such as 59:59.5 as seconds, going on past the hour; None for others."""
+    parts = cells.str.extract(_ONE_COLON)
+    if parts["minutes"].isna().any() and (parts["minutes"].isna() & cells.notna()).any():
+        return None
+    has_fraction = parts["fraction"].notna().any()
+    minutes, seconds = parts["minutes"].astype(float), parts["seconds"].astype(float)
+    if unit == "hh:mm" or not minutes.notna().any():
+        return None
+    if not has_fraction and unit != "mm:ss" and minutes.max() < 24:
+        found = f"'{cells.dropna().iloc[0]}' can be hours and minutes or minutes and seconds."
+        remedy = 'Say which as its unit in a channel file: time = {column = "...", unit = "mm:ss"}, or "hh:mm".'
+        raise ShipcosimError(Problem("", found, remedy))
+    fraction = ("0" + parts["fraction"].fillna("")).astype(float)
+    return seconds_of_clock((60.0 * minutes + seconds + fraction).to_numpy(float), 3600.0)
+
+
 def _since_first(parsed, start=None):
     """Seconds of parsed stamps after a date, or after the first of them."""
     import pandas
@@ -202,13 +224,15 @@ def _largest_step(values):
     return float(np.abs(np.diff(known)).max()) if len(known) > 1 else 0.0
 
 
-def seconds_of_clock(seconds: np.ndarray) -> tuple[np.ndarray, list[str]]:
+def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarray, list[str]]:
     """Times of day that go on past midnight, and what is to be said.
 
     Parameters
     ----------
     seconds : (n,) array
-        After midnight. [s]
+        After midnight, or after the full hour. [s]
+    period : float
+        A day or an hour. [s]
 
     Examples
     --------
@@ -217,8 +241,9 @@ def seconds_of_clock(seconds: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """
     known = np.flatnonzero(np.isfinite(seconds))
     steps = np.diff(seconds[known])
-    days = np.cumsum((steps < -0.5 * DAY).astype(float) - (steps > 0.5 * DAY))
+    days = np.cumsum((steps < -0.5 * period).astype(float) - (steps > 0.5 * period))
     times = seconds.copy()
-    times[known[1:]] += DAY * days
+    times[known[1:]] += period * days
     passed = int(days[-1]) if len(days) else 0
-    return times, [f"Clock times pass midnight {passed} time{'s' * (passed > 1)}: they go on."] if passed else []
+    turn = "midnight" if period == DAY else "the hour"
+    return times, [f"Clock times pass {turn} {passed} time{'s' * (passed > 1)}: they go on."] if passed else []

@@ -13,6 +13,7 @@ from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, UNUSED, Guess, Thrusters, guesses_of
 from shipcosim.diagnose.log.names.settled import settled
+from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.vocabulary import words_of
 
 __all__ = ["Proposal", "propose"]
@@ -66,6 +67,7 @@ def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | No
     left += others
     left = _with_quaternion(chosen, log, left)
     left = _with_hemispheres(chosen, log, left)
+    _by_convention_of_ros(chosen, log)
     settled(chosen, log, form)
     left += _of_one_kind(chosen, log)
     taken = {name for guess in chosen.values() for name in guess.channel.columns}
@@ -138,6 +140,35 @@ def _with_quaternion(chosen, log, left):
             chosen["heading"] = Guess(parts["w"], "heading", channel, GUESS, why)
             return [guess for guess in left if guess.column not in parts.values()]
     return left
+
+
+def _by_convention_of_ros(chosen, log):
+    """Guesses about messages of ROS: x east, y north, angles anticlockwise, y to port (REP 103)."""
+    if not any({"pose", "twist", "odom", "odometry"} & set(words_of(name)) for name in log.values):
+        return
+
+    def turned(role, why, **update):
+        guess = chosen[role]
+        chosen[role] = replace(guess, channel=guess.channel.model_copy(update=update), why=f"{why} (REP 103)")
+
+    is_open = {role for role, guess in chosen.items() if guess.rank == GUESS}
+    if {"north", "east"} <= is_open and all(chosen[role].why.startswith("x north") for role in ("north", "east")):
+        north, east = chosen["north"], chosen["east"]
+        chosen["north"] = replace(north, column=east.column, channel=east.channel)
+        chosen["east"] = replace(east, column=north.column, channel=north.channel)
+        turned("north", "y is assumed to be north")
+        turned("east", "x is assumed to be east")
+    if "heading" in is_open and chosen["heading"].channel.quaternion:
+        turned("heading", "of a quaternion, assumed from ENU", frame="ENU")
+    elif "heading" in is_open and chosen["heading"].why.startswith("yaw"):
+        in_degrees = chosen["heading"].unit and unit_for(chosen["heading"].unit, "deg") == "deg"
+        unit = {} if chosen["heading"].unit else {"unit": "rad"}
+        offset = 90.0 if in_degrees else np.pi / 2.0
+        turned("heading", "assumed anticlockwise from east", sign=-1, offset=offset, **unit)
+    for role in is_open & {"sway", "yaw_rate"}:
+        if "port" in chosen[role].why:
+            unit = {"unit": "rad/s"} if role == "yaw_rate" and not chosen[role].unit else {}
+            turned(role, "assumed positive to port", sign=-1, **unit)
 
 
 def _with_hemispheres(chosen, log, left):

@@ -14,7 +14,7 @@ from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.roles import ROLES
-from shipcosim.diagnose.log.values import values_of
+from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, values_of
 from shipcosim.errors import ShipcosimError
 
 __all__ = ["settled"]
@@ -36,6 +36,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: Form) -> None:
     form : Form
         What was said of it.
     """
+    _settle_degrees(chosen, log)
     motion = _motion(chosen, log, form)
     _settle_heading(chosen, log, form, motion)
     _settle_axes(chosen, log, form, motion)
@@ -53,6 +54,23 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: Form) -> None:
             known = np.abs(_finite(log.values[guess.column]))
             if len(known) and known.max() <= np.pi + 0.01 and known.max() > 0.0:
                 _guess(chosen, role, "rad", "no unit is stated: rad or deg")
+
+
+def _settle_degrees(chosen, log):
+    """Whole numbers beyond all degrees as ten millionths of them, as autopilots write."""
+    for role, largest in LARGEST.items():
+        guess = chosen.get(role)
+        known = np.abs(_finite(log.values[guess.column])) if guess and not guess.unit else np.empty(0)
+        beyond = len(known) and np.median(known) > 1e4 * largest and known.max() <= 1e7 * largest
+        other = chosen.get("longitude" if role == "latitude" else "latitude")
+        follows = len(known) and other is not None and other.channel.unit == TEN_MILLIONTHS
+        if (beyond or follows) and (known == np.floor(known)).all():
+            _guess(
+                chosen,
+                role,
+                TEN_MILLIONTHS,
+                f"whole numbers beyond {largest:g}: in {TEN_MILLIONTHS}, as autopilots write",
+            )
 
 
 def _is_open(chosen, role):
@@ -133,7 +151,8 @@ def _settle_heading(chosen, log, form, motion):
     if len(readings) == 1:
         return
     found = None
-    if motion is not None and motion[1] is not None:
+    is_placed = all(chosen[role].rank < GUESS for role in ("north", "east", "latitude", "longitude") if role in chosen)
+    if motion is not None and motion[1] is not None and is_placed:
         body: list[Any] = [_values(chosen, role, log, form) for role in ("surge", "sway")]
         is_known = all(v is not None for v in body) and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
         found = frame_of_angle(

@@ -1,0 +1,120 @@
+"""Further forms of logs, thought of after the forty were read: what a stranger's logger may write."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+import numpy as np
+from diagnose.log.oddities import START, UNITS, cells, lines, number, on_earth, renamed, save, stamps, with_time
+
+STRANGE = {}
+
+
+def strange(function):
+    STRANGE[function.__name__] = function
+    return function
+
+
+@strange
+def groups_above_the_names(table, folder):
+    groups = ["Clock", "Position", "", "Gyro", "DVL", "", "", *["Thrusters"] * (len(table) - 7)]
+    return save(folder, [",".join(groups), *lines(cells(table))])
+
+
+@strange
+def units_in_the_cells(table, folder):
+    columns = {role: [f"{number(v)} {UNITS[role]}" for v in values] for role, values in table.items()}
+    return save(folder, lines(columns, ";"))
+
+
+@strange
+def a_number_for_nothing(table, folder):
+    columns = cells(table)
+    for name in ("surge [m/s]", "heading [deg]", "north [m]"):
+        columns[name][40:60] = ["-9999"] * 20
+    return save(folder, lines(columns))
+
+
+@strange
+def degrees_times_ten_million(table, folder):
+    columns = renamed(table, {}, drop=("north", "east"))
+    for name, degrees in zip(("lat", "lon"), on_earth(table), strict=True):
+        columns[name] = [f"{1e7 * d:.0f}" for d in degrees]
+    return save(folder, lines(columns))
+
+
+@strange
+def an_index_of_pandas(table, folder):
+    count = [str(i) for i in range(len(table["time"]))]
+    return save(folder, lines({"Unnamed: 0": count} | cells(table)))
+
+
+@strange
+def quotes_around_everything(table, folder):
+    rows = lines(cells(table), ";")
+    return save(folder, [";".join(f'"{cell}"' for cell in row.split(";")) + ";" for row in rows])
+
+
+@strange
+def months_in_letters(table, folder):
+    texts = [text.upper() for text in stamps(table, "%d-%b-%Y %H:%M:%S.%f", 3)]
+    return save(folder, lines(with_time(table, "TIME", texts)))
+
+
+@strange
+def days_of_a_spreadsheet(table, folder):
+    day = (START - timedelta(days=25569)).timestamp() - (START.timestamp() - 25569 * 86400.0)
+    texts = [f"{44861.998263889 + day + t / 86400.0:.10f}" for t in table["time"]]
+    return save(folder, lines(with_time(table, "Date Time", texts)))
+
+
+@strange
+def carriage_returns_only(table, folder):
+    return save(folder, "\r".join(lines(cells(table))) + "\r")
+
+
+@strange
+def axes_and_angles_of_ros(table, folder):
+    names = {"time": "Time", "surge": "twist.linear.x", "sway": "y_left", "yaw_rate": "twist.angular.z"}
+    told = table | {"north": table["east"], "east": table["north"], "sway": -table["sway"]}
+    told |= {"heading": np.mod(90.0 - table["heading"] + 180.0, 360.0) - 180.0, "yaw_rate": -table["yaw_rate"]}
+    names |= {"heading": "yaw [deg]", "north": "pose.position.x", "east": "pose.position.y", "sway": "twist.linear.y"}
+    return save(folder, lines(renamed(told, names)))
+
+
+@strange
+def date_and_time_between_blanks(table, folder):
+    columns = {"date": stamps(table, "%Y-%m-%d"), "time": stamps(table, "%H:%M:%S.%f", 3)}
+    return save(folder, lines(columns | renamed(table, {}, drop=("time",)), " "), "log.txt")
+
+
+@strange
+def minutes_and_seconds(table, folder):
+    texts = [f"{int(t // 60):02d}:{t % 60:04.1f}" for t in table["time"]]
+    return save(folder, lines(with_time(table, "Elapsed", texts)))
+
+
+@strange
+def newest_first(table, folder):
+    rows = lines(cells(table))
+    return save(folder, [rows[0], *rows[:0:-1]])
+
+
+@strange
+def exponents_of_fortran(table, folder):
+    columns = cells(table, "{:.8E}")
+    columns = {name: [v.replace("E", "D") for v in values] for name, values in columns.items()}
+    return save(folder, lines({name.replace(" ", ""): v for name, v in columns.items()}, "  "), "log.dat")
+
+
+@strange
+def a_true_minus(table, folder):
+    return save(folder, [line.replace("-", "\u2212") for line in lines(cells(table), ";")])
+
+
+@strange
+def time_last_and_paths_for_names(table, folder):
+    names = {role: f"Vessel/Nav/{role.title()}" for role in table}
+    columns = renamed(table, names)
+    columns["Vessel/Clock/Time"] = columns.pop("Vessel/Nav/Time")
+    return save(folder, lines(columns))
