@@ -54,10 +54,10 @@ def test_start_values_of_another_kind_are_refused_together(dp):
 
 def test_a_run_with_units_is_the_run_with_numbers(dp):
     one, other = (
-        sc.simulate(dp, stop_time=stop, step_size=0.5, set={"environment.wind_speed": speed}, events=[event])
-        for stop, speed, event in (
-            (10.0, 10 * 1852 / 3600, {"time": 5.0, "override": {"environment.wind_from": math.pi / 2}}),
-            ("10 s", "10 kn", {"time": "5000 ms", "override": {"environment.wind_from": "90 deg"}}),
+        sc.simulate(dp, stop_time=10.0, step_size=0.5, set={"environment.wind_speed": speed}, events=[event])
+        for speed, event in (
+            (10 * 1852 / 3600, {"time": 5.0, "override": {"environment.wind_from": math.pi / 2}}),
+            ("10 kn", {"time": "5000 ms", "override": {"environment.wind_from": "90 deg"}}),
         )
     )
     assert one.sizes["time"] == 21

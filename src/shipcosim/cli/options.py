@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from shipcosim.cli.results import REPLACING
 from shipcosim.cli.start.completion import ENGINES, names_of, words_of
 
 
@@ -16,6 +17,12 @@ def finite(value: float | None) -> float | None:
     if value is not None and not math.isfinite(value):
         raise typer.BadParameter(f"{value} is no time. Give it in seconds.")
     return value
+
+
+def _replacing(force: bool) -> bool:
+    """Tell what writes results, at the end of a command, whether earlier ones are replaced."""
+    REPLACING.set(force)
+    return force
 
 
 Parameters = Annotated[
@@ -64,6 +71,10 @@ Engine = Annotated[
     typer.Option(
         "--engine", help="What runs the FMUs: fmpy (ours), libcosim or ecos.", autocompletion=words_of(*ENGINES)
     ),
+]
+Force = Annotated[
+    bool,
+    typer.Option("--force", callback=_replacing, help="Replace earlier results instead of keeping them in DIR-1, ..."),
 ]
 Until = Annotated[float | None, typer.Option("--until", callback=finite, help="[s] End here, before the stop time.")]
 Store = Annotated[

@@ -13,6 +13,7 @@ from shipcosim import library
 from shipcosim.cli.console import print_problems
 from shipcosim.cosim import interpolated
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_files, check_times, read_scenario
 from shipcosim.scenario.osp import read_osp_scenario
 from shipcosim.series import read_table
@@ -229,6 +230,20 @@ def _parsed(text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):
         return text
+
+
+def changed_by(
+    settings: Iterable[str] | None,
+    parameters: Iterable[Path] | None,
+    options: RunOptions,
+    resume: Path | None = None,
+) -> list[str]:
+    """What the command line changes of what the files say, for the page: each a text."""
+    changed = [f"--set {' = '.join(part.strip() for part in one.split('=', 1))}" for one in settings or ()]
+    changed += [f"--parameters {one}" for one in parameters or ()]
+    changed += [f"--engine {options.engine}"] if options.engine != RunOptions.engine else []
+    changed += [f"--until {options.until:g} s"] if options.until is not None else []
+    return changed + ([f"--from {resume}"] if resume is not None else [])
 
 
 def isolation(isolate: bool, timeout: float | None) -> dict[str, Any]:

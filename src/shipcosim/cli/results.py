@@ -1,15 +1,23 @@
-"""The files of a run: all three are there afterwards, or none of them has changed."""
+"""The files of a run: all three are there afterwards, or none of them has changed.
+
+What an earlier run left under the same names is kept: it moves into a numbered folder beside the results, which hold
+the newest. With --force it is replaced.
+"""
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import typer
 
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -19,6 +27,8 @@ if TYPE_CHECKING:
     from shipcosim.scenario import Scenario, Verdict
     from shipcosim.ssp import System
 
+REPLACING: ContextVar[bool] = ContextVar("replacing", default=False)
+"""Whether the command that is running was given --force."""
 PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
 
 
@@ -112,7 +122,7 @@ def staged(folder: Path, replaced: Iterable[str] = ()) -> Iterator[Path]:
     folder : Path
         Made if needed.
     replaced : iterable of str
-        Names of files that an earlier run may have left: those that are not written again are removed.
+        Names of files that an earlier run may have left, which are no longer true.
     """
     was_there = folder.exists()
     try:
@@ -123,10 +133,11 @@ def staged(folder: Path, replaced: Iterable[str] = ()) -> Iterator[Path]:
                 yield stage
             except ShipcosimError as error:
                 raise ShipcosimError([_at_home(problem, stage, folder) for problem in error.problems]) from error
-            written = list(stage.iterdir())
-            for file in written:
-                os.replace(file, folder / file.name)
-        for name in set(replaced) - {file.name for file in written}:
+            written = [file.name for file in stage.iterdir()]
+            set_aside(folder, {*written, *replaced})
+            for name in written:
+                os.replace(stage / name, folder / name)
+        for name in {*replaced} - {*written}:
             (folder / name).unlink(missing_ok=True)
     except BaseException as error:
         if not was_there:
@@ -137,6 +148,49 @@ def staged(folder: Path, replaced: Iterable[str] = ()) -> Iterator[Path]:
         raise ShipcosimError(
             Problem(str(folder), f"Results cannot be written here: {error.strerror}.", "Choose another --out.")
         ) from error
+
+
+def set_aside(folder: Path, names: Iterable[str]) -> None:
+    """Move what there is of earlier results into a numbered folder beside theirs, and say so; nothing with --force.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the results: those of ``results/calm`` go to ``results/calm-1``, then ``results/calm-2``, and so on.
+    names : iterable of str
+        Of its files and folders that will be written again.
+    """
+    there = sorted(name for name in names if (folder / name).exists())
+    if not there or REPLACING.get():
+        return
+    aside = _numbered(folder.resolve())
+    aside.mkdir()
+    for name in there:
+        os.replace(folder / name, aside / name)
+    _say(aside)
+
+
+def set_file_aside(path: Path) -> None:
+    """The same with a single file: ``state.bin`` becomes ``state-1.bin``."""
+    if path.is_file() and not REPLACING.get():
+        aside = _numbered(path.resolve())
+        os.replace(path, aside)
+        _say(aside)
+
+
+def _numbered(path: Path) -> Path:
+    """The path with the number after the highest that is taken."""
+    suffix = path.suffix if path.is_file() else ""
+    stem = path.name.removesuffix(suffix)
+    others = (re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", one.name) for one in path.parent.glob("*"))
+    taken = [int(match[1]) for match in others if match]
+    return path.with_name(f"{stem}-{max(taken, default=0) + 1}{suffix}")
+
+
+def _say(aside: Path) -> None:
+    from shipcosim.cli.console import shown_path
+
+    typer.echo(f"Earlier results are kept in {shown_path(aside)} (--force replaces them).", err=True)
 
 
 def _at_home(problem: Problem, stage: Path, folder: Path) -> Problem:

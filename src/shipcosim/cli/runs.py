@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,10 +12,10 @@ import typer
 
 from shipcosim.cli.console import print_problems, print_summary, progress_of
 from shipcosim.cli.exits import FAILED, INTERRUPTED
-from shipcosim.cli.results import check_targets, save
+from shipcosim.cli.results import check_targets, save, set_file_aside
 from shipcosim.cosim import Interrupted, RunError, RunOptions, Snapshot, simulate, write_snapshot
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Scenario, Verdict, check_scenario, judge, units_of, with_numbers
+from shipcosim.scenario import Expectation, Scenario, Verdict, check_scenario, judge, units_of, with_numbers
 from shipcosim.ssp import System, with_values
 
 if TYPE_CHECKING:
@@ -21,7 +23,12 @@ if TYPE_CHECKING:
 
 
 def simulate_and_save(
-    system: System, scenario: Scenario, out: Path, options: RunOptions, store: Path | None = None
+    system: System,
+    scenario: Scenario,
+    out: Path,
+    options: RunOptions,
+    store: Path | None = None,
+    changed: Sequence[str] = (),
 ) -> None:
     """Run, judge, write, and say how it went; arguments and errors as for `simulated_and_saved`.
 
@@ -30,13 +37,18 @@ def simulate_and_save(
     typer.Exit
         If an expectation does not hold, too.
     """
-    _, verdicts = simulated_and_saved(system, scenario, out, options, store)
+    _, verdicts = simulated_and_saved(system, scenario, out, options, store, changed)
     if not all(verdict.passed for verdict in verdicts):
         raise typer.Exit(FAILED)
 
 
 def simulated_and_saved(
-    system: System, scenario: Scenario, out: Path, options: RunOptions, store: Path | None = None
+    system: System,
+    scenario: Scenario,
+    out: Path,
+    options: RunOptions,
+    store: Path | None = None,
+    changed: Sequence[str] = (),
 ) -> tuple[xarray.Dataset, list[Verdict]]:
     """Run, judge, write, and say how it went.
 
@@ -52,6 +64,8 @@ def simulated_and_saved(
         How it is run; the progress is shown here.
     store : Path, optional
         File for the state of the whole system at the end.
+    changed : sequence of str
+        What the command line changes, for the page.
 
     Returns
     -------
@@ -76,28 +90,33 @@ def simulated_and_saved(
     snapshots: list[Snapshot] = []
     if store:
         options = replace(options, store=snapshots.append)
-    table = _simulated(system, scenario, out, options)
-    scenario = _within(scenario, table)
+    table = _simulated(system, scenario, out, options, changed)
+    scenario, not_reached = _within(scenario, table)
+    table = table.assign_attrs(not_reached=json.dumps(list(map(str, not_reached))))
     verdicts = judge(table, with_numbers(scenario, units_of(system)))
     page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)
     print_summary(table, verdicts, page)
     if store:
         for snapshot in snapshots:
+            set_file_aside(store)
             write_snapshot(snapshot, store)
     return table, verdicts
 
 
-def _simulated(system: System, scenario: Scenario, out: Path, options: RunOptions) -> xarray.Dataset:
+def _simulated(
+    system: System, scenario: Scenario, out: Path, options: RunOptions, changed: Sequence[str]
+) -> xarray.Dataset:
     """Table of the run; what there is of a run that does not get to its end is saved."""
     try:
         with progress_of(scenario.name or system.name, scenario.stop_time) as progress:
-            return simulate(system, scenario, replace(options, progress=progress))
+            table = simulate(system, scenario, replace(options, progress=progress))
+            return table.assign_attrs(changed=json.dumps(list(changed)))
     except Interrupted as stop:
-        _save_partial(stop.table, out, scenario, system)
+        _save_partial(stop.table.assign_attrs(changed=json.dumps(list(changed))), out, scenario, system)
         raise typer.Exit(INTERRUPTED) from None
     except RunError as error:
         try:
-            _save_partial(error.table, out, scenario, system)
+            _save_partial(error.table.assign_attrs(changed=json.dumps(list(changed))), out, scenario, system)
         except ShipcosimError as another:
             error.problems += another.problems
         if not options.isolate:
@@ -113,9 +132,17 @@ def _save_partial(table: xarray.Dataset, out: Path, scenario: Scenario, system: 
         print_summary(table, (), page, to_stderr=True)
 
 
-def _within(scenario: Scenario, table: xarray.Dataset) -> Scenario:
-    """The scenario with those expectations that lie within the table's times."""
+def _within(scenario: Scenario, table: xarray.Dataset) -> tuple[Scenario, list[Expectation]]:
+    """The scenario with those expectations that lie within the table's times, and the others.
+
+    One about every row holds for a part of a run, too; a statistic of the whole run does not.
+    """
     first, last = table["time"].values[[0, -1]]
-    inside = [e for e in scenario.expect if not e.during or (first <= e.during[0] and e.during[1] <= last)]
-    is_whole = first == 0.0 and last >= scenario.stop_time - 1e-9
-    return scenario if is_whole else scenario.model_copy(update={"expect": inside})
+    if first == 0.0 and last >= scenario.stop_time - 1e-9:
+        return scenario, []
+    inside = [
+        expect
+        for expect in scenario.expect
+        if (first <= expect.during[0] and expect.during[1] <= last if expect.during else expect.statistic is None)
+    ]
+    return scenario.model_copy(update={"expect": inside}), [one for one in scenario.expect if one not in inside]

@@ -32,7 +32,7 @@ def study_log(
     data : path
     out : Path, optional
         Gets sea_trials.json, report.html, and where causes were found extended.ssp and extended.ssv.
-        Default: results/DATA.
+        Default: results/DATA-sea-trials.
     system : str, optional
         As for `library.find`; the default one without.
     channels, effects : path, optional
@@ -59,7 +59,7 @@ def study_log(
     from shipcosim.ssp import read
 
     check_inputs([data], channels, effects)
-    folder = out or default_folder(data)
+    folder = out or default_folder(data, "-sea-trials")
     check_targets(folder)
     given = library.find("system", system or DEFAULT_SYSTEM, "--system")
     found = study(data, system_of(str(given)), channels, effects, orders=orders)

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Channels, Debug, Effects, Ship
+from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
 
 
 def calibrate(
@@ -22,6 +22,7 @@ def calibrate(
         typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/calibrated-SYSTEM]"),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print reference.json instead of a summary.")] = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.

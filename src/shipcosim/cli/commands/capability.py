@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, Out
+from shipcosim.cli.options import Debug, Force, Out
 from shipcosim.cli.start.completion import names_of
 
 DEFAULT_SYSTEM = "gunnerus_dp"
@@ -36,6 +36,7 @@ def capability(
     ] = None,
     out: Out = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON instead of a summary.")] = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Static DP capability of a ship: the weather that her thrusters balance, intact and after each single failure.

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Channels, Debug, Effects, Ship
+from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
 from shipcosim.cli.start.completion import names_of
 
 
@@ -30,6 +30,7 @@ def diagnose(
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of a summary.")] = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Say what a simulation gets wrong of a measured log, and why: causes by name, with size and probability.

@@ -7,6 +7,7 @@ import typer
 
 from shipcosim.cli.options import (
     Debug,
+    Force,
     OspEvents,
     Parameters,
     ScenariosStepSize,
@@ -30,6 +31,7 @@ def fmu(
         bool, typer.Option("--unchecked", help="Do not run FMU and system side by side first.")
     ] = False,
     strict: Strict = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Make one FMU of a whole system, a block in anyone's tool. FMPy's container FMU does the work in it.
@@ -39,11 +41,13 @@ def fmu(
     """
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cli.requests import system_to_export
+    from shipcosim.cli.results import set_file_aside
     from shipcosim.cosim import export_fmu
 
     system, step = system_to_export(what, parameters, step_size, strict)
     print_problems(problem for problem in system.remarks if problem.flaw)
     target = out / f"{system.name}.fmu"
+    set_file_aside(target)
     print_problems(export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked))
     typer.echo(shown_path(target))
 
@@ -56,6 +60,7 @@ def osp(
     parameters: Parameters = None,
     events: OspEvents = None,
     strict: Strict = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Write OspSystemStructure.xml, the FMUs and scenario.json, which libcosim runs as they are.
@@ -64,9 +69,11 @@ def osp(
     """
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cli.requests import system_and_scenario
-    from shipcosim.cosim.export.osp import write_osp
+    from shipcosim.cli.results import set_aside
+    from shipcosim.cosim.export.osp import SCENARIO, STRUCTURE, write_osp
 
     system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict)
+    set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))])
     print_problems(write_osp(system, scenario, out))
     for path in sorted(out.glob("*")):
         typer.echo(shown_path(path))

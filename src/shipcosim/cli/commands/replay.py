@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Channels, Debug, finite
+from shipcosim.cli.options import Channels, Debug, Force, finite
 
 
 def replay(
@@ -34,6 +34,7 @@ def replay(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/LOG-replay]")
     ] = None,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Draw a log and what a system makes of it, before and after a diagnosis: track, heading and speeds, errors.

@@ -5,13 +5,14 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, Out
+from shipcosim.cli.options import Debug, Force, Out
 
 
 def report(
     first: Annotated[Path, typer.Argument(metavar="A", help="Results of a run: its folder, or a table (.nc, .csv).")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Those of another.")],
     out: Out = None,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Lay two runs over each other: both ships in one scene, both runs in every plot, and by how much they differ.

@@ -7,7 +7,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from shipcosim import library
-from shipcosim.cli.options import Debug, Engine, From, Isolate, Out, Parameters, Settings, Store, Strict, Timeout, Until
+from shipcosim.cli.options import (
+    Debug,
+    Engine,
+    Force,
+    From,
+    Isolate,
+    Out,
+    Parameters,
+    Settings,
+    Store,
+    Strict,
+    Timeout,
+    Until,
+)
 from shipcosim.cli.start.completion import names_of
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -36,23 +49,25 @@ def run(
     isolate: Isolate = False,
     timeout: Timeout = None,
     strict: Strict = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO.
 
     A part of a run is checked for what is expected within it. The scenarios of a folder are run one after another;
     report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it.
+    Earlier results are kept in results/SCENARIO-1, -2, ... unless --force is given.
 
     --parameters takes sets that were made for another system too, as extended.ssv of a diagnosis: what the scenario's
     system has is taken, over what the scenario says, and what it has not is said.
     """
-    from shipcosim.cli.requests import isolation, parsed_settings
+    from shipcosim.cli.requests import changed_by, isolation, parsed_settings
     from shipcosim.cli.runs import simulate_and_save
     from shipcosim.options import RunOptions
 
     given = parsed_settings(settings or [])
     options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
-    reading = _Reading(parameters or [], given, strict)
+    reading = _Reading(parameters or [], given, strict, changed_by(settings, parameters, options, resume))
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
@@ -60,7 +75,7 @@ def run(
         _run_all(files, out or Path("results") / files[0].resolve().parent.name, reading, options)
         return
     system, happening = _prepared(library.find("scenario", scenario), reading)
-    simulate_and_save(system, happening, out or Path("results") / happening.name, options, store)
+    simulate_and_save(system, happening, out or Path("results") / happening.name, options, store, reading.changed)
 
 
 @dataclass(frozen=True)
@@ -70,18 +85,22 @@ class _Reading:
     parameters: list[Path]
     given: dict[str, object]
     strict: bool
+    changed: list[str]
 
 
 def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptions") -> None:
     """Run scenarios one after another, and write the table of all of them. All are read before the first one runs."""
     from shipcosim.cli.console import print_overview
     from shipcosim.cli.exits import FAILED
+    from shipcosim.cli.results import set_aside
     from shipcosim.cli.runs import simulated_and_saved
     from shipcosim.report import ScenarioRow, digest, overview_outcome, write_overview
 
     rows = []
-    for system, happening in [_prepared(file, reading) for file in files]:
-        table, verdicts = simulated_and_saved(system, happening, out / happening.name, options)
+    prepared = [_prepared(file, reading) for file in files]
+    set_aside(out, ["report.html", *(happening.name for _, happening in prepared)])
+    for system, happening in prepared:
+        table, verdicts = simulated_and_saved(system, happening, out / happening.name, options, changed=reading.changed)
         page = f"{happening.name}/report.html"
         rows.append(ScenarioRow(happening.name, happening.description, page, digest(table, verdicts)))
     page = out / "report.html"

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Channels, Debug, Effects, Ship
+from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
 
 
 def sea_trials(
@@ -18,9 +18,11 @@ def sea_trials(
         bool, typer.Option("--orders", help="Thruster channels are orders, which the units follow, not feedback.")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]")
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of the results. Default: results/DATA-sea-trials."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print sea_trials.json instead of a summary.")] = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Say what a simulation gets wrong of a ship's manoeuvring trials: straight runs, turning circles, zig-zags.

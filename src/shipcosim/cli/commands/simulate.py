@@ -8,6 +8,7 @@ import typer
 from shipcosim.cli.options import (
     Debug,
     Engine,
+    Force,
     From,
     Isolate,
     OspEvents,
@@ -68,26 +69,27 @@ def simulate(
     isolate: Isolate = False,
     timeout: Timeout = None,
     strict: Strict = False,
+    force: Force = False,
     debug: Debug = False,
 ) -> None:
     """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
 
     Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
     """
-    from shipcosim.cli.requests import experiment_of, inputs_of, isolation, parsed_settings, system_of, with_osp_events
+    from shipcosim.cli import requests
     from shipcosim.cli.runs import simulate_and_save
     from shipcosim.options import RunOptions
     from shipcosim.ssp import settings_of_one, with_values
 
-    system = system_of(ssp, parameters, strict=strict)
-    system = with_values(system, settings_of_one(system, parsed_settings(settings or [])), "--set")
-    scenario = experiment_of(system, stop_time, step_size)
-    table = inputs_of(inputs, system, interpolate or (), max_gap)
+    system = requests.system_of(ssp, parameters, strict=strict)
+    system = with_values(system, settings_of_one(system, requests.parsed_settings(settings or [])), "--set")
+    scenario = requests.experiment_of(system, stop_time, step_size)
+    table = requests.inputs_of(inputs, system, interpolate or (), max_gap)
     if start_time is None:
         start_time = system.experiment.start_time if resume is None else 0.0
-    scenario = with_osp_events(scenario, events, start_time)
-    options = RunOptions(
-        engine=engine, inputs=table, start_time=start_time, until=until, resume=resume, **isolation(isolate, timeout)
-    )
+    scenario = requests.with_osp_events(scenario, events, start_time)
+    apart = requests.isolation(isolate, timeout)
+    options = RunOptions(engine=engine, inputs=table, start_time=start_time, until=until, resume=resume, **apart)
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
-    simulate_and_save(system, scenario, out or default, options, store)
+    changed = requests.changed_by(settings, parameters, options, resume)
+    simulate_and_save(system, scenario, out or default, options, store, changed)

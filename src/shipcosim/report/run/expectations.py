@@ -7,6 +7,7 @@ import numpy as np
 from xarray import Dataset
 
 from shipcosim.angles import compass
+from shipcosim.report.run.details import parsed
 from shipcosim.report.theme.views import Outcome
 from shipcosim.scenario import Expectation, Verdict
 
@@ -44,6 +45,11 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
     if not is_complete(table):
         end = float(table["time"].values[-1]) if table.sizes["time"] else 0.0
         return Outcome("partial", "PARTIAL", f"The run ended early, at {end:g} s. Its expectations were not judged.")
+    left = len(parsed(table.attrs.get("not_reached", "[]")))
+    if left and not missed:
+        if verdicts:
+            return Outcome("passed", "PASS", f"{len(verdicts)} of {len(verdicts) + left} hold, {left} not reached.")
+        return Outcome("plain", "DONE", f"None of its {left} expectations was reached.")
     if not verdicts:
         return Outcome("plain", "DONE", "Nothing was expected of this run.")
     if missed:

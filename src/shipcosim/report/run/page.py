@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from xarray import Dataset
 
 from shipcosim.report.run.derived import add_derived
-from shipcosim.report.run.details import Detail, details
+from shipcosim.report.run.details import Detail, details, parsed
 from shipcosim.report.run.expectations import Judged, judged, outcome
 from shipcosim.report.run.key_figures import key_figures
 from shipcosim.report.run.panels import Section, make_sections
@@ -46,6 +46,8 @@ class RunPage(Page):
     ----------
     remarks : tuple of str
         What must not be overlooked.
+    changed : tuple of str
+        What the command line changed of what the files say.
     weather : tuple of Flow
     expectations : tuple of Judged
     key_figures : Table
@@ -66,6 +68,7 @@ class RunPage(Page):
     thinned: Thinned | None
     sections: tuple[Section, ...]
     details: tuple[Detail, ...]
+    changed: tuple[str, ...] = ()
     figures_title: str = "Key figures"
 
 
@@ -153,6 +156,7 @@ def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict]
         links=links(runs, sections),
         data=drawn_data(drawn, choice, runs, sections, events),
         remarks=tuple(remarks(table, shown, roles)),
+        changed=tuple(parsed(table.attrs.get("changed", "[]"))),
         weather=weather(shown, roles),
         expectations=judged(verdicts, shown),
         key_figures=key_figures(shown, roles),
