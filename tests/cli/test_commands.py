@@ -204,7 +204,7 @@ def test_results_that_cannot_be_written_leave_the_old_ones_whole(call, project):
     call("run", "fill")
     results = project / "results" / "fill"
     before = {path.name: path.read_bytes() for path in results.iterdir()}
-    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (100_000, 100_000))
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (400_000, 400_000))
     running = command("run", "fill", "--set", "lag.time_constant=0.4", preexec_fn=limit)
     _, err = running.communicate(timeout=20)
     assert running.returncode == 2 and "cannot be written: File too large" in err
