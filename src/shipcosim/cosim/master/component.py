@@ -63,6 +63,10 @@ class ComponentInstance:
         if (step := self.fixed_step) is not None:
             self._do_step = lambda time, _: do_step(time, step)
 
+    def steps_by(self, do_step: Callable[[float, float], int]) -> None:
+        """Step by another call than the FMU's own: that of a group with one solver."""
+        self._do_step = do_step
+
     def prepare(self, kind: str, exchange: Exchange, outputs: Rows, inputs: Rows) -> None:
         """Prepare the calls for the variables of one kind.
 

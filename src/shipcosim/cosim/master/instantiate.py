@@ -1,6 +1,6 @@
 """The components of a run, instantiated, and the arrays and connections between them, from its plan."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import lcm
 from typing import Protocol
 
@@ -9,12 +9,14 @@ import numpy as np
 from shipcosim.cosim.master.algorithm import Failure
 from shipcosim.cosim.master.component import ComponentInstance, set_start_values
 from shipcosim.cosim.master.connections import ParameterConnection, Port, StringConnection
+from shipcosim.cosim.master.groups import followed_inputs
 from shipcosim.cosim.master.plan import End, Plan
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.model_exchange import ModelExchange
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES, Slave, SlaveError
 from shipcosim.errors import Problem
-from shipcosim.ssp import Component
+from shipcosim.ssp import Component, Connection
 
 Components = dict[str, ComponentInstance]
 """By name."""
@@ -46,6 +48,7 @@ def make_components(
     slaves: SlaveSource,
     base_step: float,
     check_interrupt: Callable[[], None],
+    inner: Sequence[Connection] = (),
 ) -> Components:
     """The components of a plan, instantiated, their start values set.
 
@@ -61,6 +64,8 @@ def make_components(
         Step size of the run. [s]
     check_interrupt : callable
         Raises KeyboardInterrupt where the user wants to stop.
+    inner : sequence of Connection
+        That a common solver of components in model exchange carries over.
 
     Raises
     ------
@@ -73,6 +78,8 @@ def make_components(
         fmu, name, multiple = component.fmu, component.name, plan.multiples[component.name]
         try:
             slave = slaves.instance_of(component)
+            if isinstance(slave, ModelExchange):
+                slave.followed = followed_inputs(inner, name)
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.cosim.master.algorithm import Failure, Master
 from shipcosim.cosim.master.events import event_actions, external_values
+from shipcosim.cosim.master.groups import couple, groups_of, inner_connections
 from shipcosim.cosim.master.inputs import digest, input_values
 from shipcosim.cosim.master.instantiate import (
     Components,
@@ -108,6 +109,7 @@ class Simulation:
         self._external = self._external_over_time(fed)
         self._components: Components = {}
         self._n_rows = 0
+        self._together: list[set[str]] = []
         self._recorders = {
             kind: Recorder(exchange, len(grid.row_times), *recorded_rows(self._plan, kind))
             for kind, exchange in self._exchanges.items()
@@ -137,7 +139,11 @@ class Simulation:
         """
         plan, exchanges, grid = self._plan, self._exchanges, self._grid
         try:
-            self._components = make_components(plan, exchanges, slaves, self._scenario.step_size, check_interrupt)
+            inner = inner_connections(plan) if self._order == "jacobi" and isinstance(slaves, Instances) else []
+            step_size = self._scenario.step_size
+            self._components = make_components(plan, exchanges, slaves, step_size, check_interrupt, inner)
+            couple(plan, self._components, stepping_order(plan, self._order), inner)
+            self._together = groups_of(inner)
             strings = make_string_connections(plan, self._components)
             master = self._master(strings, check_interrupt)
             master.initialise(grid.start_time, grid.stop_time)
@@ -185,6 +191,8 @@ class Simulation:
             known["until"] = float(self._grid.run_times[-1])
         if self._resume is not None:
             known["continued_from"] = self._resume.time
+        if self._together:
+            known["integrated_together"] = "; ".join(", ".join(sorted(group)) for group in self._together)
         remarks = [text for component in self._components.values() for text in component.slave.remarks()]
         return known | {"complete": int(complete), "remarks": json.dumps(list(dict.fromkeys(remarks)))}
 

@@ -25,6 +25,7 @@ from shipcosim.ssp import FmuDescription, Variable
 from shipcosim.ssp.xml.document import is_true
 
 if TYPE_CHECKING:
+    from shipcosim.cosim.slaves.coupled import CoupledModels
     from shipcosim.cosim.slaves.cvode import Cvode
 
 TOLERANCE = 1e-8
@@ -68,6 +69,13 @@ class ModelExchange(LibrarySlave):
         Where the FMU is unpacked.
     fmu : FmuDescription
         Its description.
+
+    Attributes
+    ----------
+    followed : frozenset of (kind, name)
+        Inputs that follow other components within a step, as `shipcosim.cosim.slaves.coupled` carries them over.
+    group : CoupledModels or None
+        The group that this one makes the steps of; its solver is freed with this one's.
     """
 
     DERIVATIVES, NOMINALS = "GetDerivatives", "GetNominalsOfContinuousStates"
@@ -78,20 +86,24 @@ class ModelExchange(LibrarySlave):
         self._mode: str | None = None
         self._solver: Cvode | None = None
         self._next_event, self._is_event_done = inf, False
+        self.followed: frozenset[tuple[str, str]] = frozenset()
+        self.group: CoupledModels | None = None
         super().__init__(name, folder, fmu.identifier("ModelExchange"), fmu.token)
 
     def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer where they have changed; returns the status."""
-        set_all, last = super().setter(kind, variables, buffer), None
+        set_all, last, last_held = super().setter(kind, variables, buffer), None, None
+        held = np.array([(kind, variable.name) not in self.followed for variable in variables])
 
         def set_changed():
-            nonlocal last
+            nonlocal last, last_held
             values = buffer.tobytes()
-            if values == last:
+            held_values = values if held.all() else buffer[held].tobytes()
+            if values == last or (self._mode == CONTINUOUS and held_values == last_held):
                 return OK
             if self._mode == CONTINUOUS:
                 self._enter_event_mode()
-            self._is_event_done, last = False, values
+            self._is_event_done, last, last_held = False, values, held_values
             return set_all()
 
         return set_changed
@@ -134,7 +146,78 @@ class ModelExchange(LibrarySlave):
         self._close_solver()
         super().free()
 
+    # ------------------------------------------------------- what a group with one solver needs
+
+    @property
+    def n_states(self) -> int:
+        """Number of continuous states; known from the end of the initialisation on."""
+        return self._n
+
+    @property
+    def has_indicators(self) -> bool:
+        """Whether it has event indicators; known from the end of the initialisation on."""
+        return self._n_indicators > 0
+
+    @property
+    def tolerance(self) -> float:
+        """Relative tolerance of the solver that its default experiment asks for."""
+        return self._description.experiment.get("tolerance", TOLERANCE)
+
+    @property
+    def mode(self) -> str | None:
+        """Event mode, continuous-time mode, or None before the end of the initialisation."""
+        return self._mode
+
+    @property
+    def next_event(self) -> float:
+        """Time of its next event; infinite where it knows none. [s]"""
+        return self._next_event
+
+    def plain_setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+        """Prepared call that sets variables of one kind without an event."""
+        return super().setter(kind, variables, buffer)
+
+    def checked(self, function: str, status: int) -> None:
+        """Raise SlaveError if a status says that a prepared call failed."""
+        if status >= DISCARD:
+            self.check(function, status)
+
+    def set_time_and_states(self, time: float, states: np.ndarray) -> None:
+        """Set the time and the continuous states, (n_states,) array."""
+        self._time = time
+        self._set_time_and_states(time, states.ctypes.data_as(POINTER(c_double)))
+
+    def derivatives_into(self, derivatives: np.ndarray) -> int:
+        """Get the derivatives into an (n_states,) array; status for the solver."""
+        if not self._n:
+            return 0
+        return self._status_for_solver(self.DERIVATIVES, derivatives.ctypes.data_as(POINTER(c_double)), self._n)
+
+    def completed_step(self) -> bool:
+        """Tell the FMU that a step of the solver is done; whether it asks for an event."""
+        return self._completed_step()
+
+    def handle_event(self, time: float) -> None:
+        """Make the event that is due, and stay in event mode."""
+        self._time = time
+        self._enter_event_mode()
+        self._iterate_event()
+
+    def enter_continuous(self, time: float, states: np.ndarray, nominals: np.ndarray) -> None:
+        """Be in continuous time from a time on; states and nominal values are filled, (n_states,) arrays."""
+        self._time = time
+        if self._mode == EVENT:
+            if not self._is_event_done:
+                self._iterate_event()
+            self._leave_event_mode()
+        if self._n:
+            self.call("GetContinuousStates", states.ctypes.data_as(POINTER(c_double)), self._n)
+            self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
+
     def _close_solver(self):
+        if self.group is not None:
+            self.group.close()
+            self.group = None
         if self._solver is not None:
             self._solver.close()
             self._solver = None

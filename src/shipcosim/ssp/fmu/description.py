@@ -104,7 +104,7 @@ class FmuDescription:
     experiment : mapping of str to float
         ``startTime``, ``stopTime``, ``stepSize``, ``tolerance``, where given.
     n_states, n_event_indicators : int
-        For model exchange in FMI 1.0 and 2.0; an FMU of FMI 3.0 is asked for them while it runs.
+        For model exchange; an FMU of FMI 3.0 is asked for its states while it runs, and lists its indicators.
     arrays : mapping of str to tuple of int
         Dimensions of the arrays whose elements stand in `variables` in their place.
     """

@@ -108,13 +108,18 @@ def _description(document: Document, path: Path, names: list[str], findings: Fin
         platforms=tuple(sorted(platforms)),
         experiment=_experiment(root),
         n_states=_n_states(root),
-        n_event_indicators=int(root.get("numberOfEventIndicators") or 0),
+        n_event_indicators=int(root.get("numberOfEventIndicators") or len(_indicators(root))),
     )
 
 
 def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
     known = ("CoSimulation", "ModelExchange", "ScheduledExecution")
     return {local(part): dict(part.attrib) for part in root if local(part) in known}
+
+
+def _indicators(root: etree._Element) -> list[etree._Element]:
+    """Event indicators that FMI 3.0 lists."""
+    return [part for part in parts_of(root, "ModelStructure") if local(part) == "EventIndicator"]
 
 
 def _n_states(root: etree._Element) -> int:

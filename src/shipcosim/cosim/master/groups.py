@@ -1,0 +1,92 @@
+"""Groups of components in model exchange that are integrated as one system; which they are follows from the plan."""
+
+from collections.abc import Mapping, Sequence
+
+from shipcosim.cosim.master.component import ComponentInstance
+from shipcosim.cosim.master.plan import Plan
+from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.model_exchange import ModelExchange
+from shipcosim.cosim.slaves.slave import OK
+from shipcosim.ssp import Connection
+
+
+def inner_connections(plan: Plan) -> list[Connection]:
+    """Connections that a common solver carries over: from Real to Real between components in model exchange.
+
+    Both step with the base step, nothing adds up in the input, and no event of the run changes either end.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the run.
+    """
+    into = [connection.target for connection in plan.system.connections]
+    return [c for c in plan.system.connections if into.count(c.target) == 1 and _is_inner(c, plan)]
+
+
+def _is_inner(connection: Connection, plan: Plan) -> bool:
+    ends = (connection.source, connection.target)
+    if connection.initial or connection.mapping or None in (connection.source[0], connection.target[0]):
+        return False
+    components = [plan.system.components[name or ""] for name, _ in ends]
+    is_free = plan.modified.isdisjoint(ends) and all(plan.multiples[one.name] == 1 for one in components)
+    smooth = all(interface_type_of(one) == "ModelExchange" and one.fmu.n_event_indicators == 0 for one in components)
+    return is_free and smooth and all(plan.variable(end).kind == "Real" for end in ends)
+
+
+def groups_of(connections: Sequence[Connection]) -> list[set[str]]:
+    """Components that connections join, directly or by others."""
+    groups: list[set[str]] = []
+    for connection in connections:
+        joined = {connection.source[0] or "", connection.target[0] or ""}
+        apart = [group for group in groups if group.isdisjoint(joined)]
+        groups = [*apart, joined.union(*(group for group in groups if group not in apart))]
+    return [group for group in groups if len(group) > 1]
+
+
+def followed_inputs(connections: Sequence[Connection], name: str) -> frozenset[tuple[str, str]]:
+    """Kind and name of a component's inputs that a common solver carries values to."""
+    groups = groups_of(connections)
+    return frozenset(
+        ("Real", c.target[1]) for c in connections if c.target[0] == name and any(name in group for group in groups)
+    )
+
+
+def couple(
+    plan: Plan, instances: Mapping[str, ComponentInstance], order: Sequence[str], connections: Sequence[Connection]
+) -> None:
+    """Have the groups of a run step with one solver each; the last of a group in the order of the steps does it.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the run.
+    instances : mapping of str to ComponentInstance
+        By name; the slaves of the groups run in this process.
+    order : sequence of str
+        Names in the order of the steps.
+    connections : sequence of Connection
+        Of `inner_connections`.
+    """
+    from shipcosim.cosim.slaves.coupled import CoupledModels, Wire
+
+    for group in groups_of(connections):
+        names = [name for name in order if name in group]
+        members = {name: slave for name in names if isinstance(slave := instances[name].slave, ModelExchange)}
+        wires = [
+            Wire(
+                (c.source[0] or "", plan.variable(c.source)),
+                (c.target[0] or "", plan.variable(c.target)),
+                c.factor,
+                c.offset,
+            )
+            for c in connections
+            if c.source[0] in group
+        ]
+        coupled = members[names[-1]].group = CoupledModels(members, wires)
+        for name in names:
+            instances[name].steps_by(coupled.stepper() if name == names[-1] else _nothing)
+
+
+def _nothing(time: float, step_size: float) -> int:
+    return OK
