@@ -43,11 +43,11 @@ def test_nothing_is_written_over_without_being_told(project):
 
 
 def test_a_changed_ship_file_makes_the_systems_again(project):
-    assert told("new", "ship", "tern", *ASKED, "--yes").exit_code == 0
+    assert told("new", "ship", "tern", *ASKED, "--propulsion", "rudder", "--yes").exit_code == 0
     file = project / "ships/tern/ship.toml"
     file.write_text(file.read_text().replace('"60 m"', '"62 m"'))
     assert told("new", "ship", "tern", "--from", "ships/tern/ship.toml").exit_code == 0
-    assert 'value="62.0"' in (project / "ssp/tern_dp/resources/tern.ssv").read_text()
+    assert 'value="62.0"' in (project / "ssp/tern_open/resources/tern.ssv").read_text()
 
 
 def test_a_ship_that_is_shipped_is_taken_with_her_tables(project):

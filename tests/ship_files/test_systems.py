@@ -23,13 +23,14 @@ def settled(folder, fmus):
     """Late part of a run in which the DP holds the ship in wind and current."""
     weather = {"environment.wind_speed": 8.0, "environment.wind_from": 0.785, "environment.current_speed": 0.2}
     system = read_system(folder, fmus=fmus)
-    run = sc.simulate(system, stop_time=200.0, step_size=0.1, output_interval=1.0, set=weather)
-    return run.sel(time=slice(150.0, None))
+    run = sc.simulate(system, stop_time=150.0, step_size=0.1, output_interval=1.0, set=weather)
+    return run.sel(time=slice(110.0, None))
 
 
 def test_a_ship_with_azimuths_and_a_tunnel_holds_her_place(written, fmus, tmp_path):
     made = make_systems(written(SUPPLY), tmp_path / "ssp", fmus)
     assert [folder.name for folder in made] == ["tern_open", "tern_dp"]
+    assert sc.read(made[1], fmus=fmus).description == "supply ship: in a closed DP loop, gains by rule"
     late = settled(made[1], fmus)
     assert np.hypot(late["vessel.x"], late["vessel.y"]).max() < 2.0
     assert np.abs(np.degrees(late["vessel.psi"])).max() < 2.0
@@ -97,3 +98,10 @@ def test_nothing_is_made_of_a_ship_that_lacks_something(written, fmus, tmp_path)
     with pytest.raises(ShipcosimError, match="nothing says length"):
         make_systems(written(SUPPLY, ('length = "60 m"\n', "")), tmp_path / "ssp", fmus)
     assert not (tmp_path / "ssp").exists()
+
+
+def test_a_tolerance_of_a_table_in_a_parameter_set_is_no_fault_of_ours(root, fmus):
+    """It was a TypeError."""
+    system = sc.read(root / "ssp" / "otter_open", fmus=fmus).copy()
+    system.set("vessel.wind_table", "0 0 0 0; 180 0 0 0", tolerance=0.1)
+    assert system.checked().components

@@ -15,6 +15,11 @@ from shipcosim.ships.thrusters import Unit
 from shipcosim.ssp import SystemStructure, new, parameter, read, write_ssv
 
 STEP, LONG_RUN = 0.05, 600.0  # s
+SAID = {
+    "open": "without control, thrusters and weather from outside, for replays",
+    "dp": "in a closed DP loop, gains by rule",
+}
+"""Kind of system: what it is."""
 WEATHER = ("wind_north", "wind_east", "current_north", "current_east")
 SEA = ("wave_height", "wave_period", "wave_from", "wave_peak_enhancement", "wave_seed")
 OUTSIDE = {
@@ -124,6 +129,7 @@ def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructu
             system.connect(source, target)
         if kind == "open":
             _open_to_outside(system, ship)
+    system.description = f"{ship.file.description or ship.name}: {SAID[kind]}"
     system.start_time, system.stop_time, system.step_size = 0.0, LONG_RUN, STEP
     return system
 

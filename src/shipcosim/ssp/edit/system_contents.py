@@ -43,6 +43,16 @@ class SystemContents:
         return self._draft.root.get("name", "")
 
     @property
+    def description(self) -> str:
+        """What the system is, one line."""
+        return self._draft.root.get("description", "")
+
+    @description.setter
+    def description(self, text: str) -> None:
+        with self.changes():
+            self._draft.root.set("description", text)
+
+    @property
     def elements(self) -> list[str]:
         """Full names of all components, systems and signal dictionary references."""
         return [name for name, _ in walk(self._draft.system) if name]

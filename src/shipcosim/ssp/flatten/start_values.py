@@ -138,7 +138,7 @@ class Settings:
         if check_bounds(convert(value), variable, place, str(key), self.findings):
             self.start[key.path][key.name] = convert(value)
             self.tolerances[key.path].pop(key.name, None)
-            if self.tolerance is not None:
+            if self.tolerance is not None and type(value) in (int, float):  # a text or a truth has none
                 self.tolerances[key.path][key.name] = abs(convert(value + self.tolerance) - convert(value))
 
     def _unknown(self, setting: Setting) -> None:
