@@ -19,6 +19,7 @@ from shipcosim.results.run import Run
 from shipcosim.results.shown import made, parts_of
 from shipcosim.scenario import Scenario, check_files, check_scenario, check_times, judge
 from shipcosim.scenario import read_scenario as _read_scenario
+from shipcosim.scenario.model import problems_in
 from shipcosim.series import read_table, write_table
 from shipcosim.ssp import (
     System,
@@ -556,7 +557,8 @@ def _run(system, scenario, options, out, *, remarks=(), planned=0.0):
     """
     remarks = [*remarks, *(one for one in system.remarks if one.where not in system.components)]
     happening = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    remarks += [one for one in check_scenario(scenario, happening) if one.severity != "error"]
+    of_times = check_times(scenario) if scenario.stop_time < planned else ()  # a shorter run leaves things out
+    remarks += [one for one in check_scenario(scenario, happening) if one not in of_times and one.severity != "error"]
     table = _simulate(system, scenario, options)
     first, last = table["time"].values[[0, -1]]
     is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
@@ -640,7 +642,7 @@ def _scenario(given, experiment, keys):
     try:
         scenario = Scenario.model_validate(keys)
     except ValidationError as error:
-        raise ShipcosimError([_problem(finding) for finding in error.errors()]) from None
+        raise ShipcosimError(problems_in(error, "simulate")) from None
     problems = [problem for problem in check_times(scenario) if problem.severity == "error"]
     if problems:
         raise ShipcosimError(problems)
@@ -649,14 +651,3 @@ def _scenario(given, experiment, keys):
 
 def _missing(name, remedy):
     raise ShipcosimError(Problem("simulate", f"{name} is missing.", remedy))
-
-
-def _problem(finding):
-    """One of pydantic's findings in our words."""
-    name = ".".join(map(str, finding["loc"]))
-    if finding["type"] == "missing":
-        return Problem("simulate", f"{name} is missing.", "Give it in s: the system has no default.")
-    if finding["type"] == "extra_forbidden":
-        return Problem("simulate", f"{name}: There is no such key.", f"It was given {finding['input']!r}.")
-    text = finding["msg"].removeprefix("Value error, ").removesuffix(".")
-    return Problem("simulate", f"{name} = {finding['input']!r}.", f"{text}.")

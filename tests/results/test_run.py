@@ -10,6 +10,7 @@ import pytest
 import xarray
 
 import shipcosim as sc
+from shipcosim.scenario import Event
 
 SHORT = {"stop_time": 10.0, "output_interval": 0.5}
 
@@ -180,6 +181,25 @@ def test_what_cannot_be_used_is_one_error_without_a_wall(case):
     with pytest.raises(sc.ShipcosimError, match=words) as caught:
         sc.run(**keywords)
     assert "pydantic" not in str(caught.value) and len(str(caught.value)) < 1000
+
+
+@pytest.mark.parametrize(
+    ("record", "keywords", "words"),
+    [
+        (
+            sc.Scenario,
+            {"stop_time": -1.0, "step_size": 0.1},
+            "Scenario\\(\\): stop_time = -1.0. Input should be greater",
+        ),
+        (sc.Scenario, {"stop_time": 1.0, "step": 0.1}, "step: There is no such key"),
+        (sc.Scenario, {"stop_time": 1.0, "step_size": 0.1, "events": [{"time": 0.0}]}, "The event does nothing"),
+        (Event, {"override": {"a.b": 1.0}}, "time is missing"),
+    ],
+)
+def test_a_record_that_a_script_makes_wrong_is_one_error_too(record, keywords, words):
+    with pytest.raises(sc.ShipcosimError, match=words) as caught:
+        record(**keywords)
+    assert "pydantic" not in str(caught.value)
 
 
 def test_a_notebook_shows_the_problems_and_no_traceback():

@@ -15,11 +15,13 @@ from pydantic import (
     PlainSerializer,
     PlainValidator,
     PrivateAttr,
+    ValidationError,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
 
 from shipcosim import library
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.units import UnitError, amount, find_unit, number_in
 
 
@@ -65,7 +67,33 @@ ListOfNames = Annotated[list[str], BeforeValidator(lambda names: [names] if isin
 POSITION = ["x", "y"]  # names of signals that make a position: north, east
 
 
-class _Part(BaseModel):
+def problems_in(error: ValidationError, where: str) -> list[Problem]:
+    """pydantic's findings in our words, for records that a script makes; the reader says those of a file by lines."""
+    problems = []
+    for finding in error.errors():
+        name = ".".join(map(str, finding["loc"]))
+        if finding["type"] == "missing":
+            problems.append(Problem(where, f"{name} is missing.", "Give it; times are in s."))
+        elif finding["type"] == "extra_forbidden":
+            problems.append(Problem(where, f"{name}: There is no such key.", f"It was given {finding['input']!r:.60}."))
+        else:
+            found = f"{name} = {finding['input']!r:.60}." if name else ""
+            text = finding["msg"].removeprefix("Value error, ").removesuffix(".")
+            problems.append(Problem(where, found or f"{text}.", f"{text}." if found else ""))
+    return problems
+
+
+class _Made(type(BaseModel)):  # pyright: ignore[reportGeneralTypeIssues]  pydantic's metaclass has no public name
+    """Makes records for scripts: what is wrong is a ShipcosimError, in one block."""
+
+    def __call__(cls, *arguments: Any, **keywords: Any) -> Any:
+        try:
+            return super().__call__(*arguments, **keywords)
+        except ValidationError as error:
+            raise ShipcosimError(problems_in(error, f"{cls.__name__}()")) from None
+
+
+class _Part(BaseModel, metaclass=_Made):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
