@@ -24,6 +24,7 @@ PAGES = {
     "diagnosis": ["diagnose", "docs/examples/gunnerus_log.csv.gz"],
     "capability": ["capability"],
 }
+TIMES = {"four_corner": "#t=330"}  # s: under way, with set point and reference apart
 HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
@@ -43,11 +44,11 @@ def browser(profile: Path) -> webdriver.Chrome:
     return driver
 
 
-def picture(driver: webdriver.Chrome, page: Path, height: int) -> bytes:
+def picture(driver: webdriver.Chrome, page: str, height: int) -> bytes:
     """The top of a page as a small PNG, when every figure is drawn."""
     size = {"width": WIDTH, "height": height, "deviceScaleFactor": 1, "mobile": False}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    driver.get(page.as_uri())
+    driver.get(page)
     while driver.execute_script("return document.body.dataset.drawn") != "all":
         time.sleep(0.1)
     shot = base64.b64decode(driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"])
@@ -66,7 +67,9 @@ def write_images() -> None:
                 done = subprocess.run([SHIPCOSIM, *command, "--out", str(out)], cwd=ROOT)
                 if done.returncode not in (0, 1):  # 1: it ran and found something, as the diagnosis shall
                     raise SystemExit(f"{' '.join(command)} failed")
-                (IMAGES / f"{name}.png").write_bytes(picture(driver, out / "report.html", HEIGHTS[name]))
+                (IMAGES / f"{name}.png").write_bytes(
+                    picture(driver, f"{(out / 'report.html').as_uri()}{TIMES.get(name, '')}", HEIGHTS[name])
+                )
         finally:
             driver.quit()
 

@@ -88,6 +88,17 @@ def test_start_values_that_differ_are_listed(browse, tmp_path):
     assert "bow.gain" in details and "1.5" in details and "bow.time" not in details
 
 
+def test_ships_of_other_names_are_compared_too(browse, tmp_path):
+    other = boat(north=3.0)
+    other = other.rename({f"boat.{axis}": f"hull.{axis}" for axis in ("x", "y", "psi")})
+    write_comparison((boat(), other), ("a", "b"), tmp_path / "report.html")
+    page = browse(tmp_path / "report.html")
+    page.ask("scene.time = 40; scene.paint()")
+    cells = page.ask("return [...document.getElementById('scene-figures').rows[1].cells].map(c => c.textContent)")
+    assert cells == ["North [m]", "40.00", "43.00", "+3.00"]
+    assert page.ask("return document.getElementById('scene-vessel').hidden")
+
+
 def test_runs_with_nothing_in_common_are_refused(tmp_path):
     other = boat().rename({name: f"other.{name}" for name in boat().data_vars})
     with pytest.raises(ShipcosimError, match="no signal in common"):

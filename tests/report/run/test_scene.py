@@ -225,8 +225,9 @@ def two_ships():
         "tug.bow.rpm": (100.0 + 0.0 * time, "rpm"),
     }
     table = xr.Dataset({k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": time})
-    sizes = {"tanker.vessel.length": 200.0, "tanker.vessel.breadth": 30.0, "tug.bow.x": 8.0}
-    table.attrs["start_values"] = json.dumps(sizes)
+    sizes = {"tanker.vessel.length": 200.0, "tanker.vessel.breadth": 30.0}
+    own = {"tug.boat.length": 30.0, "tug.boat.breadth": 10.0, "tug.bow.x": 8.0}
+    table.attrs["start_values"] = json.dumps(sizes | own)
     return table
 
 
@@ -244,12 +245,28 @@ def test_several_vessels_are_drawn_each_with_what_is_hers_and_a_sensor_is_none(b
     assert page.errors() == []
 
 
+def test_input_that_nothing_is_connected_to_is_no_vessel():
+    table = two_ships()[["tug.boat.north", "tug.boat.east", "tug.boat.heading"]]
+    for axis, unit in (("x", "m"), ("y", "m"), ("psi", "rad")):
+        table[f"controller.{axis}"] = ("time", np.zeros(table.sizes["time"]), {"units": unit})
+    run = make_run(table)
+    assert run is not None and [vessel["name"] for vessel in run.vessels] == ["tug.boat"]
+
+
 def test_what_is_missing_is_left_out():
     """Only a pose: no size, thrusters, weather, set point; nothing is made up for them."""
-    run = make_run(two_ships()[["tug.boat.north", "tug.boat.east", "tug.boat.heading"]])
+    table = two_ships()[["tug.boat.north", "tug.boat.east", "tug.boat.heading"]]
+    run = make_run(table.assign_attrs(start_values="{}"))
     assert run is not None and len(run.vessels) == 1
     assert run.vessels[0]["units"] == [] and run.vessels[0]["aims"] == {} and not run.vessels[0]["to_scale"]
     assert run.flows == [] and run.circles == [] and run.watch == {}
+
+
+def test_thrusters_have_no_place_on_a_ship_of_unknown_size():
+    table = two_ships()
+    table.attrs["start_values"] = json.dumps({"tug.bow.x": 8.0})
+    run = make_run(table[[name for name in table.data_vars if str(name).startswith("tug.")]])
+    assert run is not None and [unit["place"] for unit in run.vessels[0]["units"]] == [None]
 
 
 def test_names_of_others_are_read_and_what_measures_something_else_is_not():

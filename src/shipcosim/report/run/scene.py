@@ -170,7 +170,7 @@ def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
         "to_scale": vessel.size is not None,
         "outline": [np.round(side, 3).tolist() for side in hull_outline(*size)],
         "way": [np.round(values[where], 2).tolist() for values in (north, east, heading)],
-        "units": [made for unit in vessel.units if (made := _unit(unit, columns))],
+        "units": [made for unit in vessel.units if (made := _unit(unit, columns, vessel.size is not None))],
     }
 
 
@@ -179,8 +179,8 @@ def _aim(names: tuple[str, str, str | None], columns: _Columns) -> list[str | No
     return None if north is None or east is None else [north, east, columns.add(names[2], "deg", DEGREES)]
 
 
-def _unit(unit: Unit, columns: _Columns) -> dict[str, Any] | None:
-    """A thruster: bars need its thrust, vectors its force in body axes and its place, too."""
+def _unit(unit: Unit, columns: _Columns, to_scale: bool) -> dict[str, Any] | None:
+    """A thruster: bars need its thrust; vectors its force in body axes, its place, and a ship to scale around it."""
     thrust = columns.add(unit.thrust, "kN")
     if thrust is None:
         return None
@@ -192,7 +192,7 @@ def _unit(unit: Unit, columns: _Columns) -> dict[str, Any] | None:
         "azimuth": columns.add(unit.azimuth, "deg", 0.1),
         "azimuth_command": columns.add(unit.azimuth_command, "deg", 0.1),
         "force": _force(unit, columns),
-        "place": unit.place,
+        "place": unit.place if to_scale else None,
         "limits": None if unit.limits is None else [limit / 1000.0 for limit in unit.limits],
         "largest": float(np.nanmax(np.abs(values))) if values is not None else 0.0,
         **{flag: columns.add(getattr(unit, flag), "") for flag in ("saturated", "failed", "available")},

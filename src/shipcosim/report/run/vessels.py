@@ -95,7 +95,8 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
     main = find_roles(names).ship
     poses = sorted(_poses(table, names), key=lambda pose: (_owner(pose) != main, -_loads(pose, names)))
     apart: list[Pose] = []
-    for pose in (p for p in poses if _owner(p) == main or _moves(table, p)):
+    moving = [pose for pose in poses if _moves(table, pose) or _says_ship(pose)]
+    for pose in moving or poses[:1]:
         if all(_apart(table, pose, other) for other in apart):
             apart.append(pose)
     known = start_values(table)
@@ -143,6 +144,11 @@ def _poses(table: Dataset, names: list[str]) -> list[Pose]:
         if east is not None and heading is not None:
             found.append((north, east, heading))
     return found
+
+
+def _says_ship(pose: Pose) -> bool:
+    """Whether its component is called a ship, which may lie still."""
+    return _owner(pose).lower().endswith(tuple(COMMON_WORDS - {"model", "fmu"}))
 
 
 def _moves(table: Dataset, pose: Pose) -> bool:

@@ -8,7 +8,7 @@
   // ---- what there is to see
 
   const size = (vessel) => vessel.size[0];
-  const largest = Math.max(...runs.flatMap((run) => run.vessels.flatMap((vessel) => vessel.units.flatMap((unit) => (unit.force ? forces(run, unit) : [])))), 0);
+  const largest = Math.max(...runs.flatMap((run) => run.vessels.flatMap((vessel) => vessel.units.flatMap((unit) => (unit.force && unit.place ? forces(run, unit) : [])))), 0);
   function forces(run, unit) {
     const [x, y] = unit.force.map((name) => run.columns[name]);
     let most = 0;
@@ -87,7 +87,7 @@
     for (let n = Math.ceil(p.north(height - 34) / step) * step; p.y(n) > 26; n += step) c.fillText(number(n, digits), 41, p.y(n));
     c.fillText("N [m]", 41, 12); c.fillText("E [m]", width - 4, height - 34);
   }
-  const number = (v, digits) => (v === 0 ? 0 : v).toFixed(digits).replace("-", "−").replace(/^−(0(\.0*)?)$/, "$1");
+  const number = (v, digits) => (Math.abs(v) >= 1e6 ? v.toExponential(1) : (v === 0 ? 0 : v).toFixed(digits)).replace("-", "−").replace(/^−(0(\.0*)?)$/, "$1");
 
   function background(c, p, run) {
     for (const vessel of run.vessels) {
@@ -146,6 +146,12 @@
     return { what: "hull", run: run.label, vessel: vessel.name, colour: colour(run.colour), position: [state.north, state.east], heading: state.heading, ...hull };
   }
 
+  function title(c, p, { vessel, hull }) {  // where there are several, beside the outline
+    if (scene.vessels.length < 2) return;
+    c.fillStyle = colour("ink"); c.textAlign = "left"; c.textBaseline = "middle";
+    c.fillText(vessel.name, p.x(Math.max(...hull.east)) + 8, p.y((Math.max(...hull.north) + Math.min(...hull.north)) / 2));
+  }
+
   function thrusters(c, p, run, { vessel, units, north, east, heading }) {
     const s = Math.sin((heading * Math.PI) / 180), n = Math.cos((heading * Math.PI) / 180), drawn = [];
     for (const { unit, force, state } of units) {
@@ -190,7 +196,7 @@
     if (scene.ghost !== null) for (const { run, vessels } of scene.at(scene.ghost)) for (const vessel of vessels) drawn.push(ship(c, p, run, vessel, true));
     for (const { run, vessels } of states) for (const vessel of vessels) drawn.push(ship(c, p, run, vessel));
     for (const state of states) drawn.push(...circles(c, p, state, t));
-    for (const { run, vessels } of states) for (const vessel of vessels) drawn.push(...aims(c, p, run, vessel), ...thrusters(c, p, run, vessel));
+    for (const { run, vessels } of states) for (const vessel of vessels) { drawn.push(...aims(c, p, run, vessel), ...thrusters(c, p, run, vessel)); title(c, p, vessel); }
     c.restore();
     legend(p);
     return drawn;

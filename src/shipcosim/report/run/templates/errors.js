@@ -6,7 +6,7 @@
   const two = runs.length > 1;
 
   function errorsOf(run) {
-    const vessel = run.vessels.find(({ name }) => name === scene.vessels[scene.chosen]), aim = vessel && (vessel.aims.reference || vessel.aims["set point"]);
+    const vessel = scene.vesselOf(run), aim = vessel && (vessel.aims.reference || vessel.aims["set point"]);
     if (!aim) return null;
     const [n, e] = [0, 1].map((k) => run.columns[vessel.pose[k]].map((v, row) => v - run.columns[aim[k]][row]));
     const kept = [...n.keys()].filter((k) => Number.isFinite(n[k] + e[k]));

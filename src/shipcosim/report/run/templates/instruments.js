@@ -4,8 +4,8 @@
   const { runs, colour, compass, wrapped, arrow, stroke } = scene, two = runs.length > 1;
   const three = (degrees) => `${compass(+degrees.toFixed(1)).toFixed(1).padStart(5, "0")}°`;
   const whole = (degrees) => `${String(Math.round(compass(degrees)) % 360).padStart(3, "0")}°`;
-  const signed = (v, digits = 2) => (Number.isFinite(v) ? (v < -0.5 * 10 ** -digits ? "−" : v > 0.5 * 10 ** -digits ? "+" : " ") + Math.abs(v).toFixed(digits) : "–");
-  const plain = (v, digits = 2) => (Number.isFinite(v) ? v.toFixed(digits).replace(/^-(0\.0*)$/, "$1").replace("-", "−") : "–");
+  const signed = (v, digits = 2) => (Number.isFinite(v) ? (v < -0.5 * 10 ** -digits ? "−" : v > 0.5 * 10 ** -digits ? "+" : " ") + plain(Math.abs(v), digits) : "–");
+  const plain = (v, digits = 2) => (Number.isFinite(v) ? (Math.abs(v) >= 1e6 ? v.toExponential(2) : v.toFixed(digits)).replace(/^-(0\.0*)$/, "$1").replace("-", "−") : "–");
   const FLOW = { wind: "sky", current: "blue", waves: "green" };
 
   // ---- heading scale
@@ -117,7 +117,7 @@
 
   // ---- thrusters
 
-  const units = () => runs.flatMap((run) => run.vessels.filter((v) => v.name === scene.vessels[scene.chosen]).flatMap((v) => v.units));
+  const units = () => runs.flatMap((run) => scene.vesselOf(run)?.units ?? []);
   const names = () => [...new Set(units().map((unit) => unit.name))];
   const BAR = two ? 44 : 30, bars = scene.canvas("thrust", () => names().length * BAR + (names().length ? 24 : 0));
 
@@ -150,9 +150,9 @@
     return drawn;
   });
 
-  function fitted(c, text, width) {
+  function fitted(c, text, width) {  // what is too long loses its middle: names begin, or end, alike
     let shown = text;
-    while (shown.length > 2 && c.measureText(shown).width > width) shown = `${shown.slice(0, -2)}…`;
+    for (let n = text.length - 2; n > 3 && c.measureText(shown).width > width; n--) shown = `${text.slice(0, Math.ceil(n / 2))}…${text.slice(text.length - Math.floor(n / 2))}`;
     return shown;
   }
 })();

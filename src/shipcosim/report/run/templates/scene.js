@@ -202,12 +202,13 @@ const scene = (() => {
   addEventListener("scene-go", (event) => self.go(event.detail));
   addEventListener("scene-ghost", (event) => { self.ghost = event.detail; self.refresh(); });
 
-  const choice = by("vessel"), vessels = [...new Set(runs.flatMap((run) => run.vessels.map((vessel) => vessel.name)))];
+  const choice = by("vessel"), vessels = [...new Set(runs.flatMap((run) => (run.vessels.length > 1 ? run.vessels.map((vessel) => vessel.name) : [])))];
   for (const [k, name] of vessels.entries()) choice.append(new Option(name, k));
   choice.hidden = vessels.length < 2;
   choice.addEventListener("change", () => { self.chosen = +choice.value; for (const { measure } of canvases.values()) measure(); dispatchEvent(new Event("scene-vessel")); self.refresh(); });
   self.vessels = vessels;
-  self.of = (state) => state.vessels.find(({ vessel }) => vessel.name === vessels[self.chosen]) || null;
+  self.vesselOf = (run) => (run.vessels.length > 1 ? run.vessels.find((vessel) => vessel.name === vessels[self.chosen]) : run.vessels[0]);
+  self.of = (state) => state.vessels.find(({ vessel }) => vessel === self.vesselOf(state.run)) || null;
 
   // ---- canvases
 
