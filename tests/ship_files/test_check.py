@@ -49,7 +49,7 @@ PLANTED = {
     ),
     "an inertia of another ship": (
         SUPPLY,
-        [("[wind]", "[mass]\nyaw_inertia = 6.1e6\n[wind]")],
+        [("[wind]", "[mass]\ninertia_yaw = 6.1e6\n[wind]")],
         "mass",
         "gyration radius of 0.025 lengths",
         "0.15 to 0.4",

@@ -62,7 +62,7 @@ class Inertia(_Part):
     mass: Mass = None
     centre_of_gravity_x: Place = None
     yaw_gyradius: Length = None
-    yaw_inertia: YawInertia = None
+    inertia_yaw: YawInertia = None
     added_surge: AddedMass = None
     added_sway: AddedMass = None
     added_sway_yaw: MassLever = None

@@ -11,8 +11,8 @@ from shipcosim.ships.estimates.hull import (
     Form,
     added_masses,
     cross_flow_drag,
+    inertia_yaw,
     manoeuvring_derivatives,
-    yaw_inertia,
 )
 from shipcosim.ships.estimates.resistance import drag_coefficient
 from shipcosim.ships.estimates.weather import USUAL_KIND, drift_table, front_area, side_area, wind_table
@@ -94,14 +94,14 @@ def _inertia(own: Numbers, m: Inertia, p: Particulars, form: Form) -> None:
     mass = float(own.entries["mass"].value)
     own.give("centre_of_gravity_x", m.centre_of_gravity_x)
     centre = number(m.centre_of_gravity_x)
-    if not own.give("inertia_yaw", m.yaw_inertia):
+    if not own.give("inertia_yaw", m.inertia_yaw):
         gyradius = m.yaw_gyradius
         if gyradius is not None:
             tolerance = None if gyradius.tolerance is None else 2.0 * mass * gyradius.value * gyradius.tolerance
             value = mass * (gyradius.value**2 + centre**2)
             own.give("inertia_yaw", Given(value, tolerance, gyradius.origin or own.source))
         else:
-            own.estimate("inertia_yaw", yaw_inertia(mass, form.length, centre))
+            own.estimate("inertia_yaw", inertia_yaw(mass, form.length, centre))
     own.give("A11", m.added_surge)
     own.give("A22", m.added_sway)
     for name in ("A26", "A62"):

@@ -96,7 +96,7 @@ def added_masses(form: Form) -> dict[str, Estimate]:
     }
 
 
-def yaw_inertia(mass: float, length: float, centre_x: float) -> Estimate:
+def inertia_yaw(mass: float, length: float, centre_x: float) -> Estimate:
     """Moment of inertia about midships, with a gyration radius of a quarter of the length.
 
     Parameters
