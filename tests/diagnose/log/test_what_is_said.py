@@ -32,6 +32,7 @@ def why(folder, text, column):
         ("time,surge\n08:01,1\n08:02,2\n08:03,2\n", "hours and minutes or minutes and seconds"),
         ("time,surge\n0,1,5\n1,2,5\n2,3,5\n", "line 2: has 3 cells, and the header has 2. Are these decimal commas"),
         ("0,1,2\n1,1,2\n2,1,2\n", "no names of columns stand above .* file = {names"),
+        ('time,surge,note\n0,1,a\n1,1,"b\n2,1,c\n3,2,d"\n4,2,e\n', "a quotation mark is opened in a row"),
         ("time,lat,lon\n0,94.2,10\n1,94.3,10\n2,94.4,10\n", "latitude: is 94.2 in row 2, beyond 90 deg"),
         ("time,heading,heading\n0,1,2\n1,1,2\n", "column 'heading': is there twice"),
     ],

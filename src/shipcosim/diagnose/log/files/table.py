@@ -89,7 +89,7 @@ def _of_text(source: str, text: str, form: Form) -> LogColumns:
     layout = layout_of(source, lines, form, is_unit)
     rows, said = _rows(source, lines, layout)
     width = len(layout.header)
-    frame = _frame(rows, layout.separator, width)
+    frame = _checked_frame(source, rows, layout.separator, width)
     decimal, frame = _with_decimal_sign(source, frame, rows, layout.separator, form)
     names, units, doubled = _names(layout)
     values = {}
@@ -173,6 +173,21 @@ def _width(line: str, separator: str) -> int:
     if separator == " " or '"' in line:
         return len(cells_in(line, separator))
     return line.count(separator) + 1
+
+
+def _checked_frame(source: str, rows: list[str], separator: str, width: int) -> Any:
+    """The rows as a table; ShipcosimError where a quotation mark takes several for one."""
+    from pandas.errors import ParserError
+
+    try:
+        frame, why = _frame(rows, separator, width), ""
+    except ParserError as error:
+        frame, why = None, f" ({error})"
+    if frame is None or len(frame) != len(rows):
+        row = next((row for row in rows if row.count('"') % 2), rows[0])
+        found = f"a quotation mark is opened in a row and not closed in it: '{row[:60]}'{why}."
+        raise ShipcosimError(Problem(source, found, "Close it, or leave it out."))
+    return frame
 
 
 def _frame(rows: list[str], separator: str, width: int, texts: Any = None) -> Any:

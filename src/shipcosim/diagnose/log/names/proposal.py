@@ -41,8 +41,14 @@ class Proposal:
     form: Form
 
     def channels(self, guessed: bool = False) -> dict[str, Channel]:
-        """Channels by role: those that are sure, or the guesses as well."""
-        return {g.role: g.channel for g in self.used if guessed or g.rank < GUESS}
+        """Channels by role: those that are sure, or the guesses as well.
+
+        A column named by its role is in the role's unit where none is stated, unless the proposal is confirmed.
+        """
+        if guessed:
+            return {g.role: g.channel for g in self.used}
+        plain = {g.role: Channel(column=g.column) for g in self.used if g.rank == EXACT and g.role == "yaw_rate"}
+        return {g.role: g.channel for g in self.used if g.rank < GUESS} | plain
 
 
 def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | None = None) -> Proposal:

@@ -43,7 +43,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: Form) -> None:
     for role in ("surge", "sway", "speed_over_ground", "north_velocity", "east_velocity"):
         if _is_open(chosen, role):
             _settle_speed(chosen, role, log, form, motion)
-    if _is_open(chosen, "yaw_rate"):
+    if "yaw_rate" in chosen and not chosen["yaw_rate"].unit:
         _settle_rate(chosen, log, form, motion)
     for role in ("wind_speed", "true_wind_speed"):
         if _is_open(chosen, role) and _is_short(chosen[role]):
@@ -226,6 +226,8 @@ def _settle_rate(chosen, log, form, motion):
     if heading is not None and motion is not None and raw.dtype.kind == "f":
         unit = unit_of_rate(motion[0], heading, raw)
     guess = chosen["yaw_rate"]
+    if guess.rank == EXACT and unit in (None, "deg/s"):
+        return
     if unit is None:
         is_rot = guess.column.strip().lower() in ("rot", "rateofturn", "rate of turn", "rate_of_turn")
         _guess(chosen, "yaw_rate", "deg/min" if is_rot else ROLES["yaw_rate"].unit, "no unit is stated")
