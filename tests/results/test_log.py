@@ -29,6 +29,13 @@ def test_a_fault_that_the_channels_show_is_said(log):
     assert broken.faults and "FAULTY" in broken._repr_html_()
 
 
+def test_columns_that_are_not_used_are_said(tmp_path):
+    rows = "".join(f"{k},{k},0,90,1,x\n" for k in range(60))
+    (tmp_path / "odd.csv").write_text(f"time,north,east,heading,surge,foo\n{rows}", encoding="utf-8")
+    log = sc.read_log(tmp_path / "odd.csv")
+    assert any("foo" in remark for remark in log.remarks) and "foo" in log._repr_html_()
+
+
 def test_channels_are_drawn_by_name_and_pattern(log):
     assert "heading" in log.plot("heading").svg
     assert "measured" in log.track().svg

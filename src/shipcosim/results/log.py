@@ -44,12 +44,10 @@ class Log:
 
     @cached_property
     def remarks(self) -> tuple[str, ...]:
-        """What cannot be known from it, what is ordinary and gets handled, and columns that are not used."""
+        """How its columns were read and which were not, what cannot be known from it, what is ordinary and handled."""
         from shipcosim.diagnose.log.remarks import remarks
 
-        unused = [str(column) for column in self.table.attrs.get("unused_columns", ())]
-        said = (f"Not used: {', '.join(unused)}.",) if unused else ()
-        return (*remarks(self.table), *said)
+        return (*map(str, self.table.attrs.get("column_remarks", ())), *remarks(self.table))
 
     @cached_property
     def faults(self) -> tuple[Finding, ...]:
