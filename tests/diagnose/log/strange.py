@@ -118,3 +118,28 @@ def time_last_and_paths_for_names(table, folder):
     columns = renamed(table, names)
     columns["Vessel/Clock/Time"] = columns.pop("Vessel/Nav/Time")
     return save(folder, lines(columns))
+
+
+@strange
+def topic_field_value_and_unit(table, folder):
+    topics = {"port_rpm": "port", "starboard_rpm": "stbd", "port_azimuth": "port", "starboard_azimuth": "stbd"}
+    rows = ["stamp,topic,field,value,unit"]
+    for i, t in enumerate(table["time"]):
+        for role, values in table.items():
+            name = role.split("_")[-1] if role in topics else role
+            rows += [f"{t},{topics.get(role, 'nav')},{name},{number(values[i])},{UNITS[role]}"] * (role != "time")
+    return save(folder, rows)
+
+
+@strange
+def two_sensors_of_a_kind(table, folder):
+    columns = renamed(table, {"heading": "Gyro1 Heading [deg]", "north": "GPS1 North [m]", "east": "GPS1 East [m]"})
+    return save(folder, lines(columns | {"Gyro2 Heading [deg]": [number(v + 0.3) for v in table["heading"]]}))
+
+
+@strange
+def side_after_a_number(table, folder):
+    columns = renamed(table, {}, drop=("north", "east"))
+    for name, degrees, side in zip(("LAT", "LON"), on_earth(table), (" S", "W"), strict=True):
+        columns[name] = [f"{-d:.8f}{side}" for d in degrees]
+    return save(folder, lines(columns, ";"))

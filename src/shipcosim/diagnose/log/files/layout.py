@@ -135,7 +135,8 @@ def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]
         cells = cells_in(lines[i], separator)
         told = [cell for cell in cells if not is_nothing(cell)]
         figures = sum(map(is_figure, told))
-        if width > 1 and len(cells) == width and figures and figures >= 0.5 * len(told):
+        is_message = figures > 1 and is_figure(cells[0])
+        if width > 1 and len(cells) == width and figures and (is_message or figures >= 0.5 * len(told)):
             return i, width
     if rows and width > 1:
         raise ShipcosimError(Problem(source, "has no row below its header.", "Each row is a time and its values."))
