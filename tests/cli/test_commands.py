@@ -289,6 +289,10 @@ def test_check_of_an_fmu_lists_its_variables_with_unit_and_start(call, project):
     lines = call("check", "build/fmus/lag.fmu").out.splitlines()
     listed = [line.split() for line in lines]
     assert ["time_constant", "parameter", "Real", "s", "1.0", "time", "constant"] in listed
+    (told,) = json.loads(call("check", "build/fmus/lag.fmu", "--json").out)
+    assert {"name": "y", "causality": "output", "type": "Real", "unit": "m", "start": "", "description": "output"} in [
+        *told["variables"]
+    ]
     assert ["y", "output", "Real", "m", "output"] in listed
     assert json.loads(call("check", "build/fmus/lag.fmu", "--json").out)[0]["problems"] == []
 

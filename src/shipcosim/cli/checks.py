@@ -120,6 +120,9 @@ def variables_in(file: str) -> list[tuple[str, ...]]:
     ]
 
 
+VARIABLE_KEYS = ("name", "causality", "type", "unit", "start", "description")
+
+
 def check_scenario_file(path: Path) -> list[Problem]:
     """Problems of a scenario, in itself and with its system."""
     from shipcosim.scenario import check_files, check_scenario, read_scenario

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from shipcosim.report.theme.views import Outcome
     from shipcosim.scenario import Verdict
 
+WIDEST = 40  # columns that a cell makes its column; longer ones stand out of it
 WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
 STYLES = {"error": "bold red", "remark": "yellow"}
 VERDICTS = {"passed": "bold green", "consistent": "bold green", "named": "bold blue", "partial": "bold yellow"}
@@ -118,15 +119,16 @@ def _expectations(judged):
 
 
 def print_variables(rows: Iterable[Sequence[str]]) -> None:
-    """Table of an FMU's variables."""
-    listed = Table(box=None, pad_edge=False)
-    for heading in ("variable", "", "type", "unit", "start", "meaning"):
-        listed.add_column(heading, no_wrap=True, max_width=24 if heading == "start" else None)
-    for row in rows:
-        listed.add_row(*map(Text, row))
+    """An FMU's variables, nothing cut off: a line each, or a block each where the terminal is too narrow for that."""
+    lines = [("variable", "causality", "type", "unit", "start", "meaning"), *rows]
+    widths = [max(min(len(line[i]), WIDEST) for line in lines) for i in range(5)]
     console = Console(highlight=False, soft_wrap=True)
-    console.width = max(console.width, WIDTH)
-    console.print(listed)
+    narrow = console.is_terminal and sum(widths) + 2 * len(widths) > console.width
+    for number, line in enumerate(lines):
+        name, *facts = (cell.ljust(width) for cell, width in zip(line[:5], widths, strict=True))
+        first, last = (f"{name}\n    ", "\n    ") if narrow else (f"{name}  ", "  ")
+        text = f"{first}{'  '.join(facts)}{last}{line[5]}"
+        console.print(Text(text.rstrip(), style="" if number else "bold"))
 
 
 def print_estimates(rows: Iterable[Sequence[str]]) -> None:
@@ -139,10 +141,16 @@ def print_estimates(rows: Iterable[Sequence[str]]) -> None:
         console.print(Text(f"{cells}  {line[3]}", style="" if number else "bold"))
 
 
-def print_report(reports: Mapping[str, Sequence[Problem]], as_json: bool) -> None:
-    """Findings on files; `reports` maps a file to its problems."""
+def print_report(
+    reports: Mapping[str, Sequence[Problem]], as_json: bool, variables: Mapping[str, Sequence[Mapping[str, str]]]
+) -> None:
+    """Findings on files; `reports` maps a file to its problems, `variables` an FMU to what its variables are."""
     if as_json:
-        listed = [{"file": file, "problems": [asdict(p) for p in problems]} for file, problems in reports.items()]
+        listed = [
+            {"file": file, "problems": [asdict(p) for p in problems]}
+            | ({"variables": variables[file]} if file in variables else {})
+            for file, problems in reports.items()
+        ]
         print(json.dumps(listed, indent=2, ensure_ascii=False))
         return
     console = Console(highlight=False, soft_wrap=True)

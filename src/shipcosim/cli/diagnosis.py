@@ -114,18 +114,34 @@ def check_inputs(
 def shown_progress(first: str = "1 of 5: ") -> Iterator[Callable[..., None]]:
     """Which stage is being worked on, on stderr; yields a function of (what is done, parts done, of how many).
 
+    On a terminal a bar with the share that is done and the time that is left; elsewhere a line for each numbered stage.
+
     `first` goes before steps that have no name of their own.
     """
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        SpinnerColumn,
+        TaskProgressColumn,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
-    console = Console(stderr=True)
-    columns = [SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24), TimeElapsedColumn()]
+    console, last = Console(stderr=True), [""]
+    columns = [SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24), TaskProgressColumn()]
+    columns += [TimeElapsedColumn(), TextColumn("left in this step:"), TimeRemainingColumn()]
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("", total=None)
 
         def show(doing, done=None, total=None):
             text = doing if doing == LAST_STEP else STEPS.get(doing, f"{first}{doing}")
+            if not console.is_terminal and text != last[0] and (doing in STEPS or doing == LAST_STEP):
+                console.print(text, highlight=False)
+            if text != last[0]:
+                bar.reset(task)
+            last[0] = text
             bar.update(task, description=text, completed=done or 0, total=total)
 
         yield show

@@ -18,7 +18,10 @@ def build(
     ] = None,
     debug: Debug = False,
 ) -> None:
-    """Build the FMUs in fmus/ and pack each system in ssp/."""
+    """Build the FMUs in fmus/ and pack each system in ssp/.
+
+    Example: shipcosim build vessel
+    """
     from shipcosim import library
     from shipcosim.cli.building import build_named
     from shipcosim.cli.console import progress_of, shown_path

@@ -29,6 +29,8 @@ def calibrate(
 
     Leaves calibrated.ssv, reference.json and report.html. `shipcosim diagnose LOG --reference DIR` then says what has
     changed since. Exit code 1 if these logs make no reference: only the page is left then, which says why.
+
+    Example: shipcosim calibrate monday.csv tuesday.csv
     """
     from shipcosim.cli.calibration import calibrate_ship, print_calibration
     from shipcosim.cli.diagnosis import logs_of

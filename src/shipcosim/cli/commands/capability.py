@@ -43,6 +43,8 @@ def capability(
 
     By the formulae of DNV-ST-0111 Level 1, and by the simulator's own models. Leaves report.html, capability.csv and
     capability.nc in results/capability-SHIP.
+
+    Example: shipcosim capability --failure port,tunnel
     """
     from shipcosim.cli.capability import assess, print_capability
 

@@ -34,9 +34,11 @@ def check(
     of a ship file what is estimated.
 
     A table whose columns are named by roles, or one with a channel file, is measured data: it is examined for faults.
+
+    Example: shipcosim check build/fmus/vessel.fmu scenarios/four_corner.toml
     """
     from shipcosim import library
-    from shipcosim.cli.checks import check_any, estimates_in, variables_in
+    from shipcosim.cli.checks import VARIABLE_KEYS, check_any, estimates_in, variables_in
     from shipcosim.cli.console import print_estimates, print_report, print_variables
     from shipcosim.errors import held_strictly
     from shipcosim.ssp.portability.check import check_host
@@ -47,8 +49,10 @@ def check(
     reports = {file: check_any(path, channels, hosts or ()) for file, path in zip(files, paths, strict=True)}
     if strict:
         reports = {file: held_strictly(problems) for file, problems in reports.items()}
-    print_report(reports, as_json)
-    for variables in () if as_json else filter(None, map(variables_in, paths)):
+    rows = {file: found for file, path in zip(files, paths, strict=True) if (found := variables_in(path))}
+    keyed = {file: [dict(zip(VARIABLE_KEYS, row, strict=True)) for row in found] for file, found in rows.items()}
+    print_report(reports, as_json, keyed)
+    for variables in () if as_json else rows.values():
         print_variables(variables)
     for estimates in () if as_json else filter(None, map(estimates_in, paths)):
         print_estimates(estimates)

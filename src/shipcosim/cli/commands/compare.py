@@ -33,16 +33,21 @@ def compare(
     as_json: ReportAsJson = False,
     debug: Debug = False,
 ) -> None:
-    """Run on every engine that is installed, and on ours with half the step; show by how much each signal differs."""
+    """Run on every engine that is installed, and on ours with half the step; show by how much each signal differs.
+
+    Example: shipcosim compare four_corner --stop-time 60
+    """
     from contextlib import nullcontext
 
-    from shipcosim.cli.comparison import print_comparison, reading
+    from shipcosim.cli.comparison import not_compared, print_comparison, reading
     from shipcosim.cli.console import progress_of
     from shipcosim.cli.requests import system_and_scenario
     from shipcosim.cosim.compare import compare as compare_engines
     from shipcosim.options import RunOptions
 
     system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict)
+    for said in not_compared():
+        typer.echo(said, err=True)
     how = reading(what, system, scenario, parameters) if as_read else nullcontext({})
     with how as tools, progress_of("Comparing") as progress:
         comparison = compare_engines(system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools)

@@ -38,6 +38,8 @@ def diagnose(
     Leaves diagnosis.json and report.html; where a cause in the model was named extended.ssp and extended.ssv. Exit
     code 0 if simulation and log agree, 1 if something was found. Several logs are weighed together: the ship is common,
     the weather each log's own, and each is predicted by what the others say.
+
+    Example: shipcosim diagnose log.csv --out results/log
     """
     from shipcosim.cli.diagnosis import default_folder, diagnose_log, logs_of, print_diagnosis
     from shipcosim.cli.joint_diagnosis import diagnose_logs, print_joint

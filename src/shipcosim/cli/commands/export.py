@@ -38,6 +38,8 @@ def fmu(
 
     FMU and system are run side by side for some steps first; where they differ, no FMU is written. Of a scenario its
     parameter sets and start values go into the FMU; its events and expectations do not.
+
+    Example: shipcosim export fmu ferry.ssp --out results
     """
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cli.requests import system_to_export
@@ -66,6 +68,8 @@ def osp(
     """Write OspSystemStructure.xml, the FMUs and scenario.json, which libcosim runs as they are.
 
     What OSP cannot express is refused; what gets lost on the way is said.
+
+    Example: shipcosim export osp four_corner --out results/osp
     """
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cli.requests import system_and_scenario

@@ -41,6 +41,8 @@ def replay(
 
     The system is started again and again from the measured state and driven by what the log says of its thrusters.
     Leaves report.html, errors.csv and replay.nc.
+
+    Example: shipcosim replay log.csv --system results/log/extended.ssp
     """
     from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, default_folder, logs_of
     from shipcosim.cli.replaying import print_replay, replay_and_save, systems_of

@@ -60,6 +60,8 @@ def run(
 
     --parameters takes sets that were made for another system too, as extended.ssv of a diagnosis: what the scenario's
     system has is taken, over what the scenario says, and what it has not is said.
+
+    Example: shipcosim run four_corner --set environment.wind_speed='10 kn' --until 300
     """
     from shipcosim.cli.requests import changed_by, isolation, parsed_settings
     from shipcosim.cli.runs import simulate_and_save

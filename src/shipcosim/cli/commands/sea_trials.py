@@ -30,6 +30,8 @@ def sea_trials(
     By features that need no clock: steady speed, rate and drift, time and speed over heading. Causes are fitted on
     circles to one side and judged on those to the other. Leaves sea_trials.json, and where causes were found
     extended.ssp and extended.ssv. Exit code 0 if simulation and trials agree, 1 if something was found.
+
+    Example: shipcosim sea-trials trials.csv --channels channels.toml
     """
     from shipcosim.cli.diagnosis import logs_of
     from shipcosim.cli.sea_trials import print_study, study_log

@@ -75,6 +75,8 @@ def simulate(
     """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
 
     Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
+
+    Example: shipcosim simulate ferry.ssp --stop-time 60 --step-size 0.1
     """
     from shipcosim.cli import requests
     from shipcosim.cli.runs import simulate_and_save
