@@ -19,7 +19,7 @@ def commands():
             yield pytest.param(words, one, id=" ".join(words))
 
 
-@pytest.mark.parametrize(("words", "command"), commands())
+@pytest.mark.parametrize(("words", "command"), [*commands()])
 def test_each_command_has_an_example_that_its_parser_takes(words, command):
     _, example = command.help.split("Example: ")
     program, *given = shlex.split(example.replace("\n", " "))

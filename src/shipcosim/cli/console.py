@@ -141,9 +141,7 @@ def print_estimates(rows: Iterable[Sequence[str]]) -> None:
         console.print(Text(f"{cells}  {line[3]}", style="" if number else "bold"))
 
 
-def print_report(
-    reports: Mapping[str, Sequence[Problem]], as_json: bool, variables: Mapping[str, Sequence[Mapping[str, str]]]
-) -> None:
+def print_report(reports: Mapping[str, Sequence[Problem]], as_json: bool, variables: Mapping[str, object]) -> None:
     """Findings on files; `reports` maps a file to its problems, `variables` an FMU to what its variables are."""
     if as_json:
         listed = [
