@@ -13,7 +13,7 @@ from shipcosim.cli.diagnosis import LAST_STEP, shown_progress
 
 def commands():
     """Every command by its words: ("run",), ("export", "fmu")."""
-    for name, command in get_command(app).commands.items():
+    for name, command in vars(get_command(app))["commands"].items():
         inner = getattr(command, "commands", None)
         for words, one in [((name, n), c) for n, c in inner.items()] if inner else [((name,), command)]:
             yield pytest.param(words, one, id=" ".join(words))
