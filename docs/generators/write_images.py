@@ -1,7 +1,7 @@
 """Writes docs/images/four_corner.png, diagnosis.png and capability.png: what the pages look like in a browser.
 
 Run `python docs/generators/write_images.py` after a page looks different; it takes a minute. Needs Chromium, its
-driver, and the packages selenium and Pillow.
+driver, and the packages selenium and Pillow. `tests/test_images.py` makes the pictures again and compares them.
 """
 
 import base64
@@ -28,6 +28,7 @@ TIMES = {"four_corner": "#t=330"}  # s: under way, with set point and reference 
 HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
+SQUARE, CLEARLY = 20, 12  # px; of 255 shades of grey: a letter more or less is not
 SWITCHES = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars")
 
 
@@ -57,21 +58,32 @@ def picture(driver: webdriver.Chrome, page: str, height: int) -> bytes:
     return written.getvalue()
 
 
+def fresh(name: str, folder: Path) -> bytes:
+    """The picture of a page that is made now, in a folder that the caller deletes. PNG."""
+    done = subprocess.run([SHIPCOSIM, *PAGES[name], "--out", str(folder / name)], cwd=ROOT, stdout=subprocess.DEVNULL)
+    if done.returncode not in (0, 1):  # 1: it ran and found something, as the diagnosis shall
+        raise SystemExit(f"{' '.join(PAGES[name])} failed")
+    driver = browser(folder / f"{name}-profile")
+    try:
+        return picture(driver, f"{(folder / name / 'report.html').as_uri()}{TIMES.get(name, '')}", HEIGHTS[name])
+    finally:
+        driver.quit()
+
+
+def difference(one: bytes, other: bytes) -> float:
+    """Share of a picture, in squares of 20 px, that looks clearly different; 1 for pictures of other sizes."""
+    images = [Image.open(io.BytesIO(png)).convert("L") for png in (one, other)]
+    if images[0].size != images[1].size:
+        return 1.0
+    few = [image.reduce(SQUARE).tobytes() for image in images]
+    return sum(abs(a - b) > CLEARLY for a, b in zip(*few, strict=True)) / len(few[0])
+
+
 def write_images() -> None:
     """Makes all pages in a folder that is deleted again, and writes their pictures."""
     with tempfile.TemporaryDirectory() as folder:
-        driver = browser(Path(folder) / "profile")
-        try:
-            for name, command in PAGES.items():
-                out = Path(folder) / name
-                done = subprocess.run([SHIPCOSIM, *command, "--out", str(out)], cwd=ROOT)
-                if done.returncode not in (0, 1):  # 1: it ran and found something, as the diagnosis shall
-                    raise SystemExit(f"{' '.join(command)} failed")
-                (IMAGES / f"{name}.png").write_bytes(
-                    picture(driver, f"{(out / 'report.html').as_uri()}{TIMES.get(name, '')}", HEIGHTS[name])
-                )
-        finally:
-            driver.quit()
+        for name in PAGES:
+            (IMAGES / f"{name}.png").write_bytes(fresh(name, Path(folder)))
 
 
 if __name__ == "__main__":

@@ -233,6 +233,11 @@ const scene = (() => {
     };
   };
 
+  addEventListener("beforeprint", () => {  // paper shows what is not in view, too
+    for (const { found, measure } of canvases.values()) { found.shown = true; measure(); }
+    self.paint();
+  });
+
   function prepare(context, ratio) {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.font = `12px ${getComputedStyle(document.body).fontFamily}`;
