@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -82,14 +83,16 @@ def estimates_in(file: str) -> list[tuple[str, ...]]:
 
 
 def _is_ship(path: Path) -> bool:
-    """Whether a path is a ship file, or a folder with one."""
-    if path.is_dir():
-        return (path / "ship.toml").is_file()
+    """Whether a path is a ship file, which has particulars or thrusters, or a folder with one."""
+    if path.is_dir() or path.name == "ship.toml":
+        return path.name == "ship.toml" or (path / "ship.toml").is_file()
     if path.suffix != ".toml":
         return False
-    from shipcosim.ships.described import is_ship_file
-
-    return is_ship_file(path)
+    try:
+        said = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return "particulars" in said or "thrusters" in said
 
 
 def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:

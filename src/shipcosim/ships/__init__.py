@@ -1,6 +1,6 @@
 """Ships as files: what a naval architect writes of one, what formulae add, and the parameter sets made of both."""
 
-from shipcosim.ships.described import Described, describe, file_of, is_ship_file
+from shipcosim.ships.described import Described, describe, file_of
 from shipcosim.ships.folder import Quantity, Ship, read_ship
 from shipcosim.ships.parameter_set import parameter_values
 from shipcosim.ships.system import make_systems
@@ -11,7 +11,6 @@ __all__ = [
     "Ship",
     "describe",
     "file_of",
-    "is_ship_file",
     "make_systems",
     "parameter_values",
     "read_ship",

@@ -60,17 +60,6 @@ def file_of(ship: str | Path) -> Path:
     return path / "ship.toml" if path.is_dir() else path
 
 
-def is_ship_file(path: Path) -> bool:
-    """Whether a TOML file describes a ship: it has particulars, thrusters or the name ``ship.toml``."""
-    if path.name == "ship.toml":
-        return True
-    try:
-        said = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError):
-        return False
-    return "particulars" in said or "thrusters" in said
-
-
 def read_file(path: Path) -> ShipFile:
     """Records of a ship file.
 

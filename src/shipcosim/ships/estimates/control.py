@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
-from scipy.optimize import linprog
 
 from shipcosim.ships.estimates.estimate import Estimate
 
@@ -105,6 +104,8 @@ def reach_of(effects: np.ndarray, least: np.ndarray, most: np.ndarray) -> tuple[
     tuple of three floats
         0 where the thrusters cannot give it without the others. [N, N, N.m]
     """
+    from scipy.optimize import linprog  # half a second to import
+
     found = []
     for axis in range(3):
         others = effects[[i for i in range(3) if i != axis]]
