@@ -51,6 +51,11 @@ def make_table(
     """
     import xarray
 
+    columns = list(columns)
+    if uneven := [
+        Problem(n, f"has {len(v)} rows, time has {len(time)}.") for n, v, *_ in columns if len(v) != len(time)
+    ]:
+        raise ShipcosimError(uneven)
     variables = {
         name: ("time", values, {"units": unit, "long_name": long_name}) for name, values, unit, long_name in columns
     }
@@ -130,9 +135,7 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
     path = Path(path)
     if _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet")) == ".nc":
         columns = _netcdf_columns(_open_netcdf(path))
-        if empty := [name for name, (values, _) in columns.items() if not len(values)]:
-            raise ShipcosimError(Problem(str(path), f"has no row of {', '.join(empty[:8])}.", "Leave the column out."))
-        return columns
+        return {name: found for name, found in columns.items() if len(found[0])}
     columns = _read_columns(path)
     problems = _repeated(path, [name for name, _, _ in columns])
     if problems:
@@ -235,14 +238,22 @@ def _csv(table: xarray.Dataset) -> bytes:
     return text.getvalue().encode()
 
 
+def _check_declared(path: Path) -> None:
+    """Raise ValueError where a file declares more values than are read; declaring needs no room in the file."""
+    import h5py
+
+    with h5py.File(path) as file:
+        declared = sum(part.nbytes for part in file.values() if isinstance(part, h5py.Dataset))
+    if declared > LARGEST_TABLE:
+        raise ValueError(f"it declares {declared / 2**30:.3g} GiB, at most {LARGEST_TABLE >> 30} are read")
+
+
 def _open_netcdf(path: Path) -> xarray.Dataset:
     import xarray
 
     try:
+        _check_declared(path)
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
-            declared = sum(variable.nbytes for variable in table.variables.values())
-            if declared > LARGEST_TABLE:
-                raise ValueError(f"it declares {declared / 2**30:.3g} GiB, at most {LARGEST_TABLE >> 30} are read")
             return table.load()
     except Exception as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too
         said = "".join(c if c.isprintable() else " " for c in str(error))[:200].rstrip(".")

@@ -1,15 +1,19 @@
 """What fuzzing has found, each as the smallest file that did it."""
 
+import json
 import random
 import struct
 import time
 
+import h5py
 import pytest
 from fuzz.damage_xml import many
 from fuzz.endless import HEAD, TAIL, endless_connections, endless_systems
 from fuzz.seeds import seeds, zipped
+from fuzz.typed import running
 
 from shipcosim.cli.checks import check_any
+from shipcosim.cosim.master.snapshot import read_snapshot
 from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError
 
 
@@ -132,3 +136,44 @@ def test_of_very_many_problems_the_first_are_told_and_the_number_of_the_others()
     error = ShipcosimError(problems)
     assert len(error.problems) == 10_000
     assert str(error).splitlines()[-1] == f"And {10_000 - MOST_SHOWN} more." and str(error).count("\n") == MOST_SHOWN
+
+
+def test_a_netcdf_file_of_a_few_kilobytes_that_declares_eight_tebibytes(tmp_path):
+    with h5py.File(tmp_path / "x.nc", "w") as file:
+        file.create_dataset("time", (2**40,), "f8", chunks=(64,)).make_scale("time")
+    found, took = checked(tmp_path, {"x.nc": (tmp_path / "x.nc").read_bytes()})
+    assert "it declares 8.19e+03 GiB" in found and took < 10.0
+
+
+def test_a_netcdf_file_whose_fill_value_is_a_text(tmp_path):
+    with h5py.File(tmp_path / "x.nc", "w") as file:
+        made = file.create_dataset("time", data=[0.0, 1.0])
+        made.make_scale("time")
+        made.attrs["scale_factor"] = "furlongs"
+    found, _ = checked(tmp_path, {"x.nc": (tmp_path / "x.nc").read_bytes()})
+    assert "is no NetCDF 4 file that can be read" in found
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("outputs", {"ramp.y": {}}, "values that no signal has"),
+        ("inputs", {"gain.u": float("inf")}, "values that no signal has"),
+        ("outputs", {"ramp.y": 10**400}, "values that no signal has"),
+        ("components", ["ramp"], "others than those whose FMUs it names"),
+        ("step_size", float("nan"), "its times are none of a run"),
+    ],
+)
+def test_a_stored_state_with_a_value_of_another_kind(name, value, said, tmp_path):
+    _, files = running()
+    facts = json.loads(files["snapshot.json"]) | {name: value}
+    (tmp_path / "x.state").write_bytes(zipped(files | {"snapshot.json": json.dumps(facts).encode()}))
+    with pytest.raises(ShipcosimError, match=said):
+        read_snapshot(tmp_path / "x.state")
+
+
+def test_a_stored_state_nested_a_hundred_thousand_levels_deep(tmp_path):
+    _, files = running()
+    (tmp_path / "x.state").write_bytes(zipped(files | {"snapshot.json": b"[" * 100_000}))
+    with pytest.raises(ShipcosimError, match="is no snapshot of a run"):
+        read_snapshot(tmp_path / "x.state")
