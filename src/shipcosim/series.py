@@ -283,9 +283,14 @@ def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
     units = {name: str(variable.attrs.get("units", "")).partition(" since ")[0] for name, variable in single.items()}
     numeric = {name: variable.dtype.kind in "fiub" for name, variable in single.items()}
     return {
-        name: (np.asarray(variable.values, float) if numeric[name] else variable.values, units[name])
+        name: (np.asarray(variable.values, float) if numeric[name] else _texts(variable.values), units[name])
         for name, variable in single.items()
     }
+
+
+def _texts(values: np.ndarray) -> np.ndarray:
+    """Values of a column that are no numbers as texts, as those of a CSV file are."""
+    return np.array([v.decode(errors="replace") if isinstance(v, bytes) else str(v) for v in values], dtype=object)
 
 
 def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:

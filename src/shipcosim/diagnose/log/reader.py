@@ -33,6 +33,9 @@ __all__ = ["columns_of", "read_log"]
 
 _FARTHEST = {"latitude": 90.0, "longitude": 540.0}  # deg; some loggers count on beyond the date line
 
+LARGEST_NUMBER = 1e100
+"""Largest number that a log can hold, in the unit of its role."""
+
 
 @dataclass(frozen=True)
 class _Source:
@@ -171,6 +174,7 @@ def _signals(columns, mapping, form):
             values, unit, more = values_of(channel, name, columns, form)
             signals[name] = values, unit
             said += more
+            problems += _beyond(f"{columns.source}, {name}", values)
         except ShipcosimError as error:
             problems += [Problem(f"{columns.source}, {name}", p.found, p.remedy) for p in error.problems]
     if not problems and len(mapping) < 2:
@@ -179,6 +183,13 @@ def _signals(columns, mapping, form):
     if problems:
         raise ShipcosimError(problems)
     return signals, said
+
+
+def _beyond(where, values):
+    """A problem where a number is beyond anything that is measured, so that what is made of it overflows."""
+    beyond = np.flatnonzero((np.abs(values) > LARGEST_NUMBER) & np.isfinite(values))
+    found = [f"is {values[row]:g} in row {row + 2}." for row in beyond[:1]]
+    return [Problem(where, one, "A missing value is an empty field or nan.") for one in found]
 
 
 def _check_time(source, time):

@@ -90,7 +90,7 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
     if _is_empty(values):
         return [Guess(column, why="it has no value")]
     words = words_of(column)
-    if words == ("column", words[-1]) and column.startswith("column "):
+    if not words or (words == ("column", words[-1]) and column.startswith("column ")):
         return [Guess(column, why="it has no name")]
     if drive := drive_of(words, stated, values):
         found = _of_thruster(column, drive, stated, thrusters)
