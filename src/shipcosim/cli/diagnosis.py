@@ -180,6 +180,7 @@ def _sections(diagnosis):
 
     alike = [(title(c.cause, c.component), f"{100 * c.probability:.0f} %") for c in diagnosis.indistinguishable]
     silent = ", ".join(title(name).lower() for name in diagnosis.not_testable)
+    columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
     extension = diagnosis.extension
     extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
     steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended, diagnosis.causes))
@@ -189,6 +190,7 @@ def _sections(diagnosis):
         ("This log cannot tell apart", table(alike)),
         ("Errors", table(key_figures(diagnosis))),
         ("This log could not have shown", Text(silent) if silent else None),
+        ("Columns", Text("\n".join(columns)) if columns else None),
         ("Remarks", Text("\n".join(diagnosis.notes), style="yellow") if diagnosis.notes else None),
         ("What to do next", Text(steps)),
     ]

@@ -98,7 +98,7 @@ def read_log(
     if "latitude" in signals:
         attributes |= _local_position(columns.source, signals, said)
     said += _without_value(signals)
-    attributes["column_remarks"] = [*columns.remarks, *said, *(_told(proposal) if proposal else ())]
+    attributes["column_remarks"] = [*columns.remarks, *said, *(_told(proposal) if proposal else _not_named(unused))]
     table = make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
     table.encoding |= source.file
     for name, unit in stated.items():
@@ -288,6 +288,11 @@ def _told(proposal):
             reasons.setdefault(guess.why, []).append(f"'{guess.column}'")
     for why, names in reasons.items():
         yield f"Column{'s' * (len(names) > 1)} not used: {', '.join(names)}: {why}."
+
+
+def _not_named(unused):
+    """Columns that a channel file does not name."""
+    return [f"Columns that the channel file does not name are not used: {', '.join(unused)}."] if unused else []
 
 
 def _said(guess):
