@@ -5,15 +5,21 @@ from dataclasses import replace
 import dp_loop
 import numpy as np
 
+from shipcosim.scenario import units_of, with_numbers
+from shipcosim.ssp import read_system
+from shipcosim.units import number_in
+
 WEATHER = ("wind_speed", "wind_from", "current_speed", "current_to")
 
 
-def array_form(scenario, seeds):
+def array_form(scenario, seeds, fmus):
     """The scenario's run by the array form, one variation a pair of seeds of environment and sensors."""
+    unit_of = units_of(read_system(scenario.system_path, scenario.parameter_paths, fmus=[fmus]))
+    scenario = with_numbers(scenario, unit_of)
     own = {name: {} for name in ("environment", "sensors")}
     for signal, value in scenario.set.items():
         component, variable = signal.split(".")
-        own[component][variable] = value
+        own[component][variable] = number_in(value, unit_of(signal)) if isinstance(value, str) else value
     start = {name: own["environment"].pop(name) for name in WEATHER}
     own["environment"]["seed"], own["sensors"]["seed"] = (np.array(column) for column in zip(*seeds, strict=True))
     default = dp_loop.dp_system()
@@ -30,12 +36,12 @@ def array_form(scenario, seeds):
     )
 
 
-def test_array_form_gives_the_co_simulation_over_the_whole_four_corner_run(load_scenario, run_scenario):
+def test_array_form_gives_the_co_simulation_over_the_whole_four_corner_run(load_scenario, run_scenario, fmus):
     """To 1e-9 of each signal's range; a signal that stands still may differ by 1e-15."""
     scenario = load_scenario("four_corner")
     table = run_scenario("four_corner")
     seeds = [(77, 78), (scenario.set["environment.seed"], scenario.set["sensors.seed"])]
-    arrays = array_form(scenario, seeds)
+    arrays = array_form(scenario, seeds, fmus)
     np.testing.assert_allclose(arrays.pop("time"), table["time"], rtol=0.0, atol=1e-9)
     assert {"vessel.x", "port.thrust", "controller.psi_hat", "allocator.saturated"} <= set(arrays)
     apart = {}

@@ -4,7 +4,7 @@ import pytest
 
 from shipcosim.cosim import simulate
 from shipcosim.library import build_stale
-from shipcosim.scenario import judge, read_scenario
+from shipcosim.scenario import judge, read_scenario, units_of, with_numbers
 from shipcosim.ssp import read_system
 
 SEEDS = range(101, 121)
@@ -19,7 +19,8 @@ def test_four_corners_hold_on_20_other_seeds(name, root):
     print(f"\n{name}: worst value over limit of each seed's expectations")
     for seed in SEEDS:
         drawn = {"environment.seed": seed, "sensors.seed": 1000 + seed}
-        verdicts = judge(simulate(system, scenario.model_copy(update={"set": scenario.set | drawn})), scenario)
+        table = simulate(system, scenario.model_copy(update={"set": scenario.set | drawn}))
+        verdicts = judge(table, with_numbers(scenario, units_of(system)))
         passed = all(verdict.passed for verdict in verdicts)
         held += passed
         worst = max(verdict.worst / verdict.expect.within for verdict in verdicts)

@@ -27,7 +27,9 @@ def channels(
     Example: shipcosim channels monday.csv --out channels.toml
     """
     from shipcosim.cli.channel_files import print_channels, proposed, write_channels
+    from shipcosim.cli.diagnosis import logs_of
 
+    (log,) = logs_of([log])
     proposal = proposed(log, system, form)
     print_channels(proposal)
     if out is not None:
