@@ -100,6 +100,20 @@ def unwrap_series(angle: np.ndarray) -> np.ndarray:
 def compass(degrees: float) -> str:
     """A direction as it is read off a compass: three digits from 000 to 359, with a decimal where there is one.
 
+    Parameters
+    ----------
+    degrees : float
+        Direction, clockwise from north. [deg]
+
+    Returns
+    -------
+    str
+        In deg.
+
+    References
+    ----------
+    Three-figure notation of courses and bearings: Bowditch, The American Practical Navigator, NGA, 2019.
+
     Examples
     --------
     >>> compass(45.0), compass(-90.0), compass(359.97), compass(7.25)

@@ -281,10 +281,10 @@ def table(head, rows=300):
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        ("", ["log.csv:", "cannot be read as CSV"]),
+        ("", ["log.csv:", "is empty"]),
         (HEAD + "\n", ["log.csv:", "no row below its header"]),
         (table(HEAD.replace("north [m],east [m],", "")), ["log.csv:", "no channel north, east", "needs north, east"]),
-        (table(HEAD.replace("time [s]", "clock")), ["log.csv:", "has no column 'time'", "--channels"]),
+        (table(HEAD.replace("time [s]", "number")), ["log.csv:", "has no column 'time'", "shipcosim channels"]),
         (table(HEAD.replace("[m/s]", "[kg]")), ["log.csv, surge:", "log.csv, wind_speed:", "'kg' into 'm/s'"]),
         (table(HEAD, rows=60), ["log.csv:", "60 rows over 59 s", "at the least"]),
     ],

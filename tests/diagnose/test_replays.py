@@ -29,7 +29,8 @@ def run(tanker):
     rudder = 15.0 * np.sign(np.sin(2.0 * np.pi * time / 60.0))
     columns = [("propeller_rpm", np.full(time.size, 610.0), "rpm", ""), ("propeller_azimuth", rudder, "deg", "")]
     begun = with_values(tanker, {"vessel.u_start": 1.0})
-    return sc.simulate(begun, stop_time=120.0, step_size=0.1, output_interval=0.5, inputs=make_table(time, columns))
+    done = sc.simulate(begun, stop_time=120.0, step_size=0.1, output_interval=0.5, inputs=make_table(time, columns))
+    return done.table
 
 
 def test_a_run_read_as_a_log_has_the_roles_of_its_signals(run):
@@ -92,7 +93,8 @@ def test_of_a_file_only_the_names_are_read_before_it_is_known_to_be_a_run(name, 
     """A file that cannot be read is left to the reader, which says what is wrong with it."""
     path = tmp_path / name
     if name.startswith("result"):
-        write_table(make_table(np.arange(3.0), [(f"vessel.{one}", np.arange(3.0), "m", "") for one in "xu"]), path)
+        signals = "vessel.x", "vessel.u", "barge.x", "barge.y", "barge.psi"
+        write_table(make_table(np.arange(3.0), [(name, np.arange(3.0), "m", "") for name in signals]), path)
         with pytest.raises(ShipcosimError, match="no y, psi of 'vessel'"):
             run_as_log(path, "vessel", [])
     else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import tomllib
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +13,7 @@ from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 
 LATE, SMALLEST_STEP = 1e9, 1e-6  # s; beyond what any run has
+_OF_SHIP = re.compile(r"^\s*\[{0,2}(particulars|thrusters)\b", re.MULTILINE)
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 LOGS = (".txt", ".dat", ".tsv", ".log", ".xlsx", ".txt.gz", ".dat.gz", ".tsv.gz", ".log.gz")
@@ -89,10 +90,9 @@ def _is_ship(path: Path) -> bool:
     if path.suffix != ".toml":
         return False
     try:
-        said = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError):
+        return _OF_SHIP.search(path.read_text(encoding="utf-8-sig")) is not None
+    except (OSError, ValueError):
         return False
-    return "particulars" in said or "thrusters" in said
 
 
 def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:

@@ -35,6 +35,8 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
             content = gzip.decompress(content)
     except (OSError, EOFError, zlib.error) as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
+    except MemoryError as error:
+        raise ShipcosimError(Problem(str(path), "is larger than the memory.", "Read a part of it.")) from error
     if not content.strip(b"\x00 \r\n\t"):
         raise ShipcosimError(Problem(str(path), "is empty.", "Each row is a time and its values."))
     used = encoding or _encoding_of(content)
