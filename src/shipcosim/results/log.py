@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.results.shown import Picture
+from shipcosim.results.shown import LikeTable, Picture
 from shipcosim.results.signals import chosen
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ __all__ = ["Log"]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Log:
+class Log(LikeTable):
     """What `shipcosim.read_log` gives back. What its table has, it has, too: ``log["heading"]``, ``log.sizes``.
 
     Attributes
@@ -111,20 +110,3 @@ class Log:
 
         picture = self.track().svg if {"north", "east"} <= set(self.table) else ""
         return card_html(log_card(self.name, self.table, self.faults, self.remarks, picture))
-
-    def __getitem__(self, name: Hashable) -> xarray.DataArray:
-        return self.table[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.table
-
-    def __iter__(self) -> Iterator[Hashable]:
-        return iter(self.table)
-
-    def __len__(self) -> int:
-        return len(self.table)
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name == "table":  # a copy asks before there is a table
-            raise AttributeError(f"'Log' has no attribute '{name}'")
-        return getattr(self.table, name)

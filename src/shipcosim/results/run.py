@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.results.shown import HtmlPage, Picture, Result, made
+from shipcosim.results.shown import HtmlPage, LikeTable, Picture, Result, made
 from shipcosim.results.signals import chosen
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ __all__ = ["Run"]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Run(Result):
+class Run(LikeTable, Result):
     """What `shipcosim.run` and `shipcosim.simulate` give back. What its table has, it has, too.
 
     ``run["vessel.x"]``, ``run.sizes``, ``run.sel(time=60.0)`` are those of `table`. Functions of xarray and numpy that
@@ -157,20 +156,3 @@ class Run(Result):
         return run_card(
             self.table, self.scenario, self.system, self.expectations, late=self.not_judged, remarks=self.remarks
         )
-
-    def __getitem__(self, name: Hashable) -> xarray.DataArray:
-        return self.table[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.table
-
-    def __iter__(self) -> Iterator[Hashable]:
-        return iter(self.table)
-
-    def __len__(self) -> int:
-        return len(self.table)
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name == "table":  # a copy asks before there is a table
-            raise AttributeError(f"'Run' has no attribute '{name}'")
-        return getattr(self.table, name)

@@ -7,7 +7,7 @@ import os
 import tempfile
 import webbrowser
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,9 +16,11 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import write_file
 
 if TYPE_CHECKING:
+    import xarray
+
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["HtmlPage", "Picture", "Result", "made", "page_of", "parts_of"]
+__all__ = ["HtmlPage", "LikeTable", "Picture", "Result", "made", "page_of", "parts_of"]
 
 HEIGHT = 820  # px, of a page within a notebook
 
@@ -118,6 +120,29 @@ class Result(ABC):
         from shipcosim.report.notebook.card import card_html
 
         return card_html(self._card())
+
+
+class LikeTable:
+    """What can be read like its table: signals by name, and all that the table has."""
+
+    table: xarray.Dataset
+
+    def __getitem__(self, name: Hashable) -> xarray.DataArray:
+        return self.table[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.table
+
+    def __iter__(self) -> Iterator[Hashable]:
+        return iter(self.table)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name == "table":  # a copy asks before there is a table
+            raise AttributeError(f"'{type(self).__name__}' has no attribute '{name}'")
+        return getattr(self.table, name)
 
 
 def made(folder: str | os.PathLike[str]) -> Path:
