@@ -114,7 +114,7 @@ def check_inputs(
 def shown_progress(first: str = "1 of 5: ") -> Iterator[Callable[..., None]]:
     """Which stage is being worked on, on stderr; yields a function of (what is done, parts done, of how many).
 
-    On a terminal a bar with the share that is done and the time that is left; elsewhere a line for each numbered stage.
+    On a terminal a bar with the share that is done and the time that is left; elsewhere a line for each step.
 
     `first` goes before steps that have no name of their own.
     """
@@ -129,19 +129,20 @@ def shown_progress(first: str = "1 of 5: ") -> Iterator[Callable[..., None]]:
         TimeRemainingColumn,
     )
 
-    console, last = Console(stderr=True), [""]
+    console, last = Console(stderr=True), ("", None)
     columns = [SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24), TaskProgressColumn()]
     columns += [TimeElapsedColumn(), TextColumn("left in this step:"), TimeRemainingColumn()]
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("", total=None)
 
         def show(doing, done=None, total=None):
+            nonlocal last
             text = doing if doing == LAST_STEP else STEPS.get(doing, f"{first}{doing}")
-            if not console.is_terminal and text != last[0] and (doing in STEPS or doing == LAST_STEP):
+            if not console.is_terminal and text != last[0]:
                 console.print(text, highlight=False)
-            if text != last[0]:
+            if text != last[0] and (total is None or total != last[1]):  # else one of several parts
                 bar.reset(task)
-            last[0] = text
+            last = text, total
             bar.update(task, description=text, completed=done or 0, total=total)
 
         yield show

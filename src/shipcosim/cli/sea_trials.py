@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim import library
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, default_folder
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, default_folder, shown_progress
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
@@ -62,7 +62,8 @@ def study_log(
     folder = out or default_folder(data, "-sea-trials")
     check_targets(folder)
     given = library.find("system", system or DEFAULT_SYSTEM, "--system")
-    found = study(data, system_of(str(given)), channels, effects, orders=orders)
+    with shown_progress("") as show:
+        found = study(data, system_of(str(given)), channels, effects, show, orders=orders)
     with staged(folder, FILES) as stage:
         write_json(found.as_json(), stage / FILES[0])
         facts = {"Log": Path(data).name, "System": given.name, "Thrusters": "orders" if orders else "feedback"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
@@ -225,6 +225,7 @@ def study(
     system: System,
     channels: str | os.PathLike | None = None,
     causes: str | os.PathLike | None = None,
+    progress: Callable[..., None] | None = None,
     *,
     orders: bool = False,
 ) -> SeaTrialStudy:
@@ -239,6 +240,8 @@ def study(
         Channel file.
     causes : path, optional
         Folder with further causes.
+    progress : callable, optional
+        Called with what is being done, in words, how many parts are done, and of how many.
     orders : bool
         Whether the thrusters' channels are orders, which the units follow, instead of feedback.
 
@@ -251,6 +254,8 @@ def study(
     ShipcosimError
         Data that cannot be used; no turning circle.
     """
+    say = progress or (lambda *_: None)
+    say("which manoeuvres are in the log?")
     ship = ship_model_of(system)
     drives = {name: ship.drives(name) for name in ship.thrusters}
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
@@ -267,7 +272,7 @@ def study(
             f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
         )
         raise ShipcosimError(Problem(str(read.repaired.attrs.get("source", "log")), found, right))
-    return studied(trials, read.ship, causes_of_trials(read.ship, read.causes, orders=orders), orders=orders)
+    return studied(trials, read.ship, causes_of_trials(read.ship, read.causes, orders=orders), say, orders=orders)
 
 
 def motions_of(found: SeaTrialStudy) -> tuple[list[np.ndarray], list[np.ndarray]]:
@@ -294,7 +299,12 @@ def causes_of_trials(model: ShipModel, catalogue: Mapping[str, Cause], *, orders
 
 
 def studied(
-    trials: Sequence[SeaTrial], model: ShipModel, hypotheses: Sequence[Hypothesis], *, orders: bool
+    trials: Sequence[SeaTrial],
+    model: ShipModel,
+    hypotheses: Sequence[Hypothesis],
+    progress: Callable[..., None] = lambda *_: None,
+    *,
+    orders: bool,
 ) -> SeaTrialStudy:
     """The study of known sea trials: each side judged by the other, then all together.
 
@@ -303,6 +313,7 @@ def studied(
     trials : sequence of SeaTrial
     model : ShipModel
     hypotheses : sequence of Hypothesis
+    progress : callable
     orders : bool
         As for `study`.
 
@@ -311,16 +322,19 @@ def studied(
     SeaTrialStudy
     """
     sides = {name: [t for t in trials if _turns(t, side)] for name, side in (("port", -1), ("starboard", 1))}
-    held_out = {}
+    held_out, parts = {}, 4 if all(sides.values()) else 2
     if all(sides.values()):
         for name, own in sides.items():
+            progress(f"fitted on circles to {name}, judged on the others", len(held_out), parts)
             others = [trial for trial in trials if trial.kind != "straight run" and trial not in own]
             straight = [trial for trial in trials if trial.kind == "straight run"]
             held_out[name] = _judged([*straight, *own], others, model, hypotheses, orders)
+    progress("fitted on all manoeuvres", parts - 2, parts)
     whole = trial_evidence(trials, model, hypotheses, orders=orders)
     ranking = ranked(whole)
     best, rivals = best_of(ranking), rivals_of(ranking)
     (after,) = predicted(trials, model, [changes_of(best) | allowed_for(whole, best)], orders=orders)
+    progress("what would tell causes apart", parts - 1, parts)
     separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
     return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
 
