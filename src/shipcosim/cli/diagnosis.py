@@ -114,7 +114,8 @@ def check_inputs(
 def shown_progress(first: str = "1 of 5: ") -> Iterator[Callable[..., None]]:
     """Which stage is being worked on, on stderr; yields a function of (what is done, parts done, of how many).
 
-    On a terminal a bar with the share that is done and the time that is left; elsewhere a line for each step.
+    On a terminal a bar with the share that is done and the time that is left; elsewhere a line for each step after the
+    first, so that of input which cannot be used nothing but its error is said.
 
     `first` goes before steps that have no name of their own.
     """
@@ -138,7 +139,7 @@ def shown_progress(first: str = "1 of 5: ") -> Iterator[Callable[..., None]]:
         def show(doing, done=None, total=None):
             nonlocal last
             text = doing if doing == LAST_STEP else STEPS.get(doing, f"{first}{doing}")
-            if not console.is_terminal and text != last[0]:
+            if not console.is_terminal and text != last[0] and (doing in STEPS or doing == LAST_STEP):
                 console.print(text, highlight=False)
             if text != last[0] and (total is None or total != last[1]):  # else one of several parts
                 bar.reset(task)
