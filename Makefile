@@ -17,15 +17,16 @@ test: .venv/installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
-	$(BIN)/pytest -m "not slow"
+	$(BIN)/pytest -n 2 --dist loadfile -m "not slow"
 
 test-all: .venv/installed-test
+	$(BIN)/python -m pip install --quiet --editable ".[allocators]"
 	$(BIN)/shipcosim build
 	$(BIN)/pytest -m ""
 
 benchmarks: .venv/installed-test
 	$(BIN)/shipcosim build
-	$(BIN)/pytest -m "" -s tests/bench/speed tests/bench/rivals tests/bench/trial/test_diagnosis_trial.py
+	$(BIN)/pytest -m "" -s tests/bench/speed tests/bench/rivals tests/bench/allocation tests/bench/trial/test_diagnosis_trial.py
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

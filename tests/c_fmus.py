@@ -5,9 +5,11 @@ start, equations, indicators, event and completed. Adapters refuse calls that FM
 """
 
 import os
+import re
 import shutil
 import subprocess
 import zipfile
+from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 HEAD = """
@@ -233,12 +235,14 @@ int F(fmiTerminate)(M* m) { return 0; }
 """
 )
 ADAPTERS = {("1.0", "CoSimulation"): FMI1_CS, ("1.0", "ModelExchange"): FMI1_ME, "2.0": FMI2, "3.0": FMI3}
-CLASSES = {
-    ("1.0", "CoSimulation"): ("fmi1", ["FMU1Slave"]),
-    ("1.0", "ModelExchange"): ("fmi1", ["FMU1Model"]),
-    "2.0": ("fmi2", ["FMU2Slave", "FMU2Model"]),
-    "3.0": ("fmi3", ["FMU3Slave", "FMU3Model"]),
-}
+FMI1_NAMES = """
+CancelStep CompletedIntegratorStep DoStep EventUpdate FreeModelInstance FreeSlaveInstance GetBoolean GetBooleanStatus
+GetContinuousStates GetDerivatives GetEventIndicators GetInteger GetIntegerStatus GetModelTypesPlatform
+GetNominalContinuousStates GetReal GetRealOutputDerivatives GetRealStatus GetStateValueReferences GetStatus GetString
+GetStringStatus GetTypesPlatform GetVersion Initialize InitializeSlave InstantiateModel InstantiateSlave ResetSlave
+SetBoolean SetContinuousStates SetDebugLogging SetInteger SetReal SetRealInputDerivatives SetString SetTime Terminate
+TerminateSlave
+"""
 
 
 def compiler():
@@ -264,14 +268,12 @@ def build(folder, name, version, model, description, form=None, code=""):
     code : str, optional
         C text in place of an adapter.
     """
-    from fmpy import fmi1, fmi2, fmi3, platform, platform_tuple, sharedLibraryExtension
+    from fmpy import platform, platform_tuple, sharedLibraryExtension
 
-    key = (version, form) if version == "1.0" else version
-    module, classes = CLASSES[key]
-    text = HEAD + (model + DEFAULTS + ADAPTERS[key] if model else "") + code
-    known = {"fmi1": fmi1, "fmi2": fmi2, "fmi3": fmi3}[module]
-    wanted = {n for c in classes for n in dir(getattr(known, c)) if n.startswith(module)}
-    text += "\n".join(_stub(n, module, name) for n in sorted(wanted) if not _is_there(n, module, text))
+    text = (
+        HEAD + (model + DEFAULTS + ADAPTERS[(version, form) if version == "1.0" else version] if model else "") + code
+    )
+    text += "\n".join(_stub(n, version, name) for n in functions_of(version) if not _is_there(n, version, text))
     (folder / f"{name}.c").write_text(text)
     library = folder / f"{name}{sharedLibraryExtension}"
     options = ["-shared", "-fPIC", "-O1", f"-DID={name}", "-o", library, folder / f"{name}.c", "-lm"]
@@ -282,15 +284,25 @@ def build(folder, name, version, model, description, form=None, code=""):
     return folder / f"{name}.fmu"
 
 
-def _stub(function, module, name):
-    shown = f"{name}_{function.replace('fmi1', 'fmi')}" if module == "fmi1" else function
-    return f"int {shown}(void) {{ return 3; }}"
+def functions_of(version):
+    """Names of all functions that an FMU of a version of FMI has; of 2.0 and 3.0 as the headers have them."""
+    import fmpy
+
+    if version == "1.0":
+        return [f"fmi{name}" for name in FMI1_NAMES.split()]
+    own = f"fmi{version[0]}"
+    header = (Path(fmpy.__file__).parent / "c-code" / f"{own}Functions.h").read_text(encoding="utf-8")
+    return sorted(set(re.findall(rf"FMI\d_Export \w+\s+({own}\w+);", header)))
 
 
-def _is_there(function, module, text):
-    if module == "fmi1":
-        return f"F({function.replace('fmi1', 'fmi')})" in text
-    return f" {function}(" in text.replace("*", " ")
+def _stub(function, version, name):
+    return (
+        f"int {name}_{function}(void) {{ return 3; }}" if version == "1.0" else f"int {function}(void) {{ return 3; }}"
+    )
+
+
+def _is_there(function, version, text):
+    return f"F({function})" in text if version == "1.0" else f" {function}(" in text.replace("*", " ")
 
 
 def describe(name, version, variables, forms=("ModelExchange",), n_states=0, n_indicators=0, **attributes):

@@ -14,6 +14,7 @@ from ships import parameters
 from shipcosim.angles import wrap
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.allocation.units import Allocated
 from shipcosim.models.control import observer, reference, voting
 from shipcosim.models.control import pid as control
 from shipcosim.models.control.observer import DpShip, ObserverParameters
@@ -45,7 +46,11 @@ WIND_10 = dict(wind_speed=10.0, wind_from=NORTH_EAST, current_speed=0.5, current
 
 @dataclass(frozen=True)
 class DpSystem:
-    """Parameter sets of the components. Any number in them may be an (m,) array, one value per variation."""
+    """Parameter sets of the components. Any number in them may be an (m,) array, one value per variation.
+
+    `law` allocates: whatever has `design`, `at_rest` and `step` as the module `pseudo_inverse` has them. Its states
+    have the fields of `Allocated`.
+    """
 
     hull: HullParameters
     wind: WindParameters
@@ -66,6 +71,7 @@ class DpSystem:
     environment: EnvironmentParameters = EnvironmentParameters()
     port_azimuth_start: float = 0.0
     starboard_azimuth_start: float = 0.0
+    law: Any = allocation
 
 
 def dp_system(ship: str = "gunnerus-33m9") -> DpSystem:
@@ -141,7 +147,7 @@ class LoopState(NamedTuple):
     estimate: observer.Estimate
     control: control.ControlState
     samples: int
-    allocation: allocation.AllocationState
+    allocation: Allocated
 
 
 class Design(NamedTuple):
@@ -150,7 +156,7 @@ class Design(NamedTuple):
     sea: waves.Waves
     drift: wave_loads.DriftTable
     observer: observer.Design
-    allocation: allocation.Design
+    allocation: Any
 
 
 def design(system, variations):
@@ -178,7 +184,7 @@ def design(system, variations):
         sea,
         wave_loads.drift_table(system.drift.drift_table),
         observer.design(system.ship, system.observer),
-        allocation.design(system.allocation),
+        system.law.design(system.allocation),
     )
 
 
@@ -214,7 +220,7 @@ def start(system, design, inputs, variations):
         estimate,
         control.at_rest(votes.wind.load),
         0,
-        allocation.at_rest((zero, zero, zero)),
+        system.law.at_rest((zero, zero, zero), parameters=system.allocation),
     )
 
 
@@ -264,7 +270,7 @@ def step(t, h, state, inputs, *, system, design):
         estimate,
         law,
         samples,
-        allocation.step(
+        system.law.step(
             state.allocation,
             state.control[-3:],
             state.available,
@@ -335,7 +341,10 @@ def signals(t, state, system):
     rows |= _said(state, zero, system)
     rows |= _named("controller", "tau_X_cmd tau_Y_cmd tau_N_cmd wave_frequency_hat", (*law[-3:], e.wave_frequency))
     a = state.allocation
-    rows |= _named("allocator", "port_thrust_cmd starboard_thrust_cmd tunnel_thrust_cmd tau_X tau_Y tau_N", a)
+    values = (*a.thrusts, a.tau_X, a.tau_Y, a.tau_N)
+    rows |= _named("allocator", "port_thrust_cmd starboard_thrust_cmd tunnel_thrust_cmd tau_X tau_Y tau_N", values)
+    azimuths = [zero + angle for angle in a.azimuths[:2]]
+    rows |= _named("allocator", "port_azimuth_cmd starboard_azimuth_cmd", azimuths)
     return rows | {"allocator.saturated": zero + a.saturated}
 
 
@@ -387,13 +396,13 @@ def _driven(state, inputs, h, system):
     """The thrusters a step later."""
     u_r, v_r = state.show.through_water
     port, starboard, tunnel = state.units
-    a, angles = state.allocation, system.allocation
+    thrusts, azimuths = state.allocation.thrusts, state.allocation.azimuths
     flow = (u_r, v_r, state.vessel.r)
     failures = [Failures(failed) for failed in (inputs.port_failed, inputs.starboard_failed, inputs.tunnel_failed)]
     return (
-        azimuth_step(port, a.port, angles.port_azimuth, *flow, failures[0], h, unit=system.port),
-        azimuth_step(starboard, a.starboard, angles.starboard_azimuth, *flow, failures[1], h, unit=system.starboard),
-        tunnel_step(tunnel, a.tunnel, u_r, failures[2], h, tunnel=system.tunnel),
+        azimuth_step(port, thrusts[0], azimuths[0], *flow, failures[0], h, unit=system.port),
+        azimuth_step(starboard, thrusts[1], azimuths[1], *flow, failures[1], h, unit=system.starboard),
+        tunnel_step(tunnel, thrusts[2], u_r, failures[2], h, tunnel=system.tunnel),
     )
 
 
@@ -412,7 +421,7 @@ def _controlled(t, state, system, design):
     """Votes, estimate, control state and number of samples after those that are due at t."""
     votes, estimate, law, samples = state.voting, state.estimate, state.control, state.samples
     period = system.observer.sample_period
-    allocated = state.allocation[3:6]
+    allocated = state.allocation[2:5]
     while samples < samples_due(t, system.observer.sample_period):
         votes, estimate = voting.step(
             samples * period,

@@ -27,8 +27,13 @@ COMPONENTS = {
     "DpShip": "controller",
     "ObserverParameters": "controller",
     "ControlParameters": "controller",
+    "FilteredPidParameters": "controller",
+    "ExtremeLearningParameters": "allocator",
     "MastParameters": "sensors",
     "AllocationParameters": "allocator",
+    "PaperVParameters": "allocator",
+    "OptimalParameters": "allocator",
+    "ExtendedParameters": "allocator",
     "PowerParameters": "allocator",
     "SurroundingsParameters": "predictor",
 }
@@ -80,11 +85,22 @@ COMPONENT_OF = {
     "reference": "reference",
     "dp_controller": "controller",
     "allocator": "allocator",
+    "extended_allocator": "allocator",
+    "optimal_allocator": "allocator",
+    "paper_v_allocator": "allocator",
+    "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
 }
 """FMU: the component of the DP ship that it is."""
-ELSEWHERE = {"fixed_thruster": ("otter", "left"), "propeller_rudder": ("kvlcc2", "propeller")}
+ELSEWHERE = {
+    "fixed_thruster": ("otter", "left"),
+    "propeller_rudder": ("kvlcc2", "propeller"),
+    "pid_controller": ("osv", "controller"),
+    "paper_i_allocator": ("osv", "allocator"),
+    "thruster_interaction": ("four-azimuths", "interaction"),
+    "neural_units_allocator": ("four-azimuths", "allocator"),
+}
 """FMU that the DP ship has not: a ship and her component that it is."""
 
 

@@ -1,6 +1,7 @@
-"""The pictures of pages in README and docs look like the pages of now."""
+"""Every picture in README and docs has a command that makes it, and looks like what that command makes now."""
 
 import importlib.util
+import re
 import shutil
 
 import pytest
@@ -14,19 +15,43 @@ def images(root, needs):
     for tool in ("chromium", "chromedriver"):
         if shutil.which(tool) is None:
             needs(tool)
-    for package in ("PIL", "selenium"):
+    for package in ("PIL", "selenium", "matplotlib"):
         if importlib.util.find_spec(package) is None:
             needs(package)
     spec = importlib.util.spec_from_file_location("images", root / "docs" / "generators" / "write_images.py")
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(root / "docs" / "generators"))
+        spec.loader.exec_module(module)
+        yield module
 
 
-@pytest.mark.parametrize("name", ["four_corner", "capability", pytest.param("diagnosis", marks=pytest.mark.slow)])
-def test_picture_is_of_the_page_as_it_is_now(images, name, tmp_path):
-    kept = (images.IMAGES / f"{name}.png").read_bytes()
+@pytest.mark.parametrize("name", ["four_corner", "capability", "diagnosis", "dp-loop", "dp-sensors"])
+def test_picture_is_as_its_command_makes_it_now(images, name, tmp_path):
+    kept = images.path_of(name).read_bytes()
     assert images.difference(kept, images.fresh(name, tmp_path)) <= MOST, "run docs/generators/write_images.py"
+
+
+@pytest.mark.slow
+def test_picture_of_the_measured_trials_is_as_its_command_makes_it_now(images, shared, tmp_path):
+    kept = images.path_of("sea_trials_2022").read_bytes()
+    assert images.difference(kept, images.fresh("sea_trials_2022", tmp_path)) <= MOST, "run write_sea_trials.py"
+
+
+def test_every_picture_is_listed_with_the_command_that_makes_it(root):
+    folders = ("docs/*.md", "docs/generated/*.md", "fmus/*/README.md", "tests/bench/*/README.md")
+    pages = [root / "README.md", *(page for folder in folders for page in root.glob(folder))]
+    shown = {
+        (page.parent / path).resolve().relative_to(root).as_posix()
+        for page in pages
+        for path in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
+    }
+    rows = re.findall(r"(?m)^\| `(docs/[^`]+)` \| `([^`]+)` \|", (root / "docs" / "dataflow.md").read_text("utf-8"))
+    listed = dict(rows)
+    assert shown == set(listed), "the table of pictures in docs/dataflow.md"
+    there = {path.relative_to(root).as_posix() for kind in ("png", "svg") for path in root.glob(f"docs/**/*.{kind}")}
+    assert there == set(listed)
+    assert all((root / command.split()[1]).is_file() for command in listed.values())
 
 
 def test_another_page_is_clearly_different(images):

@@ -57,7 +57,7 @@ def rows(found, law):
             )
 
 
-def draw(found):
+def draw(found, picture=PICTURE):
     """Picture: size and angle of the loop gain and size of the sensitivity over the frequency, by axis and sea."""
     w = np.geomspace(0.005, 2.0, 300)
     figure, axes = plt.subplots(3, 1, figsize=(8.0, 8.5), sharex=True, height_ratios=(3, 3, 2), layout="constrained")
@@ -79,7 +79,8 @@ def draw(found):
     axes[2].axhline(2.0, color="#888888", linewidth=0.8, linestyle=":")
     for part in axes:
         part.grid(True, which="both", color="#eeeeee", linewidth=0.6)
-    figure.savefig(PICTURE, dpi=110)
+    figure.savefig(picture, dpi=110)
+    plt.close(figure)
 
 
 def write_dp_loop():

@@ -19,6 +19,9 @@ from shipcosim.scenario import judge, read_scenario
 from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[2]
+SCENARIOS = ROOT / "scenarios" / "sensors"
+SHOWN = ("all_references_lost", "reference_drifts")
+"""Scenarios in the picture."""
 PAGE, PICTURE = ROOT / "docs" / "dp-sensors.md", ROOT / "docs" / "images" / "dp-sensors.png"
 BEGIN, END = "<!-- table of the scenarios -->\n", "<!-- end of the table -->"
 REJECTED = [f"position_{i}_rejected" for i in (1, 2, 3)] + ["compass_1_rejected", "compass_2_rejected", "wind_rejected"]
@@ -52,7 +55,7 @@ def row(scenario, table):
     )
 
 
-def draw(lost, drifts):
+def draw(lost, drifts, picture=PICTURE):
     """Picture: a minute without references, and one that drifts."""
     figure, axes = plt.subplots(2, 2, figsize=(9.0, 5.0), sharex="col", height_ratios=(2, 1))
     for column, table in enumerate((lost, drifts)):
@@ -70,11 +73,12 @@ def draw(lost, drifts):
     axes[1, 0].set(ylabel="references used")
     axes[0, 1].legend(fontsize=8, loc="lower left", ncols=3)
     figure.tight_layout()
-    figure.savefig(PICTURE, dpi=110)
+    figure.savefig(picture, dpi=110)
+    plt.close(figure)
 
 
 if __name__ == "__main__":
-    runs = {path.stem: run(path) for path in sorted((ROOT / "scenarios" / "sensors").glob("*.toml"))}
+    runs = {path.stem: run(path) for path in sorted(SCENARIOS.glob("*.toml"))}
     columns = (
         "scenario",
         "what fails",
@@ -90,4 +94,4 @@ if __name__ == "__main__":
     before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
     text = f"{before}{BEGIN}{head}|---|---|---|---|---|---|---|---|\n{rows}\n{END}{rest.partition(END)[2]}"
     PAGE.write_text(text, encoding="utf-8")
-    draw(runs["all_references_lost"][1], runs["reference_drifts"][1])
+    draw(*(runs[name][1] for name in SHOWN))

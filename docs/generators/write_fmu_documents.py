@@ -20,6 +20,7 @@ import numpy as np
 from shipcosim.cosim import simulate
 from shipcosim.fmi.export.description import table_of_variables
 from shipcosim.library import build_stale
+from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
 from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table, read_table, write_table
 from shipcosim.ships import read_ship
@@ -37,13 +38,26 @@ COMPONENTS = {
     "reference": "reference",
     "dp_controller": "controller",
     "allocator": "allocator",
+    "optimal_allocator": "allocator",
+    "extended_allocator": "allocator",
+    "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
 }
 """FMU: the component of gunnerus_dp whose inputs it gets."""
 SHIP = "gunnerus-33m9"
-ELSEWHERE = {"fixed_thruster": ("otter", "left"), "propeller_rudder": ("kvlcc2", "propeller")}
+ELSEWHERE = {
+    "fixed_thruster": ("otter", "left"),
+    "propeller_rudder": ("kvlcc2", "propeller"),
+    "thruster_interaction": ("four-azimuths", "interaction"),
+    "pid_controller": ("osv", "controller"),
+    "paper_i_allocator": ("osv", "allocator"),
+    "neural_units_allocator": ("four-azimuths", "allocator"),
+    "paper_v_allocator": ("thesis-28m9", "allocator"),
+}
 """FMU that she has not: a ship and her component that it is."""
+OTHERS = {"optimal_allocator": [AllocationParameters], "neural_allocator": [AllocationParameters]}
+"""FMU that can take a component's place: what that component has of the ship and this one does not need."""
 PARAMETERS = {
     "azimuth_thruster": {"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0},
     "earth_force": {"north": 1000.0, "east": 2000.0, "onset_time": 10.0, "ramp_time": 20.0, "x": -17.0},
@@ -55,12 +69,20 @@ PARAMETERS = {
         "y": 0.285,
         "thrust_table": "1100 -28; 1480 -1; 1520 1; 1900 55",
         "time_constant": 0.5,
+        "command_rate": 40.0,
         "speed_loss": 0.1,
     },
     "fixed_angle_allocator": {
         **{"x_1": -27.0, "y_1": -3.5, "azimuth_1": -0.785, "thrust_min_1": -1.4e5, "thrust_max_1": 2.3e5},
         **{"x_2": -27.0, "y_2": 3.5, "azimuth_2": 0.785, "thrust_min_2": -1.4e5, "thrust_max_2": 2.3e5},
         **{"x_3": 25.0, "azimuth_3": 1.5708, "thrust_min_3": -8e4, "thrust_max_3": 8e4},
+        **{"thrust_rate_1": 2.3e4, "thrust_rate_2": 2.3e4, "thrust_rate_3": 8e3, "yaw_lever": 25.0},
+    },
+    "optimal_units_allocator": {
+        **{"x_1": -27.0, "y_1": -3.5, "azimuth_1": -0.785, "thrust_max_1": 2.3e5, "azimuth_rate_1": 0.2},
+        **{"x_2": -27.0, "y_2": 3.5, "azimuth_2": 2.356, "thrust_max_2": 2.3e5, "azimuth_rate_2": 0.2},
+        **{"azimuth_first_1": -1.4, "azimuth_last_1": 1.4, "azimuth_first_2": 1.74, "azimuth_last_2": 4.54},
+        **{"x_3": 25.0, "azimuth_3": 1.5708, "thrust_min_3": -8e4, "thrust_max_3": 8e4, "thrust_least_1": 4e3},
         **{"thrust_rate_1": 2.3e4, "thrust_rate_2": 2.3e4, "thrust_rate_3": 8e3, "yaw_lever": 25.0},
     },
     "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
@@ -85,8 +107,9 @@ def parameters_of(name):
     kinds, found = [group.kind for group in fmu_class(name).groups], {}
     ship, component = ELSEWHERE.get(name, (SHIP, COMPONENTS.get(name)))
     if component and name != "environment":
-        quantities = read_ship(ROOT / "ssp" / "ships" / ship).parameter_set({component: kinds})
-        found = {key: quantity.value for key, quantity in quantities[component].items()}
+        quantities = read_ship(ROOT / "ssp" / "ships" / ship).parameter_set({component: kinds + OTHERS.get(name, [])})
+        known = {variable.name for variable in fmu_class(name).variables}
+        found = {key: quantity.value for key, quantity in quantities[component].items() if key in known}
     return found | PARAMETERS.get(name, {})
 
 

@@ -1,7 +1,8 @@
-"""Writes docs/images/four_corner.png, diagnosis.png and capability.png: what the pages look like in a browser.
+"""Writes the pictures of README and docs: pages as a browser shows them, the DP loop's margins, its sensors' failures.
 
-Run `python docs/generators/write_images.py` after a page looks different; it takes a minute. Needs Chromium, its
-driver, and the packages selenium and Pillow. `tests/test_images.py` makes the pictures again and compares them.
+Run `python docs/generators/write_images.py [NAME...]` after one looks different; it takes two minutes for all. Needs
+Chromium, its driver, and the packages selenium, Pillow and matplotlib. `tests/test_images.py` makes the pictures again
+and compares them; docs/dataflow.md lists them all.
 """
 
 import base64
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from PIL import Image
@@ -59,7 +61,44 @@ def picture(driver: webdriver.Chrome, page: str, height: int) -> bytes:
 
 
 def fresh(name: str, folder: Path) -> bytes:
-    """The picture of a page that is made now, in a folder that the caller deletes. PNG."""
+    """A picture that is made now, in a folder that the caller deletes. PNG."""
+    if name in PAGES:
+        return of_page(name, folder)
+    DRAWN[name](folder / f"{name}.png")
+    return (folder / f"{name}.png").read_bytes()
+
+
+def dp_loop(path: Path) -> None:
+    """Loop gains and sensitivities of the DP loop."""
+    import write_dp_loop
+
+    write_dp_loop.draw(write_dp_loop.loops()[0], path)
+
+
+def dp_sensors(path: Path) -> None:
+    """Two of the scenarios in which sensors fail, run now."""
+    import write_dp_sensors as sensors
+
+    sensors.draw(*(sensors.run(sensors.SCENARIOS / f"{name}.toml")[1] for name in sensors.SHOWN), path)
+
+
+def sea_trials(path: Path) -> None:
+    """The trials of 2022; needs the measured log beside the project."""
+    import write_sea_trials
+
+    write_sea_trials.draw(write_sea_trials.studied(), path)
+
+
+DRAWN: dict[str, Callable[[Path], None]] = {"dp-loop": dp_loop, "dp-sensors": dp_sensors, "sea_trials_2022": sea_trials}
+
+
+def path_of(name: str) -> Path:
+    """Where a picture is kept."""
+    return (ROOT / "docs" / "generated" / "pictures" if name == "sea_trials_2022" else IMAGES) / f"{name}.png"
+
+
+def of_page(name: str, folder: Path) -> bytes:
+    """The picture of a page that is made now. PNG."""
     done = subprocess.run([SHIPCOSIM, *PAGES[name], "--out", str(folder / name)], cwd=ROOT, stdout=subprocess.DEVNULL)
     if done.returncode not in (0, 1):  # 1: it ran and found something, as the diagnosis shall
         raise SystemExit(f"{' '.join(PAGES[name])} failed")
@@ -79,12 +118,12 @@ def difference(one: bytes, other: bytes) -> float:
     return sum(abs(a - b) > CLEARLY for a, b in zip(*few, strict=True)) / len(few[0])
 
 
-def write_images() -> None:
-    """Makes all pages in a folder that is deleted again, and writes their pictures."""
+def write_images(names: list[str]) -> None:
+    """Makes pictures in a folder that is deleted again, and keeps them; all that need no measured log without names."""
     with tempfile.TemporaryDirectory() as folder:
-        for name in PAGES:
-            (IMAGES / f"{name}.png").write_bytes(fresh(name, Path(folder)))
+        for name in names or [*PAGES, "dp-loop", "dp-sensors"]:
+            path_of(name).write_bytes(fresh(name, Path(folder)))
 
 
 if __name__ == "__main__":
-    write_images()
+    write_images(sys.argv[1:])

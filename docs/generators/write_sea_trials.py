@@ -78,7 +78,7 @@ def whole_table(found):
     )
 
 
-def draw(found):
+def draw(found, picture=PICTURE):
     """Tracks and headings of three circles: measured, as modelled, with causes fitted on the other side's circles."""
     circles = [t for t in found.trials if t.kind == "turning circle"]
     chosen = [max((t for t in circles if t.side == s), key=lambda t: t.steering) for s in (-1, 1)]
@@ -104,7 +104,8 @@ def draw(found):
     axes[1, 0].set(ylabel="heading turned [deg]")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower center", ncols=3, frameon=False)
     figure.tight_layout(rect=(0, 0.05, 1, 1))
-    figure.savefig(PICTURE, dpi=110, metadata={"Software": None})
+    figure.savefig(picture, dpi=110, metadata={"Software": None})
+    plt.close(figure)
 
 
 def page(found):
@@ -157,7 +158,12 @@ trials, 171 rpm.
 """
 
 
+def studied():
+    """The study of the trials, made now."""
+    return study(LOG, read_system(ROOT / "ssp" / "gunnerus_open", fmus=[build_stale(ROOT)]), CHANNELS, orders=True)
+
+
 if __name__ == "__main__":
-    found = study(LOG, read_system(ROOT / "ssp" / "gunnerus_open", fmus=[build_stale(ROOT)]), CHANNELS, orders=True)
+    found = studied()
     PAGE.write_text(page(found), encoding="utf-8")
     draw(found)

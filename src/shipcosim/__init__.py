@@ -20,6 +20,8 @@ if TYPE_CHECKING:
         System,
         SystemStructure,
         calibrate,
+        capability,
+        check,
         compare,
         diagnose,
         judge,
@@ -51,6 +53,8 @@ __all__ = [
     "SystemStructure",
     "build_fmu",
     "calibrate",
+    "capability",
+    "check",
     "compare",
     "diagnose",
     "judge",
@@ -88,6 +92,8 @@ def __getattr__(name):
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
     if name == "build_fmu":
         from shipcosim.fmi.export.builder import build_fmu as found
+    elif name == "capability":
+        import shipcosim.capability as found
     elif name == "diagnose":
         import shipcosim.diagnose as found
     elif name == "write_report":

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
@@ -11,13 +13,14 @@ from pydantic import ValidationError
 
 from shipcosim import library
 from shipcosim.cosim import simulate as _simulate
+from shipcosim.cosim import system_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.calls import with_known_keywords
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
-from shipcosim.results.shown import made, parts_of
-from shipcosim.scenario import Scenario, check_files, check_scenario, check_times, judge
+from shipcosim.results.shown import parts_of
+from shipcosim.scenario import Scenario, check_files, check_scenario, check_times, judge, within_run
 from shipcosim.scenario import read_scenario as _read_scenario
 from shipcosim.scenario.model import problems_in
 from shipcosim.series import read_table, write_table
@@ -33,14 +36,17 @@ from shipcosim.ssp import (
     write_ssv,
 )
 from shipcosim.ssp import read as _read
+from shipcosim.staging import staged
+from shipcosim.units import UnitError, seconds
 
 if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.pipeline import Progress
     from shipcosim.diagnose.reference.reference import Reference
+    from shipcosim.results.check import CheckedFiles
     from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
-    from shipcosim.results.studies import Calibration, EngineComparison, Replay, SeaTrials
+    from shipcosim.results.studies import Calibration, CapabilityOfShip, EngineComparison, Replay, SeaTrials
 
     AnyLog = str | os.PathLike[str] | xarray.Dataset | Log | Run
     AnySystem = str | os.PathLike[str] | SystemStructure | System
@@ -54,6 +60,8 @@ __all__ = [
     "System",
     "SystemStructure",
     "calibrate",
+    "capability",
+    "check",
     "compare",
     "diagnose",
     "judge",
@@ -71,8 +79,10 @@ __all__ = [
     "write_table",
 ]
 
-SYSTEM_OF_LOGS = "gunnerus_open"
-"""What logs are held against where nobody says: as for the commands."""
+SYSTEM_OF_LOGS, SYSTEM_OF_CAPABILITY = "gunnerus_open", "gunnerus_dp"
+"""What logs are held against, and whose capability is computed, where nobody says: as for the commands."""
+EXTENDED, CALIBRATED = ("extended.ssp", "extended.ssv"), ("calibrated.ssv", "reference.json")
+"""Files that an earlier diagnosis or calibration may have left, and a later one does not always write."""
 
 
 @with_known_keywords
@@ -81,11 +91,13 @@ def run(
     *,
     set: Mapping[str, object] | None = None,
     parameters: Sequence[str | os.PathLike[str]] = (),
+    components: Mapping[str, str | os.PathLike[str]] | None = None,
     events: Iterable[Mapping[str, object]] = (),
-    stop_time: float | None = None,
-    step_size: float | None = None,
-    output_interval: float | None = None,
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    output_interval: float | str | None = None,
     out: str | os.PathLike[str] | None = None,
+    force: bool = False,
     **options: Unpack[RunKeywords],
 ) -> Run:
     """Run a scenario and judge what it expects.
@@ -99,12 +111,16 @@ def run(
     parameters : sequence of path
         Parameter sets (.ssv) over the scenario's own, as the extended.ssv of a diagnosis; what does not fit is left
         out and said in `Run.remarks`.
+    components : mapping of str to path or name, optional
+        FMUs that components run in place of their own, over those of the scenario: ``{"allocator": "my_allocator"}``.
     events : iterable of mapping
         As in a scenario file; added to its own.
     stop_time, step_size, output_interval : float, optional
-        In place of the scenario's. [s]
+        In place of the scenario's, in s or such as ``"10 min"``. [s]
     out : path, optional
         Folder that gets result.nc, result.csv and report.html; nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
     engine, inputs, progress, order, until, resume, store, isolate, timeout
         As in `shipcosim.options.RunOptions`.
 
@@ -127,13 +143,14 @@ def run(
     given = scenario if isinstance(scenario, Scenario) else read_scenario(scenario)
     if missing := check_files(given):
         raise ShipcosimError(missing)
-    path = given.system_path
-    system = read_system(path, given.parameter_paths, fmus=library.fmus(path))
+    swapped = _components(components)
+    system = system_of(given, components=swapped)
     times = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
     fitting, remarks = _fitting(parameters, system)
+    given = given.model_copy(update={"components": given.components | {k: str(v) for k, v in swapped.items()}})
     keys = _given(times) | {"set": fitting | _mapping("set", set), "events": list(events)}
     shown = _scenario(given, system.experiment, keys)
-    return _run(system, shown, RunOptions(**options), out, remarks=remarks, planned=given.stop_time)
+    return _run(system, shown, _options(options), out, force, remarks=remarks, planned=given.stop_time)
 
 
 @with_known_keywords
@@ -141,13 +158,15 @@ def simulate(
     system: AnySystem | None = None,
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
-    stop_time: float | None = None,
-    step_size: float | None = None,
-    output_interval: float | None = None,
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    output_interval: float | str | None = None,
     set: Mapping[str, object] | None = None,
+    components: Mapping[str, str | os.PathLike[str]] | None = None,
     events: Iterable[Mapping[str, object]] = (),
-    start_time: float | None = None,
+    start_time: float | str | None = None,
     out: str | os.PathLike[str] | None = None,
+    force: bool = False,
     **options: Unpack[RunKeywords],
 ) -> Run:
     """Run a system, one of ours or anybody's.
@@ -159,15 +178,20 @@ def simulate(
     scenario : Scenario, path or name, optional
         What happens; the keywords add to it and go before it.
     stop_time, step_size, output_interval : float, optional
-        Where nobody says anything, the system's default experiment does, and every step is a row. [s]
+        Where nobody says anything, the system's default experiment does, and every step is a row. In s,
+        or such as ``"10 min"``. [s]
     set : mapping of str to value, optional
         Start values by full name, in the FMUs' units.
+    components : mapping of str to path or name, optional
+        FMUs that components run in place of their own, over those of the scenario, where the system is no `System`.
     events : iterable of mapping
         As in a scenario file: ``{"time": 10.0, "override": {"vessel.tau_X_5": 1e4}}``.
     start_time : float, optional
         As in `shipcosim.options.RunOptions`; where nobody says anything, the system's default experiment does. [s]
     out : path, optional
         Folder that gets result.nc, result.csv and report.html; nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
     engine, inputs, progress, order, until, resume, store, isolate, timeout
         As in `shipcosim.options.RunOptions`: `until` and `store` stop at a time and keep the state of the whole
         system, `resume` continues from there; `isolate` has each component run in a process of its own.
@@ -192,7 +216,7 @@ def simulate(
     """
     if scenario is not None and not isinstance(scenario, Scenario):
         scenario = read_scenario(scenario)
-    system = _system(system, scenario)
+    system = _system(system, scenario, _components(components))
     if start_time is None:
         continues = options.get("resume") is not None
         start_time = system.experiment.start_time if scenario is None and not continues else 0.0
@@ -200,7 +224,8 @@ def simulate(
     keys = _given(times) | {"set": _mapping("set", set), "events": list(events)}
     planned = 0.0 if scenario is None else scenario.stop_time
     scenario = _scenario(scenario, system.experiment, keys)
-    return _run(system, scenario, RunOptions(start_time=start_time, **options), out, planned=planned)
+    how = _options({"start_time": start_time, **options})
+    return _run(system, scenario, how, out, force, planned=planned)
 
 
 def read(path: str | os.PathLike[str], *, fmus: Iterable[str | os.PathLike[str]] | None = None) -> SystemStructure:
@@ -296,6 +321,7 @@ def diagnose(
     progress: Progress | None = None,
     *,
     out: str | os.PathLike[str] | None = None,
+    force: bool = False,
     reference: str | os.PathLike[str] | Reference | None = None,
 ) -> DiagnosisOfLog: ...
 @overload
@@ -307,6 +333,7 @@ def diagnose(
     progress: Progress | None = None,
     *,
     out: str | os.PathLike[str] | None = None,
+    force: bool = False,
     reference: str | os.PathLike[str] | Reference | None = None,
 ) -> DiagnosisOfLogs: ...
 @with_known_keywords
@@ -318,6 +345,7 @@ def diagnose(
     progress: Progress | None = None,
     *,
     out: str | os.PathLike[str] | None = None,
+    force: bool = False,
     reference: str | os.PathLike[str] | Reference | None = None,
 ) -> DiagnosisOfLog | DiagnosisOfLogs:
     """Say what the simulation gets wrong of a log, and why: causes by name, the system with them, what that gains.
@@ -337,6 +365,8 @@ def diagnose(
     out : path, optional
         Folder that gets diagnosis.json, report.html, and extended.ssp and extended.ssv where a cause of the physics
         is named; nothing is left on the disk without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
     reference : path or Reference, optional
         What logs in which the ship was well say of her, as a calibration leaves it: what has changed since is told.
 
@@ -355,19 +385,21 @@ def diagnose(
     from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
 
     ship = _ship(system)
-    if out is not None:
-        made(out)
-    if isinstance(log, Sequence) and not isinstance(log, str):
-        sources = [_source(one, channels)[0] for one in log]
-        found = diagnose_jointly(sources, ship, channels, causes, progress, out=out, reference=reference)
-        result = DiagnosisOfLogs(**parts_of(found))
-    else:
-        source, channels = _source(log, channels)
-        found = diagnose(source, ship, channels, causes, progress, out=out, reference=reference)
-        result = DiagnosisOfLog(**parts_of(found))
-    if out is not None:
-        result.save(out)
-    return result
+    with _written(out, force, EXTENDED) as stage:
+        if isinstance(log, Sequence) and not isinstance(log, str):
+            sources = [_source(one, channels)[0] for one in log]
+            found = diagnose_jointly(sources, ship, channels, causes, progress, out=stage, reference=reference)
+            result = DiagnosisOfLogs(**parts_of(found))
+        else:
+            source, channels = _source(log, channels)
+            found = diagnose(source, ship, channels, causes, progress, out=stage, reference=reference)
+            result = DiagnosisOfLog(**parts_of(found))
+        if stage is not None:
+            result.write(stage)
+    if out is None or result.extension is None:
+        return result
+    at_home = {kind: Path(out) / f"extended.{kind}" for kind in ("ssp", "ssv")}
+    return replace(result, extension=replace(result.extension, **at_home))
 
 
 @with_known_keywords
@@ -377,7 +409,7 @@ def replay(
     before: AnySystem | None = None,
     channels: str | os.PathLike[str] | None = None,
     *,
-    horizon: float | None = None,
+    horizon: float | str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Replay:
     """Predict a log piece by piece, each from the measured state, with one system or with two.
@@ -412,7 +444,7 @@ def replay(
     source, channels = _source(log, channels)
     after = _system(SYSTEM_OF_LOGS if system is None else system)
     systems = {"simulated": after} if before is None else {"before": _system(before), "after": after}
-    found = replay_log(source, systems, channels, horizon=horizon, progress=progress)
+    found = replay_log(source, systems, channels, horizon=_times({"horizon": horizon})["horizon"], progress=progress)
     return Replay(**parts_of(found), name=_name(source), systems=tuple(one.name for one in systems.values()))
 
 
@@ -425,6 +457,7 @@ def calibrate(
     progress: Progress | None = None,
     *,
     out: str | os.PathLike[str] | None = None,
+    force: bool = False,
 ) -> Calibration:
     """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
 
@@ -435,6 +468,8 @@ def calibrate(
     out : path, optional
         Folder that gets calibrated.ssv, reference.json and report.html, the page alone where the logs are refused;
         nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
 
     Returns
     -------
@@ -449,13 +484,12 @@ def calibrate(
     from shipcosim.diagnose.calibration_pipeline import calibrate
     from shipcosim.results.studies import Calibration
 
-    if out is not None:
-        made(out)
     several = logs if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
     sources = [_source(one, channels)[0] for one in several]
-    result = Calibration(**parts_of(calibrate(sources, _ship(system), channels, causes, progress, out=out)))
-    if out is not None:
-        result.save(out)
+    with _written(out, force, CALIBRATED) as stage:
+        result = Calibration(**parts_of(calibrate(sources, _ship(system), channels, causes, progress, out=stage)))
+        if stage is not None:
+            result.page().save(stage / "report.html")
     return result
 
 
@@ -499,8 +533,8 @@ def sea_trials(
 def compare(
     what: Scenario | AnySystem,
     *,
-    stop_time: float | None = None,
-    step_size: float | None = None,
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
     set: Mapping[str, object] | None = None,
     tolerance: float = 1e-9,
     progress: Callable[[int, int], None] | None = None,
@@ -542,15 +576,131 @@ def compare(
     return EngineComparison(**parts_of(found), name=scenario.name or system.name)
 
 
+@with_known_keywords
+def capability(
+    system: str | os.PathLike[str] = SYSTEM_OF_CAPABILITY,
+    *,
+    parameters: Sequence[str | os.PathLike[str]] = (),
+    ship: str | None = None,
+    failures: Sequence[Sequence[str]] = (),
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+) -> CapabilityOfShip:
+    """Static DP capability: the weather that a ship's thrusters balance, intact and after each single failure.
+
+    Parameters
+    ----------
+    system : path or name
+        A system with thrusters.
+    parameters : sequence of path or name
+        Parameter sets over the system's own; the last wins.
+    ship : path or name, optional
+        Ship with capability.toml; the one that is named as the last set if not given.
+    failures : sequence of sequence of str
+        Thrusters that one failure takes out together: ``[("port", "tunnel")]``.
+    out : path, optional
+        Folder that gets report.html, capability.csv and capability.nc; nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+
+    Returns
+    -------
+    CapabilityOfShip
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is missing or cannot be.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.capability().notation
+    'DP capability-L1(5, 4, 0, 0)'
+    """
+    from shipcosim.capability import capability_of, vessel_of
+    from shipcosim.results.studies import CapabilityOfShip
+
+    sets = [parameters] if isinstance(parameters, (str, os.PathLike)) else parameters
+    groups = [(one,) if isinstance(one, str) else tuple(one) for one in failures]
+    result = CapabilityOfShip(**parts_of(capability_of(vessel_of(system, sets, ship), groups)))
+    if out is not None:
+        result.save(out, force=force)
+    return result
+
+
+@with_known_keywords
+def check(
+    files: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    *,
+    channels: str | os.PathLike[str] | None = None,
+    hosts: Sequence[str] = (),
+    strict: bool = False,
+) -> CheckedFiles:
+    """Validate files: schema, then meaning. Loads no binary and runs nothing.
+
+    Parameters
+    ----------
+    files : path or name, or a list of them
+        Systems, scenarios, parameter sets, FMUs, ship files, measured data.
+    channels : path, optional
+        Channel file of measured data.
+    hosts : sequence of str
+        ``"libcosim"`` or ``"ecos"``: what it would ignore or refuse is an error.
+    strict : bool
+        Refuse what breaks a standard, even where it can mean one thing only.
+
+    Returns
+    -------
+    CheckedFiles
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file, name or tool.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.check("four_corner").passed
+    True
+    """
+    from shipcosim.checks import check_any, variables_in
+    from shipcosim.errors import held_strictly
+    from shipcosim.results.check import CheckedFiles
+    from shipcosim.ssp.portability.check import check_host
+
+    several = [files] if isinstance(files, (str, os.PathLike)) else files
+    tools = [hosts] if isinstance(hosts, str) else hosts
+    for tool in tools:
+        check_host(tool)
+    paths = {os.fspath(one): library.find_any(os.fspath(one)) for one in several}
+    table = None if channels is None else Path(channels)
+    found = {name: check_any(path, table, tools) for name, path in paths.items()}
+    held = {name: tuple(held_strictly(problems) if strict else problems) for name, problems in found.items()}
+    rows = {name: tuple(variables_in(path)) for name, path in paths.items()}
+    return CheckedFiles(held, {name: variables for name, variables in rows.items() if variables})
+
+
 def _is_scenario(given: str | os.PathLike[str]) -> bool:
     return os.fspath(given).endswith(".toml") or library.named("scenario", os.fspath(given)) is not None
+
+
+@contextmanager
+def _written(out, force, names):
+    """A folder whose files move into `out` at the end; None where nothing is to be written."""
+    if out is None:
+        yield None
+        return
+    with staged(Path(out), names, force=force) as stage:
+        yield stage
 
 
 def _name(source):
     return Path(source).name if isinstance(source, (str, os.PathLike)) else "log"
 
 
-def _run(system, scenario, options, out, *, remarks=(), planned=0.0):
+def _run(system, scenario, options, out, force, *, remarks=(), planned=0.0):
     """Simulate, judge what lies within the run, and write it where somebody asks for that.
 
     `planned` is the stop time for which the expectations were written. [s]
@@ -560,30 +710,36 @@ def _run(system, scenario, options, out, *, remarks=(), planned=0.0):
     of_times = check_times(scenario) if scenario.stop_time < planned else ()  # a shorter run leaves things out
     remarks += [one for one in check_scenario(scenario, happening) if one not in of_times and one.severity != "error"]
     table = _simulate(system, scenario, options)
-    first, last = table["time"].values[[0, -1]]
-    is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
-    within = [is_whole or not e.during or (first <= e.during[0] and e.during[1] <= last) for e in scenario.expect]
-    judged, late = ([e for e, is_in in zip(scenario.expect, within, strict=True) if is_in == asked] for asked in (1, 0))
+    judged, late = within_run(scenario, table, planned)
     verdicts = judge(table, scenario.model_copy(update={"expect": judged}))
     result = Run(table, scenario, system, tuple(verdicts), tuple(late), tuple(remarks))
     if out is not None:
-        result.save(out)
+        result.save(out, force=force)
     return result
 
 
-def _system(system, scenario=None):
+def _system(system, scenario=None, components=None):
     """The checked system that a user means, or the scenario's where none is given."""
     if system is None:
         system = scenario.system_path if scenario is not None else _missing("system", "Give a system or a scenario.")
     if isinstance(system, System):
+        if components:
+            found = "A system that is read keeps its FMUs."
+            raise ShipcosimError(Problem("components", found, "Give its path, its name or a SystemStructure."))
         return system
     parameters = () if scenario is None else scenario.parameter_paths
+    swapped = ({} if scenario is None else scenario.component_paths()) | (components or {})
     if not isinstance(system, SystemStructure):
         system = _found("system", system)
         if osp_file(system):
-            return read_system(system, parameters)
+            return read_system(system, parameters, components=swapped)
         system = read(system)
-    return system.checked(parameters)
+    return system.checked(parameters, swapped)
+
+
+def _components(given: Mapping[str, str | os.PathLike[str]] | None) -> dict[str, Path]:
+    """FMUs in place of components' own, by path or name."""
+    return {name: _found("fmu", fmu).resolve() for name, fmu in _mapping("components", given).items()}
 
 
 def _ship(system):
@@ -647,6 +803,24 @@ def _scenario(given, experiment, keys):
     if problems:
         raise ShipcosimError(problems)
     return scenario if given is None else given.model_copy(update={name: getattr(scenario, name) for name in keys})
+
+
+def _options(given: Mapping[str, Any]) -> RunOptions:
+    return RunOptions(**_times(given))
+
+
+def _times(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Keywords with the times among them in seconds."""
+    found, problems = dict(given), []
+    for name in {"start_time", "until", "timeout", "horizon"} & found.keys():
+        if isinstance(found[name], str):
+            try:
+                found[name] = seconds(found[name])
+            except UnitError as error:
+                problems.append(Problem(name, error.found, error.remedy))
+    if problems:
+        raise ShipcosimError(problems)
+    return found
 
 
 def _missing(name, remedy):

@@ -83,14 +83,17 @@ class RunOptions:
 
 
 class RunKeywords(TypedDict, total=False):
-    """`RunOptions` as keyword arguments, but for `start_time`, whose default `shipcosim.simulate` finds itself."""
+    """`RunOptions` as keyword arguments, but for `start_time`, whose default `shipcosim.simulate` finds itself.
+
+    Times may be amounts: ``until="10 min"``.
+    """
 
     engine: str
     inputs: xarray.Dataset | None
     progress: Callable[[int, int], None] | None
     order: str
-    until: float | None
+    until: float | str | None
     resume: Snapshot | str | os.PathLike[str] | None
     store: Callable[[Snapshot], object] | str | os.PathLike[str] | None
     isolate: bool
-    timeout: float
+    timeout: float | str

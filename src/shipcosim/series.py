@@ -9,14 +9,15 @@ from __future__ import annotations
 import csv
 import gzip
 import io
+import json
 import os
 import re
 import zlib
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from shipcosim.units import UnitError, spelled_conversion
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["conversion", "make_table", "read_columns", "read_table", "write_file", "write_table"]
+__all__ = ["conversion", "make_table", "read_columns", "read_table", "write_file", "write_json", "write_table"]
 
 _NOTHING = {"", "#n/a", "#na", "-nan", "n/a", "na", "nan", "null"}  # in lower case: cells without a value
 LARGEST_TABLE = 8 << 30
@@ -185,6 +186,12 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
     except BaseException:
         part.unlink(missing_ok=True)
         raise
+
+
+def write_json(content: Mapping[str, Any], path: str | os.PathLike) -> None:
+    """Write what was found as JSON, as `write_file` does; a number that JSON does not have is an error."""
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    write_file(path, (text + "\n").encode())
 
 
 @cache

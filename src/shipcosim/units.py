@@ -357,6 +357,43 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
     return number * factor + (0.0 if difference else offset)
 
 
+def seconds(given: str | float) -> float:
+    """A time as people give it, in seconds.
+
+    Parameters
+    ----------
+    given : str or float
+        Such as ``"10 min"``; a number is in seconds.
+
+    Returns
+    -------
+    float
+        [s]
+
+    Raises
+    ------
+    UnitError
+        If it is no finite number, or measures another thing.
+
+    Examples
+    --------
+    >>> seconds("1.5 min"), seconds("90"), seconds(90.0)
+    (90.0, 90.0, 90.0)
+    """
+    remedy = "Give seconds, or such as '10 min'."
+    try:
+        number = float(given)
+    except ValueError:
+        if amount(str(given)) is None:
+            raise UnitError(f"{given!r} is no time.", remedy) from None
+        number = number_in(str(given), _unit("s", s=1))
+    except TypeError:
+        raise UnitError(f"{given!r:.60} is no time.", remedy) from None
+    if not math.isfinite(number):
+        raise UnitError(f"{given!r} is no time.", remedy)
+    return number
+
+
 def _instead(target: Unit | None) -> str:
     return f"Write a number in {target.name}, or one with a unit that converts to it." if target else "Write a number."
 

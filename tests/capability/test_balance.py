@@ -15,7 +15,7 @@ def actuator(x, y, corners, count=1):
     return Actuator(x, y, [np.array(part, float) for part in corners], np.ones(count))
 
 
-def disc(thrust, corners=3600):
+def disc(thrust, corners=1800):
     angles = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
     return [thrust * np.stack([np.cos(angles), np.sin(angles)], axis=1)]
 

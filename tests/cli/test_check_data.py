@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shipcosim.cli.checks import check_any
+from shipcosim.checks import check_any
 
 T = np.arange(300.0)
 

@@ -8,7 +8,6 @@ from typer.main import get_command
 
 from shipcosim.cli import comparison, console
 from shipcosim.cli.app import app
-from shipcosim.cli.diagnosis import LAST_STEP, shown_progress
 
 
 def commands():
@@ -46,12 +45,3 @@ def test_a_comparison_says_first_what_it_will_not_do(monkeypatch):
     assert "the step-size error of ours alone" in alone
     monkeypatch.setattr(comparison, "engines_missing", dict)
     assert comparison.not_compared() == []
-
-
-def test_stages_are_lines_where_no_terminal_is(capsys):
-    with shown_progress() as show:
-        show("reading the log")
-        for done in range(3):
-            show("what does the simulation get wrong", done, 3)
-        show(LAST_STEP)
-    assert capsys.readouterr().err.splitlines() == ["2 of 5: what does the simulation get wrong", LAST_STEP]

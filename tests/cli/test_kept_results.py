@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import xarray
 
-from shipcosim.cli.results import set_aside, set_file_aside, staged
+from shipcosim.staging import set_aside, set_file_aside, staged
 
 
 def written(folder, text):
@@ -73,6 +73,16 @@ def test_a_second_run_keeps_the_first_unless_forced(call, project):
 
 
 def test_what_a_part_of_a_run_does_not_reach_is_said(call, project):
-    part = call("run", "fill", "--until", "4")
-    assert part.code == 0 and "Not reached: " in part.out and "The run ended at 4 s." in part.out
+    part = call("run", "fill", "--until", "4000 ms")
+    said = part.out.replace("\u00a0", " ")
+    assert part.code == 0 and "Not reached: lag.y: 1 ± 0.05 m during 4 to 5 s. The run ended at 4 s." in said
     assert "None of its" in part.out or "not reached" in part.out
+
+
+TIMES = [("ten", "'ten' is no time"), ("nan", "'nan' is no time"), ("5 kn", "'5 kn' is in kn")]
+
+
+@pytest.mark.parametrize(("given", "found"), TIMES)
+def test_a_time_that_is_none_is_refused_with_what_would_be_right(call, project, given, found):
+    failed = call("run", "fill", "--until", given)
+    assert failed.code == 2 and found in " ".join(failed.err.split()), failed.err

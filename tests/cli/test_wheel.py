@@ -11,13 +11,41 @@ import subprocess
 import sys
 import sysconfig
 import time
+import tomllib
+import zipfile
+from importlib.metadata import distribution
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 FIRST_RESULT = 120.0  # s, from a cold start of the first run to its page, on two cores
+LARGEST = 350.0  # MB, the whole environment with pip and what Python puts into it
+BESIDE = 30.0  # MB of those: pip, setuptools, links
 BIN = "Scripts" if os.name == "nt" else "bin"
+
+
+def megabytes(files):
+    """Room that files take on a disk with blocks of 4 KiB, as `du -sm` says it."""
+    return (
+        sum(-(-file.stat().st_size // 4096) * 4096 for file in files if file.is_file() and not file.is_symlink())
+        / 2**20
+    )
+
+
+def needed(requirements):
+    """Distributions that pip would install for requirements without extras, of those that the tests run with."""
+    names, waiting = set(), [Requirement(one) for one in requirements]
+    while waiting:
+        one = waiting.pop()
+        if one.marker is not None and not one.marker.evaluate({"extra": ""}):
+            continue
+        name = one.name.lower()
+        if name not in names:
+            names.add(name)
+            waiting += [Requirement(text) for text in distribution(name).requires or []]
+    return names
 
 
 def quickstart():
@@ -70,6 +98,18 @@ def check_first(said):
     assert "starboard thruster delivers" in found and "less thrust" in found
 
 
+def test_what_is_installed_with_the_wheel_is_small(wheel):
+    """By what the tests run with; no extra counts. The slow test below measures a fresh environment."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    names = needed(project["dependencies"])
+    sizes = {name: megabytes(Path(str(f.locate())) for f in distribution(name).files or []) for name in names}
+    (file,) = wheel.glob("*.whl")
+    with zipfile.ZipFile(file) as archive:
+        sizes["shipcosim"] = sum(entry.file_size for entry in archive.infolist()) / 2**20
+    assert not {"cmake", "scipy", "torch", "pyarrow", "plotly"} & names
+    assert sum(sizes.values()) < LARGEST - BESIDE, sorted(sizes.items(), key=lambda item: -item[1])
+
+
 def test_quickstart_runs_from_the_wheel_in_an_empty_folder(fresh, wheel):
     venv, folder, run = fresh
     run([sys.executable, "-m", "venv", "--without-pip", str(venv)], folder)
@@ -101,6 +141,9 @@ def test_quickstart_runs_word_for_word_with_everything_installed(fresh):
     install, first, *others = quickstart()
     assert install[:2] == ["pip", "install"] and first == ["shipcosim", "run", "four_corner"]
     run([str(venv / BIN / "python"), "-m", *install], folder)
+    size = megabytes(venv.rglob("*"))
+    print(f"environment of {size:.0f} MB")
+    assert size < LARGEST
     start = time.perf_counter()
     said = follow([first], folder, run)
     seconds = time.perf_counter() - start

@@ -4,7 +4,7 @@ import pytest
 from conformance.cases import cases, write
 from conformance.recording import FORMED, RIGHT, rows
 
-from shipcosim.cli.checks import check_any
+from shipcosim.checks import check_any
 
 TOLD = "has to be told it in the call"
 """What the recording does tell it, unless this is what the file is to say."""

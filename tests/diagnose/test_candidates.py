@@ -9,7 +9,7 @@ from measured.logs import CHANNELS, FOLDERS, as_table, files
 
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.pipeline import find_causes, verdict_on
+from shipcosim.diagnose.pipeline import find_causes, problem_of, verdict_on
 from shipcosim.diagnose.stages import ReadLog
 from shipcosim.diagnose.statement import stated
 from shipcosim.library import build_stale
@@ -33,7 +33,7 @@ def agrees(found):
 
 def of_craft(seed, fault, change):
     drawn = draw_craft(seed, fault=fault, change=change)
-    return stated(verdict_on(ReadLog(read_log(drawn.log), drawn.model, read_catalogue()), lambda *_: None))
+    return stated(verdict_on(problem_of(ReadLog(read_log(drawn.log), drawn.model, read_catalogue())), lambda *_: None))
 
 
 def test_candidates_of_a_drawn_craft_do_not_contradict_what_is_not_testable():

@@ -354,7 +354,7 @@ def test_all_fmus_of_the_project_run_with_python_numpy_and_fmpy_alone(root, bare
         """,
         path=bare_packages,
     )
-    assert len(names) == 18 and printed.splitlines() == [f"{name} 201 True" for name in names]
+    assert len(names) >= 18 and printed.splitlines() == [f"{name} 201 True" for name in names]
 
 
 @pytest.mark.slow

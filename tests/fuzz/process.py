@@ -22,7 +22,7 @@ from fuzz.typed import running
 
 import shipcosim as sc
 import shipcosim.report
-from shipcosim.cli.checks import check_any
+from shipcosim.checks import check_any
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.reference.reference import read_reference
 from shipcosim.errors import ShipcosimError

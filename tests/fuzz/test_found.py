@@ -12,7 +12,7 @@ from fuzz.endless import HEAD, TAIL, endless_connections, endless_systems
 from fuzz.seeds import seeds, zipped
 from fuzz.typed import running
 
-from shipcosim.cli.checks import check_any
+from shipcosim.checks import check_any
 from shipcosim.cosim.master.snapshot import read_snapshot
 from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError
 

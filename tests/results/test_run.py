@@ -33,7 +33,8 @@ def texts(picture):
 
 
 def test_a_scenario_runs_by_its_name_in_an_empty_folder_and_writes_nothing(empty):
-    found = sc.run("gust", stop_time=1.0)
+    found = sc.run("gust", stop_time="0.1 min", until="1000 ms")
+    assert found["time"].values[-1] == 1.0
     assert found.name == "gust" and found.table["time"].values[-1] == 1.0
     assert list(empty.iterdir()) == []
 
@@ -169,6 +170,7 @@ REFUSED = {
     "name": ({"scenario": "gsut"}, "There is no such scenario file.* Did you mean 'gust'"),
     "number": ({"scenario": 3}, "3 is neither a path nor a name"),
     "set": ({"scenario": "gust", "set": 3}, "set = 3"),
+    "until": ({"scenario": "gust", "until": "5 kn"}, "until: '5 kn' is in kn"),
     "text": ({"scenario": "gust", "stop_time": "long"}, "stop_time = 'long'"),
     "key": ({"scenario": "gust", "events": [{"tim": 1.0}]}, "tim: There is no such key"),
     "value": ({"scenario": "gust", "set": {"vessel.mas": 1.0}}, "Did you mean 'mass'"),

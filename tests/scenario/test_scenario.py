@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Scenario, check_times, judge, read_scenario, whole_steps
+from shipcosim.scenario import Scenario, check_times, judge, read_scenario, whole_steps, within_run
 from shipcosim.series import make_table
 
 GOOD = """\
@@ -187,3 +187,17 @@ def test_expectations_are_judged(verdict, expect, passed, worst, time):
 def test_signal_that_is_not_in_the_table_is_an_error(verdict):
     with pytest.raises(ShipcosimError, match="no signal 'vessel.x'"):
         verdict(signal="vessel.x", at_most=1.0)
+
+
+def test_a_part_of_a_run_is_judged_by_what_lies_within_it():
+    claims = [
+        {"signal": "a.x", "at_most": 1.0},
+        {"signal": "a.x", "at_most": 1.0, "during": [0.0, 4.0]},
+        {"signal": "a.x", "at_most": 1.0, "during": [0.0, 6.0]},
+        {"signal": "a.x", "at_most": 1.0, "statistic": "mean"},
+    ]
+    scenario = Scenario.model_validate({"step_size": 1.0, "stop_time": 10.0, "expect": claims})
+    part, whole = (make_table(np.array([0.0, end]), []) for end in (5.0, 10.0))
+    assert within_run(scenario, part) == (scenario.expect[:2], scenario.expect[2:])
+    assert within_run(scenario, whole) == (scenario.expect, [])
+    assert within_run(scenario, whole, planned=20.0) == (scenario.expect[:3], scenario.expect[3:])

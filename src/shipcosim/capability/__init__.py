@@ -1,5 +1,12 @@
-"""The static DP capability of a ship: the weather of DNV-ST-0111 against her thrusters."""
+"""The static DP capability of a ship: the weather of DNV-ST-0111 against her thrusters.
 
+The room can be called: ``shipcosim.capability(system)`` is the function of this name in `shipcosim.api`.
+"""
+
+import sys
+
+from shipcosim import CallableRoom
+from shipcosim.capability.assessment import vessel_of
 from shipcosim.capability.compute import capability_of, cases_of
 from shipcosim.capability.result import Capability, Case, as_json, dataset, notation, numbers_table
 from shipcosim.capability.vessel import Vessel, read_vessel
@@ -15,4 +22,7 @@ __all__ = [
     "notation",
     "numbers_table",
     "read_vessel",
+    "vessel_of",
 ]
+
+sys.modules[__name__].__class__ = CallableRoom

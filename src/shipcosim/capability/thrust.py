@@ -1,10 +1,10 @@
 """Thrust that DNV-ST-0111 Level 1 grants a thruster: nominal thrust, and what ventilation and the rest take from it."""
 
 from dataclasses import dataclass
+from math import erfc, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from shipcosim.capability.conditions import Condition
 from shipcosim.capability.particulars import Hull
@@ -109,7 +109,8 @@ def ventilation(thruster: Thruster, hull: Hull, condition: Condition, weather_fr
     place = 1.0 + 0.4 * min(x, 0.0) / hull.length
     load = np.sqrt(thruster.ahead / thruster.diameter**3) / 15.2
     sigma = 0.25 * (heave * place * condition.wave_height * min(period, 1.0) + max(load - 1.0, 0.0))
-    return ndtr(4.0 * thruster.submergence / thruster.diameter - 1.5 * sigma)
+    depth = 4.0 * thruster.submergence / thruster.diameter
+    return np.array([0.5 * erfc((1.5 * one - depth) / sqrt(2.0)) for one in sigma])
 
 
 def _wrapped(angle: NDArray) -> NDArray:

@@ -22,6 +22,7 @@ from shipcosim.cli.commands import (
     run,
     sea_trials,
     simulate,
+    train,
 )
 from shipcosim.cli.exits import EXIT_CODES, guarded
 
@@ -36,6 +37,9 @@ exporting = typer.Typer(
 )
 making = typer.Typer(
     help="Make a new file that runs, in the project around.", rich_markup_mode=None, no_args_is_help=True
+)
+training = typer.Typer(
+    help="Train a learned component from scratch, with a fixed seed.", rich_markup_mode=None, no_args_is_help=True
 )
 app.command("list", epilog=EXIT_CODES)(guarded(list.list_))
 for _function in (
@@ -58,8 +62,10 @@ for _function in (export.fmu, export.osp):
     exporting.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (new.fmu, new.scenario, new_ship.ship, new.system):
     making.command(epilog=EXIT_CODES)(guarded(_function))
+training.command(epilog=EXIT_CODES)(guarded(train.allocator))
 app.add_typer(exporting, name="export")
 app.add_typer(making, name="new")
+app.add_typer(training, name="train")
 
 
 @app.callback(invoke_without_command=True)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, shown_progress
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs
+from shipcosim.cli.progress import LAST_STEP, shown_progress
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -46,17 +47,18 @@ def calibrate_ship(
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.requests import system_of
-    from shipcosim.cli.results import check_targets, staged
-    from shipcosim.diagnose.calibration_pipeline import calibrate
+    from shipcosim.cli.results import check_targets
+    from shipcosim.diagnose.calibration_pipeline import calibrate, steps_of
     from shipcosim.report.calibration.page import write_calibration
+    from shipcosim.staging import staged
 
     check_inputs(logs, channels, effects)
     ship = system_of(system or DEFAULT_SYSTEM, option="--system")
     folder = out or Path("results") / f"calibrated-{ship.name}"
     check_targets(folder)
-    with shown_progress("") as show, staged(folder, FILES) as stage:
+    with shown_progress(steps_of(logs)) as show, staged(folder, FILES) as stage:
         found = calibrate(list(logs), ship, channels, effects, show, out=stage)
-        show("writing the page")
+        show(LAST_STEP)
         write_calibration(found, stage / "report.html")
     return found, folder
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shipcosim import library
+from shipcosim.cli.progress import LAST_STEP, shown_progress
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -18,12 +18,6 @@ if TYPE_CHECKING:
 
 DEFAULT_SYSTEM = "gunnerus_open"
 FILES = ("diagnosis.json", "report.html", "extended.ssp", "extended.ssv")
-STEPS = {
-    "what does the simulation get wrong": "2 of 5: what does the simulation get wrong",
-    "extending the system": "3 of 5: extending the system",
-    "the gain, by co-simulation": "4 of 5: the gain, by co-simulation",
-}
-LAST_STEP = "5 of 5: writing the page"
 
 
 def default_folder(data: str | os.PathLike, ending: str = "") -> Path:
@@ -77,15 +71,16 @@ def diagnose_log(
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.requests import system_of
-    from shipcosim.cli.results import staged, write_json
-    from shipcosim.diagnose.pipeline import diagnose
+    from shipcosim.diagnose.pipeline import STEPS, diagnose
     from shipcosim.diagnose.reference.reference import read_reference
     from shipcosim.report.diagnosis.page import write_diagnosis
+    from shipcosim.series import write_json
+    from shipcosim.staging import staged
 
     check_inputs([data], channels, effects)
     known = None if reference is None else read_reference(reference)
     ship = system_of(system or DEFAULT_SYSTEM, option="--system")
-    with shown_progress() as show, staged(folder, FILES) as stage:
+    with shown_progress(STEPS) as show, staged(folder, FILES) as stage:
         diagnosis = diagnose(data, ship, channels, effects, show, out=stage, reference=known)
         show(LAST_STEP)
         write_json(diagnosis.as_json(), stage / "diagnosis.json")
@@ -108,45 +103,6 @@ def check_inputs(
         problems.append(Problem(str(effects), "There is no such folder of causes.", "Give the path of one."))
     if problems:
         raise ShipcosimError(problems)
-
-
-@contextmanager
-def shown_progress(first: str = "1 of 5: ") -> Iterator[Callable[..., None]]:
-    """Which stage is being worked on, on stderr; yields a function of (what is done, parts done, of how many).
-
-    On a terminal a bar with the share that is done and the time that is left; elsewhere a line for each step after the
-    first, so that of input which cannot be used nothing but its error is said.
-
-    `first` goes before steps that have no name of their own.
-    """
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        SpinnerColumn,
-        TaskProgressColumn,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
-    console, last = Console(stderr=True), ("", None)
-    columns = [SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24), TaskProgressColumn()]
-    columns += [TimeElapsedColumn(), TextColumn("left in this step:"), TimeRemainingColumn()]
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("", total=None)
-
-        def show(doing, done=None, total=None):
-            nonlocal last
-            text = doing if doing == LAST_STEP else STEPS.get(doing, f"{first}{doing}")
-            if not console.is_terminal and text != last[0] and (doing in STEPS or doing == LAST_STEP):
-                console.print(text, highlight=False)
-            if text != last[0] and (total is None or total != last[1]):  # else one of several parts
-                bar.reset(task)
-            last = text, total
-            bar.update(task, description=text, completed=done or 0, total=total)
-
-        yield show
 
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
@@ -200,20 +156,9 @@ def _sections(diagnosis):
 
 def finding_table(findings: Iterable[Finding]) -> Any:
     """Findings as a table, their parameters row by row; None without one."""
-    return table(row for finding in findings for row in _rows(finding))
+    from shipcosim.report.diagnosis.words import finding_rows
 
-
-def _rows(finding):
-    """Rows of a finding: its parameters, or where in the log it is."""
-    from shipcosim.report.diagnosis.words import size_rows, title, where
-
-    name, sure = title(finding.cause, finding.component), f"{100 * finding.probability:.0f} %"
-    rows = size_rows(finding) if finding.kind == "physics" else []
-    for parameter, size in rows:
-        yield name, sure, parameter, size
-        name = sure = ""
-    if not rows:
-        yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)
+    return table(finding_rows(findings))
 
 
 def table(rows: Iterable[Sequence[str]]) -> Any:

@@ -9,7 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, FILES, check_inputs, shown_progress, table
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, FILES, check_inputs, table
+from shipcosim.cli.progress import LAST_STEP, shown_progress
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.joint_pipeline import JointDiagnosis
@@ -45,17 +46,18 @@ def diagnose_logs(
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.requests import system_of
-    from shipcosim.cli.results import staged, write_json
-    from shipcosim.diagnose.joint_pipeline import diagnose_jointly
+    from shipcosim.diagnose.joint_pipeline import diagnose_jointly, steps_of
     from shipcosim.diagnose.reference.reference import read_reference
     from shipcosim.report.joint.page import write_joint
+    from shipcosim.series import write_json
+    from shipcosim.staging import staged
 
     check_inputs(logs, channels, effects)
     known = None if reference is None else read_reference(reference)
     ship = system_of(system or DEFAULT_SYSTEM, option="--system")
-    with shown_progress("") as show, staged(folder, FILES) as stage:
+    with shown_progress(steps_of(logs)) as show, staged(folder, FILES) as stage:
         found = diagnose_jointly(list(logs), ship, channels, effects, show, out=stage, reference=known)
-        show("writing the page")
+        show(LAST_STEP)
         write_json(found.as_json(), stage / "diagnosis.json")
         write_joint(found, stage / "report.html")
     if found.extension is None:

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from shipcosim.cli.results import REPLACING
 from shipcosim.cli.start.completion import ENGINES, names_of, words_of
+from shipcosim.staging import REPLACING
 
 
-def finite(value: float | None) -> float | None:
-    """The value of an option in seconds; a number that is no time is refused."""
-    if value is not None and not math.isfinite(value):
-        raise typer.BadParameter(f"{value} is no time. Give it in seconds.")
-    return value
+def _time(given: str) -> float:
+    from shipcosim.units import UnitError, seconds
+
+    try:
+        return seconds(given)
+    except UnitError as error:
+        raise typer.BadParameter(str(error)) from None
+
+
+def time_option(name: str, meaning: str) -> Any:
+    """An option that takes a time: seconds, or an amount such as '10 min'."""
+    return typer.Option(name, parser=_time, metavar="TIME", help=meaning)
 
 
 def _replacing(force: bool) -> bool:
@@ -32,6 +38,15 @@ Settings = Annotated[
     list[str] | None,
     typer.Option(
         "--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others, such as 5 or '10 kn'; repeatable."
+    ),
+]
+Components = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--component",
+        metavar="COMPONENT=FMU",
+        help="Run another FMU in a component's place: a name or a path, such as allocator=extended_allocator; "
+        "repeatable.",
     ),
 ]
 OspEvents = Annotated[
@@ -61,10 +76,12 @@ Ship = Annotated[
 Effects = Annotated[
     Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
 ]
-SystemsStopTime = Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the system's.")]
-SystemsStepSize = Annotated[float | None, typer.Option("--step-size", help="[s] Default: the system's.")]
-ScenariosStopTime = Annotated[float | None, typer.Option("--stop-time", help="[s] Default: the scenario's.")]
-ScenariosStepSize = Annotated[float | None, typer.Option("--step-size", help="[s] Default: the scenario's.")]
+SystemsStopTime = Annotated[float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the system's.")]
+SystemsStepSize = Annotated[float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the system's.")]
+ScenariosStopTime = Annotated[
+    float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the scenario's.")
+]
+ScenariosStepSize = Annotated[float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the scenario's.")]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
 Engine = Annotated[
     str,
@@ -76,7 +93,7 @@ Force = Annotated[
     bool,
     typer.Option("--force", callback=_replacing, help="Replace earlier results instead of keeping them in DIR-1, ..."),
 ]
-Until = Annotated[float | None, typer.Option("--until", callback=finite, help="[s] End here, before the stop time.")]
+Until = Annotated[float | None, time_option("--until", "End here, before the stop time; in s, or such as '10 min'.")]
 Store = Annotated[
     Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")
 ]
@@ -86,7 +103,7 @@ Isolate = Annotated[
 ]
 Timeout = Annotated[
     float | None,
-    typer.Option("--timeout", callback=finite, help="[s] Longest wait for a component of --isolate. Default: 60."),
+    time_option("--timeout", "Longest wait for a component of --isolate; in s, or such as '2 min'. Default: 60."),
 ]
 ReportAsJson = Annotated[bool, typer.Option("--json", help="Report as JSON.")]
 Strict = Annotated[

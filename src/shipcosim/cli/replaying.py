@@ -66,10 +66,11 @@ def replay_and_save(
     log: Path, systems: dict[str, System], channels: Path | None, horizon: float | None, folder: Path
 ) -> LogReplay:
     """Replay a log and write page, errors and series to a folder."""
-    from shipcosim.cli.results import check_targets, staged
+    from shipcosim.cli.results import check_targets
     from shipcosim.diagnose.replays import replay_log
     from shipcosim.diagnose.validation.tracks import errors_of
     from shipcosim.report.diagnosis.replay_page import write_replay
+    from shipcosim.staging import staged
 
     check_inputs([log], channels)
     check_targets(folder)
@@ -79,7 +80,7 @@ def replay_and_save(
     facts = {name: system.name for name, system in systems.items()} | {"Predictions": f"{tracks.horizon:.0f} s"}
     with staged(folder) as stage:
         errors_of(tracks).to_dataframe().reset_index().to_csv(stage / "errors.csv", index=False)
-        _series(tracks).to_netcdf(stage / "replay.nc")
+        _series(tracks).to_netcdf(stage / "replay.nc", engine="h5netcdf")
         write_replay(found, stage / "report.html", log.name, facts)
     return found
 

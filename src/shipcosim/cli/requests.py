@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import xarray
 
-from shipcosim import library
+from shipcosim import cosim, library
 from shipcosim.cli.console import print_problems
 from shipcosim.cosim import interpolated
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -20,7 +20,13 @@ from shipcosim.series import read_table
 from shipcosim.ssp import System, read_system, with_values
 
 
-def system_of(given: str, parameters: Iterable[Path] | None = None, option: str = "", strict: bool = False) -> System:
+def system_of(
+    given: str,
+    parameters: Iterable[Path] | None = None,
+    option: str = "",
+    strict: bool = False,
+    components: Mapping[str, Path] | None = None,
+) -> System:
     """The system of a file, folder or name, with our FMUs built where they are missing or out of date.
 
     Parameters
@@ -33,6 +39,8 @@ def system_of(given: str, parameters: Iterable[Path] | None = None, option: str 
         Where it was given, for messages.
     strict : bool
         Refuse what breaks a standard, also where it can mean one thing only.
+    components : mapping of str to Path, optional
+        FMUs that components run in place of their own.
 
     Raises
     ------
@@ -41,7 +49,7 @@ def system_of(given: str, parameters: Iterable[Path] | None = None, option: str 
     """
     is_fmu = not Path(given).exists() and library.named("system", given) is None and library.named("fmu", given)
     path = library.find("fmu" if is_fmu else "system", given, option)
-    return read_system(path, parameters or (), fmus=library.fmus(path), strict=strict)
+    return read_system(path, parameters or (), fmus=library.fmus(path), components=components, strict=strict)
 
 
 def system_and_scenario(
@@ -79,8 +87,7 @@ def system_and_scenario(
     scenario = read_scenario(library.find("scenario", given))
     if missing := check_files(scenario):
         raise ShipcosimError(missing)
-    path, sets = scenario.system_path, [*scenario.parameter_paths, *(parameters or ())]
-    system = read_system(path, sets, fmus=library.fmus(path), strict=strict)
+    system = cosim.system_of(scenario, parameters=parameters or (), strict=strict)
     print_problems(problem for problem in system.remarks if problem.flaw)
     times = {"stop_time": stop_time, "step_size": step_size}
     scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
@@ -225,6 +232,29 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
     return values
 
 
+def parsed_components(given: Iterable[str]) -> dict[str, Path]:
+    """FMUs of ``--component component=FMU``: a path, or the name of an FMU, which is built where it has to be.
+
+    Raises
+    ------
+    ShipcosimError
+        If one is none of that.
+    """
+    found, problems = {}, []
+    for one in given:
+        name, sign, fmu = (part.strip() for part in one.partition("="))
+        if not (sign and name and fmu):
+            problems.append(Problem("--component", f"'{one}' swaps nothing.", "Right would be component=FMU."))
+            continue
+        try:
+            found[name] = library.find("fmu", fmu, "--component").resolve()
+        except ShipcosimError as error:
+            problems += error.problems
+    if problems:
+        raise ShipcosimError(problems)
+    return found
+
+
 def _parsed(text: str) -> Any:
     try:
         return tomllib.loads(f"value = {text}")["value"]
@@ -237,10 +267,12 @@ def changed_by(
     parameters: Iterable[Path] | None,
     options: RunOptions,
     resume: Path | None = None,
+    components: Iterable[str] | None = None,
 ) -> list[str]:
     """What the command line changes of what the files say, for the page: each a text."""
     changed = [f"--set {' = '.join(part.strip() for part in one.split('=', 1))}" for one in settings or ()]
     changed += [f"--parameters {one}" for one in parameters or ()]
+    changed += [f"--component {' = '.join(part.strip() for part in one.split('=', 1))}" for one in components or ()]
     changed += [f"--engine {options.engine}"] if options.engine != RunOptions.engine else []
     changed += [f"--until {options.until:g} s"] if options.until is not None else []
     return changed + ([f"--from {resume}"] if resume is not None else [])

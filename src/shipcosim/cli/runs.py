@@ -12,11 +12,12 @@ import typer
 
 from shipcosim.cli.console import print_problems, print_summary, progress_of
 from shipcosim.cli.exits import FAILED, INTERRUPTED
-from shipcosim.cli.results import check_targets, save, set_file_aside
+from shipcosim.cli.results import check_targets, save
 from shipcosim.cosim import Interrupted, RunError, RunOptions, Snapshot, simulate, write_snapshot
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Expectation, Scenario, Verdict, check_scenario, judge, units_of, with_numbers
+from shipcosim.scenario import Scenario, Verdict, check_scenario, judge, units_of, with_numbers, within_run
 from shipcosim.ssp import System, with_values
+from shipcosim.staging import set_file_aside
 
 if TYPE_CHECKING:
     import xarray
@@ -81,6 +82,8 @@ def simulated_and_saved(
     ShipcosimError
         If the input cannot be used or the results cannot be written.
     """
+    from shipcosim.report.run.expectations import claims
+
     check_targets(out, store)
     print_problems(problem for problem in system.remarks if problem.where not in system.components)
     problems = check_scenario(scenario, with_values(system, scenario.set, str(scenario.path or "scenario")))
@@ -91,8 +94,10 @@ def simulated_and_saved(
     if store:
         options = replace(options, store=snapshots.append)
     table = _simulated(system, scenario, out, options, changed)
-    scenario, not_reached = _within(scenario, table)
-    table = table.assign_attrs(not_reached=json.dumps(list(map(str, not_reached))))
+    reached, late = within_run(scenario, table)
+    beyond = with_numbers(scenario.model_copy(update={"expect": late}), units_of(system)).expect
+    scenario = scenario.model_copy(update={"expect": reached})
+    table = table.assign_attrs(not_reached=json.dumps(claims(beyond, table)))
     verdicts = judge(table, with_numbers(scenario, units_of(system)))
     page = save(table, out, "result", scenario=scenario, verdicts=verdicts, system=system)
     print_summary(table, verdicts, page)
@@ -130,19 +135,3 @@ def _save_partial(table: xarray.Dataset, out: Path, scenario: Scenario, system: 
     if table.sizes["time"]:
         page = save(table, out, "result-partial", scenario=scenario, system=system)
         print_summary(table, (), page, to_stderr=True)
-
-
-def _within(scenario: Scenario, table: xarray.Dataset) -> tuple[Scenario, list[Expectation]]:
-    """The scenario with those expectations that lie within the table's times, and the others.
-
-    One about every row holds for a part of a run, too; a statistic of the whole run does not.
-    """
-    first, last = table["time"].values[[0, -1]]
-    if first == 0.0 and last >= scenario.stop_time - 1e-9:
-        return scenario, []
-    inside = [
-        expect
-        for expect in scenario.expect
-        if (first <= expect.during[0] and expect.during[1] <= last if expect.during else expect.statistic is None)
-    ]
-    return scenario.model_copy(update={"expect": inside}), [one for one in scenario.expect if one not in inside]

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim import library
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, default_folder, shown_progress
+from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs, default_folder
+from shipcosim.cli.progress import LAST_STEP, shown_progress
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
@@ -51,20 +52,22 @@ def study_log(
         Input that cannot be used; nothing is written then.
     """
     from shipcosim.cli.requests import system_of
-    from shipcosim.cli.results import check_targets, staged, write_json
+    from shipcosim.cli.results import check_targets
     from shipcosim.diagnose.extension.extend import extend
     from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-    from shipcosim.diagnose.sea_trials.study import study
+    from shipcosim.diagnose.sea_trials.study import STEPS, study
     from shipcosim.report.sea_trials.page import write_sea_trials
+    from shipcosim.series import write_json
     from shipcosim.ssp import read
+    from shipcosim.staging import staged
 
     check_inputs([data], channels, effects)
     folder = out or default_folder(data, "-sea-trials")
     check_targets(folder)
     given = library.find("system", system or DEFAULT_SYSTEM, "--system")
-    with shown_progress("") as show:
+    with shown_progress(STEPS) as show, staged(folder, FILES) as stage:
         found = study(data, system_of(str(given)), channels, effects, show, orders=orders)
-    with staged(folder, FILES) as stage:
+        show(LAST_STEP)
         write_json(found.as_json(), stage / FILES[0])
         facts = {"Log": Path(data).name, "System": given.name, "Thrusters": "orders" if orders else "feedback"}
         write_sea_trials(found, stage / FILES[1], facts)

@@ -8,6 +8,7 @@ from shipcosim.cosim.master.snapshot import Snapshot, read_snapshot, write_snaps
 from shipcosim.cosim.repeat import repeat
 from shipcosim.cosim.replay import replay
 from shipcosim.cosim.simulate import simulate
+from shipcosim.cosim.systems import system_of
 from shipcosim.options import RunOptions
 
 __all__ = [
@@ -23,5 +24,6 @@ __all__ = [
     "repeat",
     "replay",
     "simulate",
+    "system_of",
     "write_snapshot",
 ]

@@ -51,7 +51,9 @@ def repeat(
     if "system_sha256" not in facts:
         raise ShipcosimError(Problem("repeat", "The table does not say how it came about.", "Give a result.nc."))
     if not isinstance(system, System):
-        system = read_system(system or Path("ssp") / facts["system"], fmus=fmus or [Path("build") / "fmus"])
+        swapped = {name: Path(file) for name, file in json.loads(facts.get("swapped", "{}")).items()}
+        folders = fmus or [Path("build") / "fmus"]
+        system = read_system(system or Path("ssp") / facts["system"], fmus=folders, components=swapped)
     if problems := list(_differences(facts, system, inputs)):
         raise ShipcosimError(problems)
     starts = {name: value for name, value in json.loads(facts["start_values"]).items() if value is not None}

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim import library
 from shipcosim.cosim.engines.registry import ENGINES, OWN_OPTIONS
+from shipcosim.cosim.systems import system_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_scenario, odd_values, units_of, with_numbers
-from shipcosim.ssp import System, read_system, with_values
+from shipcosim.ssp import System, with_values
 
 if TYPE_CHECKING:
     import xarray
@@ -25,7 +26,7 @@ def simulate(
     Parameters
     ----------
     system : System or path
-        What runs; a path is read with the scenario's parameter sets.
+        What runs; a path is read with the scenario's parameter sets and components.
     scenario : Scenario
         Steps, start values, events.
     options : RunOptions, optional
@@ -50,7 +51,7 @@ def simulate(
     if options.engine not in ENGINES:
         raise ShipcosimError(f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}")
     if not isinstance(system, System):
-        system = read_system(system, scenario.parameter_paths, fmus=library.fmus(system))
+        system = system_of(scenario, system=Path(system))
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
         raise ShipcosimError(errors)

@@ -11,12 +11,9 @@ from typing import TYPE_CHECKING
 from threadpoolctl import threadpool_limits
 
 import shipcosim
-from shipcosim.diagnose.comparison.compared import compared
-from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.inference.thresholds import FORM_COST
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log_faults.corrections import corrected
-from shipcosim.diagnose.pipeline import Progress, given_system, read_measurements
+from shipcosim.diagnose.pipeline import Progress, given_system, problem_of, read_measurements
 from shipcosim.diagnose.reference.calibration import (
     calibrated_to,
     causes_beside,
@@ -39,7 +36,9 @@ if TYPE_CHECKING:
 
     from shipcosim.ssp import System, SystemStructure
 
-__all__ = ["CalibratedLog", "CalibratedShip", "calibrate", "identified_log", "log_names"]
+__all__ = ["CalibratedLog", "CalibratedShip", "calibrate", "log_names", "problems_of", "steps_of"]
+
+READING = "are the logs right?"
 
 _KINDS_OF_THE_LOG = ("slow", "with the heading", "periodic", "in a channel")
 
@@ -94,6 +93,17 @@ class CalibratedShip:
         return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
 
 
+def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+    """What `calibrate` tells its progress function, in order, with the time that it typically takes. [s]"""
+    many = len(logs)
+    return {
+        READING: 2.5 * many,
+        "fitting the ship's numbers": 3.5 * many,
+        "is she well?": 0.2 * many,
+        "what does the calibrated ship get wrong?": 1.0 * many,
+    }
+
+
 def calibrate(
     logs: Sequence[str | os.PathLike | xarray.Dataset],
     system: str | os.PathLike | SystemStructure | System,
@@ -131,12 +141,9 @@ def calibrate(
     """
     say = progress or (lambda *_: None)
     given = given_system(system).given
-    names = log_names(logs)
     with threadpool_limits(1):
-        found = {}
-        for name, log in zip(names, logs, strict=True):
-            say(f"is {name} right?")
-            found[name] = identified_log(log, given, channels, causes)
+        problems = problems_of(logs, given, channels, causes, say)
+        found = {name: corrected(problem) for name, problem in problems.items()}
         _check_usable(found)
         several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
         say("fitting the ship's numbers")
@@ -191,15 +198,27 @@ def _stem(log, number):
     return f"log-{number}"
 
 
-def identified_log(
-    log: str | os.PathLike | xarray.Dataset,
+def problems_of(
+    logs: Sequence[str | os.PathLike | xarray.Dataset],
     system: System,
     channels: str | os.PathLike | None = None,
     causes: str | os.PathLike | None = None,
+    progress: Progress | None = None,
+    *,
     reference: Reference | None = None,
-) -> Identification:
-    """A log as an identification problem, its faults repaired."""
-    return corrected(identified(compared(checked(read_measurements(log, system, channels, causes, reference)))))
+) -> dict[str, Identification]:
+    """Several logs by their names, each as an identification problem; what cannot be used of all is said at once."""
+    found, problems, names = {}, [], log_names(logs)
+    for done, (name, log) in enumerate(zip(names, logs, strict=True)):
+        if progress:
+            progress(READING, done, len(names))
+        try:
+            found[name] = problem_of(read_measurements(log, system, channels, causes, reference))
+        except ShipcosimError as error:
+            problems += [problem for problem in error.problems if problem not in problems]
+    if problems:
+        raise ShipcosimError(problems)
+    return found
 
 
 def _about(name, one):

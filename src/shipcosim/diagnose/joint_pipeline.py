@@ -2,7 +2,8 @@
 
 From the logs to their common verdict, `find_common_causes`:
 
-    find_causes        Diagnosis       each log by itself
+    problems_of        Identification  each log as an identification problem
+    causes_in          Diagnosis       each log by itself
     common_faults      Shared          faults of the data that the logs have in common
     ratio_of_logs      RatioOfLogs     one ratio of thrust to inertia, unless the logs contradict each other
     about_common       Identification  each log with what is common put right, where it was not by itself
@@ -22,16 +23,15 @@ from typing import TYPE_CHECKING, cast
 
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.calibration_pipeline import log_names
+from shipcosim.diagnose.calibration_pipeline import READING, log_names, problems_of
 from shipcosim.diagnose.comparison.compared import compared, ratio_finding
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
 from shipcosim.diagnose.experiment.design import design_experiment
 from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.inference.form import of_scale, with_learnt_form
-from shipcosim.diagnose.inference.problem import identified
 from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log_faults.corrections import corrected
-from shipcosim.diagnose.pipeline import Progress, find_causes, given_system
+from shipcosim.diagnose.pipeline import Progress, causes_in, given_system, problem_of
 from shipcosim.diagnose.reference.common import (
     Shared,
     common_discrepancies,
@@ -63,7 +63,20 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.reference.reference import Reference
     from shipcosim.ssp import System, SystemStructure
 
-__all__ = ["JointDiagnosis", "diagnose_jointly", "find_common_causes"]
+__all__ = ["JointDiagnosis", "diagnose_jointly", "find_common_causes", "steps_of"]
+
+
+def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+    """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""
+    names = log_names(logs)
+    return {
+        READING: 2.5 * len(names),
+        **{f"{name} by itself": 8.0 for name in names},
+        "what the logs have in common": 0.5 * len(names),
+        "all logs together": 8.0 * len(names),
+        "extending the system": 0.5,
+        **{f"{name} again, by co-simulation": 3.0 for name in names},
+    }
 
 
 def diagnose_jointly(
@@ -182,10 +195,12 @@ def find_common_causes(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    alone = {}
-    for name, log in zip(log_names(logs), logs, strict=True):
-        say(f"{name} by itself")
-        alone[name] = find_causes(log, system, channels, causes, reference=reference)
+    ship = ship_model_of(system) if reference is None else with_reference(ship_model_of(system), reference)
+    with threadpool_limits(1):
+        problems, alone = problems_of(logs, system, channels, causes, say, reference=reference), {}
+        for name, problem in problems.items():
+            say(f"{name} by itself")
+            alone[name] = causes_in(problem, ship, lambda *_: None, reference)
     say("what the logs have in common")
     known = {name: _identification(one) for name, one in alone.items()}
     left_out = {name: why for name, one in alone.items() if (why := _unusable(one))}
@@ -200,7 +215,6 @@ def find_common_causes(
     usable = {name: one for name, one in known.items() if name not in left_out}
     if not usable:
         return replace(found, remarks=tuple(remarks_on(found)))
-    ship = ship_model_of(system) if reference is None else with_reference(ship_model_of(system), reference)
     with threadpool_limits(1):
         found = _together(found, usable, ship, say)
     if reference is None:
@@ -271,7 +285,7 @@ def _about_common(
     read = read or _as_read(one, ship)
     if ratio is not None:
         read = replace(read, ship=with_thrust(ship, ratio.ratio, ratio.std))
-    return with_learnt_form(corrected(identified(compared(checked(read)))))
+    return with_learnt_form(corrected(problem_of(read)))
 
 
 def _of_one_form(problems: dict[str, IdentificationProblem]) -> dict[str, IdentificationProblem]:

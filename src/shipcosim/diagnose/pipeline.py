@@ -1,11 +1,14 @@
 """The diagnosis from end to end. Each stage is a function from one value to the next.
 
-From a log to its verdict, `verdict_on`:
+From a log to an identification problem, `problem_of`:
 
     read_measurements  ReadLog         the log by the roles of its columns, the ship, the catalogue of causes
     checked            CheckedLog      faults of the log that its own channels show, repaired
     compared           ComparedLog     commanded against felt force: what is grossly wrong, put right
     identified         Identification  the identification problem: noise, linearisation about the ship without a cause
+
+From there to its verdict, `verdict_on`:
+
     corrected          Identification  faults of the log and of connections that only the ship's response shows
     with_learnt_form   Identification  how far the form of the ship's loads differs from the model's
     with_causes        ExplainedLog    sets of causes fitted to the log
@@ -50,17 +53,29 @@ from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
 from shipcosim.diagnose.reference.since import with_sizes_at_reference
 from shipcosim.diagnose.result import Diagnosis
-from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, ReadLog
+from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
+from shipcosim.diagnose.stages import ExtendedSystem, Identification, JudgedLog, ReadLog
 from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import System, SystemStructure, read
 
-__all__ = ["Progress", "diagnose", "find_causes", "read_measurements", "verdict_on"]
+__all__ = ["STEPS", "Progress", "causes_in", "diagnose", "find_causes", "problem_of", "read_measurements", "verdict_on"]
 
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""
+
+STEPS = {
+    "is the log right?": 2.5,
+    "how does the ship answer?": 1.5,
+    "which causes explain it?": 3.0,
+    "what do healthy ships look like?": 1.0,
+    "what does the simulation get wrong": 1.5,
+    "extending the system": 0.5,
+    "the gain, by co-simulation": 4.5,
+}
+"""What `diagnose` tells its progress function, in order, with the time that it typically takes: that of simulated logs
+of half an hour, on one core. [s]"""
 
 
 def diagnose(
@@ -168,14 +183,21 @@ def find_causes(
     ShipcosimError
         Data, system or causes that cannot be used.
     """
+    say = progress or (lambda *_: None)
+    say("is the log right?")
     with threadpool_limits(1):  # many small matrices: threads would only wait for each other
-        say = progress or (lambda *_: None)
-        say("is the log right?")
         read = read_measurements(log, system, channels, causes, reference)
-        found = stated(verdict_on(read, say))
-        if reference is None:
-            return found
-        return replace(found, findings=with_sizes_at_reference(found.findings, read.ship, reference, read.causes))
+        return causes_in(problem_of(read), read.ship, say, reference)
+
+
+def causes_in(
+    problem: Identification, ship: ShipModel, progress: Progress, reference: Reference | None = None
+) -> Diagnosis:
+    """Diagnose a log as an identification problem of a ship, as `find_causes` does."""
+    found = stated(verdict_on(problem, progress))
+    if reference is None:
+        return found
+    return replace(found, findings=with_sizes_at_reference(found.findings, ship, reference, problem.causes))
 
 
 def read_measurements(
@@ -193,14 +215,18 @@ def read_measurements(
     return ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes))
 
 
-def verdict_on(read: ReadLog, progress: Progress) -> JudgedLog:
+def problem_of(read: ReadLog) -> Identification:
+    """A log as an identification problem; what cannot be used is said here, later stages refuse nothing."""
+    return identified(compared(checked(read)))
+
+
+def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     """The way of a log to its verdict, stage by stage."""
-    log = checked(read)
+    progress("how does the ship answer?")
+    if problem.comparison is not None and problem.comparison.obstacles:
+        return judged(with_causes(problem))
+    identification = with_learnt_form(corrected(problem))
     progress("which causes explain it?")
-    held = compared(log)
-    if held.comparison.obstacles:
-        return judged(with_causes(identified(held)))
-    identification = with_learnt_form(corrected(identified(held)))
     explained = with_settled_form(with_causes(identification))
     explained = with_change_point(with_right_inputs(explained))
     progress("what do healthy ships look like?")

@@ -3,7 +3,7 @@
 import dataclasses
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.models.core.parameters import LEFT_OUT, left_out
 
@@ -69,6 +69,10 @@ class Variable:
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
+
+    if TYPE_CHECKING:  # an instance of the FMU has a value in the place of its variable
+
+        def __get__(self, instance: Any, owner: type | None = None) -> Any: ...
 
     def __repr__(self) -> str:
         return f"<{self.causality} {self.name}: {self.type}, {self.start!r} {self.unit}>"

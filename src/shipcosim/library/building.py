@@ -12,7 +12,8 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.library.names import fmu_sources
 from shipcosim.library.places import CACHE, PACKAGE, StrPath, cache, project_of, shipped
 
-IN_EVERY_FMU = ("models", "angles.py", "fmi", "units.py")  # of this package: what travels in FMUs, what builds them
+IN_EVERY_FMU = ("interfaces", "models", "angles.py", "fmi", "units.py")
+"""Of this package: what travels in FMUs, and what builds them."""
 
 
 def fmus(near: StrPath | None = None, build: bool = True) -> list[Path]:
@@ -70,10 +71,13 @@ def build_stale(project: Path) -> Path:
     return out
 
 
-def built_fmu(source: Path) -> Path:
-    """File of one FMU by the folder of its source; built where it is missing or out of date."""
-    ours = source.parent == shipped() / "fmus"
-    folder = _shipped_fmus(build=True) if ours else build_stale(source.parents[1])
+def built_fmu(source: Path, build: bool = True) -> Path:
+    """File of one FMU by the folder of its source; built where it is missing or out of date, unless told not to."""
+    project = source.parents[1]
+    if source.parent == shipped() / "fmus":
+        folder = _shipped_fmus(build)
+    else:
+        folder = build_stale(project) if build else built_fmus(project)
     return folder / f"{source.name}.fmu"
 
 

@@ -20,7 +20,7 @@ WHAT = {
 }
 
 
-def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = None) -> Path:
+def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = None, build: bool = True) -> Path:
     """Path of what a user means.
 
     Parameters
@@ -33,11 +33,13 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
         Where it was given, for messages: ``"--system"``.
     near : path, optional
         In the project; the working folder without.
+    build : bool
+        Build an FMU that is missing or out of date, which runs its source.
 
     Returns
     -------
     Path
-        Of an FMU the built one, which is built where it is missing or out of date. ``X.ssp#Variant.ssd`` stays so.
+        Of an FMU the built one. ``X.ssp#Variant.ssd`` stays so.
 
     Raises
     ------
@@ -51,7 +53,7 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
     if path.exists() and not is_plain and (kind != "scenario" or path.is_file()):
         return Path(text)
     if text in known:
-        return built_fmu(known[text]) if kind == "fmu" else known[text]
+        return built_fmu(known[text], build) if kind == "fmu" else known[text]
     where = f"{option} {text}" if option else text
     raise ShipcosimError(Problem(where, f"There is no such {WHAT[kind]}.", suggestion(_bare(text), known)))
 

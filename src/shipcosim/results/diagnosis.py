@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import os
+from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.results.shown import HtmlPage, Picture, Result, made
-from shipcosim.series import write_file
+from shipcosim.results.shown import HtmlPage, Picture, Result
+from shipcosim.series import write_json
+from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     from shipcosim.report.notebook.card import Card
@@ -20,8 +22,42 @@ if TYPE_CHECKING:
 __all__ = ["DiagnosisOfLog", "DiagnosisOfLogs"]
 
 
+class _Saved(Result):
+    """A result that can be written as the command writes it, but for the extended system."""
+
+    as_json: Callable[[], dict[str, Any]]
+
+    @abstractmethod
+    def page(self) -> HtmlPage:
+        """Its page."""
+
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write diagnosis.json and report.html; returns the folder. The extended system is in `extension`.
+
+        Parameters
+        ----------
+        folder : path
+            Made if needed.
+        force : bool
+            Replace files of these names there, instead of keeping them in a numbered folder beside it.
+
+        Raises
+        ------
+        ShipcosimError
+            If they cannot be written.
+        """
+        with staged(Path(folder), force=force) as stage:
+            self.write(stage)
+        return Path(folder)
+
+    def write(self, stage: Path) -> None:
+        """Write the files of `save` into a folder that is there."""
+        write_json(self.as_json(), stage / "diagnosis.json")
+        self.page().save(stage / "report.html")
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class DiagnosisOfLog(Result, Diagnosis):
+class DiagnosisOfLog(_Saved, Diagnosis):
     """What `shipcosim.diagnose` gives back of one log: a `Diagnosis` with a card, its page and its track.
 
     To start with: ``.verdict``, ``.findings``, ``.gain``, ``.extended`` (the system with the causes in it, which
@@ -49,16 +85,6 @@ class DiagnosisOfLog(Result, Diagnosis):
 
         return HtmlPage(f"Diagnosis of {self._name}", render(self))
 
-    def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Write diagnosis.json and report.html; returns the folder. The extended system is in `extension`.
-
-        Raises
-        ------
-        ShipcosimError
-            If they cannot be written.
-        """
-        return _saved(self, folder)
-
     @property
     def _name(self) -> str:
         return self.log.name if self.log is not None else "a log"
@@ -70,7 +96,7 @@ class DiagnosisOfLog(Result, Diagnosis):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class DiagnosisOfLogs(Result, JointDiagnosis):
+class DiagnosisOfLogs(_Saved, JointDiagnosis):
     """What `shipcosim.diagnose` gives back of several logs: a `JointDiagnosis` with a card and its page."""
 
     def page(self) -> HtmlPage:
@@ -78,16 +104,6 @@ class DiagnosisOfLogs(Result, JointDiagnosis):
         from shipcosim.report.joint.page import render
 
         return HtmlPage(self._name, render(self))
-
-    def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Write diagnosis.json and report.html; returns the folder. The extended system is in `extension`.
-
-        Raises
-        ------
-        ShipcosimError
-            If they cannot be written.
-        """
-        return _saved(self, folder)
 
     @property
     def _name(self) -> str:
@@ -97,11 +113,3 @@ class DiagnosisOfLogs(Result, JointDiagnosis):
         from shipcosim.report.notebook.diagnosis_card import joint_card
 
         return joint_card(self, self._name)
-
-
-def _saved(found: DiagnosisOfLog | DiagnosisOfLogs, folder: str | os.PathLike[str]) -> Path:
-    """Write what the command writes but for the extended system."""
-    text = json.dumps(found.as_json(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-    write_file(made(folder) / "diagnosis.json", text.encode())
-    found.page().save(Path(folder) / "report.html")
-    return Path(folder)

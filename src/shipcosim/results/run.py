@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.results.shown import HtmlPage, LikeTable, Picture, Result, made
+from shipcosim.results.shown import HtmlPage, LikeTable, Picture, Result
 from shipcosim.results.signals import chosen
+from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     import pandas
@@ -122,8 +123,15 @@ class Run(LikeTable, Result):
         page = render(self.table, scenario=self.scenario, verdicts=self.expectations, system=self.system)
         return HtmlPage(self.name, page)
 
-    def save(self, folder: str | os.PathLike[str]) -> Path:
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Write result.nc, result.csv and report.html, as `shipcosim run` does; returns the folder.
+
+        Parameters
+        ----------
+        folder : path
+            Made if needed.
+        force : bool
+            Replace files of these names there, instead of keeping them in a numbered folder beside it.
 
         Raises
         ------
@@ -132,10 +140,10 @@ class Run(LikeTable, Result):
         """
         from shipcosim.series import write_table
 
-        made(folder)
-        for name in ("result.nc", "result.csv"):
-            write_table(self.table, Path(folder) / name)
-        self.page().save(Path(folder) / "report.html")
+        with staged(Path(folder), force=force) as stage:
+            for name in ("result.nc", "result.csv"):
+                write_table(self.table, stage / name)
+            self.page().save(stage / "report.html")
         return Path(folder)
 
     def to_pandas(self) -> pandas.DataFrame:

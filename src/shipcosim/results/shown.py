@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import write_file
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["HtmlPage", "LikeTable", "Picture", "Result", "made", "page_of", "parts_of"]
+__all__ = ["HtmlPage", "LikeTable", "Picture", "Result", "page_of", "parts_of"]
 
 HEIGHT = 820  # px, of a page within a notebook
 
@@ -143,22 +142,6 @@ class LikeTable:
         if name.startswith("_") or name == "table":  # a copy asks before there is a table
             raise AttributeError(f"'{type(self).__name__}' has no attribute '{name}'")
         return getattr(self.table, name)
-
-
-def made(folder: str | os.PathLike[str]) -> Path:
-    """A folder for results, made where it is not there.
-
-    Raises
-    ------
-    ShipcosimError
-        If it cannot be made.
-    """
-    try:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        found = f"Results cannot be written here: {error.strerror}."
-        raise ShipcosimError(Problem(str(folder), found, "Choose another folder.")) from None
-    return Path(folder)
 
 
 def parts_of(found: Any) -> dict[str, Any]:

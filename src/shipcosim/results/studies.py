@@ -1,24 +1,29 @@
-"""Comparisons of engines, replays, calibrations and sea trials: what was found, and how it shows itself."""
+"""Comparisons of engines, replays, calibrations, capabilities, sea trials: what was found, how it shows itself."""
 
 from __future__ import annotations
 
+import io
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from shipcosim.capability import Capability, as_json, dataset, notation, numbers_table
 from shipcosim.cosim.compare import Comparison
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
-from shipcosim.results.shown import HtmlPage, Picture, Result, made, page_of
+from shipcosim.results.shown import HtmlPage, Picture, Result, page_of
+from shipcosim.series import write_file, write_table
+from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
 
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["Calibration", "EngineComparison", "Replay", "SeaTrials"]
+__all__ = ["Calibration", "CapabilityOfShip", "EngineComparison", "Replay", "SeaTrials"]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -88,14 +93,76 @@ class Calibration(Result, CalibratedShip):
 
         return page_of(f"Calibration of {self.reference.system}", lambda path: write_calibration(self, path))
 
-    def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Write report.html beside the calibrated.ssv and reference.json that ``calibrate(..., out=folder)`` leaves."""
-        return self.page().save(made(folder) / "report.html").parent
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write report.html; ``calibrate(..., out=folder)`` leaves calibrated.ssv and reference.json beside it.
+
+        Parameters
+        ----------
+        folder : path
+            Made if needed.
+        force : bool
+            Replace files of these names there, instead of keeping them in a numbered folder beside it.
+        """
+        with staged(Path(folder), force=force) as stage:
+            self.page().save(stage / "report.html")
+        return Path(folder)
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import calibration_card
 
         return calibration_card(self)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class CapabilityOfShip(Result, Capability):
+    """What `shipcosim.capability` gives back. To start with: ``.notation``, ``.elements()``, ``.numbers()``."""
+
+    @property
+    def notation(self) -> str:
+        """As the standard writes it: ``"DP capability-L1(5, 4, 0, 0)"``."""
+        return notation(self)
+
+    @property
+    def table(self) -> xarray.Dataset:
+        """Numbers and shares of thrust by basis, case, condition and direction."""
+        return dataset(self)
+
+    def as_json(self) -> dict[str, Any]:
+        """The numbers, as `shipcosim capability --json` prints them."""
+        return as_json(self)
+
+    def page(self) -> HtmlPage:
+        """The page of the capability, as `shipcosim capability` writes it."""
+        from shipcosim.report.capability.page import write_capability
+
+        return page_of(f"Capability of {self.vessel.name}", lambda path: write_capability(self, path))
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row a direction that the weather comes from [deg], a column a case: DP capability numbers."""
+        import pandas
+
+        return pandas.read_csv(io.StringIO(numbers_table(self)), index_col=0)
+
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write report.html, capability.csv and capability.nc, as `shipcosim capability` does; returns the folder.
+
+        Parameters
+        ----------
+        folder : path
+            Made if needed.
+        force : bool
+            Replace files of these names there, instead of keeping them in a numbered folder beside it.
+        """
+        with staged(Path(folder), force=force) as stage:
+            write_file(stage / "capability.csv", numbers_table(self).encode())
+            write_table(self.table, stage / "capability.nc")
+            self.page().save(stage / "report.html")
+        return Path(folder)
+
+    def _card(self) -> Card:
+        from shipcosim.report.notebook.study_cards import capability_card
+
+        return capability_card(self)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

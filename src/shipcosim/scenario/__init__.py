@@ -6,7 +6,7 @@ A scenario is data. `read_scenario` reads and checks a file, `check_scenario` ch
 
 from shipcosim.scenario.amounts import units_of, with_numbers
 from shipcosim.scenario.check import check_files, check_scenario, check_times, whole_steps
-from shipcosim.scenario.judge import Verdict, judge
+from shipcosim.scenario.judge import Verdict, judge, within_run
 from shipcosim.scenario.model import Event, Expectation, Scenario
 from shipcosim.scenario.plausible import odd_values
 from shipcosim.scenario.reader import read_scenario, toml_of
@@ -26,4 +26,5 @@ __all__ = [
     "units_of",
     "whole_steps",
     "with_numbers",
+    "within_run",
 ]

@@ -22,7 +22,7 @@ MOST_STEPS = 1e8
 
 
 def check_files(scenario: Scenario) -> list[Problem]:
-    """What a scenario names and what is not there: its system, its parameter sets."""
+    """What a scenario names and what is not there: its system, its parameter sets, its components' FMUs."""
     if not scenario.system:
         return [problem_at(scenario, ("system",), "the scenario names no system.", suggestion("", _systems(scenario)))]
     system, problems = scenario.system_path, []
@@ -35,6 +35,12 @@ def check_files(scenario: Scenario) -> list[Problem]:
             known = [file.stem for file in (system / "resources").glob("*.ssv")]
             found = f"there is no parameter set '{name}', in {system / 'resources'} or beside the scenario."
             problems.append(problem_at(scenario, ("parameters",), found, suggestion(name, known)))
+    for name, fmu in scenario.components.items():
+        try:
+            scenario.model_copy(update={"components": {name: fmu}}).component_paths(build=False)
+        except ShipcosimError as error:
+            found = f"there is no FMU '{fmu}', by this name or beside the scenario."
+            problems.append(problem_at(scenario, ("components", name), found, error.problems[0].remedy))
     return problems
 
 

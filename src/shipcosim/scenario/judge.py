@@ -45,6 +45,30 @@ class Verdict:
         return f"{'holds' if self.passed else 'FAILS'}: {self.expect} ({found})"
 
 
+def within_run(
+    scenario: Scenario, table: xarray.Dataset, planned: float = 0.0
+) -> tuple[list[Expectation], list[Expectation]]:
+    """Expectations of a scenario that lie within a table's times, and the others.
+
+    One about every row holds for a part of a run, too; a statistic of the whole run does not.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    table : xarray.Dataset
+        The run, or a part of it.
+    planned : float
+        Stop time for which the expectations were written, where the scenario's is shorter. [s]
+    """
+    first, last = table["time"].values[[0, -1]]
+    is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
+    found: tuple[list[Expectation], list[Expectation]] = [], []
+    for expect in scenario.expect:
+        lies_within = first <= expect.during[0] and expect.during[1] <= last if expect.during else not expect.statistic
+        found[0 if is_whole or lies_within else 1].append(expect)
+    return found
+
+
 def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     """Verdict on each expectation of a scenario, in its order.
 

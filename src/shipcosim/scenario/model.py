@@ -203,6 +203,9 @@ class Scenario(_Part):
     parameters: ListOfNames = Field(
         default=[], description="names of parameter sets in the system's resources, or paths"
     )
+    components: dict[str, str] = Field(
+        default={}, description="FMUs that components run in place of their own: names of FMUs, or paths"
+    )
     stop_time: Seconds = Field(gt=0.0, description="s")
     step_size: Seconds = Field(gt=0.0, description="s")
     output_interval: Seconds | None = Field(default=None, gt=0.0, description="s; every step where it is not given")
@@ -244,3 +247,23 @@ class Scenario(_Part):
         beside = self._path.resolve().parent if self._path else Path.cwd()
         named = {name: self.system_path / "resources" / f"{name}.ssv" for name in self.parameters}
         return [path if path.exists() else beside / name for name, path in named.items()]
+
+    def component_paths(self, build: bool = True) -> dict[str, Path]:
+        """FMUs that components run in place of their own: a path beside the scenario, else what has this name.
+
+        Parameters
+        ----------
+        build : bool
+            Build an FMU that has a name and is missing or out of date.
+
+        Raises
+        ------
+        ShipcosimError
+            If there is no such FMU.
+        """
+        beside = self._path.resolve().parent if self._path else Path.cwd()
+        found = {}
+        for name, fmu in self.components.items():
+            path = beside / fmu
+            found[name] = path if path.is_file() else library.find("fmu", fmu, near=self.project, build=build)
+        return found

@@ -272,7 +272,8 @@ def _entries(name: str, files: Mapping[str, list], above: tuple[str, ...], probl
         taken = _entries(like, files, (*above, name), problems)
         found |= {key: entry._replace(inherited=True) for key, entry in taken.items()}
     for layer in layers:
-        found |= {key: entry for key, entry in layer.items() if key != "like"}
+        own = {key: entry for key, entry in layer.items() if key != "like"}
+        found |= own if layer is layers[-1] else {key: e._replace(inherited=True) for key, e in own.items()}
     return found
 
 

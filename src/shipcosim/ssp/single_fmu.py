@@ -33,7 +33,11 @@ def single_fmu(path: str | PathLike[str]) -> Path | None:
 
 
 def assemble_fmu(
-    path: Path, parameters: ParameterSets, fmus: Iterable[str | PathLike[str]], findings: Findings
+    path: Path,
+    parameters: ParameterSets,
+    fmus: Iterable[str | PathLike[str]],
+    findings: Findings,
+    swapped: Mapping[str, Path] | None = None,
 ) -> System | None:
     """System of one FMU, or None.
 
@@ -47,6 +51,8 @@ def assemble_fmu(
         Not needed.
     findings : Findings
         Takes what is wrong.
+    swapped : mapping of str to Path, optional
+        FMU that runs in place of this one, with its inputs.
     """
     fmu = describe_fmu(path, findings)
     if fmu is None:
@@ -54,7 +60,7 @@ def assemble_fmu(
     root = _structure(path, fmu)
     package = Package(path.parent, str(path.parent), f"{path.stem}.ssd", tuple(map(Path, fmus)))
     package.held[(package.folder / package.ssd).resolve()] = Document(str(path), root, path.parent)
-    return assemble_package(package, parameters, str(path), findings)
+    return assemble_package(package, parameters, str(path), findings, swapped=swapped)
 
 
 def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, Value]:

@@ -1,7 +1,8 @@
 """A system read from any file that describes one: an SSP in its three forms, or an OspSystemStructure.xml."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from os import PathLike
+from pathlib import Path
 
 from shipcosim.errors import ShipcosimError, held_strictly
 from shipcosim.ssp.flatten.assemble import assemble_package
@@ -18,6 +19,7 @@ def read_system(
     parameters: ParameterSets = (),
     *,
     fmus: Iterable[str | PathLike[str]] = (),
+    components: Mapping[str, Path] | None = None,
     strict: bool = False,
 ) -> System:
     """Read a system structure and everything it refers to, checked completely.
@@ -31,6 +33,9 @@ def read_system(
         Parameter sets (.ssv) applied over those of the system, the last one last.
     fmus : iterable of path
         Folders searched for FMUs that are not beside the system structure.
+    components : mapping of str to Path, optional
+        FMUs that components run in place of their own, by full name. An FMU must have the connectors that are wired;
+        values for parameters that it has not are left out, with a remark.
     strict : bool
         Refuse what breaks a standard, also where it can mean one thing only.
 
@@ -43,7 +48,7 @@ def read_system(
     ShipcosimError
         With everything that is wrong.
     """
-    system, findings = assemble(path, parameters, fmus)
+    system, findings = assemble(path, parameters, fmus, components)
     refused = [p for p in findings.problems if p.severity == "error" or (strict and p.flaw)]
     if system is None or refused:
         raise ShipcosimError(list(dict.fromkeys(held_strictly(refused))))
@@ -51,13 +56,16 @@ def read_system(
 
 
 def assemble(
-    path: str | PathLike[str], parameters: ParameterSets = (), fmus: Iterable[str | PathLike[str]] = ()
+    path: str | PathLike[str],
+    parameters: ParameterSets = (),
+    fmus: Iterable[str | PathLike[str]] = (),
+    components: Mapping[str, Path] | None = None,
 ) -> tuple[System | None, Findings]:
     """Like `read_system`, but collecting what is wrong.
 
     Parameters
     ----------
-    path, parameters, fmus
+    path, parameters, fmus, components
         As for `read_system`.
 
     Returns
@@ -68,9 +76,11 @@ def assemble(
     findings = Findings()
     osp = osp_file(path)
     if osp is not None:
-        return assemble_osp(osp, parameters, fmus, findings), findings
+        return assemble_osp(osp, parameters, fmus, findings, components), findings
     fmu = single_fmu(path)
     if fmu is not None:
-        return assemble_fmu(fmu, parameters, fmus, findings), findings
+        return assemble_fmu(fmu, parameters, fmus, findings, components), findings
     package = open_package(path, findings, fmus)
-    return None if package is None else assemble_package(package, parameters, str(path), findings), findings
+    if package is None:
+        return None, findings
+    return assemble_package(package, parameters, str(path), findings, swapped=components), findings

@@ -3,7 +3,18 @@
 import argparse
 import os
 import sys
+from contextlib import contextmanager
 from pathlib import Path
+
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # truth, trial
 
@@ -49,37 +60,56 @@ def main(arguments=None):
 def _run(options):
     if options.jobs > 1:
         os.environ.setdefault("OMP_NUM_THREADS", "1")
-    runs.run(
-        options.kinds,
-        options.sets,
-        options.seeds,
-        options.into,
-        tool=options.tool,
-        jobs=options.jobs,
-        minutes=options.minutes,
-        progress=_show,
-    )
+    with shown() as show:
+        runs.run(
+            options.kinds,
+            options.sets,
+            options.seeds,
+            options.into,
+            tool=options.tool,
+            jobs=options.jobs,
+            minutes=options.minutes,
+            progress=show,
+        )
 
 
 def _sail(options):
     if options.jobs > 1:
         os.environ.setdefault("OMP_NUM_THREADS", "1")
-    manoeuvres.sail(
-        options.kinds,
-        options.sets,
-        options.into,
-        tool=options.tool,
-        jobs=options.jobs,
-        minutes=options.minutes,
-        progress=_show,
-    )
+    with shown() as show:
+        manoeuvres.sail(
+            options.kinds,
+            options.sets,
+            options.into,
+            tool=options.tool,
+            jobs=options.jobs,
+            minutes=options.minutes,
+            progress=show,
+        )
 
 
-def _show(result):
+@contextmanager
+def shown():
+    """A line for each result, and on a terminal below them a bar: share of the plan, time left; yields a function."""
+    columns = [BarColumn(), MofNCompleteColumn(), TaskProgressColumn(), TimeElapsedColumn()]
+    columns += [TextColumn("left:"), TimeRemainingColumn()]
+    hour = 3600.0  # s of results that tell the pace
+    with Progress(*columns, speed_estimate_period=hour, transient=True, disable=not sys.stdout.isatty()) as bar:
+        task = bar.add_task("", total=None)
+
+        def show(result, total):
+            bar.console.print(_line(result), markup=False, highlight=False, soft_wrap=True)
+            sys.stdout.flush()
+            bar.update(task, advance=1, total=total)
+
+        yield show
+
+
+def _line(result):
     judged = scoring.score(result["answer"], result["diagnosis"] or tables.UNJUDGED, result["span"])
     mark = "right" if judged.right else "MISS "
     names = f"{tables.hidden_name(result)} -> {tables.answered_name(result)}"
-    print(f"{mark} {result['kind']} {result['set']} {result['seed']}: {names}, {result['seconds']:.0f} s", flush=True)
+    return f"{mark} {result['kind']} {result['set']} {result['seed']}: {names}, {result['seconds']:.0f} s"
 
 
 def _table(options):

@@ -79,7 +79,7 @@ def sail(kinds, sets, into, *, tool=TOOL, jobs=1, minutes=None, progress=print):
                 return
             for result in answered([longer(before) for before in some], tool=tool, pool=pool):
                 add(result, into)
-                progress(result)
+                progress(result, len(wanted))
 
 
 def longer(result):

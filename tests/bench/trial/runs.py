@@ -86,7 +86,7 @@ def run(kinds, sets, seeds, into, *, tool=None, jobs=1, minutes=None, progress=p
     minutes : float, optional
         No new batch is begun after this long.
     progress : callable
-        Called with each result.
+        Called with each result, and with how many there are to come in all.
 
     Returns
     -------
@@ -96,6 +96,7 @@ def run(kinds, sets, seeds, into, *, tool=None, jobs=1, minutes=None, progress=p
     into, until = Path(into), time.monotonic() + 60.0 * (minutes or 1e9)
     into.parent.mkdir(parents=True, exist_ok=True)
     done = {key(result) for result in read_results(into)}
+    plan = set(itertools.product(kinds, sets, seeds))
     with pool_of(jobs) as pool:
         for batch in (seeds[i : i + BATCH] for i in range(0, len(seeds), BATCH)):
             for kind, name in itertools.product(kinds, sets):
@@ -104,8 +105,7 @@ def run(kinds, sets, seeds, into, *, tool=None, jobs=1, minutes=None, progress=p
                     continue
                 for result in diagnosed(kind, name, wanted, tool=tool or TOOLS.get(name, TOOL), pool=pool):
                     add(result, into)
-                    progress(result)
-    plan = set(itertools.product(kinds, sets, seeds))
+                    progress(result, len(plan - done))
     return [result for result in read_results(into) if key(result) in plan]
 
 

@@ -56,7 +56,7 @@ def test_a_manoeuvre_is_sailed_once_and_its_log_is_longer(tmp_path):
     runs.add(result(), into)
     LENGTHS.clear()
     for _ in range(2):
-        manoeuvres.sail(["hold"], ["one"], into, tool=tool, progress=lambda one: None)
+        manoeuvres.sail(["hold"], ["one"], into, tool=tool, progress=lambda *_: None)
     _, sailed = runs.read_results(into)
     assert (sailed["set"], sailed["seed"], sailed["error"]) == ("one sailed", 7, None)
     assert sailed["answer"][0]["cause"] == "tow"

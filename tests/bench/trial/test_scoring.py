@@ -120,7 +120,7 @@ def test_the_interval_of_a_rate_is_wilsons():
 
 
 def test_a_run_that_was_cut_off_is_taken_up_where_it_was(tmp_path, monkeypatch):
-    asked = []
+    asked, totals = [], []
 
     def diagnosed(kind, name, seeds, **_):
         asked.extend(seeds)
@@ -128,11 +128,11 @@ def test_a_run_that_was_cut_off_is_taken_up_where_it_was(tmp_path, monkeypatch):
             yield {"kind": kind, "set": name, "seed": seed}
 
     monkeypatch.setattr(runs, "diagnosed", diagnosed)
-    into, quiet = tmp_path / "results.jsonl", {"progress": lambda result: None}
+    into, quiet = tmp_path / "results.jsonl", {"progress": lambda result, total: totals.append(total)}
     runs.run(["hold"], ["healthy"], range(3), into, **quiet)
     into.write_text(into.read_text()[:-20])
     results = runs.run(["hold"], ["healthy"], range(4), into, **quiet)
-    assert asked == [0, 1, 2, 2, 3]
+    assert asked == [0, 1, 2, 2, 3] and totals == [3, 3, 3, 2, 2]
     assert [result["seed"] for result in results] == [0, 1, 2, 3]
 
 

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,17 +18,22 @@ from shipcosim.library import build_stale
 from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import Component, read_fmu, read_system, with_values
 
-FMUS = (
-    "allocator azimuth_thruster dp_controller drift_force earth_force environment fixed_angle_allocator fixed_thruster "
-    "instruments mapped_thruster predictor propeller_rudder reference sensors thruster_monitor tunnel_thruster "
-    "varying_current vessel"
-).split()
+ROOT = Path(__file__).parents[3]
+FMUS = sorted(path.parent.name for path in (ROOT / "fmus").glob("*/*.py") if path.stem == path.parent.name)
+THREE_UNITS = {
+    **{"thrust_min_1": -5.0, "thrust_max_1": 5.0, "thrust_rate_1": 0.5, "yaw_lever": 10.0},
+    **{"x_2": 5.0, "azimuth_2": 1.5708, "thrust_min_2": -5.0, "thrust_max_2": 5.0, "thrust_rate_2": 0.5},
+    **{"x_3": -5.0, "azimuth_3": 1.5708, "thrust_min_3": -5.0, "thrust_max_3": 5.0, "thrust_rate_3": 0.5},
+}
+"""One unit ahead and two to the side."""
 NOT_NEUTRAL = {
     "drift_force": {"north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0, "yaw_arm": -1.5},
     "earth_force": {"x": -17.0, "north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
-    "fixed_angle_allocator": {"thrust_min_1": -5.0, "thrust_max_1": 5.0, "thrust_rate_1": 0.5, "yaw_lever": 10.0},
+    "fixed_angle_allocator": THREE_UNITS,
     "instruments": {"lag": 1.33},
     "mapped_thruster": {"x": 1.0, "y": 0.5, "thrust_table": "-1 -5; 1 5", "time_constant": 2.0, "speed_loss": 0.1},
+    "optimal_units_allocator": THREE_UNITS,
+    "thruster_interaction": {"x_1": 5.0, "diameter_1": 1.0, "diameter_2": 1.0},
     "thruster_monitor": {"position_limit": 0.15, "alarm_delay": 0.2},
     "varying_current": {"north_end": 0.5},
 }
@@ -83,10 +89,6 @@ def test_rolled_back_and_repeated_an_fmu_gives_the_same_bits(built, name):
         other = Driven(read_fmu(built / f"{name}.fmu"), instances, "other")
         other.slave.restore(state)
         assert np.array_equal(other.run(300, 700), expected)
-
-
-def test_all_fmus_of_the_project_are_tried_here(root):
-    assert sorted(path.parent.name for path in (root / "fmus").glob("*/*.py") if path.stem == path.parent.name) == FMUS
 
 
 def assert_same(whole, first, second):

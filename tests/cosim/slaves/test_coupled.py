@@ -4,6 +4,9 @@ Two FMUs of one state each, x' = u - k x, wired u_a = -w x_b and u_b = w x_a: a 
 x_a = e^(-k t) (cos w t - sin w t), x_b = e^(-k t) (sin w t + cos w t) from x_a = x_b = 1.
 """
 
+import json
+from dataclasses import replace
+
 import c_fmus
 import numpy as np
 import pytest
@@ -11,6 +14,8 @@ from conformance.c_parts import build_c
 from conformance.texts import SPACES
 
 import shipcosim as sc
+from shipcosim.cosim.master.groups import exchanged_at_steps, inner_connections
+from shipcosim.cosim.master.plan import make_plan
 from shipcosim.ssp import read_system
 
 W, K = 5.0, 2.0
@@ -67,13 +72,35 @@ def test_an_input_that_an_event_holds_is_held(oscillator):
     events = [{"time": 0.5, "override": {"b.u": 0.0}}]
     table = sc.simulate(oscillator(), stop_time=1.0, step_size=0.125, events=events)
     x = table["b.x"].values
+    assert "the run itself changes b.u" in table.attrs["remarks"]
     assert x[5:] == pytest.approx(x[4] * np.exp(-K * 0.125 * np.arange(1, 5)), rel=1e-6)
 
 
 def test_one_by_one_in_co_simulation_or_where_the_order_is_another(oscillator):
     assert "integrated_together" not in sc.simulate(oscillator("cs"), stop_time=1.0, step_size=0.125).attrs
-    table = sc.simulate(oscillator(), stop_time=1.0, step_size=0.125, order="gauss-seidel")
-    assert "integrated_together" not in table.attrs
+    for options in ({"order": "gauss-seidel"}, {"isolate": True}):
+        table = sc.simulate(oscillator(), stop_time=1.0, step_size=0.125, **options)
+        assert "integrated_together" not in table.attrs
+        (remark,) = json.loads(table.attrs["remarks"])
+        assert remark.startswith("a and b run in model exchange, wired together, but not as one system: ")
+        assert "held for 0.125 s" in remark
+
+
+def test_what_is_integrated_together_earns_no_remark(oscillator):
+    assert json.loads(sc.simulate(oscillator(), stop_time=1.0, step_size=0.125).attrs["remarks"]) == []
+    assert json.loads(sc.simulate(oscillator("cs"), stop_time=1.0, step_size=0.125).attrs["remarks"]) == []
+
+
+def test_components_with_event_indicators_are_integrated_by_themselves_and_that_is_said(oscillator):
+    """The FMUs here have none, so this asks the plan of a run, of a system whose description says that b has one."""
+    system = oscillator()
+    b = system.components["b"]
+    eventful = replace(b, fmu=replace(b.fmu, n_event_indicators=1))
+    system = replace(system, components={**system.components, "b": eventful})
+    plan = make_plan(system, sc.Scenario(stop_time=1.0, step_size=0.125), {}, {}, 0.0)
+    assert inner_connections(plan) == []
+    (remark,) = exchanged_at_steps(plan, [], "", 0.125)
+    assert "not as one system: b can have events of state (event indicators)." in remark
 
 
 def test_run_again_it_is_the_same(oscillator):

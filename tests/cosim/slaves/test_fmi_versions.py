@@ -1,6 +1,7 @@
 """Co-simulation in FMI 1.0 and 3.0 by FMUs from C: values of all types, arrays by elements and as a whole."""
 
 import c_fmus
+import fmpy.fmi1
 import numpy as np
 import pytest
 
@@ -394,4 +395,22 @@ def test_a_run_of_a_slave_of_fmi_1_can_be_repeated_and_not_stored(first, tmp_pat
     one, two = (simulate(system, SCENARIO)["m.x"] for _ in range(2))
     assert np.array_equal(one, two)
     with pytest.raises(ShipcosimError, match="first.fmu cannot store its state"):
+        simulate(system, SCENARIO, RunOptions(store=tmp_path / "x.state"))
+
+
+@pytest.mark.parametrize("version, state", [("2.0", "FMUstate"), ("3.0", "FMUState")])
+def test_a_function_that_an_fmu_lacks_matters_only_where_it_is_called(version, state, tmp_path, needs):
+    """It has no texts and cannot get its state, though it says so. FMPy 0.3.29 and later want all functions at once."""
+    if c_fmus.compiler() is None:
+        needs("a C compiler")
+    own = f"fmi{version[0]}"
+    lacks = "//" + "".join(f" {own}{name}(" for name in ("GetString", "SetString", f"Get{state}")) + "\n"
+    can = {f"canGetAndSet{state}": "true", f"canSerialize{state}": "true"}
+    real = [variable for variable in VARIABLES if variable[3] == "Real"]
+    text = c_fmus.describe("bare", version, real, ("CoSimulation",), **can)
+    path = c_fmus.build(tmp_path, "bare", version, DECAY, text, "CoSimulation", code=lacks)
+    system = System("one", "one.ssd", {"m": Component("m", read_fmu(path))})
+    if not hasattr(fmpy.fmi1._FMU, "_loadFunctions"):
+        assert np.allclose(simulate(system, SCENARIO)["m.x"][:2], [1.0, 1.0 - 2.0 * SCENARIO.step_size])
+    with pytest.raises(RunError, match=f"{own}Get(String|{state})"):
         simulate(system, SCENARIO, RunOptions(store=tmp_path / "x.state"))

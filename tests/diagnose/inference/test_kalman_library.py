@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from shipcosim.diagnose.inference import kalman
-from shipcosim.diagnose.inference.kalman.compile import TARGETS, compile_filter, digest, library_for
+from shipcosim.diagnose.inference.kalman.compile import TARGETS, compile_filter, digest
 from shipcosim.errors import ShipcosimError
 
 REMEDY = "Run `python -m shipcosim.diagnose.inference.kalman.compile`."
@@ -14,7 +14,7 @@ REMEDY = "Run `python -m shipcosim.diagnose.inference.kalman.compile`."
 
 @pytest.mark.parametrize("platform", TARGETS)
 def test_the_filter_was_compiled_from_the_sources_that_stand_here(platform):
-    assert digest(platform).encode() in library_for(platform).read_bytes(), REMEDY
+    assert digest(platform).encode() in kalman.library_for(platform).read_bytes(), REMEDY
 
 
 @pytest.mark.slow
@@ -22,7 +22,7 @@ def test_the_filter_was_compiled_from_the_sources_that_stand_here(platform):
 def test_compiled_again_it_has_the_same_bytes(platform, tmp_path, needs):
     if importlib.util.find_spec("ziglang") is None:
         needs("ziglang", 'Install it: pip install -e ".[loader]".')
-    assert compile_filter(platform, tmp_path).read_bytes() == library_for(platform).read_bytes(), REMEDY
+    assert compile_filter(platform, tmp_path).read_bytes() == kalman.library_for(platform).read_bytes(), REMEDY
 
 
 def test_on_another_platform_the_error_says_for_which_there_are_filters(monkeypatch):

@@ -79,6 +79,12 @@ def test_a_column_of_a_thruster_is_matched_or_the_thrusters_are_listed(tmp_path)
     assert "'stern_rpm': no thruster of the system is meant by it: there is port, starboard, tunnel" in said
 
 
+def test_without_thrusters_that_a_log_can_name_a_channel_file_is_the_way(tmp_path):
+    """As of a ship whose thrusters are all measured maps, over any command."""
+    said = remarks(tmp_path, ["time,surge,left_command", *(f"{row},3" for row in ROWS)], thrusters={})
+    assert "the system has no thruster that it can be; a channel file can name an input of the system" in said
+
+
 def test_pulses_and_per_cent_are_said_with_what_to_write(tmp_path):
     text = ["time,surge,port_pwm,stbd load [%]", *(f"{row},1500,4" for row in ROWS)]
     assert 'port_rpm = {column = "port_pwm", map = [[1100, A], [1500, 0], [1900, B]]}' in why(

@@ -7,7 +7,7 @@ import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
-from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names
+from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names, steps_of
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.reference import calibration
 from shipcosim.diagnose.reference.reference import read_reference
@@ -23,7 +23,9 @@ def made(tmp_path_factory):
     """A ship calibrated to two days, and the folder."""
     folder = tmp_path_factory.mktemp("calibrated")
     longer = twin.sailed({"well": ships.HER_OWN}, minutes=12.0, seed=5)["well"]
-    ship = calibrate([ships.logs(3)["well"], longer], twin.system(), out=folder)
+    logs, told = [ships.logs(3)["well"], longer], []
+    ship = calibrate(logs, twin.system(), progress=lambda step, *_: told.append(step), out=folder)
+    assert list(dict.fromkeys(told)) == list(steps_of(logs))
     write_calibration(ship, folder / "report.html")
     return ship, folder
 

@@ -11,9 +11,11 @@ from diagnose import twin
 from pydantic import BaseModel, ConfigDict, Field
 
 from shipcosim.cli.joint_diagnosis import print_joint
-from shipcosim.diagnose.joint_pipeline import JointDiagnosis, _unusable, diagnose_jointly
+from shipcosim.diagnose.calibration_pipeline import READING
+from shipcosim.diagnose.joint_pipeline import JointDiagnosis, _unusable, diagnose_jointly, steps_of
 from shipcosim.diagnose.reference.common import Shared
 from shipcosim.diagnose.result import Candidate, Diagnosis, Finding
+from shipcosim.errors import ShipcosimError
 from shipcosim.report.joint.page import render, write_joint
 from shipcosim.report.joint.words import outcome
 from truth import draw
@@ -127,11 +129,31 @@ def schema_of(found):
 
 @pytest.fixture(scope="module")
 def lost(tmp_path_factory):
-    """Two days of a ship of the independent truth that has lost a third of a thruster's thrust, and the folder."""
+    """Two days of a ship of the independent truth that has lost a third of a thruster's thrust; folder, steps told."""
     folder, logs = tmp_path_factory.mktemp("joint"), tmp_path_factory.mktemp("logs")
     for day in (0, 1):
         draw("trial", 3000, among=["thrust_loss"], minutes=10, day=day).save(logs / f"day{day}.csv")
-    return diagnose_jointly(sorted(logs.iterdir()), twin.system(), out=folder), folder
+    told = []
+    found = diagnose_jointly(
+        sorted(logs.iterdir()), twin.system(), progress=lambda step, *_: told.append(step), out=folder
+    )
+    return found, folder, list(dict.fromkeys(told))
+
+
+def test_the_steps_that_are_told_are_those_of_the_plan(lost):
+    assert lost[2] == list(steps_of(["day0.csv", "day1.csv"]))
+
+
+def test_logs_that_cannot_be_used_are_said_together_before_any_work(tmp_path):
+    told = []
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.csv").write_text("time [s],nothing [m]\n0,1\n1,2\n", encoding="utf-8")
+    with pytest.raises(ShipcosimError) as raised:
+        diagnose_jointly(sorted(tmp_path.iterdir()), twin.system(), progress=lambda step, *_: told.append(step))
+    assert {"one.csv", "two.csv"} <= {
+        problem.where.rpartition("/")[2].split(",")[0] for problem in raised.value.problems
+    }
+    assert set(told) == {READING}
 
 
 def test_a_loss_in_both_logs_is_named_once_with_what_each_log_says_of_it(lost):
@@ -165,7 +187,7 @@ def test_baseline_and_gain_are_over_both_logs_each_judged_by_the_other(lost):
 
 
 def test_the_common_cause_and_nothing_else_is_in_the_extended_system(lost):
-    found, folder = lost
+    found, folder, _ = lost
     assert {path.name for path in folder.iterdir()} == {"extended.ssp", "extended.ssv"}
     assert list(found.extension.values) == ["starboard.thrust_loss"]
     said = found.findings[0].what.parameters["loss"].estimate
@@ -173,7 +195,7 @@ def test_the_common_cause_and_nothing_else_is_in_the_extended_system(lost):
 
 
 def test_the_page_says_the_cause_its_sizes_and_the_errors_of_each_log(lost, tmp_path, capsys):
-    found, _ = lost
+    found, *_ = lost
     write_joint(found, tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     for text in (

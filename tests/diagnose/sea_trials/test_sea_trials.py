@@ -13,7 +13,7 @@ from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.features import SOUGHT, features_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
-from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, estimates, rivals_of, study
+from shipcosim.diagnose.sea_trials.study import STEPS, best_of, causes_of_trials, estimates, rivals_of, study
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.stages import ReadLog
@@ -105,7 +105,9 @@ def test_a_larger_inertia_in_yaw_is_found_with_its_size(ranking):
 
 @pytest.mark.slow
 def test_causes_fitted_on_one_side_predict_the_other(logs):
-    found = study(logs["slowed in turns"], twin.system(), orders=True)
+    told = []
+    found = study(logs["slowed in turns"], twin.system(), progress=told.append, orders=True)
+    assert told == list(STEPS)
     assert found.verdict == "ambiguous" and set(found.held_out) == {"port", "starboard"}
     for one in found.held_out.values():
         assert not set(one.fitted_on) & set(one.judged_on)

@@ -4,9 +4,11 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import xarray
 from diagnose import boat, twin
 
 import shipcosim as sc
@@ -15,6 +17,7 @@ from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogu
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.ship import inputs
 from shipcosim.diagnose.ship import model as plant_module
 from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
@@ -420,3 +423,12 @@ def test_a_cause_of_ones_own_can_turn_a_parameter_that_has_a_tolerance(tmp_path)
     }
     assert set(parameters) == set(boat.SIDES)
     assert (parameters["left"].neutral, parameters["left"].tolerance) == (boat.GAIN, pytest.approx(boat.TOLERANCE))
+
+
+def test_a_thruster_that_follows_what_no_log_can_tell_is_refused_by_name():
+    """As the one by a measured map, whose command can be anything."""
+    fmu = SimpleNamespace(model_name="mapped_thruster")
+    left = SimpleNamespace(drives=(), idle=("command_in",), component=SimpleNamespace(fmu=fmu))
+    log = xarray.Dataset({"surge": ("time", [0.0])}, {"time": [0.0]})
+    with pytest.raises(ShipcosimError, match="left: mapped_thruster follows command_in.*another kind"):
+        inputs._check_third_party(log, SimpleNamespace(third_party={"left": left}))

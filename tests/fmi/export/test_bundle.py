@@ -80,6 +80,20 @@ def test_names_change_with_the_content_of_every_module(folder):
     assert first.package != other.package and first.entry != other.entry
 
 
+def test_trained_weights_come_along_and_count_as_content(folder, tmp_path):
+    script = folder(main="a = 1\n")
+    without = bundle(script)
+    (tmp_path / "weights").mkdir()
+    (tmp_path / "weights" / "report.md").write_text("how they were trained")
+    assert bundle(script) == without
+    found = []
+    for content in (b"one", b"two"):
+        (tmp_path / "weights" / "net.npz").write_bytes(content)
+        found.append(bundle(script))
+        assert found[-1].files[f"{found[-1].package}/weights/net.npz"] == content
+    assert len({without.entry, *(one.entry for one in found)}) == 3
+
+
 def test_line_ends_of_another_system_change_nothing(folder):
     script = folder(main="a = 1\nb = 2\n")
     first = bundle(script)

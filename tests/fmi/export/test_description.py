@@ -87,7 +87,7 @@ def test_the_head_says_what_the_fmu_is_and_can(described):
     assert description.description == "All that can be described."
     assert description.generationTool.startswith("shipcosim") and description.generationDateAndTime is None
     assert (description.license, description.author) == ("MIT", "shipcosim") and description.version
-    assert description.defaultExperiment.stepSize == "0.05"
+    assert float(description.defaultExperiment.stepSize) == 0.05
     abilities = description.coSimulation
     assert abilities.canGetAndSetFMUstate and abilities.canSerializeFMUstate
     assert abilities.canHandleVariableCommunicationStepSize and not abilities.canBeInstantiatedOnlyOncePerProcess

@@ -38,7 +38,7 @@ def check(
     Example: shipcosim check build/fmus/vessel.fmu scenarios/four_corner.toml
     """
     from shipcosim import library
-    from shipcosim.cli.checks import VARIABLE_KEYS, check_any, estimates_in, variables_in
+    from shipcosim.checks import VARIABLE_KEYS, check_any, estimates_in, variables_in
     from shipcosim.cli.console import print_estimates, print_report, print_variables
     from shipcosim.errors import held_strictly
     from shipcosim.ssp.portability.check import check_host

@@ -14,6 +14,7 @@ from shipcosim.cli.options import (
     ScenariosStopTime,
     Strict,
     SystemOrScenario,
+    time_option,
 )
 
 
@@ -21,7 +22,8 @@ def fmu(
     what: SystemOrScenario,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.fmu.")] = Path("."),
     step_size: Annotated[
-        float | None, typer.Option("--step-size", help="[s] Of the exchange inside. Default: the system's.")
+        float | None,
+        time_option("--step-size", "Of the exchange inside; in s, or as '50 ms'. Default: the system's."),
     ] = None,
     parameters: Parameters = None,
     connectors_only: Annotated[
@@ -43,8 +45,8 @@ def fmu(
     """
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cli.requests import system_to_export
-    from shipcosim.cli.results import set_file_aside
     from shipcosim.cosim import export_fmu
+    from shipcosim.staging import set_file_aside
 
     system, step = system_to_export(what, parameters, step_size, strict)
     print_problems(problem for problem in system.remarks if problem.flaw)
@@ -73,8 +75,8 @@ def osp(
     """
     from shipcosim.cli.console import print_problems, shown_path
     from shipcosim.cli.requests import system_and_scenario
-    from shipcosim.cli.results import set_aside
     from shipcosim.cosim.export.osp import SCENARIO, STRUCTURE, write_osp
+    from shipcosim.staging import set_aside
 
     system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict)
     set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))])

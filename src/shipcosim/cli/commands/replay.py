@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Channels, Debug, Force, finite
+from shipcosim.cli.options import Channels, Debug, Force, time_option
 
 
 def replay(
@@ -29,7 +29,7 @@ def replay(
     ] = None,
     horizon: Annotated[
         float | None,
-        typer.Option("--horizon", callback=finite, help="[s] Length of each prediction. Default: fits craft and log."),
+        time_option("--horizon", "Length of each prediction; in s, or such as '2 min'. Default: fits craft and log."),
     ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/LOG-replay]")

@@ -19,9 +19,10 @@ def report(
 
     Leaves report.html in results/A-B. Example: shipcosim report results/four_corner results/four_corner_rough
     """
-    from shipcosim.cli.results import check_targets, staged
+    from shipcosim.cli.results import check_targets
     from shipcosim.report import write_comparison
     from shipcosim.series import read_table
+    from shipcosim.staging import staged
 
     names = _names(first, second)
     folder = out or Path("results") / f"{names[0]}-{names[1]}"

@@ -8,6 +8,7 @@ import typer
 
 from shipcosim import library
 from shipcosim.cli.options import (
+    Components,
     Debug,
     Engine,
     Force,
@@ -43,6 +44,7 @@ def run(
     engine: Engine = "fmpy",
     parameters: Parameters = None,
     settings: Settings = None,
+    components: Components = None,
     until: Until = None,
     store: Store = None,
     resume: From = None,
@@ -63,13 +65,14 @@ def run(
 
     Example: shipcosim run four_corner --set environment.wind_speed='10 kn' --until 300
     """
-    from shipcosim.cli.requests import changed_by, isolation, parsed_settings
+    from shipcosim.cli.requests import changed_by, isolation, parsed_components, parsed_settings
     from shipcosim.cli.runs import simulate_and_save
     from shipcosim.options import RunOptions
 
     given = parsed_settings(settings or [])
     options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
-    reading = _Reading(parameters or [], given, strict, changed_by(settings, parameters, options, resume))
+    changed = changed_by(settings, parameters, options, resume, components)
+    reading = _Reading(parameters or [], parsed_components(components or ()), given, strict, changed)
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
@@ -82,9 +85,10 @@ def run(
 
 @dataclass(frozen=True)
 class _Reading:
-    """How scenarios and systems are read: with which parameter sets and values, and how strictly."""
+    """How scenarios and systems are read: with which parameter sets, FMUs and values, and how strictly."""
 
     parameters: list[Path]
+    components: dict[str, Path]
     given: dict[str, object]
     strict: bool
     changed: list[str]
@@ -94,9 +98,9 @@ def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptio
     """Run scenarios one after another, and write the table of all of them. All are read before the first one runs."""
     from shipcosim.cli.console import print_overview
     from shipcosim.cli.exits import FAILED
-    from shipcosim.cli.results import set_aside
     from shipcosim.cli.runs import simulated_and_saved
     from shipcosim.report import ScenarioRow, digest, overview_outcome, write_overview
+    from shipcosim.staging import set_aside
 
     rows = []
     prepared = [_prepared(file, reading) for file in files]
@@ -115,18 +119,19 @@ def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptio
 def _prepared(path: Path, reading: _Reading) -> "tuple[System, Scenario]":
     """System and scenario of a file, checked, with the values that are set for this run."""
     from shipcosim.cli.console import print_problems
+    from shipcosim.cosim import system_of
     from shipcosim.scenario import check_files, read_scenario
-    from shipcosim.ssp import fitting_values, read_system, with_values
+    from shipcosim.ssp import fitting_values, with_values
 
     happening = read_scenario(path)
     if missing := check_files(happening):
         raise ShipcosimError(missing)
-    path, fmus = happening.system_path, library.fmus(happening.system_path)
-    system = read_system(path, happening.parameter_paths, fmus=fmus, strict=reading.strict)
+    system = system_of(happening, components=reading.components, strict=reading.strict)
     with_values(system, reading.given, "--set")
     fitting = {}
     for file in reading.parameters:
         values, left_out = fitting_values(file, system)
         print_problems(left_out)
         fitting |= values
-    return system, happening.model_copy(update={"set": happening.set | fitting | reading.given})
+    swapped = happening.components | {name: str(file) for name, file in reading.components.items()}
+    return system, happening.model_copy(update={"set": happening.set | fitting | reading.given, "components": swapped})

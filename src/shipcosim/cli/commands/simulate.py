@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import (
+    Components,
     Debug,
     Engine,
     Force,
@@ -21,7 +22,7 @@ from shipcosim.cli.options import (
     SystemsStopTime,
     Timeout,
     Until,
-    finite,
+    time_option,
 )
 from shipcosim.cli.start.completion import names_of
 
@@ -42,11 +43,11 @@ Interpolate = Annotated[
 ]
 MaxGap = Annotated[
     float | None,
-    typer.Option("--max-gap", callback=finite, help="[s] Longest time without a row. Default: 5 x an even spacing."),
+    time_option("--max-gap", "Longest time without a row; in s, or such as '1 min'. Default: 5 x an even spacing."),
 ]
 StartTime = Annotated[
     float | None,
-    typer.Option("--start-time", callback=finite, help="[s] On the clock of the table. Default: the system's."),
+    time_option("--start-time", "On the clock of the table; in s, or such as '1 h'. Default: the system's."),
 ]
 
 
@@ -62,6 +63,7 @@ def simulate(
     max_gap: MaxGap = None,
     start_time: StartTime = None,
     settings: Settings = None,
+    components: Components = None,
     events: OspEvents = None,
     until: Until = None,
     store: Store = None,
@@ -83,7 +85,8 @@ def simulate(
     from shipcosim.options import RunOptions
     from shipcosim.ssp import settings_of_one, with_values
 
-    system = requests.system_of(ssp, parameters, strict=strict)
+    swapped = requests.parsed_components(components or ())
+    system = requests.system_of(ssp, parameters, strict=strict, components=swapped)
     system = with_values(system, settings_of_one(system, requests.parsed_settings(settings or [])), "--set")
     scenario = requests.experiment_of(system, stop_time, step_size)
     table = requests.inputs_of(inputs, system, interpolate or (), max_gap)
@@ -93,5 +96,5 @@ def simulate(
     apart = requests.isolation(isolate, timeout)
     options = RunOptions(engine=engine, inputs=table, start_time=start_time, until=until, resume=resume, **apart)
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
-    changed = requests.changed_by(settings, parameters, options, resume)
+    changed = requests.changed_by(settings, parameters, options, resume, components)
     simulate_and_save(system, scenario, out or default, options, store, changed)

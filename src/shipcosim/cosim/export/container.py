@@ -1,6 +1,6 @@
 """A whole system as one FMU: FMPy's container FMU, a native library that steps FMUs which lie in its resources.
 
-What the library does (FMPy 0.3, ``native/container-fmu``): start values are set when it is instantiated; leaving the
+What the library does (FMPy 0.3.32, ``native/container-fmu``): start values are set when it is instantiated; leaving the
 initialisation mode passes all connections on once, in the order of its configuration; a step steps all components from
 the same time and then passes all connections on once, in that order. Values are copied as they are. Nothing else is
 done to them, so that what a system needs beyond this is refused here.
@@ -24,12 +24,11 @@ from shipcosim.ssp.xml.values import text_of
 VERSION = "0.1.0"
 """Of the library's configuration."""
 
-PLATFORMS = {
-    "linux64": "x86_64-linux/container_fmu.so",
-    "win64": "x86_64-windows/container_fmu.dll",
-    "darwin64": "x86_64-darwin/container_fmu.dylib",
-}
-"""Folder in an FMU of FMI 2.0, and the library in FMPy."""
+PLATFORMS = ("linux64", "win64", "darwin64")
+"""Folders in an FMU of FMI 2.0, one a platform."""
+
+LIBRARIES = Path(__file__).parent / "vendor" / "container_fmu.zip"
+"""Of FMPy 0.3.32, a folder a platform; it lies here since FMPy 0.3.25 lacks it, see LICENSES.txt beside it."""
 
 
 def write_container(
@@ -60,7 +59,7 @@ def write_container(
         raise ShipcosimError(errors)
     paths = _paths(system)
     files = {f"resources/{paths[fmu]}/{name}": data for fmu in paths for name, data in _files(fmu)}
-    files |= {f"binaries/{folder}/{Path(own).name}": _library(own) for folder, own in PLATFORMS.items()}
+    files |= {f"binaries/{name}": data for name, data in _files(LIBRARIES)}
     configuration = _configuration(system, exposed, paths, step_size, sweeps)
     token = _token(configuration, files)
     description = container_description(system, exposed, token, step_size)
@@ -144,17 +143,12 @@ def _paths(system):
     return {file: f"{number:02}_{re.sub('[^A-Za-z0-9_]', '', file.stem)}" for number, file in enumerate(files)}
 
 
-def _files(fmu):
-    with zipfile.ZipFile(fmu) as archive:
+def _files(file):
+    """Names and contents in an archive."""
+    with zipfile.ZipFile(file) as archive:
         for entry in archive.infolist():
             if not entry.is_dir():
                 yield entry.filename, archive.read(entry)
-
-
-def _library(own):
-    import fmpy.container_fmu
-
-    return (Path(fmpy.container_fmu.__file__).parent / "binaries" / own).read_bytes()
 
 
 def _configuration(system, exposed, paths, step_size, sweeps):

@@ -24,7 +24,8 @@ LIMIT = 60.0
 """How long the container, in a process of its own, may take for an answer: its library ends the process where an FMU in
 it cannot be instantiated. [s]"""
 TOLERANCE = 1e-9
-"""Of the largest value of a signal. Times are rounded differently in the last digit inside the container."""
+"""Of the largest value of the signals of a component in one unit: what is left of two forces is as exact as they are.
+Times are rounded differently in the last digit inside the container."""
 
 
 def export_fmu(
@@ -85,15 +86,31 @@ def _run(system, step_size, options):
 
 def _differences(ours, theirs):
     """Sentences on the outputs of the container that differ from the system's, the worst first."""
-    found = []
+    found, scales = [], _scales(ours)
     for name in theirs.data_vars:
         shown = name.removeprefix("block.")
         if shown not in ours or theirs[name].dtype.kind not in "fbi":
             continue
         a, b = ours[shown].values.astype(float), theirs[name].values.astype(float)
-        error, scale = np.abs(a - b), max(np.abs(a).max(), np.abs(b).max(), 1e-9)
+        error, scale = np.abs(a - b), max(scales[_kind(ours, shown)], np.abs(b).max(), 1e-9)
         if error.max() > TOLERANCE * scale:
             row = int(error.argmax())
             time = float(ours["time"][row])
             found.append((error.max() / scale, f"{shown} is {a[row]:.9g} at t = {time:g} s, in the FMU {b[row]:.9g}."))
     return [text for _, text in sorted(found, reverse=True)]
+
+
+def _scales(table):
+    """Largest absolute value among the signals of each component in each unit."""
+    found = {}
+    for name in table.data_vars:
+        if table[name].dtype.kind in "fbi":
+            kind = _kind(table, name)
+            found[kind] = max(found.get(kind, 0.0), float(np.abs(table[name].values.astype(float)).max()))
+    return found
+
+
+def _kind(table, name):
+    """Component and unit of a signal; without a unit each signal is of its own kind."""
+    unit = table[name].attrs.get("units", "")
+    return (name.rpartition(".")[0], unit) if unit else (name, unit)

@@ -34,6 +34,62 @@ def _is_inner(connection: Connection, plan: Plan) -> bool:
     return is_free and smooth and all(plan.variable(end).kind == "Real" for end in ends)
 
 
+def exchanged_at_steps(plan: Plan, inner: Sequence[Connection], how: str, step_size: float) -> list[str]:
+    """What is to be known of components in model exchange that are wired together and not integrated as one system.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the run.
+    inner : sequence of Connection
+        That a common solver carries over.
+    how : str
+        Why the run has no common solver, as a sentence's part; empty where it has.
+    step_size : float
+        Of the master. [s]
+
+    Returns
+    -------
+    list of str
+        A sentence for each pair.
+    """
+    groups, said = groups_of(inner), {}
+    for c in plan.system.connections:
+        pair = tuple(sorted({c.source[0] or "", c.target[0] or ""}))
+        is_carried = c in inner and any(set(pair) <= group for group in groups)
+        if is_carried or "" in pair or pair in said or not _is_of_models(c, plan):
+            continue
+        what = "run in model exchange, wired together" if len(pair) > 1 else "runs in model exchange, wired to itself"
+        why = how or _why_apart(c, plan)
+        said[pair] = (
+            f"{' and '.join(pair)} {what}, but not as one system: {why}. What they exchange is held for "
+            f"{step_size:g} s: an error of first order in the step."
+        )
+    return list(said.values())
+
+
+def _is_of_models(connection: Connection, plan: Plan) -> bool:
+    """Whether a connection goes from Real to Real between components in model exchange."""
+    ends = (connection.source, connection.target)
+    names = [plan.system.components[name or ""] for name, _ in ends]
+    return all(interface_type_of(one) == "ModelExchange" for one in names) and all(
+        plan.variable(end).kind == "Real" for end in ends
+    )
+
+
+def _why_apart(connection: Connection, plan: Plan) -> str:
+    """Why a connection between components in model exchange is none that a common solver carries over."""
+    ends = (connection.source, connection.target)
+    components = {name: plan.system.components[name or ""] for name, _ in ends}
+    if eventful := [str(name) for name, one in components.items() if one.fmu.n_event_indicators]:
+        return f"{' and '.join(eventful)} can have events of state (event indicators)"
+    if slow := [str(name) for name in components if plan.multiples[name or ""] != 1]:
+        return f"{' and '.join(slow)} steps with a step of its own"
+    if changed := [".".join(map(str, end)) for end in ends if end in plan.modified]:
+        return f"the run itself changes {' and '.join(changed)}"
+    return "the connection adds up in its input, goes through a mapping, or back into its own component"
+
+
 def groups_of(connections: Sequence[Connection]) -> list[set[str]]:
     """Components that connections join, directly or by others."""
     groups: list[set[str]] = []

@@ -127,6 +127,7 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
         "seeds": json.dumps({name: value for name, value in starts.items() if name.endswith("seed")}),
         "events": json.dumps([event.model_dump() for event in scenario.events]),
         "fmus": json.dumps(fmus),
+        "swapped": json.dumps(dict(system.swapped)),
     }
 
 

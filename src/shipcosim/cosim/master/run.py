@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.cosim.master.algorithm import Failure, Master
 from shipcosim.cosim.master.events import event_actions, external_values
-from shipcosim.cosim.master.groups import couple, groups_of, inner_connections
+from shipcosim.cosim.master.groups import couple, exchanged_at_steps, groups_of, inner_connections
 from shipcosim.cosim.master.inputs import digest, input_values
 from shipcosim.cosim.master.instantiate import (
     Components,
@@ -110,6 +110,7 @@ class Simulation:
         self._components: Components = {}
         self._n_rows = 0
         self._together: list[set[str]] = []
+        self._remarks: list[str] = []
         self._recorders = {
             kind: Recorder(exchange, len(grid.row_times), *recorded_rows(self._plan, kind))
             for kind, exchange in self._exchanges.items()
@@ -139,8 +140,10 @@ class Simulation:
         """
         plan, exchanges, grid = self._plan, self._exchanges, self._grid
         try:
-            inner = inner_connections(plan) if self._order == "jacobi" and isinstance(slaves, Instances) else []
-            step_size = self._scenario.step_size
+            apart = "" if isinstance(slaves, Instances) else "isolated, each has a process and a solver of its own"
+            apart = apart if self._order == "jacobi" else "one after the other, each steps with a solver of its own"
+            inner, step_size = [] if apart else inner_connections(plan), self._scenario.step_size
+            self._remarks = exchanged_at_steps(plan, inner, apart, step_size)
             self._components = make_components(plan, exchanges, slaves, step_size, check_interrupt, inner)
             couple(plan, self._components, stepping_order(plan, self._order), inner)
             self._together = groups_of(inner)
@@ -193,7 +196,9 @@ class Simulation:
             known["continued_from"] = self._resume.time
         if self._together:
             known["integrated_together"] = "; ".join(", ".join(sorted(group)) for group in self._together)
-        remarks = [text for component in self._components.values() for text in component.slave.remarks()]
+        remarks = [*self._remarks] + [
+            text for component in self._components.values() for text in component.slave.remarks()
+        ]
         return known | {"complete": int(complete), "remarks": json.dumps(list(dict.fromkeys(remarks)))}
 
     def table(self, complete: bool) -> xarray.Dataset:

@@ -9,23 +9,21 @@ from ctypes import byref, c_double, c_int, c_void_p
 import numpy as np
 from fmpy.sundials import cvode as lib
 from fmpy.sundials.cvode_ls import CVodeSetLinearSolver
-from fmpy.sundials.libraries import sundials_core, sundials_cvode
+from fmpy.sundials.libraries import sundials_cvode
 from fmpy.sundials.nvector_serial import NV_DATA_S, N_VDestroy_Serial, N_VNew_Serial
-from fmpy.sundials.sundials_context import SUNContext_Create, SUNContext_PushErrHandler
 from fmpy.sundials.sundials_linearsolver import SUNLinearSolver
 from fmpy.sundials.sundials_matrix import SUNMatrix
-from fmpy.sundials.sundials_types import SUN_COMM_NULL, SUNContext, SUNErrHandlerFn
 from fmpy.sundials.sunlinsol_dense import SUNLinSol_Dense
 from fmpy.sundials.sunmatrix_dense import SUNDenseMatrix
+
+from shipcosim.cosim.slaves.sundials import Context, free_memory, freeing
 
 BDF, ONE_STEP, ROOT_RETURN = lib.CV_BDF, 2, lib.CV_ROOT_RETURN
 RECOVERABLE, UNRECOVERABLE = 1, -1
 
 _set_stop_time = sundials_cvode.CVodeSetStopTime
 _set_stop_time.argtypes, _set_stop_time.restype = [c_void_p, c_double], c_int
-_free_solver, _free_matrix = sundials_core.SUNLinSolFree, sundials_core.SUNMatDestroy
-_free_solver.argtypes, _free_matrix.argtypes = [SUNLinearSolver], [SUNMatrix]
-_free_context = sundials_core.SUNContext_Free
+_free_solver, _free_matrix = freeing("SUNLinSolFree", SUNLinearSolver), freeing("SUNMatDestroy", SUNMatrix)
 
 
 class SolverError(Exception):
@@ -57,19 +55,17 @@ class Cvode:
         self._n, self._derivatives, self._roots, self._tolerance = n, derivatives, roots, tolerance
         self._error: Exception | None = None
         self._message, self._memory = b"", None
-        self._context = SUNContext()
-        SUNContext_Create(SUN_COMM_NULL, byref(self._context))
-        self._error_handler = SUNErrHandlerFn(self._keep_message)
-        sundials_core.SUNContext_ClearErrHandlers(self._context)  # the one that is there prints
-        SUNContext_PushErrHandler(self._context, self._error_handler, None)
-        self._x, self._absolute = (N_VNew_Serial(max(n, 1), self._context) for _ in range(2))
+        self._context = Context(self._keep_message)
+        context = self._context.arguments
+        self._x, self._absolute = (N_VNew_Serial(max(n, 1), *context) for _ in range(2))
         self.states = np.ctypeslib.as_array(NV_DATA_S(self._x), (max(n, 1),))
         self._tolerances = np.ctypeslib.as_array(NV_DATA_S(self._absolute), (max(n, 1),))
         self.states[:], self._tolerances[:] = 0.0, 1.0
-        self._matrix = SUNDenseMatrix(max(n, 1), max(n, 1), self._context)
-        self._solver = SUNLinSol_Dense(self._x, self._matrix, self._context)
+        self._matrix = SUNDenseMatrix(max(n, 1), max(n, 1), *context)
+        self._solver = SUNLinSol_Dense(self._x, self._matrix, *context)
         self._rhs, self._root_function = lib.CVRhsFn(self._evaluate), lib.CVRootFn(self._evaluate_roots)
-        self._memory = lib.CVodeCreate(BDF, self._context)
+        self._memory = lib.CVodeCreate(BDF, *context)
+        self._context.watch(self._memory)
         self._check(lib.CVodeInit(self._memory, self._rhs, 0.0, self._x))
         self._check(lib.CVodeSVtolerances(self._memory, tolerance, self._absolute))
         self._check(CVodeSetLinearSolver(self._memory, self._solver, self._matrix))
@@ -96,13 +92,13 @@ class Cvode:
         """Free the solver's memory."""
         if self._memory is not None:
             self.states = self._tolerances = np.empty(0)  # the memory that they show is freed
-            lib.CVodeFree(byref(c_void_p(self._memory)))
+            free_memory(self._memory)
             self._memory = None
             _free_solver(self._solver)
             _free_matrix(self._matrix)
             N_VDestroy_Serial(self._x)
             N_VDestroy_Serial(self._absolute)
-            _free_context(byref(self._context))
+            self._context.close()
 
     def _evaluate(self, time, x, dx, _):
         if self._n:
@@ -127,5 +123,5 @@ class Cvode:
         if flag < 0:
             raise SolverError(f"CVode: {self._message.decode(errors='replace') or f'code {flag}'}")
 
-    def _keep_message(self, line, function, file, message, code, data, context):
+    def _keep_message(self, message):
         self._message = message or b""

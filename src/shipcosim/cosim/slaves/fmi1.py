@@ -83,13 +83,16 @@ class Slave1(LibrarySlave):
         arguments = references(variables), c_size_t(len(variables)), pointer.from_buffer(own)
         return own, signs, partial(self._function(verb + kind), self.component, *arguments)
 
+    def _symbol(self, function):
+        return f"{self._identifier}_fmi{function}"
+
     @staticmethod
     def _load(**arguments) -> Any:
         from fmpy.fmi1 import FMU1Slave
 
         slave = FMU1Slave(**arguments)
-        for name in ("fmi1InitializeSlave", "fmi1DoStep"):
-            slave._functions[name].restype = c_int  # FMPy takes their status for a text
+        for name in ("InitializeSlave", "DoStep"):  # FMPy 0.3.32 takes their status for a text
+            getattr(slave.dll, f"{arguments['modelIdentifier']}_fmi{name}").restype = c_int
         return slave
 
     def _instantiate(self):

@@ -44,7 +44,7 @@ class LibrarySlave(Slave):
     component: Any
 
     def __init__(self, name: str, folder: Path, identifier: str, token: str):
-        self.name = name
+        self.name, self._identifier = name, identifier
         self._messages: list[tuple[int, str]] = []
         self._is_lost = False
         self._is_python = (Path(folder) / "resources" / "slavemodule.txt").is_file()
@@ -52,7 +52,11 @@ class LibrarySlave(Slave):
         here = os.getcwd()
         try:
             self._fmu = self._load(
-                guid=token, modelIdentifier=identifier, unzipDirectory=str(folder), instanceName=name
+                guid=token,
+                modelIdentifier=identifier,
+                unzipDirectory=str(folder),
+                instanceName=name,
+                requireFunctions=False,  # one that is missing is said where it is called
             )
             self._instantiate()
         except Exception as error:
@@ -186,7 +190,15 @@ class LibrarySlave(Slave):
         return cast(buffer, self._function(function).argtypes[position])
 
     def _function(self, name):
-        return self._fmu._functions[self._prefix + name]
+        """Function of the FMU's library, by its name without prefix. FMPy has given it its types."""
+        try:
+            return getattr(self._fmu.dll, self._symbol(name))
+        except AttributeError:
+            raise SlaveError(f"Its library has no function {self._symbol(name)}.") from None
+
+    def _symbol(self, function):
+        """Name of a function in the FMU's library."""
+        return f"{self._prefix}{function}"
 
     def _log(self, status, message):
         text = (message or b"").decode("utf-8", errors="replace")

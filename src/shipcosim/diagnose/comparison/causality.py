@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import nnls
 
 from shipcosim.diagnose.comparison.thresholds import CAUSAL_ORDER, CAUSAL_STEP, COMMANDS_BEFORE, HUBER
+from shipcosim.diagnose.numerics import least_squares
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.commanded import Commanded
@@ -90,7 +90,7 @@ def _gained(left: np.ndarray, columns: np.ndarray) -> float:
     if not np.any(size > 0.0) or not np.any(left):
         return 0.0
     unit = columns / np.maximum(size, 1e-300)
-    after = left - unit @ nnls(unit, left)[0]
+    after = left - unit @ least_squares(unit, left)
     bound = HUBER * 1.4826 * np.median(np.abs(after)) + 1e-300  # so that single jumps of a channel do not decide
 
     def loss(series):

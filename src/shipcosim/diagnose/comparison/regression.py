@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from shipcosim.diagnose.comparison.thresholds import HUBER, ROBUST_ROUNDS, SOUND
+from shipcosim.diagnose.numerics import least_squares
 
 __all__ = ["Regression", "bounded", "regressed"]
 
@@ -86,8 +86,6 @@ def regressed(
 def bounded(products: np.ndarray, with_series: np.ndarray, positive: np.ndarray) -> np.ndarray:
     """Least squares, from inner products, with some coefficients that must not be negative.
 
-    The free ones are differences of two that are not.
-
     Parameters
     ----------
     products : (p, p) array
@@ -104,11 +102,7 @@ def bounded(products: np.ndarray, with_series: np.ndarray, positive: np.ndarray)
     root = np.sqrt(np.maximum(size, 1e-12 * size.max() + 1e-300))
     upper = root[:, None] * turn.T
     target = (turn.T @ with_series) / root
-    both = np.concatenate([upper, -upper[:, ~positive]], axis=1)
-    found = nnls(both, target, maxiter=50 * both.shape[1])[0]
-    found, other = found[: positive.size].copy(), found[positive.size :]
-    found[~positive] -= other
-    return found
+    return least_squares(upper, target, positive)
 
 
 def _by_blocks(unit, errors, weights, pull, free, block):

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
+from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, Record
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
@@ -307,7 +307,7 @@ def _setting(name, wish, pushes, time, dp):
     azimuth = np.interp(time, time[force != 0.0], np.unwrap(azimuth[force != 0.0])) if np.any(force) else azimuth
     most = 0.8 * dp.model.parts[name].rpm_max / 60.0
     speed = np.clip(dp.speed(name, force), -most, most)
-    return tuple(gaussian_filter1d(series, _STEADY, mode="nearest") for series in (speed, azimuth))
+    return tuple(gaussian_filter(series, _STEADY, ends="held") for series in (speed, azimuth))
 
 
 def cannot_turn(record: Record, model: ShipModel) -> tuple[str, ...]:

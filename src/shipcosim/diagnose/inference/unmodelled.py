@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import chi2
 
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.innovations import inner_products
@@ -21,6 +20,7 @@ from shipcosim.diagnose.inference.thresholds import (
     SIZE_FROM_PART_TO_PART,
     UNMODELLED,
 )
+from shipcosim.diagnose.numerics import log_survival
 from shipcosim.diagnose.ship.environment import piecewise_linear_basis
 from shipcosim.diagnose.ship.instruments import readings
 
@@ -99,7 +99,7 @@ def _differs_by_part(fit):
             known = blocks[:, 1 + i, 1 + i]
             pull = blocks[:, 1 + i, 0] - blocks[:, 1 + i, 1:] @ fit.left
             chance = known * (1.0 + (SIZE_FROM_PART_TO_PART * size) ** 2 * known) + 1e-9
-            unlikely.append(chi2.logsf((pull**2 / chance).sum(), len(blocks)))
+            unlikely.append(log_survival((pull**2 / chance).sum(), len(blocks)))
     return _most_evidence(min(unlikely, default=0.0) + np.log(max(len(unlikely), 1)))
 
 
@@ -114,7 +114,7 @@ def _beyond_tolerances(fit):
     told = np.clip(1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known] / prior[:, None] / prior), 1e-9, None)
     mean, half_variance = told.sum(), (told**2).sum()
     squares = ((fit.theta[:known] / prior) ** 2).sum()
-    return _most_evidence(chi2.logsf(squares * mean / half_variance, mean**2 / half_variance))
+    return _most_evidence(log_survival(squares * mean / half_variance, mean**2 / half_variance))
 
 
 def _most_evidence(log_p):

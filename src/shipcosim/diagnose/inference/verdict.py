@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
 
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import Fit
@@ -28,6 +27,7 @@ from shipcosim.diagnose.inference.thresholds import (
     UNMODELLED_SHARE,
 )
 from shipcosim.diagnose.inference.unmodelled import FORCES, unmodelled_gains
+from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.result import Candidate, Estimate, Finding
 from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
 from shipcosim.diagnose.stages import ExplainedLog, JudgedLog
@@ -217,7 +217,7 @@ def _in_shape(hypothesis, fit):
     """Whether what tells a cause's shape lies within its tolerances, taken together."""
     shape = set(hypothesis.definition.shape)
     squares = sum(t**2 for t, column in zip(fit.theta, fit.columns, strict=True) if set(column.changes) & shape)
-    return not shape or bool(chi2.sf(squares, len(shape)) > SHAPE_CHANCE)
+    return not shape or survival(squares, len(shape)) > SHAPE_CHANCE
 
 
 def _size(hypothesis, fit):

@@ -27,6 +27,9 @@ CLOCK_NUMBER = "hhmmss"
 TEN_MILLIONTHS = "1e-7 deg"
 """Spelling of the unit of latitudes and longitudes that autopilots write as whole numbers."""
 LARGEST = {"latitude": 90.0, "longitude": 180.0}
+_STEPS = 2e-4, 90.0  # s between rows, beyond which numbers without a unit are hardly seconds. Assumed.
+_PERIODS = {86400.0: "day", 604800.0: "week"}  # s; after which clocks start anew
+_NEAR_END = 300.0  # s; within which of its end one was, and of its start it is. Assumed.
 
 
 def values_of(channel: Channel, name: str, log: LogColumns, form: Form) -> tuple[np.ndarray, str, list[str]]:
@@ -132,7 +135,8 @@ def _time(channel, column, stated, log, form):
             values = _joined(log, _found(log, channel.date), values)
         read = seconds_of(values, form.dates, stated)
         if read is not None:
-            return read
+            times, said = _without_summer_time(read[0])
+            return times, [*read[1], *said]
     numbers = _numbers(log, column)
     if stated.lower() == CLOCK_NUMBER:
         return seconds_of_clock(_of_clock(numbers))
@@ -143,7 +147,46 @@ def _time(channel, column, stated, log, form):
         said = [f"Times in '{column}' are {epoch} since 1970."] if epoch != "s" or unit else []
         return numbers / EPOCHS[epoch], said
     factor, zero = conversion(unit or "s", "s")
-    return factor * numbers + (zero or -0.0), []
+    times = factor * numbers + (zero or -0.0)
+    if not unit:
+        _check_steps(column, times)
+    return _past_the_end(times)
+
+
+def _check_steps(column, times):
+    """Raise ShipcosimError where rows would be so close or far apart that the numbers can hardly be seconds."""
+    steps = np.diff(times[np.isfinite(times)])
+    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
+    if _STEPS[0] <= step <= _STEPS[1]:
+        return
+    unit, name, size = ("d", "days", 86400.0) if step < _STEPS[0] else ("ms", "milliseconds", 1e-3)
+    found = f"its rows are {step:.2g} s apart: are these {name}? Then they are {size * step:.3g} s apart."
+    raise ShipcosimError(Problem("", found, f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}, or "s".'))
+
+
+def _without_summer_time(times):
+    """Stamps of a clock that is once put back by an hour, which go on, and what is to be said."""
+    known = np.flatnonzero(np.isfinite(times))
+    steps = np.diff(times[known])
+    falls = np.flatnonzero(steps < 0.0)
+    usual = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
+    if len(falls) != 1 or not 0.0 <= steps[falls[0]] + 3600.0 <= 3.0 * usual:
+        return times, []
+    row = int(known[falls[0] + 1])
+    on = np.where(np.arange(len(times)) >= row, times + 3600.0, times)
+    return on, [f"The clock is put back by an hour before row {row + 2}, as where summer time ends: the times go on."]
+
+
+def _past_the_end(times):
+    """Seconds of the day, or of the week of GPS, that go on past its end, and what is to be said."""
+    known = times[np.isfinite(times)]
+    for period, name in _PERIODS.items():
+        falls = np.flatnonzero(np.diff(known) < -0.9 * period)
+        if not len(falls) or known.min() < 0.0 or known.max() >= period:
+            continue
+        if (known[falls] > period - _NEAR_END).all() and (known[falls + 1] < _NEAR_END).all():
+            return seconds_of_clock(times, period)[0], [f"Seconds of the {name} pass its end: they go on."]
+    return times, []
 
 
 def _joined(log, date, clocks):

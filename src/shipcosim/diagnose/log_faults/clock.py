@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import chi2
 
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
@@ -35,6 +34,7 @@ from shipcosim.diagnose.log_faults.thresholds import (
     TYPICAL_RATE,
     TYPICAL_SEGMENT,
 )
+from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
@@ -109,7 +109,7 @@ def _all_aspects_agree(problem, finding, known):
     rates, apart = covariance @ match, ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
     rest = rates - weight.sum(axis=0) @ rates / weight.sum()
-    return bool(rest @ weight @ rest < chi2.isf(ASPECT_CHANCE, len(ASPECTS) - 1))
+    return survival(rest @ weight @ rest, len(ASPECTS) - 1) > ASPECT_CHANCE
 
 
 def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Dataset) -> Finding:

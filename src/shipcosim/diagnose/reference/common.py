@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
-from scipy.stats import chi2
 
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import COMMON_SPREAD
 from shipcosim.diagnose.log.mislabels import DRIVES, mislabel_in, undone
+from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
 from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
 
@@ -190,7 +190,7 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
         return RatioOfLogs({}, None, 1.0)
     logs = np.log([one.ratio for one in each.values()])
     mean, std, squares = _weighted(logs, np.array([one.std / one.ratio for one in each.values()]))
-    chance = float(chi2.sf(squares, logs.size - 1)) if logs.size > 1 else 1.0
+    chance = survival(float(squares), logs.size - 1) if logs.size > 1 else 1.0
     axes = tuple(dict.fromkeys(axis for one in each.values() for axis in one.axes))
     std = float(max(std, COMMON_SPREAD / np.sqrt(max(len(axes), 1))))  # forms of a hull differ alike in all logs
     ratio = float(np.exp(mean))

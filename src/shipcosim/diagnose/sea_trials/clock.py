@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
+from shipcosim.diagnose.numerics import moving_average
 from shipcosim.diagnose.sea_trials import thresholds
 
 __all__ = ["own_clock"]
@@ -42,7 +42,7 @@ def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np
     way = (np.diff(measured[:, 0]) * (north / size)[:-1]) + (np.diff(measured[:, 1]) * (east / size)[:-1])
     sailed = 0.5 * step * (speed[1:] + speed[:-1])
     rows = max(int(round(thresholds.CLOCK_WINDOW * np.sqrt(length) / np.median(step))), 1)
-    way, sailed = uniform_filter1d(way, rows), uniform_filter1d(sailed, rows)
+    way, sailed = moving_average(way, rows), moving_average(sailed, rows)
     moving = sailed > thresholds.UNDER_WAY * np.sqrt(9.81 * length) * np.median(step)
     if not moving.any():
         return time, 1.0
@@ -60,7 +60,7 @@ def _clock_by_heading(rate, measured, step, length, rows):
     psi, u, v, r = measured[:, 2:].T
     if not np.isfinite(r).all():
         return 1.0
-    turned, told = uniform_filter1d(np.diff(psi), rows), uniform_filter1d(0.5 * step * (r[1:] + r[:-1]), rows)
+    turned, told = moving_average(np.diff(psi), rows), moving_average(0.5 * step * (r[1:] + r[:-1]), rows)
     quick = np.abs(r[1:]) * length > thresholds.TURNS * np.hypot(u, v)[1:]
     quick &= np.isfinite(rate) & (np.abs(told) > 0.2 * np.max(np.abs(told)))
     if quick.sum() < 20:

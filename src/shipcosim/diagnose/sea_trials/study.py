@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from shipcosim.ssp import System
 
 __all__ = [
+    "STEPS",
     "HeldOut",
     "SeaTrialStudy",
     "best_of",
@@ -51,6 +52,15 @@ __all__ = [
     "studied",
     "study",
 ]
+
+STEPS = {
+    "which manoeuvres are in the log?": 1.0,
+    "fitted on circles to port, judged on the others": 5.0,
+    "fitted on circles to starboard, judged on the others": 5.0,
+    "fitted on all manoeuvres": 5.0,
+    "what would tell causes apart": 5.0,
+}
+"""What `study` tells its progress function, in order, with the time that it typically takes. [s]"""
 
 
 @dataclass(frozen=True)
@@ -241,7 +251,7 @@ def study(
     causes : path, optional
         Folder with further causes.
     progress : callable, optional
-        Called with what is being done, in words, how many parts are done, and of how many.
+        Called with what is being done, in words.
     orders : bool
         Whether the thrusters' channels are orders, which the units follow, instead of feedback.
 
@@ -322,19 +332,19 @@ def studied(
     SeaTrialStudy
     """
     sides = {name: [t for t in trials if _turns(t, side)] for name, side in (("port", -1), ("starboard", 1))}
-    held_out, parts = {}, 4 if all(sides.values()) else 2
+    held_out = {}
     if all(sides.values()):
         for name, own in sides.items():
-            progress(f"fitted on circles to {name}, judged on the others", len(held_out), parts)
+            progress(f"fitted on circles to {name}, judged on the others")
             others = [trial for trial in trials if trial.kind != "straight run" and trial not in own]
             straight = [trial for trial in trials if trial.kind == "straight run"]
             held_out[name] = _judged([*straight, *own], others, model, hypotheses, orders)
-    progress("fitted on all manoeuvres", parts - 2, parts)
+    progress("fitted on all manoeuvres")
     whole = trial_evidence(trials, model, hypotheses, orders=orders)
     ranking = ranked(whole)
     best, rivals = best_of(ranking), rivals_of(ranking)
     (after,) = predicted(trials, model, [changes_of(best) | allowed_for(whole, best)], orders=orders)
-    progress("what would tell causes apart", parts - 1, parts)
+    progress("what would tell causes apart")
     separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
     return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
 

@@ -8,9 +8,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.numerics import moving_average
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
@@ -229,8 +229,8 @@ def _merged(slices):
 def _straight_runs(helm, record, measured, length, busy):
     """Rows of straight courses at held orders, after the speed has settled."""
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
-    held = np.abs(uniform_filter1d(helm, _rows_of_rest(record))) < thresholds.STEADY
-    rate, speed = uniform_filter1d(measured[:, 5], _rows_of_rest(record)), np.hypot(measured[:, 3], measured[:, 4])
+    held = np.abs(moving_average(helm, _rows_of_rest(record))) < thresholds.STEADY
+    rate, speed = moving_average(measured[:, 5], _rows_of_rest(record)), np.hypot(measured[:, 3], measured[:, 4])
     held &= np.abs(rate) * length < thresholds.STRAIGHT_RATE * speed
     for order, _ in record.units.values():
         held &= _held(order, record)

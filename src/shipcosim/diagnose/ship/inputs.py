@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.errors import Problem, ShipcosimError
@@ -289,6 +290,15 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     lacking = [
         Problem(where, f"no channel {role}, which drives '{name}'.", remedy) for name, role in drives if role not in log
     ]
+    lacking += [
+        Problem(
+            str(name),
+            f"{one.component.fmu.model_name} follows {', '.join(one.idle)}, which no log can tell.",
+            "A diagnosis knows what drives a thruster as rpm, azimuth or thrust: describe her by another kind.",
+        )
+        for name, one in model.third_party.items()
+        if one.idle and not one.drives
+    ]
     if lacking:
         raise ShipcosimError(lacking)
 
@@ -337,8 +347,6 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
     Motion
         Of (..., n) arrays.
     """
-    from scipy.ndimage import gaussian_filter1d
-
     rows = np.arange(record.time.size)
     width = max(smooth / record.step, 1.0)
     flat = record.measured.reshape(-1, rows.size, 6)
@@ -348,7 +356,7 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
             whole = np.isfinite(one[:, channel])
             into[:, channel] = np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else np.nan
             for part in record.stretches if whole.any() else ():
-                into[part, channel] = gaussian_filter1d(into[part, channel], width, mode="nearest")
+                into[part, channel] = gaussian_filter(into[part, channel], width, ends="held")
     x, y, psi, u, v, r = np.moveaxis(out.reshape(record.measured.shape), -1, 0)
     if np.isnan(r).any():
         r = rate_of(psi, record)

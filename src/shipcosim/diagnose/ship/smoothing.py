@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
+from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 
@@ -42,11 +42,11 @@ class Kernel:
 
     def smooth(self, series: np.ndarray) -> np.ndarray:
         """The series, averaged along its last axis."""
-        return gaussian_filter1d(series, self.width / self.step, mode="nearest")
+        return gaussian_filter(series, self.width / self.step, ends="held")
 
     def rate(self, series: np.ndarray, order: int = 1) -> np.ndarray:
         """Its derivative of an order, averaged alike. [per s]"""
-        return gaussian_filter1d(series, self.width / self.step, order=order, mode="nearest") / self.step**order
+        return gaussian_filter(series, self.width / self.step, order=order, ends="held") / self.step**order
 
     def clear_of(self, bad: np.ndarray) -> np.ndarray:
         """Rows as far from bad ones, and from both ends, as the kernel reaches."""

@@ -28,7 +28,7 @@ def with_cosimulation(
     extended : ExtendedSystem
         Where causes were named but the system could not be extended, the predictions stay in array form.
     progress : callable, optional
-        Called with (segments done, segments in all).
+        Called with (parts done, parts in all), whose number changes on the way.
     """
     if log.comparison is None:
         return SimulatedLog(None, {}, False)
@@ -37,12 +37,17 @@ def with_cosimulation(
     beyond_doubt = found.comparison.findings if found.comparison else ()
     if (log.comparison.fit.hypotheses or beyond_doubt) and extended.extension is None:
         return SimulatedLog(log.comparison.errors, in_array_form, False)
-    run = partial(_cosimulated, extended, found.causes, beyond_doubt, progress)
+    run, count = partial(_cosimulated, extended, found.causes, beyond_doubt), 1 + len(log.held_out)
+    say = progress or (lambda *_: None)
     try:
-        errors = run(log.comparison, MOST)
-        held_out = {name: run(one, MOST // 2) for name, one in log.held_out.items()}
+        errors = run(lambda done, of: say(done, count * of), log.comparison, MOST)
+        held_out = {
+            name: run(lambda done, of, k=k: say(k * of + done, count * of), one, MOST // 2)
+            for k, (name, one) in enumerate(log.held_out.items(), start=1)
+        }
     except ShipcosimError as error:
-        said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
+        first = {(p.found, p.remedy): p for p in reversed(error.problems)}  # that of many segments is said once
+        said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in reversed(first.values()))
         remarks = tuple(f"The system was not co-simulated: {text}" for text in said)
         return SimulatedLog(log.comparison.errors, in_array_form, False, remarks)
     return SimulatedLog(errors, held_out, True)

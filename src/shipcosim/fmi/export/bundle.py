@@ -14,6 +14,8 @@ Import = ast.Import | ast.ImportFrom
 SHIPCOSIM = Path(__file__).resolve().parents[2]
 ROOT = b'"""What this FMU needs of shipcosim."""\n'
 CARRIED_BY_HOST = {"numpy"} | set(sys.stdlib_module_names)
+WEIGHTS = "weights"
+"""Folder beside a script with trained weights as .npz files, which come along."""
 
 
 @dataclass
@@ -53,7 +55,8 @@ def bundle(script: Path) -> Bundle:
     Parameters
     ----------
     script : Path
-        The FMU's Python file. Modules beside it and modules of shipcosim that it imports, directly or not, come along.
+        The FMU's Python file. Modules beside it and modules of shipcosim that it imports, directly or not, come along,
+        and so do trained weights in the folder `WEIGHTS` beside it.
 
     Returns
     -------
@@ -65,15 +68,17 @@ def bundle(script: Path) -> Bundle:
     ShipcosimError
         A file cannot be read or parsed, or imports what neither Python, NumPy nor the FMU has.
     """
-    modules = _collect(script)
+    modules, weights = _collect(script), _weights(script.parent)
     digest = hashlib.sha256()
-    for module in modules.values():
-        digest.update(f"{module.archive_path} {len(module.source)}\n".encode() + module.source)
+    contents = {module.archive_path: module.source for module in modules.values()} | weights
+    for path, content in contents.items():
+        digest.update(f"{path} {len(content)}\n".encode() + content)
     entry = f"{script.stem}_{digest.hexdigest()[:16]}"
     package = f"{entry}_code"
     files = {f"{package}/__init__.py": PACKAGE.format(script=script.name).encode()}
     for module in modules.values():
         files[f"{package}/{module.archive_path}"] = _renamed(module, package, modules)
+    files |= {f"{package}/{path}": content for path, content in weights.items()}
     return Bundle(entry, package, script.stem, files)
 
 
@@ -111,10 +116,16 @@ finally:
 
 def entry_module(bundled: Bundle, cls: str) -> bytes:
     """Source of the module that the binary imports, which holds nothing but the class."""
-    paths = (path.removesuffix(".py").removesuffix("/__init__") for path in sorted(bundled.files))
+    code = [path for path in sorted(bundled.files) if path.endswith(".py")]
+    paths = (path.removesuffix(".py").removesuffix("/__init__") for path in code)
     modules = ", ".join(path.replace("/", ".") for path in paths)
     text = ENTRY.format(package=bundled.package, script=bundled.script, entry=bundled.entry, modules=modules, cls=cls)
     return text.encode()
+
+
+def _weights(folder: Path) -> dict[str, bytes]:
+    """Files of trained weights beside a script, by their path."""
+    return {f"{WEIGHTS}/{file.name}": file.read_bytes() for file in sorted((folder / WEIGHTS).glob("*.npz"))}
 
 
 def _collect(script: Path) -> dict[str, Module]:

@@ -213,6 +213,7 @@ def azimuth_loads(
     *,
     unit: AzimuthParameters,
     propeller_thrust: Arithmetic | None = None,
+    thrust_share: Arithmetic = 1.0,
 ) -> Loads:
     """Thrust along the axis and side force across it, F_s = -c rho D² (V + abs(n) D) u_s, with their load on the ship.
 
@@ -220,7 +221,7 @@ def azimuth_loads(
 
     The thrust is that of the propeller less its losses:
     (1 - thrust_loss) (1 - reverse_loss, where n < 0) (1 - angle_loss sin² of the azimuth)
-    (1 - interaction_loss · `slipstream_share`).
+    (1 - interaction_loss · `slipstream_share`) thrust_share.
 
     Parameters
     ----------
@@ -234,6 +235,8 @@ def azimuth_loads(
         The thruster.
     propeller_thrust : like the state, optional
         Thrust of the propeller at this state and velocity, where it is known already. [N]
+    thrust_share : like the state
+        Share of the thrust that the slipstreams of other units leave, as `interaction.thrust_shares`. [1]
 
     Returns
     -------
@@ -251,6 +254,7 @@ def azimuth_loads(
     thrust = propeller_loads(u_a, n, propeller=unit)[0] if propeller_thrust is None else propeller_thrust
     if unit.loses:
         thrust = thrust * _kept(n, s, neighbour_azimuth, neighbour_rpm, unit)
+    thrust = thrust * thrust_share
     D = unit.diameter
     wash = abs(n) * D
     if acts(unit.side_force_astern, neutral=1.0):

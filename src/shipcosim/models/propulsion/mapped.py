@@ -23,6 +23,9 @@ class MapParameters:
         "rows 'command thrust': thrust at no speed over the command in any unit, both increasing; constant beyond",
     )
     time_constant: float = quantity(0.0, "s", "time constant of the thrust", "neutral: at once", minimum=0.0)
+    command_rate: float = quantity(
+        0.0, "1/s", "quickest change of the command, in the unit of the map; 0: no limit", "neutral", minimum=0.0
+    )
     speed_loss: float = quantity(
         0.0, "s/m", "share of the thrust that each m/s of advance in its direction takes", "neutral", minimum=0.0
     )
@@ -82,6 +85,66 @@ def within_map(thrust: Arithmetic, *, thruster: MapParameters) -> Arithmetic:
     """
     _, thrusts = _map(thruster.thrust_table)
     return clip(thrust, thrusts[0], thrusts[-1])
+
+
+def mapped_command(thrust: Arithmetic, *, thruster: MapParameters) -> Arithmetic:
+    """Command that gives a thrust at no speed once the lag is over.
+
+    Parameters
+    ----------
+    thrust : float or (...) array or tensor
+        At no speed; beyond the map the nearest that it has. [N]
+    thruster : MapParameters
+        The thruster.
+
+    Returns
+    -------
+    like thrust
+        In the unit of the map; where the thrust is the same over several commands, one of them. [1]
+
+    Raises
+    ------
+    ValueError
+        The map is not one of two columns that both increase.
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    >>> mapped_command(27.5, thruster=MapParameters(x=0.0, y=0.0, thrust_table="1500 0; 1900 55"))
+    1700.0
+    """
+    commands, thrusts = _map(thruster.thrust_table)
+    return interp(thrust, thrusts, commands)
+
+
+def commanded(command: Arithmetic, wanted: Arithmetic, h: float, *, thruster: MapParameters) -> Arithmetic:
+    """Command a step later, which changes no quicker than the thruster allows.
+
+    Parameters
+    ----------
+    command, wanted : float or (...) array or tensor
+        At the start; what is wanted over the step, in the unit of the map. [1, 1]
+    h : float
+        Step. [s]
+    thruster : MapParameters
+        The thruster.
+
+    Returns
+    -------
+    like command
+        In the unit of the map. [1]
+
+    References
+    ----------
+    Definition.
+    """
+    if thruster.command_rate == 0.0:
+        return wanted
+    most = thruster.command_rate * h
+    return command + clip(wanted - command, -most, most)
 
 
 def mapped_step(thrust: Arithmetic, wanted: Arithmetic, h: float, *, thruster: MapParameters) -> Arithmetic:

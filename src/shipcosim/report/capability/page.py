@@ -66,10 +66,11 @@ def write_capability(capability: Capability, path: str | os.PathLike[str]) -> No
     ShipcosimError
         If the file cannot be written.
     """
-    write_file(path, render("capability/templates/capability.html.jinja", _page(capability)).encode())
+    write_file(path, render("capability/templates/capability.html.jinja", page_of(capability)).encode())
 
 
-def _page(capability: Capability) -> CapabilityPage:
+def page_of(capability: Capability) -> CapabilityPage:
+    """What the page of a capability shows."""
     plots, loads = capability_figures(capability), load_figures(capability)
     vessel, figures = capability.vessel, (*plots, *loads)
     said = [one for one in vessel.particulars if one.origin != "neutral"]

@@ -1,6 +1,6 @@
 """What a diagnosis says, in sentences for those who sail and maintain the ship."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
@@ -213,6 +213,18 @@ def size_rows(finding: Finding) -> list[tuple[str, str]]:
         (name, (f"{before[name]} → " if name in before else "") + f"{value} ± {std} {unit}".rstrip())
         for name, value, std, unit in estimate_rows(finding)
     ]
+
+
+def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
+    """Rows of texts: a cause, how sure, and each of its parameters with its size; of a fault of the log where it is."""
+    for finding in findings:
+        name, sure = title(finding.cause, finding.component), f"{100 * finding.probability:.0f} %"
+        rows = size_rows(finding) if finding.kind == "physics" else []
+        for parameter, size in rows:
+            yield name, sure, parameter, size
+            name = sure = ""
+        if not rows:
+            yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)
 
 
 def where(finding: Finding) -> str:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
-from shipcosim.diagnose.result import Diagnosis, Finding
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.validation.tracks import Tracks
 from shipcosim.report.diagnosis.key_figures import key_figures
 from shipcosim.report.diagnosis.track_figures import joined
-from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, outcome, size_rows, title, where
+from shipcosim.report.diagnosis.words import discrepancy_rows, finding_rows, next_steps, outcome, title
 from shipcosim.report.joint import words as joint
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.chart import Path, chart_svg
@@ -45,7 +43,7 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
         data=(),
         blocks=(
             Block("Wrong, largest first", Table(tuple(discrepancy_rows(found)))),
-            Block("Found", Table(tuple(_rows(found.findings)), ("", "probability", "", "size"))),
+            Block("Found", Table(tuple(finding_rows(found.findings)), ("", "probability", "", "size"))),
             Block("This log cannot tell apart", Table(alike)),
             Block("Errors", Table(tuple((figure.value, figure.meaning) for figure in key_figures(found)))),
             Block("Remarks", lines=found.notes),
@@ -62,18 +60,6 @@ def _facts(found: Diagnosis) -> tuple[Fact, ...]:
         time = found.log.measured["time"].values
         facts.append(("Log", f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"))
     return tuple(Fact(name, text) for name, text in facts if text)
-
-
-def _rows(findings: Iterable[Finding]) -> Iterable[tuple[str, ...]]:
-    """A row for each parameter of a cause; of a fault of the log where it is."""
-    for finding in findings:
-        name, sure = title(finding.cause, finding.component), f"{100 * finding.probability:.0f} %"
-        rows = size_rows(finding) if finding.kind == "physics" else []
-        for parameter, size in rows:
-            yield name, sure, parameter, size
-            name = sure = ""
-        if not rows:
-            yield name, sure, where(finding), finding.sentence or ", ".join(finding.channels)
 
 
 def joint_card(found: JointDiagnosis, name: str) -> Card:

@@ -9,9 +9,10 @@ from xarray import Dataset
 from shipcosim.errors import Problem
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.run_track import run_track
+from shipcosim.report.run.expectations import claims
 from shipcosim.report.run.page import digest
 from shipcosim.report.theme.views import Fact, Table
-from shipcosim.scenario import Expectation, Scenario, Verdict
+from shipcosim.scenario import Expectation, Scenario, Verdict, units_of, with_numbers
 from shipcosim.ssp import System
 
 __all__ = ["run_card"]
@@ -44,7 +45,8 @@ def run_card(
     found = digest(table, verdicts)
     rows = tuple(("holds" if one.passed else "FAILS", *one[1:]) for one in found.expectations)
     name = scenario.name or system.name
-    not_reached = tuple(f"not reached: {expect}" for expect in late)
+    numbers = with_numbers(scenario.model_copy(update={"expect": list(late)}), units_of(system))
+    not_reached = tuple(f"not reached: {claim}" for claim in claims(numbers.expect, table))
     return Card(
         title=name + (f": {scenario.description}" if scenario.description and scenario.name else ""),
         facts=_facts(table, scenario, system),

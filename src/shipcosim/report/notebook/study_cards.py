@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from shipcosim.capability import Capability
 from shipcosim.cosim.compare import OURS, Comparison
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.report.calibration import words as calibration
+from shipcosim.report.capability.page import page_of as capability_page
 from shipcosim.report.diagnosis.replay_page import replay_outcome
 from shipcosim.report.diagnosis.track_figures import error_rows
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.sea_trials import words as sea_trials
 from shipcosim.report.theme.views import Fact, Outcome, Table
 
-__all__ = ["calibration_card", "comparison_card", "replay_card", "sea_trials_card"]
+__all__ = ["calibration_card", "capability_card", "comparison_card", "replay_card", "sea_trials_card"]
 
 MOST_ROWS = 12
 
@@ -98,6 +100,19 @@ def calibration_card(found: CalibratedShip) -> Card:
             ),
             Block("Remarks", lines=found.remarks),
         ),
+    )
+
+
+def capability_card(found: Capability) -> Card:
+    """The notation, and the numbers by direction."""
+    page = capability_page(found)
+    return Card(
+        title=f"Static DP capability of {found.vessel.name}",
+        facts=page.facts,
+        outcome=page.outcome,
+        links=(),
+        data=(),
+        blocks=(Block("Numbers by direction", page.numbers, folded=True), Block("Thrusters", page.thrusters)),
     )
 
 

@@ -33,8 +33,8 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
     Returns
     -------
     xarray.Dataset
-        Same rows; text signals are left out. What is drawn is the attribute `factor` times what the table holds, plus
-        whole turns where it is an angle.
+        Same rows and attributes; text signals are left out. What is drawn is the attribute `factor` times what the
+        table holds, plus whole turns where it is an angle.
     """
     units, found = units_to_read(table), {}
     for name, variable in _series(table).items():
@@ -42,7 +42,7 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
         values = unturned(str(name), variable.values) if unit == "deg" else variable.values
         found[name] = as_variable(factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor)
         found[name].attrs["logical"] = variable.dtype.kind == "b"
-    shown = xr.Dataset(found, coords={"time": ("time", np.asarray(table["time"].values, float))})
+    shown = xr.Dataset(found, coords={"time": ("time", np.asarray(table["time"].values, float))}, attrs=table.attrs)
     if ship_heading is not None:
         _align_headings(shown, ship_heading)
     return shown

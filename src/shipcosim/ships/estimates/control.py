@@ -12,6 +12,7 @@ from math import pi, sqrt
 
 import numpy as np
 
+from shipcosim.ships.attainable import largest_multiple
 from shipcosim.ships.estimates.estimate import Estimate
 
 TUNED_LENGTH, MOST_PACE, SHARE = 33.9, 1.5, 0.2
@@ -104,19 +105,13 @@ def reach_of(effects: np.ndarray, least: np.ndarray, most: np.ndarray) -> tuple[
     tuple of three floats
         0 where the thrusters cannot give it without the others. [N, N, N.m]
     """
-    from scipy.optimize import linprog  # half a second to import
-
-    found = []
-    for axis in range(3):
-        others = effects[[i for i in range(3) if i != axis]]
-        scale = np.maximum(np.abs(others).max(axis=1, keepdims=True), 1e-9)
-        sides = []
-        for sign in (1.0, -1.0):
-            bounds = list(zip(least, most, strict=True))
-            best = linprog(-sign * effects[axis], A_eq=others / scale, b_eq=np.zeros(2), bounds=bounds)
-            sides.append(-float(best.fun) if best.success else 0.0)
-        found.append(max(min(sides), 0.0))
-    return found[0], found[1], found[2]
+    force, moment = (max(float(np.abs(rows).max()), 1e-9) for rows in (effects[:2], effects[2]))
+    scale = np.array([force, force, moment])
+    sets = [np.outer((low, high), effect) / scale for low, high, effect in zip(least, most, effects.T, strict=True)]
+    both = np.concatenate([np.eye(3), -np.eye(3)])
+    found = largest_multiple(sets, np.ones((6, len(sets))), both / scale)
+    X, Y, N = np.minimum(found[:3], found[3:]).tolist()
+    return X, Y, N
 
 
 def pace_of(loop: Loop) -> tuple[float, float]:

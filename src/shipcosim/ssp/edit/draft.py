@@ -1,7 +1,7 @@
 """An SSP whose SSD is held in memory: several changes are made together or not at all, checked, and written."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import replace
@@ -92,11 +92,13 @@ class Draft:
 
     # ---------------------------------------------------------------- reading
 
-    def assemble(self, parameters: ParameterSets = ()) -> tuple[System | None, Findings]:
+    def assemble(
+        self, parameters: ParameterSets = (), swapped: Mapping[str, Path] | None = None
+    ) -> tuple[System | None, Findings]:
         """System (None or incomplete where there are errors) and findings, as it is now."""
         findings = Findings()
         self.package.located.clear()
-        system = assemble_package(self.package, parameters, self.file, findings, self._described)
+        system = assemble_package(self.package, parameters, self.file, findings, self._described, swapped)
         return system, findings
 
     def assembled(self) -> tuple[System | None, Findings]:

@@ -1,6 +1,6 @@
 """What a system structure holds: elements, connections, default experiment; whether it is right; how it is written."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
@@ -129,13 +129,15 @@ class SystemContents:
         """
         return problems_of(*self._draft.assemble(parameters))
 
-    def checked(self, parameters: ParameterSets = ()) -> System:
+    def checked(self, parameters: ParameterSets = (), components: Mapping[str, Path] | None = None) -> System:
         """The system ready to run, as `shipcosim.ssp.read_system` gives it.
 
         Parameters
         ----------
         parameters : path or ParameterSet, or iterable of them
             Applied over those of the system.
+        components : mapping of str to Path, optional
+            FMUs that components run in place of their own.
 
         Returns
         -------
@@ -146,7 +148,7 @@ class SystemContents:
         ShipcosimError
             With everything that is wrong.
         """
-        system, findings = self._draft.assemble(parameters)
+        system, findings = self._draft.assemble(parameters, components)
         if system is None or findings.errors:
             raise ShipcosimError(list(dict.fromkeys(findings.errors)))
         return system

@@ -14,6 +14,7 @@ from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.start_values import Settings
+from shipcosim.ssp.flatten.swapped import take_swapped
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.connections import ConnectionReader
 from shipcosim.ssp.osp.functions import Function, read_function
@@ -35,7 +36,11 @@ def osp_file(path: str | PathLike[str]) -> Path | None:
 
 
 def assemble_osp(
-    path: Path, parameters: ParameterSets, fmus: Iterable[str | PathLike[str]], findings: Findings
+    path: Path,
+    parameters: ParameterSets,
+    fmus: Iterable[str | PathLike[str]],
+    findings: Findings,
+    swapped: Mapping[str, Path] | None = None,
 ) -> System | None:
     """System of an OspSystemStructure.xml.
 
@@ -49,6 +54,8 @@ def assemble_osp(
         Folders searched for FMUs that are not where it says.
     findings : Findings
         Takes what is wrong.
+    swapped : mapping of str to Path, optional
+        FMUs that simulators run in place of their own.
 
     Returns
     -------
@@ -65,10 +72,11 @@ def assemble_osp(
         return None
     before, sets = list(findings.problems), list(parameter_sets(parameters, findings))
     folders = [Path(folder) for folder in fmus]
-    system = _system(document, folders, sets, {}, findings)
+    system = _system(document, folders, sets, Hierarchy(findings, swapped=swapped))
     if any(found for component in system.components.values() for found in resized(component)):
         findings.problems[:] = before
-        system = _system(document, folders, sets, sizes_wanted(system.components), findings)
+        tree = Hierarchy(findings, sizes=sizes_wanted(system.components), swapped=swapped)
+        system = _system(document, folders, sets, tree)
     return system
 
 
@@ -90,15 +98,9 @@ def _is_osp(document: Document, findings: Findings) -> bool:
     return False
 
 
-def _system(
-    document: Document,
-    folders: list[Path],
-    sets: Iterable[ParameterSet],
-    sizes: Mapping[str, Mapping[str, int]],
-    findings: Findings,
-) -> System:
+def _system(document: Document, folders: list[Path], sets: Iterable[ParameterSet], tree: Hierarchy) -> System:
     """System of a document that keeps its schema."""
-    tree = Hierarchy(findings, sizes=sizes)
+    findings = tree.findings
     simulators = Simulators(document, folders, tree, findings)
     for element in parts_of(document.root, "Simulators"):
         simulators.take(element)
@@ -106,6 +108,7 @@ def _system(
     connections = ConnectionReader(document, simulators, functions, findings).read(
         parts_of(document.root, "Connections")
     )
+    take_swapped(tree)
     for values in sets:
         apply_set(tree, values)
     settings = Settings(tree, findings)
@@ -119,6 +122,7 @@ def _system(
         components=components,
         connections=tuple(connections),
         experiment=experiment,
+        swapped={name: str(file) for name, file in tree.swapped.items()},
         remarks=tuple(dict.fromkeys(findings.remarks)),
     )
 

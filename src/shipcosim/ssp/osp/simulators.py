@@ -63,7 +63,7 @@ class Simulators:
         if (name,) in self.tree.components:
             self.findings.error(place, f"A second simulator is named '{name}'.", "Names must differ.")
             return
-        fmu = self._fmu(element.get("source"), place)
+        fmu = self._fmu(element.get("source"), place, self.tree.swapped.get(name))
         step = own_step(self.document, element, self.findings)
         described = ComponentElement(name, element.get("source"), FMU, "any", (), (), step, place)
         fmu = fmu and without_arrays(fmu, place, self.findings, self.tree.sizes.get(name))
@@ -81,8 +81,8 @@ class Simulators:
             given = ParameterValue(variable, local(typed), value, place=place)
             self.tree.settings.append(Setting((name,), variable, given, near=True))
 
-    def _fmu(self, source: str, place: str) -> FmuDescription | None:
-        file = self._located(source, place)
+    def _fmu(self, source: str, place: str, swapped: Path | None) -> FmuDescription | None:
+        file = swapped or self._located(source, place)
         if file is None:
             return None
         if file not in self._described:

@@ -22,6 +22,11 @@ SUFFIXES = {"linux": ".so", "win32": ".dll", "darwin": ".dylib"}
 MACHINES = {"amd64": "x86_64", "aarch64": "arm64"}
 
 
+def library_for(platform: str) -> Path:
+    """The compiled filter of a platform, named as Python does: ``"linux-x86_64"``."""
+    return FOLDER / f"{platform}{SUFFIXES.get(platform.split('-')[0], '.so')}"
+
+
 @functools.cache
 def library() -> ctypes.CDLL:
     """The compiled filter of this platform.
@@ -32,7 +37,7 @@ def library() -> ctypes.CDLL:
         If there is none for it.
     """
     machine = platform.machine().lower()
-    file = FOLDER / f"{sys.platform}-{MACHINES.get(machine, machine)}{SUFFIXES.get(sys.platform, '.so')}"
+    file = library_for(f"{sys.platform}-{MACHINES.get(machine, machine)}")
     try:
         return ctypes.CDLL(str(file))
     except OSError as error:

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from shipcosim.diagnose.inference.kalman import FOLDER, SUFFIXES
+from shipcosim.diagnose.inference.kalman import FOLDER, library_for
 
 TARGETS = {
     "linux-x86_64": "x86_64-linux-gnu.2.17",
@@ -34,11 +34,6 @@ OPTIONS = (
 )
 EXACT = "-ffp-contract=off"  # no fused operations: the same result on every machine
 NAMED = "-Wl,-install_name,kalman.dylib"  # without it a library for macOS holds where it was compiled
-
-
-def library_for(platform: str) -> Path:
-    """The compiled filter of a platform."""
-    return FOLDER / f"{platform}{SUFFIXES[platform.split('-')[0]]}"
 
 
 def digest(platform: str) -> str:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import sparse
 
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
@@ -36,6 +35,7 @@ from shipcosim.diagnose.log.thresholds import (
     SCALE_SLAB,
     SHORTEST_BLOCK,
 )
+from shipcosim.diagnose.numerics import Bands
 from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["wrong_clock"]
@@ -64,16 +64,11 @@ class _Side:
 
         It begins with the segment, and soon after it the filter has forgotten it; so it is sparse.
         """
-        return sparse.hstack(
-            [
-                self._columns(np.asarray(first[k : k + _AT_ONCE]), np.asarray(last[k : k + _AT_ONCE]))
-                for k in range(0, len(first), _AT_ONCE)
-            ],
-            format="csc",
-        )
+        parts = [slice(k, k + _AT_ONCE) for k in range(0, len(first), _AT_ONCE)]
+        return Bands(self.rest.size, [self._columns(np.asarray(first[p]), np.asarray(last[p])) for p in parts])
 
     def _columns(self, first, last):
-        """Columns of some segments that are near each other."""
+        """Columns of some segments that are near each other, from a row on."""
         time, axes = self.motion.time, self.rest.shape[1]
         begin = max(int(np.searchsorted(time, first.min(), side="right")) - 1, 0)
         over = min(int(np.searchsorted(time, last.max(), side="right")), time.size - 1)
@@ -81,27 +76,23 @@ class _Side:
         inner = (time[rows, None] > first) & (time[rows, None] <= last)
         ways = np.cumsum(self.steps[rows, :, None] * inner[:, None, :], axis=0)
         whitener = replace(self.whitener, gains=self.whitener.gains[rows], scale=self.whitener.scale[rows])
-        white = whitener(ways).reshape(-1, first.size)
-        places = np.arange(len(white)) + begin * axes
-        ends = len(white) * np.arange(first.size + 1)
-        shape = (self.rest.size, first.size)
-        return sparse.csc_array((white.T.ravel(), np.tile(places, first.size), ends), shape=shape)
+        return begin * axes, whitener(ways).reshape(-1, first.size)
 
     def match(self, columns):
         """Match of columns with the rest, beside the scale of the whole log, (k,)."""
-        scale = self.scale.ravel()
-        shared = (scale @ columns) / self._scale_energy()
-        return (columns.T @ self.rest.ravel() - shared * (scale @ self.rest.ravel())) / self.rough
+        scale, rest = self.scale.ravel(), self.rest.ravel()
+        shared = columns.with_series(scale) / self._scale_energy()
+        return (columns.with_series(rest) - shared * (scale @ rest)) / self.rough
 
     def gram(self, columns):
         """Gram matrix of columns, beside the scale of the whole log, (k, k)."""
-        shared = self.scale.ravel() @ columns
-        return ((columns.T @ columns).toarray() - np.outer(shared, shared) / self._scale_energy()) / self.rough
+        shared = columns.with_series(self.scale.ravel())
+        return (columns.products() - np.outer(shared, shared) / self._scale_energy()) / self.rough
 
     def energy(self, columns):
         """Diagonal of the Gram matrix, (k,)."""
-        shared = self.scale.ravel() @ columns
-        return (columns.power(2).sum(axis=0) - shared**2 / self._scale_energy()) / self.rough
+        shared = columns.with_series(self.scale.ravel())
+        return (columns.squares() - shared**2 / self._scale_energy()) / self.rough
 
     def _scale_energy(self):
         return float(np.sum(self.scale**2)) + 1.0 / SCALE_SLAB[self.rest.shape[1]] ** 2
@@ -167,7 +158,7 @@ def _explained(side, segment):
     """The side without what the segment explains."""
     column = side.column([segment.first], [segment.last])
     value = side.match(column)[0] / max(side.energy(column)[0], 1e-9)
-    return replace(side, rest=side.rest - value * column.toarray().reshape(side.rest.shape))
+    return replace(side, rest=side.rest - value * column.dense().reshape(side.rest.shape))
 
 
 def _best(sides, blocks, gram, edges):

@@ -10,11 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.linalg import solve_banded
-from scipy.ndimage import gaussian_filter1d
 
 from shipcosim.diagnose.log.thresholds import CLEAR_MOTION, LONGEST_BRIDGE, NOISE_WINDOWS, SLOW_MOTION, WHITENESS_LAGS
+from shipcosim.diagnose.numerics import gaussian_filter, solve_tridiagonal, spline_integral
 
 __all__ = [
     "RATIOS",
@@ -58,11 +56,11 @@ class Motion:
     def way(self, velocity: np.ndarray | None = None) -> np.ndarray:
         """Integral of a velocity; a spline, since the trapezium loses a tenth of a wave of 6 s at 1 Hz."""
         velocity = self.velocity if velocity is None else velocity
-        return CubicSpline(self.time, velocity, axis=0).antiderivative()(self.time)
+        return spline_integral(self.time, velocity)
 
     def slow(self, velocity: np.ndarray) -> np.ndarray:
         """A velocity without its noise and waves."""
-        return gaussian_filter1d(velocity, SLOW_MOTION / np.median(np.diff(self.time)), axis=0)
+        return gaussian_filter(velocity, SLOW_MOTION / np.median(np.diff(self.time)), axis=0)
 
     @property
     def level(self) -> np.ndarray:
@@ -135,10 +133,9 @@ class Filter:
     def __call__(self, levels: np.ndarray) -> np.ndarray:
         """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
         flat = levels.reshape(len(levels), -1)
-        bands = np.ones((2, len(flat)))  # of predicted[k + 1] - (1 - gain[k]) predicted[k] = gain[k] level[k]
-        bands[1, :-1] = self.gains[:-1] - 1.0
         driven = np.vstack([flat[:1], self.gains[:-1, None] * flat[:-1]])
-        innovations = flat - solve_banded((1, 0), bands, driven, check_finite=False)
+        before = np.append(0.0, self.gains[:-1] - 1.0)  # predicted[k + 1] - (1 - gain[k]) predicted[k] = driven[k + 1]
+        innovations = flat - solve_tridiagonal(before, np.ones(len(flat)), np.zeros(len(flat)), driven)
         white = innovations / (self.std * self.scale)[:, None]
         white[self.gains >= 1.0] = 0.0
         return white.reshape(levels.shape)

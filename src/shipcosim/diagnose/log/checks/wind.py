@@ -20,6 +20,7 @@ from shipcosim.diagnose.log.thresholds import (
     WIND_SLOPE_STD,
     WIND_UNIT_GAIN,
 )
+from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.result import Finding
 
 __all__ = ["leaps", "mislabelled_wind"]
@@ -77,9 +78,7 @@ def _still(time, velocity):
 
 class _Wind(Motion):
     def slow(self, velocity: np.ndarray) -> np.ndarray:
-        from scipy.ndimage import gaussian_filter1d
-
-        return gaussian_filter1d(velocity, WIND_AVERAGING / np.median(np.diff(self.time)), axis=0)
+        return gaussian_filter(velocity, WIND_AVERAGING / np.median(np.diff(self.time)), axis=0)
 
 
 def _frame(time, winds, slow, filters):

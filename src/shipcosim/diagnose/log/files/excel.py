@@ -11,17 +11,8 @@ __all__ = ["is_workbook", "text_of_sheet"]
 
 
 def is_workbook(path: Path) -> bool:
-    """Whether a file is a workbook by its name.
-
-    Raises
-    ------
-    ShipcosimError
-        For the workbooks of other programs, which are not read.
-    """
-    suffix = path.suffix.lower()
-    if suffix in (".xls", ".ods", ".xlsb"):
-        raise ShipcosimError(Problem(str(path), f"'{suffix}' is not read.", "Save it as .xlsx or .csv."))
-    return suffix in (".xlsx", ".xlsm")
+    """Whether a file is a workbook by its name."""
+    return path.suffix.lower() in (".xlsx", ".xlsm")
 
 
 def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]:

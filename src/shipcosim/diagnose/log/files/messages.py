@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
@@ -17,7 +18,6 @@ _NAMES += ("sensor", "message", "msg", "label", "source", "id", "measurement", "
 _VALUES = ("value", "val", "reading", "data", "measurement", "number", "v", "y")
 _MOST_NAMES = 500
 _ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.
-_FAR = 3.0  # usual steps of a channel over which it is interpolated. Assumed.
 
 
 def spread(log: LogColumns, form: Form) -> LogColumns:
@@ -135,21 +135,6 @@ def brought_together(
         rows = np.flatnonzero(finite[name] & np.isfinite(time))
         rows = rows[np.argsort(time[rows], kind="stable")]
         rows = rows[np.diff(time[rows], prepend=-np.inf) > 0.0]
-        found[name] = _at(clock, time[rows], values[rows], unit), unit
+        found[name] = at_times(clock, time[rows], values[rows], unit), unit
     said = f"Rows hold one sensor each: all channels are interpolated to the {len(clock)} times of {base}."
     return clock, found, [said]
-
-
-def _at(clock, times, values, unit):
-    """Values at other times; NaN outside of them and across holes."""
-    if len(times) < 2:
-        return np.full(len(clock), np.nan)
-    turns = unit == "deg"
-    there = np.interp(clock, times, np.unwrap(values, period=360.0) if turns else values)
-    after = np.clip(np.searchsorted(times, clock), 1, len(times) - 1)
-    step = float(np.median(np.diff(times)))
-    before = times[after - 1]
-    is_far = (times[after] - before > _FAR * step) & (clock != before) & (clock != times[after])
-    outside = (clock < times[0] - 0.5 * step) | (clock > times[-1] + 0.5 * step)
-    back = np.mod(there, 360.0) if turns and values.min() >= 0.0 else there
-    return np.where(is_far | outside, np.nan, back)

@@ -12,8 +12,10 @@ import numpy as np
 
 from shipcosim.diagnose.log.files.cells import NOTHING, decimal_of, numbers_of, with_unit, without_fillers
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
+from shipcosim.diagnose.log.files.foreign import refuse_foreign
 from shipcosim.diagnose.log.files.form import Form
 from shipcosim.diagnose.log.files.layout import Layout, cells_in, is_comment, layout_of
+from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.errors import Problem, ShipcosimError
@@ -55,7 +57,7 @@ def read_file(path: Path, form: Form | None = None) -> LogColumns:
     Parameters
     ----------
     path : Path
-        Text of any dialect, also compressed by gzip; .xlsx; .nc; .parquet.
+        Text of any dialect or sentences of NMEA, also compressed by gzip; .xlsx; .nc; .parquet.
     form : Form, optional
         What was said of it.
 
@@ -75,11 +77,15 @@ def read_file(path: Path, form: Form | None = None) -> LogColumns:
         columns = read_columns(path)
         values = {name: values for name, (values, _) in columns.items()}
         return LogColumns(str(path), values, {name: unit for name, (_, unit) in columns.items()})
+    refuse_foreign(path)
     if is_workbook(path):
         text, said = text_of_sheet(path, form.sheet)
         form = form.model_copy(update={"separator": "\t"})
     else:
         text, said = text_of(path, form.encoding)
+        if holds_sentences(lines := text.splitlines()):
+            values, units, more = columns_of_sentences(str(path), lines)
+            return LogColumns(str(path), values, units, (*said, *more))
     read = _of_text(str(path), text, form)
     return replace(read, remarks=(*said, *read.remarks))
 

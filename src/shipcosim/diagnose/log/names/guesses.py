@@ -148,6 +148,9 @@ def _of_thruster(column: str, drive: Drive, stated: str, thrusters: Thrusters | 
     else:
         names, doubt = thrusters_named(drive.place, thrusters)
     there = ", ".join(thrusters) if thrusters else ""
+    if not names and not there:
+        why = "the system has no thruster that it can be; a channel file can name an input of the system"
+        return [Guess(column, why=why)]
     if not names:
         return [Guess(column, why=f"no thruster of the system is meant by it: there is {there}")]
     if drive.quantity in ("pwm", "percent"):

@@ -9,11 +9,11 @@ with c and with how likely it is, hold all that a log says about such mistakes.
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.readings.fit import fitted
 from shipcosim.diagnose.log.thresholds import ALONGSIDE, FEWEST_INCREMENTS, LARGEST_TURN, TURNED_TOO_FAR
+from shipcosim.diagnose.numerics import spline_integral
 
 __all__ = ["FORMS", "position_relations", "rate_relations"]
 
@@ -98,4 +98,4 @@ def _can_be_followed(turns):
 
 def _integral(time, series):
     """By a spline: the trapezium loses a tenth of a motion with six rows a period."""
-    return CubicSpline(time, series).antiderivative()(time)
+    return spline_integral(time, series)

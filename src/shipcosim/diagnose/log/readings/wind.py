@@ -13,7 +13,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from shipcosim.diagnose.log.checks.kinematics import filters, whiteness
 from shipcosim.diagnose.log.mislabels import KNOT
@@ -29,6 +28,7 @@ from shipcosim.diagnose.log.thresholds import (
     WIND_ROWS,
     WIND_SCALE,
 )
+from shipcosim.diagnose.numerics import gaussian_filter
 
 __all__ = ["WindRelations", "wind_relations"]
 
@@ -133,7 +133,7 @@ def _told(velocity, turn):
 
 
 def _slow(way):
-    return gaussian_filter1d(way.real, WIND_ROWS) + 1j * gaussian_filter1d(way.imag, WIND_ROWS)
+    return gaussian_filter(way.real, WIND_ROWS) + 1j * gaussian_filter(way.imag, WIND_ROWS)
 
 
 def _noise(velocity):

@@ -128,15 +128,14 @@ VARIABLE_KEYS = ("name", "causality", "type", "unit", "start", "description")
 
 def check_scenario_file(path: Path) -> list[Problem]:
     """Problems of a scenario, in itself and with its system."""
+    from shipcosim.cosim import system_of
     from shipcosim.scenario import check_files, check_scenario, read_scenario
-    from shipcosim.ssp import read_system, with_values
+    from shipcosim.ssp import with_values
 
     scenario = read_scenario(path)
     if missing := check_files(scenario):
         return missing
-    system = read_system(
-        scenario.system_path, scenario.parameter_paths, fmus=library.fmus(scenario.system_path, build=False)
-    )
+    system = system_of(scenario, build=False)
     try:
         system, problems = with_values(system, scenario.set, str(path)), []
     except ShipcosimError as error:

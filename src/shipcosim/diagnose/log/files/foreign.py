@@ -1,0 +1,78 @@
+"""Files of other programs that are not read: which they are, and what makes a table of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["refuse_foreign"]
+
+_SHEET = "Save it as .xlsx or .csv, or convert it: `libreoffice --headless --convert-to xlsx FILE`."
+_MATLAB = (
+    "Write a table with a column for each channel: in MATLAB `writetable(struct2table(S), 'log.csv')`, in Python "
+    "`scipy.io.loadmat` and pandas."
+)
+_ROS = "Write its topics as tables: `rosbags-dataframe`, PlotJuggler, or `rostopic echo -b FILE -p TOPIC > log.csv`."
+_HDF5 = "Write it as .nc with a dimension `time`, or as .csv: `pandas.read_hdf(FILE).to_csv('log.csv')`."
+_BY_NAME = {
+    ".xls": ("a workbook of Excel before 2007", _SHEET),
+    ".xlsb": ("a binary workbook of Excel", _SHEET),
+    ".ods": ("a spreadsheet of LibreOffice", _SHEET),
+    ".numbers": ("a spreadsheet of Numbers", _SHEET),
+    ".mat": ("a file of MATLAB", _MATLAB),
+    ".bag": ("a bag of ROS", _ROS),
+    ".db3": ("a bag of ROS 2", _ROS),
+    ".mcap": ("a bag of ROS 2", _ROS),
+    ".ulg": ("a log of PX4", "Convert it: `ulog2csv FILE`."),
+    ".bin": ("a binary log, as of ArduPilot", "Convert it: `mavlogdump.py --format csv FILE > log.csv`."),
+    ".tdms": ("a file of LabVIEW", "Convert it: `tdmsinfo`, or `nptdms` in Python and `as_dataframe().to_csv(...)`."),
+    ".mf4": ("a measurement in MDF", "Convert it: `asammdf export --format csv FILE`."),
+    ".feather": ("a table of Arrow", "Write it as .parquet or .csv: `pandas.read_feather(FILE).to_csv('log.csv')`."),
+    ".h5": ("a file of HDF5", _HDF5),
+    ".hdf5": ("a file of HDF5", _HDF5),
+    ".pkl": ("a pickle of Python, which could run code", "Write the table as .csv or .nc."),
+    ".zip": ("an archive", "Unpack it, and name the log in it."),
+    ".json": ("JSON", "Write a table: `pandas.read_json(FILE).to_csv('log.csv')`."),
+    ".jsonl": ("JSON, one value a line", "Write a table: `pandas.read_json(FILE, lines=True).to_csv('log.csv')`."),
+}
+_BY_CONTENT = (
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ".xls"),
+    (b"MATLAB 5.0 MAT-file", ".mat"),
+    (b"MATLAB 7.3 MAT-file", ".mat"),
+    (b"\x89HDF\r\n\x1a\n", ".h5"),
+    (b"#ROSBAG", ".bag"),
+    (b"\x89MCAP0", ".mcap"),
+    (b"ULog\x01", ".ulg"),
+    (b"TDSm", ".tdms"),
+    (b"SQLite format 3\x00", ".db3"),
+    (b"ARROW1", ".feather"),
+)
+_ZIPPED = (
+    (b"application/vnd.oasis.opendocument", ".ods"),
+    (b"xl/", "a workbook of Excel whose name does not say so"),
+)
+
+
+def refuse_foreign(path: Path) -> None:
+    """Raise ShipcosimError for a file of a program whose files are not read, by its content or its name.
+
+    Examples
+    --------
+    >>> refuse_foreign(Path("log.csv"))
+    """
+    head = b""
+    if path.is_file():
+        with path.open("rb") as file:
+            head = file.read(512)
+    kind = next((kind for mark, kind in _BY_CONTENT if head.startswith(mark)), None)
+    suffix = path.suffix.lower()
+    if head.startswith(b"PK\x03\x04") and suffix not in (".xlsx", ".xlsm"):
+        kind = next((kind for mark, kind in _ZIPPED if mark in head), ".zip")
+        if kind not in _BY_NAME:
+            raise ShipcosimError(Problem(str(path), f"is {kind}.", "Name it .xlsx."))
+    if kind is None and suffix in _BY_NAME and not head.startswith(b"\x1f\x8b"):
+        kind = suffix
+    if kind is not None:
+        what, remedy = _BY_NAME[kind]
+        raise ShipcosimError(Problem(str(path), f"is {what}, which is not read.", remedy.replace("FILE", path.name)))

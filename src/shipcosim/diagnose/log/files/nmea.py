@@ -1,0 +1,301 @@
+"""Raw sentences of NMEA 0183 as columns: each kind of sentence gives its channels, brought to common times.
+
+Reference: NMEA 0183 as described by E. S. Raymond, "NMEA Revealed", 2.23, 2019.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from datetime import date
+
+import numpy as np
+
+from shipcosim.diagnose.log.files.interpolation import at_times
+from shipcosim.diagnose.log.files.times import DAY, seconds_of, seconds_of_clock
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["columns_of_sentences", "holds_sentences"]
+
+_SENTENCE = re.compile(
+    r"(?P<before>[^$!]*)[$!](?P<body>[A-Z][A-Z0-9]{3,7},[^*\r\n\"]*)(?:\*(?P<sum>[0-9A-Fa-f]{2}))?.*"
+)
+_SAMPLE, _MOST_OTHERS = 200, 0.3  # lines by which a file is judged; share of them that may be no sentences. Assumed.
+_MOST_DAMAGED = 0.2  # share of sentences with a wrong checksum above which the file is not trusted. Assumed.
+_ENOUGH = 0.9  # of the values of the fullest source that a preferred one needs. Assumed.
+_SPEEDS = {"N": 1852.0 / 3600.0, "K": 1.0 / 3.6, "M": 1.0, "S": 1609.344 / 3600.0}  # of MWV, in m/s
+
+Values = dict[str, float]
+
+
+def _of(text: str) -> float:
+    return float(text) if text else float("nan")
+
+
+def _clock(text: str) -> float:
+    """hhmmss.ss as seconds after midnight."""
+    return 3600.0 * int(text[:2]) + 60.0 * int(text[2:4]) + float(text[4:])
+
+
+def _position(fields: list[str]) -> Values:
+    """Latitude, its hemisphere, longitude and its hemisphere, as degrees."""
+    found = {}
+    for name, text, side, sides in (("latitude", *fields[:2], "NS"), ("longitude", *fields[2:4], "EW")):
+        if text and side not in sides:
+            raise ValueError(side)
+        whole, minutes = divmod(_of(text), 100.0)
+        found[name] = (whole + minutes / 60.0) * (-1.0 if side and side == sides[1] else 1.0)
+    return found
+
+
+def _timed(clock: str, values: Values) -> Values:
+    """Values with their time; a receiver that knows no time yet knows nothing."""
+    return {"clock": _clock(clock)} | values if clock else {}
+
+
+def _gga(f: list[str]) -> Values:
+    return _timed(f[1], _position(f[2:6]) if f[6] not in ("", "0") else {})
+
+
+def _gll(f: list[str]) -> Values:
+    return _timed(f[5], _position(f[1:5]) if f[6:7] != ["V"] else {})
+
+
+def _rmc(f: list[str]) -> Values:
+    day = {"date": _day(f[9][4:6], f[9][2:4], f[9][:2])} if f[9] else {}
+    motion = {"speed_over_ground": _of(f[7]), "course_over_ground": _of(f[8])}
+    return _timed(f[1], day | (_position(f[3:7]) | motion if f[2] == "A" else {}))
+
+
+def _zda(f: list[str]) -> Values:
+    return _timed(f[1], {"date": _day(f[4], f[3], f[2])} if f[4] else {})
+
+
+def _day(year: str, month: str, day: str) -> float:
+    return float(date(int(year) + (2000 if len(year) == 2 else 0), int(month), int(day)).toordinal())
+
+
+def _vtg(f: list[str]) -> Values:
+    return {} if f[9:10] == ["N"] else {"course_over_ground": _of(f[1]), "speed_over_ground": _of(f[5])}
+
+
+def _mwv(f: list[str]) -> Values:
+    if f[5] != "A" or f[2] != "R":
+        return {}
+    return {"wind_from": _of(f[1]), "wind_speed": _of(f[3]) * _SPEEDS[f[4]]}
+
+
+def _rot(f: list[str]) -> Values:
+    return {"yaw_rate": _of(f[1])} if f[2] == "A" else {}
+
+
+def _heading(f: list[str]) -> Values:
+    return {"heading": _of(f[1])}
+
+
+_KINDS: Mapping[str, Callable[[list[str]], Values]] = {
+    "GGA": _gga,
+    "RMC": _rmc,
+    "GLL": _gll,
+    "ZDA": _zda,
+    "VTG": _vtg,
+    "HDT": _heading,
+    "THS": lambda f: _heading(f) if f[2:3] != ["V"] else {},
+    "ROT": _rot,
+    "MWV": _mwv,
+}
+"""What is read, preferred sources first."""
+_UNITS = {
+    "time": "s",
+    "latitude": "deg",
+    "longitude": "deg",
+    "heading": "deg",
+    "speed_over_ground": "kn",
+    "course_over_ground": "deg",
+    "yaw_rate": "deg/min",
+    "wind_speed": "m/s",
+    "wind_from": "deg",
+}
+
+
+@dataclass
+class _Read:
+    """Sentences that were read, by their lines, and what was not."""
+
+    sentences: list[tuple[int, str, Values]] = field(default_factory=list)
+    stamps: dict[int, str] = field(default_factory=dict)
+    damaged: list[int] = field(default_factory=list)
+    others: list[int] = field(default_factory=list)
+    unread: Counter[str] = field(default_factory=Counter)
+
+
+def holds_sentences(lines: list[str]) -> bool:
+    """Whether the lines of a file are raw sentences.
+
+    Examples
+    --------
+    >>> holds_sentences(["$GPHDT,123.4,T*32"]), holds_sentences(["time,heading", "0,123.4"])
+    (True, False)
+    """
+    some = [line for line in lines[: 10 * _SAMPLE] if line.strip()][:_SAMPLE]
+    return bool(some) and sum(map(bool, map(_SENTENCE.fullmatch, some))) > (1.0 - _MOST_OTHERS) * len(some)
+
+
+def columns_of_sentences(source: str, lines: list[str]) -> tuple[dict[str, np.ndarray], dict[str, str], list[str]]:
+    """Values and units by role, and what is to be said.
+
+    Parameters
+    ----------
+    source : str
+        The file, for messages.
+    lines : list of str
+        Sentences; before each may stand when it was received.
+
+    Raises
+    ------
+    ShipcosimError
+        If no sentence says the time, none gives a channel, or many are damaged.
+    """
+    read = _read(lines)
+    count = len(read.sentences) + len(read.damaged)
+    if len(read.damaged) > _MOST_DAMAGED * count:
+        found = f"{len(read.damaged)} of {count} sentences of NMEA do not fit their checksum or their form."
+        raise ShipcosimError(
+            Problem(f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table.")
+        )
+    said = _told(read)
+    times, more = _times(source, read)
+    channels, used = _channels(read, times)
+    if not channels:
+        found = f"holds sentences of NMEA, and none gives a channel: {', '.join(read.unread) or 'ZDA'}."
+        raise ShipcosimError(Problem(source, found, f"Read are {', '.join(_KINDS)}."))
+    base = next(name for name in ("heading", "latitude", *channels) if name in channels)
+    clock = channels[base][0]
+    values = {"time": clock} | {name: at_times(clock, *channels[name], _UNITS[name]) for name in channels}
+    sources = "; ".join(f"{', '.join(names)} from {one}" for one, names in used.items())
+    said += [*more, f"Sentences of NMEA, at the {len(clock)} times of {base}: {sources}."]
+    return values, {name: _UNITS[name] for name in values}, said
+
+
+def _read(lines: list[str]) -> _Read:
+    read = _Read()
+    for number, line in enumerate(lines):
+        if not line.strip():
+            continue
+        match = _SENTENCE.fullmatch(line.strip())
+        if match is None:
+            read.others.append(number)
+            continue
+        fields = [part.strip() for part in match["body"].split(",")]
+        kind = fields[0][-3:]
+        if match["sum"] is not None and _checksum(match["body"]) != int(match["sum"], 16):
+            read.damaged.append(number)
+        elif kind not in _KINDS or fields[0].startswith("P") or len(fields[0]) != 5:
+            read.unread[fields[0]] += 1
+        else:
+            try:
+                read.sentences.append((number, fields[0], _KINDS[kind](fields)))
+                read.stamps[number] = match["before"].strip(" ,;|\t\"'")
+            except (ValueError, IndexError, KeyError):
+                if any(fields[1:]):
+                    read.damaged.append(number)
+    return read
+
+
+def _checksum(body: str) -> int:
+    found = 0
+    for char in body.encode("latin-1", "replace"):
+        found ^= char
+    return found
+
+
+def _told(read: _Read) -> list[str]:
+    """What was left out."""
+    said = []
+    if lines := read.damaged:
+        what = f"{len(lines)} sentence{'s do' if len(lines) > 1 else ' does'} not fit checksum or form"
+        said.append(f"{what}, the first in line {lines[0] + 1}: left out.")
+    if lines := read.others:
+        what = f"{len(lines)} line{'s that are' if len(lines) > 1 else ' that is'} no sentence"
+        said.append(f"{what} left out, the first is line {lines[0] + 1}.")
+    if read.unread:
+        said.append(f"Sentences not read: {', '.join(f'{kind} ({n})' for kind, n in sorted(read.unread.items()))}.")
+    winds = sum(kind.endswith("MWV") and not values for _, kind, values in read.sentences)
+    if winds:
+        said.append(f"{winds} MWV without a valid wind relative to the ship left out.")
+    return said
+
+
+def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
+    """Time of each sentence that was read, NaN where it is not known, and what is to be said. [s]"""
+    stamped = [read.stamps[number] for number, *_ in read.sentences]
+    if sum(map(bool, stamped)) > _ENOUGH * len(stamped):
+        texts = np.array([stamp or None for stamp in stamped], object)
+        try:
+            numbers = np.array([np.nan if text is None else float(text) for text in texts])
+            return numbers, ["Times are those that stand before the sentences."]
+        except ValueError:
+            pass
+        if found := seconds_of(texts):
+            return found[0], ["Times are those that stand before the sentences.", *found[1]]
+    timed = [(k, values) for k, (_, _, values) in enumerate(read.sentences) if "clock" in values]
+    if len(timed) < 2:
+        found = "holds sentences of NMEA, and none of GGA, RMC, GLL and ZDA says the time."
+        remedy = "Log one of them too, or the time of reception before each sentence."
+        raise ShipcosimError(Problem(source, found, remedy))
+    rows = np.array([k for k, _ in timed])
+    seconds, said = _with_dates(timed)
+    line = np.array([number for number, *_ in read.sentences], float)
+    times = np.interp(line, line[rows], seconds, left=np.nan, right=np.nan)
+    for k, (_, kind, _) in enumerate(read.sentences):
+        if kind.endswith("VTG") and (before := np.searchsorted(rows, k)):
+            times[k] = seconds[before - 1]  # of the fix that the same receiver has just given
+    without = sorted({kind for k, (_, kind, _) in enumerate(read.sentences) if "clock" not in read.sentences[k][2]})
+    if without:
+        said.append(f"{', '.join(without)} have no time: it lies between those of the sentences around.")
+    return times, said
+
+
+def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]:
+    """Times of day as times that go on past midnight, over whole days too where sentences have a date. [s]"""
+    seconds, said = seconds_of_clock(np.array([values["clock"] for _, values in timed]))
+    dated = np.array([k for k, (_, values) in enumerate(timed) if "date" in values], int)
+    if not len(dated):
+        return seconds, said
+    days = np.array([timed[k][1]["date"] for k in dated])
+    clocks = np.array([timed[k][1]["clock"] for k in dated])
+    lacking = np.round((DAY * (days - days[0]) + clocks - seconds[dated]) / DAY) * DAY
+    every = np.arange(len(timed))
+    before = np.maximum(np.searchsorted(dated, every, "right") - 1, 0)
+    after = np.minimum(np.searchsorted(dated, every), len(dated) - 1)
+    apart = [np.abs(seconds - seconds[dated[one]]) for one in (before, after)]
+    nearest = np.where(apart[1] < apart[0], after, before)
+    lacking = lacking - lacking[0]
+    if lacking.any():
+        said.append(f"By their dates the sentences go on after {int(lacking.max() / DAY)} whole days more.")
+    return seconds + lacking[nearest], said
+
+
+def _channels(read: _Read, times: np.ndarray) -> tuple[dict[str, tuple[np.ndarray, np.ndarray]], dict[str, list[str]]]:
+    """Times and values of each channel by one source, and which channels a source gives."""
+    found: dict[str, dict[str, list[tuple[float, float]]]] = {}
+    for (_, kind, values), time in zip(read.sentences, times, strict=True):
+        for name, value in values.items():
+            if name in _UNITS and np.isfinite(value) and np.isfinite(time):
+                found.setdefault(name, {}).setdefault(kind, []).append((float(time), value))
+    order = list(_KINDS)
+    channels, used = {}, {}
+    for name in _UNITS:
+        if name not in found:
+            continue
+        most = max(map(len, found[name].values()))
+        enough = {kind: pairs for kind, pairs in found[name].items() if len(pairs) >= _ENOUGH * most}
+        kind = min(enough, key=lambda one: (order.index(one[-3:]), -len(enough[one])))
+        moments, values = np.array(enough[kind]).T
+        moments, first = np.unique(moments, return_index=True)
+        channels[name] = moments, values[first]
+        others = sorted(set(found[name]) - {kind})
+        used.setdefault(kind + (f" (not {', '.join(others)})" if others else ""), []).append(name)
+    return channels, used

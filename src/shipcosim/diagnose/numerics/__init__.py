@@ -1,0 +1,22 @@
+"""Numerical methods of the diagnosis beside NumPy's: filters, splines, recursions, least squares, chi-square.
+
+They are few and small, so that SciPy need not be installed; the tests hold them against SciPy.
+"""
+
+from shipcosim.diagnose.numerics.bands import Bands
+from shipcosim.diagnose.numerics.chi_square import log_survival, survival
+from shipcosim.diagnose.numerics.filters import gaussian_filter, moving_average
+from shipcosim.diagnose.numerics.least_squares import least_squares
+from shipcosim.diagnose.numerics.splines import spline_integral
+from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
+
+__all__ = [
+    "Bands",
+    "gaussian_filter",
+    "least_squares",
+    "log_survival",
+    "moving_average",
+    "solve_tridiagonal",
+    "spline_integral",
+    "survival",
+]

@@ -1,0 +1,68 @@
+"""Least squares with some coefficients that must not be negative."""
+
+import numpy as np
+
+__all__ = ["least_squares"]
+
+_ROUNDS = 50  # a column, as a guard against rounding; a few are needed
+
+
+def least_squares(columns: np.ndarray, series: np.ndarray, positive: np.ndarray | None = None) -> np.ndarray:
+    """Coefficients for which the columns come closest to a series, some or all of them not negative.
+
+    Parameters
+    ----------
+    columns : (n, p) array
+    series : (n,) array
+    positive : (p,) bool array, optional
+        Coefficients that must not be negative; all of them by default.
+
+    Returns
+    -------
+    (p,) array
+
+    References
+    ----------
+    Lawson and Hanson, Solving Least Squares Problems, SIAM, 1995, ch. 23: algorithm NNLS. Coefficients of either sign
+    are free from the start and stay so.
+
+    Examples
+    --------
+    >>> least_squares(np.eye(3), np.array([1.0, -2.0, -3.0]), np.array([True, True, False]))
+    array([ 1.,  0., -3.])
+    """
+    turn, triangle = np.linalg.qr(columns)
+    target, count = turn.T @ series, columns.shape[1]
+    bound = np.ones(count, bool) if positive is None else np.asarray(positive, bool)
+    least = 10.0 * max(columns.shape) * np.finfo(float).eps * np.abs(triangle).sum(0).max() * np.linalg.norm(target)
+    free = ~bound
+    found = _solution(triangle, target, free)
+    for _ in range(_ROUNDS * count):
+        pull = np.where(free, -np.inf, triangle.T @ (target - triangle @ found))
+        best = int(np.argmax(pull))
+        if not pull[best] > least:
+            break
+        free[best] = True
+        found = _feasible(triangle, target, found, free, bound)
+    return found
+
+
+def _feasible(triangle, target, found, free, bound):
+    """Solution in the free coefficients; those that would turn negative on the way are taken from `free` again."""
+    while True:
+        wanted = _solution(triangle, target, free)
+        below = free & bound & (wanted <= 0.0)
+        if not below.any():
+            return wanted
+        share = np.min(found[below] / np.maximum(found[below] - wanted[below], 1e-300))
+        found = found + share * (wanted - found)
+        stopped = below & (found <= 1e-15 * np.abs(found).max())
+        stopped[np.flatnonzero(below)[np.argmin(found[below])]] = True
+        free &= ~stopped
+        found[stopped] = 0.0
+
+
+def _solution(triangle, target, free):
+    found = np.zeros(free.size)
+    found[free] = np.linalg.lstsq(triangle[:, free], target, rcond=None)[0]
+    return found

@@ -1,0 +1,79 @@
+"""What a check found of files, and how it shows itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from shipcosim.errors import Problem, worth_showing
+from shipcosim.results.shown import Result
+
+if TYPE_CHECKING:
+    import pandas
+
+    from shipcosim.report.notebook.card import Card
+
+__all__ = ["CheckedFiles"]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class CheckedFiles(Result):
+    """What `shipcosim.check` gives back.
+
+    Attributes
+    ----------
+    files : mapping of str to tuple of Problem
+        What was found of each file: errors, and remarks on what stops nothing.
+    variables : mapping of str to tuple
+        Of an FMU a row a variable: name, causality, type, unit, start, description.
+    """
+
+    files: Mapping[str, tuple[Problem, ...]]
+    variables: Mapping[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """Of all files."""
+        return tuple(problem for found in self.files.values() for problem in found)
+
+    @property
+    def passed(self) -> bool:
+        """Whether no file has an error."""
+        return not any(problem.severity == "error" for problem in self.problems)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row a problem: file, severity, where, found, remedy."""
+        import pandas
+
+        rows = [
+            (file, one.severity, one.where, one.found, one.remedy)
+            for file, found in self.files.items()
+            for one in found
+        ]
+        return pandas.DataFrame(rows, columns=["file", "severity", "where", "found", "remedy"])
+
+    def _card(self) -> Card:
+        from shipcosim.report.notebook.card import Block, Card
+        from shipcosim.report.theme.views import Outcome, Table
+
+        errors = sum(problem.severity == "error" for problem in self.problems)
+        remarks = len(self.problems) - errors
+        said = f"{errors or 'No'} error{'s' * (errors != 1)}" + f", {remarks} remark{'s' * (remarks > 1)}" * (
+            remarks > 0
+        )
+        head = ("variable", "causality", "type", "unit", "start", "meaning")
+        return Card(
+            title=f"Check of {', '.join(self.files)}",
+            facts=(),
+            outcome=Outcome("failed", "FAIL", f"{said}.") if errors else Outcome("passed", "PASS", f"{said}."),
+            links=(),
+            data=(),
+            blocks=(
+                *(Block(name, lines=tuple(map(str, worth_showing(found)))) for name, found in self.files.items()),
+                *(
+                    Block(f"Variables of {name}", Table(rows, head), folded=True)
+                    for name, rows in self.variables.items()
+                ),
+            ),
+        )

@@ -1,0 +1,117 @@
+"""Files of results: all are there afterwards, or none of them has changed; earlier ones are kept beside them.
+
+What an earlier run left under the same names moves into a numbered folder beside the results, which hold the newest,
+unless it is said to be replaced.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from dataclasses import replace
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["REPLACING", "set_aside", "set_file_aside", "staged"]
+
+REPLACING: ContextVar[bool] = ContextVar("replacing", default=False)
+"""Whether earlier results are replaced: of the command that is running, as --force says."""
+
+
+@contextmanager
+def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool | None = None) -> Iterator[Path]:
+    """A folder whose files move into `folder` at the end, unless something fails.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if needed.
+    replaced : iterable of str
+        Names of files that an earlier run may have left, which are no longer true.
+    force : bool, optional
+        Of Python calls: whether earlier results are replaced. Commands leave it to `REPLACING`.
+    """
+    was_there = folder.exists()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as name:
+            stage = Path(name)
+            try:
+                yield stage
+            except ShipcosimError as error:
+                raise ShipcosimError([_at_home(problem, stage, folder) for problem in error.problems]) from error
+            written = [file.name for file in stage.iterdir()]
+            set_aside(folder, {*written, *replaced}, force)
+            for name in written:
+                os.replace(stage / name, folder / name)
+        for name in {*replaced} - {*written}:
+            (folder / name).unlink(missing_ok=True)
+    except BaseException as error:
+        if not was_there:
+            with suppress(OSError):
+                folder.rmdir()
+        if not isinstance(error, OSError):
+            raise
+        raise ShipcosimError(
+            Problem(str(folder), f"Results cannot be written here: {error.strerror}.", _elsewhere(force))
+        ) from error
+
+
+def set_aside(folder: Path, names: Iterable[str], force: bool | None = None) -> None:
+    """Move what there is of earlier results into a numbered folder beside theirs, and say so, unless they are replaced.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the results: those of ``results/calm`` go to ``results/calm-1``, then ``results/calm-2``, and so on.
+    names : iterable of str
+        Of its files and folders that will be written again.
+    force : bool, optional
+        As for `staged`.
+    """
+    there = sorted(name for name in names if (folder / name).exists())
+    if not there or (REPLACING.get() if force is None else force):
+        return
+    aside = _numbered(folder.resolve())
+    aside.mkdir()
+    for name in there:
+        os.replace(folder / name, aside / name)
+    _say(aside, "--force" if force is None else "force=True")
+
+
+def set_file_aside(path: Path) -> None:
+    """The same with a single file: ``state.bin`` becomes ``state-1.bin``."""
+    if path.is_file() and not REPLACING.get():
+        aside = _numbered(path.resolve())
+        os.replace(path, aside)
+        _say(aside, "--force")
+
+
+def _numbered(path: Path) -> Path:
+    """The path with the number after the highest that is taken."""
+    suffix = path.suffix if path.is_file() else ""
+    stem = path.name.removesuffix(suffix)
+    others = (re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", one.name) for one in path.parent.glob("*"))
+    taken = [int(match[1]) for match in others if match]
+    return path.with_name(f"{stem}-{max(taken, default=0) + 1}{suffix}")
+
+
+def _say(aside: Path, how: str) -> None:
+    here = Path.cwd()
+    shown = aside.relative_to(here) if aside.is_relative_to(here) else aside
+    print(f"Earlier results are kept in {shown} ({how} replaces them).", file=sys.stderr)
+
+
+def _elsewhere(force: bool | None) -> str:
+    return "Choose another --out." if force is None else "Choose another folder."
+
+
+def _at_home(problem: Problem, stage: Path, folder: Path) -> Problem:
+    """The problem with the name that the file would have had."""
+    return replace(problem, where=problem.where.replace(str(stage), str(folder)))

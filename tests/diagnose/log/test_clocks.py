@@ -1,0 +1,64 @@
+"""Clocks that start anew, are put back or count something else than seconds are read on, or refused: never silently."""
+
+from datetime import datetime, timedelta
+
+import numpy as np
+import pytest
+
+from shipcosim.diagnose.log.reader import read_log
+from shipcosim.errors import ShipcosimError
+
+SECONDS = np.arange(0.0, 300.0, 0.5)
+
+
+@pytest.fixture
+def read(tmp_path):
+    def of(name, texts, **more):
+        columns = {name: texts} | more | {"heading": [f"{t / 10:.3f}" for t in SECONDS]}
+        columns |= {"north": [f"{t:.2f}" for t in SECONDS], "east": ["0.0"] * len(SECONDS)}
+        rows = [",".join(columns), *(",".join(row) for row in zip(*columns.values(), strict=True))]
+        (tmp_path / "log.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+        return read_log(tmp_path / "log.csv")
+
+    return of
+
+
+def passed(log):
+    return log["time"].values - log["time"].values[0]
+
+
+@pytest.mark.parametrize(("period", "name"), [(86400.0, "day"), (604800.0, "week")])
+def test_seconds_of_a_day_or_week_go_on_past_its_end(read, period, name):
+    log = read("time", [f"{(period - 150.0 + t) % period:.2f}" for t in SECONDS])
+    assert passed(log) == pytest.approx(SECONDS, abs=1e-3)
+    assert f"Seconds of the {name} pass its end" in " ".join(log.attrs["column_remarks"])
+
+
+def test_a_recorder_that_was_started_again_is_no_midnight(read):
+    log = read("time", [f"{t if t < 150.0 else t - 150.0:.2f}" for t in SECONDS])
+    assert passed(log)[-1] == pytest.approx(149.5)
+
+
+def test_a_clock_that_is_put_back_by_an_hour_goes_on(read):
+    moments = [datetime(2022, 10, 30, 2, 57, 30) + timedelta(seconds=float(t)) for t in SECONDS]
+    local = [m - timedelta(hours=1) if m.hour >= 3 else m for m in moments]
+    log = read("time", [m.strftime("%Y-%m-%d %H:%M:%S.%f") for m in local])
+    assert passed(log) == pytest.approx(SECONDS, abs=1e-3)
+    assert "put back by an hour" in " ".join(log.attrs["column_remarks"])
+
+
+@pytest.mark.parametrize("start", [738821.9, 0.5, 59879.2], ids=["MATLAB", "fraction of a day", "modified Julian"])
+def test_days_without_a_unit_are_refused_with_what_to_write(read, start):
+    with pytest.raises(ShipcosimError, match='are these days.*0.5 s apart.*unit = "d"'):
+        read("time", [f"{start + t / 86400.0:.10f}" for t in SECONDS])
+
+
+def test_milliseconds_without_a_unit_are_refused_with_what_to_write(read):
+    with pytest.raises(ShipcosimError, match='are these milliseconds.*0.5 s apart.*unit = "ms"'):
+        read("time", [f"{1000.0 * t:.0f}" for t in SECONDS])
+
+
+def test_a_stated_unit_is_believed(read):
+    assert passed(read("time [ms]", [f"{1000.0 * t:.0f}" for t in SECONDS])) == pytest.approx(SECONDS)
+    assert passed(read("time [d]", [f"{t / 86400.0:.10f}" for t in SECONDS])) == pytest.approx(SECONDS, abs=1e-4)
+    assert passed(read("time [s]", [f"{1000.0 * t:.0f}" for t in SECONDS]))[-1] == pytest.approx(299500.0)
