@@ -28,6 +28,7 @@ class AzimuthThruster(Fmu):
     azimuth_in = Input("rad", "direction of positive thrust of a replay, clockwise from the bow")
     neighbour_azimuth = Input("rad", "direction of positive thrust of the unit whose slipstream can meet this one")
     neighbour_rpm = Input("rpm", "shaft speed of that unit")
+    thrust_share = Input("1", "share of the thrust that the slipstreams of other units leave", start=1.0)
 
     thrust = Output("N", "delivered thrust along the axis")
     side_force = Output("N", "force across the axis, 90 deg clockwise of the thrust")
@@ -80,7 +81,8 @@ class AzimuthThruster(Fmu):
     def _write(self, propeller_thrust=None):
         state = self.state
         flow, neighbour = (self.u_r, self.v_r, self.r), (self.neighbour_azimuth, self.neighbour_rpm)
-        loads = azimuth_loads(state, *flow, *neighbour, unit=self.unit, propeller_thrust=propeller_thrust)
+        known = {"propeller_thrust": propeller_thrust, "thrust_share": self.thrust_share}
+        loads = azimuth_loads(state, *flow, *neighbour, unit=self.unit, **known)
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
         self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
         self.power, self.brake_power = powers(state, self.unit)

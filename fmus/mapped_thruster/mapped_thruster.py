@@ -1,7 +1,15 @@
 """FMU of a thruster by a measured map."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
-from shipcosim.models.propulsion.mapped import MapParameters, mapped_loads, mapped_step, mapped_thrust, within_map
+from shipcosim.models.propulsion.mapped import (
+    MapParameters,
+    commanded,
+    mapped_command,
+    mapped_loads,
+    mapped_step,
+    mapped_thrust,
+    within_map,
+)
 
 
 class MappedThruster(Fmu):
@@ -15,6 +23,7 @@ class MappedThruster(Fmu):
     failed = Input("1", "without power: no thrust is wanted", start=False)
 
     thrust = Output("N", "delivered thrust, positive in the thruster's direction")
+    command = Output("1", "command in the unit of the map, within its rate")
     tau_X = Output("N", "force on the ship, forward")
     tau_Y = Output("N", "force on the ship, to starboard")
     tau_N = Output("N.m", "yaw moment on the ship")
@@ -24,14 +33,21 @@ class MappedThruster(Fmu):
     thruster = Parameters(MapParameters)
 
     def start(self):
-        self.at_no_speed = self._wanted() if self.replay else 0.0
+        self.command = self.command_in if self.replay else mapped_command(0.0, thruster=self.thruster)
+        self.at_no_speed = mapped_thrust(self.command, thruster=self.thruster) if self.replay else 0.0
         self._push()
 
     def step(self, t, h):
-        self.at_no_speed = mapped_step(self.at_no_speed, self._wanted(), h, thruster=self.thruster)
+        wanted = self._wanted()
+        asked = self.command_in if self.replay and not self.failed else mapped_command(wanted, thruster=self.thruster)
+        self.command = commanded(self.command, asked, h, thruster=self.thruster)
+        if self.thruster.command_rate > 0.0:
+            wanted = mapped_thrust(self.command, thruster=self.thruster)
+        self.at_no_speed = mapped_step(self.at_no_speed, wanted, h, thruster=self.thruster)
         self._push()
 
     def _wanted(self):
+        """Thrust that is wanted at no speed, whatever the rate."""
         if self.failed:
             return 0.0
         if self.replay:

@@ -16,10 +16,31 @@ from ships import parameters
 
 import shipcosim.models
 from shipcosim import angles
-from shipcosim.models.allocation import fixed_angles, monitor, power
+from shipcosim.models.allocation import (
+    box_qp,
+    extended,
+    extreme_learning,
+    fixed_angles,
+    monitor,
+    neural,
+    optimal,
+    optimal_units,
+    power,
+    sqp,
+    units,
+)
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.power import PowerParameters
-from shipcosim.models.control import compass_voting, observer, position_voting, reference, voting, wave_filter
+from shipcosim.models.allocation.units import Allocated
+from shipcosim.models.control import (
+    compass_voting,
+    filtered_pid,
+    observer,
+    position_voting,
+    reference,
+    voting,
+    wave_filter,
+)
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths
 from shipcosim.models.core.motion import Motion
@@ -27,7 +48,17 @@ from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, 
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import dead_reckoning, known, surroundings
-from shipcosim.models.propulsion import azimuth, drive, fixed, mapped, propeller, rudder, slipstream, tunnel
+from shipcosim.models.propulsion import (
+    azimuth,
+    drive,
+    fixed,
+    interaction,
+    mapped,
+    propeller,
+    rudder,
+    slipstream,
+    tunnel,
+)
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.ship import hull, instruments, mast, vessel
 from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
@@ -47,6 +78,21 @@ LAYOUT = fixed_angles.FixedAngleParameters(
     **{"x_3": 22.0, "azimuth_3": 1.6, "thrust_min_3": -4e4, "thrust_max_3": 4e4, "thrust_rate_3": 1e6},
     yaw_lever=22.0,
 )
+ROW = interaction.InteractionParameters(y_1=-2.0, diameter_1=1.9, y_2=2.0, diameter_2=1.9, x_3=20.0, diameter_3=1.5)
+TURNING = parameters(optimal.OptimalParameters)
+TURNING_DESIGN = optimal.design(TURNING)
+TURNING_ROWS = [
+    (f, 2e3, -1e3, X, Y, N, on)
+    for f, X, Y, N in ((1e3, 5e3, -4e3, 2e4), (5e3, 9e3, 7e4, 1e5), (2e3, -2e5, 0.0, 9e5))
+    for on in (True, False)
+]
+TURNING_UNITS = optimal_units.OptimalUnitsParameters(
+    **{"x_1": -20.0, "y_1": -3.0, "thrust_max_1": 9e4, "thrust_rate_1": 1e3, "azimuth_rate_1": 0.2},
+    **{"x_2": -20.0, "y_2": 3.0, "thrust_max_2": 9e4, "thrust_rate_2": 1e3, "azimuth_rate_2": 0.2},
+    **{"x_3": 22.0, "azimuth_3": 1.6, "thrust_min_3": -3e4, "thrust_max_3": 4e4, "thrust_rate_3": 1e3},
+    yaw_lever=22.0,
+)
+EXTENDED = parameters(extended.ExtendedParameters)
 SIDE = replace(parameters(fixed.FixedParameters, "otter"), speed_loss=0.2, direction=0.3)
 ERRORS = dict(heading_bias=0.05, lever_x=3.0, lever_y=-1.0, velocity_scale=1.1)
 SEA = waves.components(0.5, 6.0, 0.3, 3.3, 1)
@@ -89,6 +135,16 @@ LOOP = [
 POWER, WATCH = parameters(PowerParameters), monitor.MonitorParameters()
 OBSERVER = dict(ship=DP_SHIP, parameters=NOISE, design=observer.design(DP_SHIP, NOISE))
 AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=parameters(wind.WindParameters))
+LEARNED = parameters(extreme_learning.ExtremeLearningParameters, "osv")
+LAYER = extreme_learning.Network(
+    scale=(1e5, 1e5, 1e6, *(30.0,) * 6),
+    hidden=tuple(tuple(0.1 * ((3 * i + 7 * j) % 11 - 5) for i in range(9)) for j in range(4)),
+    bias=(0.1, 0.4, -0.2, 0.0),
+    output=tuple(tuple(40.0 * ((5 * i + 3 * j) % 7 - 3) for i in range(4)) for j in range(6)),
+    least=(-40.0,) * 6,
+    most=(50.0,) * 6,
+)
+PLAIN = parameters(filtered_pid.FilteredPidParameters, "osv")
 ASSUMED = parameters(surroundings.SurroundingsParameters)
 AROUND = dict(hull=LONG, wind=parameters(wind.WindParameters), ship=DP_SHIP, parameters=ASSUMED)
 REQUESTS = [(5e3, -4e3, 2e4), (9e3, 7e4, 1e5), (-2e5, 0.0, 9e5)]
@@ -122,13 +178,47 @@ def of_control(*row):
     return control.ControlState(*row[:6]), observer.Estimate(*row), control.Desired(*row[6:]), row[3:6]
 
 
+def of_filtered_pid(*row):
+    return filtered_pid.FilteredPidState(*row[:12]), row[12:15], control.Desired(*row[3:12])
+
+
 def of_allocation(*row):
-    state = allocation.AllocationState(*row[:3], *row[:3], False)
+    state = Allocated(row[:3], (-0.8, 0.8, 1.6), *row[:3], False)
     return state, row[3:6], (True, row[6], True)
 
 
 def of_layout(*row):
-    state = fixed_angles.Allocated((*row[:3], *(0.0 * row[0],) * 3), *row[:3], False)
+    state = Allocated((*row[:3], *(0.0 * row[0],) * 3), (0.1,) * 6, *row[:3], False)
+    return state, row[3:6], (True, row[6], True, True, True, True)
+
+
+def of_turning(*row):
+    """Port, starboard and tunnel at angles of their intervals, with a price of each load."""
+    zero = 0.0 * row[0]
+    state = sqp.Turned(row[:3], (zero + 0.9, zero + 2.1, zero + 0.5 * pi), *row[:3], False, (zero + 1.0, zero, zero))
+    return state, row[3:6], (True, row[6], True)
+
+
+def of_proposal(*row):
+    state, tau, available = of_turning(*row)
+    return state, (row[0] + 9.0, row[1], row[2]), (row[3] * 1e-5, 2.0, 1.5), tau, available
+
+
+def of_turning_units(*row):
+    state, tau, (_, on, _) = of_turning(*row)
+    zero = 0.0 * row[0]
+    state = state._replace(thrusts=(*row[:3], zero, zero, zero), azimuths=(*state.azimuths, zero, zero, zero))
+    return state, tau, (True, on, True, True, True, True)
+
+
+def of_program(*row):
+    directions = ((1.0, 0.2, 3.0), (0.1, 1.0, -2.0), (-0.3, 0.4, 5.0), (0.6, -0.8, 1.0))
+    return row[:3], [box_qp.Command(*d, 1.0 + row[3], row[4], -0.5, 1.5) for d in directions], (1e-3, 1e-3, 1e-2)
+
+
+def of_learned(*row):
+    zero = 0.0 * row[0]
+    state = extreme_learning.Commanded((zero,) * 6, (zero,) * 6, *(zero,) * 4, tuple(0.01 * one for one in row[:3]) * 2)
     return state, row[3:6], (True, row[6], True, True, True, True)
 
 
@@ -274,6 +364,14 @@ CASES = [
         [(-1.0, 2.0, a, n) for a in (-2.0, 0.4) for n in (90.0, 0.0, -5.0)],
         constants=dict(width=0.4),
     ),
+    Case(interaction.tandem_share, [(1.0,), (8.0,)]),
+    Case(interaction.kept_share, [(0.2, 0.3, 0.5), (-3.0, 0.6, 2.0), (0.0, 0.3, 1.0)]),
+    Case(
+        interaction.thrust_shares,
+        [(1.3, 0.2, -3.0, 5.0, 4.0, -2.0), (-1.6, 1.6, 0.1, 1.0, 0.0, 9.0)],
+        lambda *row: ((*row[:3], *row[:3]), (*row[3:], *row[3:])),
+        dict(found=interaction.pairs(ROW)),
+    ),
     *(
         Case(azimuth.azimuth_given, [(n, 0.4) for n in (2.0, -1.0)], constants=dict(unit=unit))
         for unit in (PORT, LOSSY)
@@ -304,17 +402,55 @@ CASES = [
         [(F, n, *w) for F, n in ((30.0, 0.0), (-20.0, 0.0), (0.0, 60.0), (0.0, -50.0)) for w in WATER],
         constants=dict(thruster=SIDE),
     ),
+    Case(extreme_learning.at_rest, REQUESTS, lambda *row: (row,), dict(parameters=LEARNED)),
+    Case(
+        extreme_learning.step,
+        [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
+        of_learned,
+        dict(h=0.05, parameters=LEARNED, design=LAYER),
+    ),
+    Case(
+        extreme_learning.evaluate,
+        [(*row, 20.0, -30.0, 4.0, 0.0, 1.0, 9.0) for row in REQUESTS],
+        lambda *row: (LAYER, row),
+    ),
+    Case(filtered_pid.at_rest, [(1.0, -2.0, 3.0)]),
+    Case(
+        filtered_pid.errors,
+        [(1.0, -2.0, 3.0, *LOOP[0][:9])],
+        lambda *row: (filtered_pid.at_rest(*row[:3]), control.Desired(*row[3:])),
+    ),
+    Case(filtered_pid.step, LOOP, of_filtered_pid, dict(h=0.05, parameters=PLAIN)),
     Case(mapped.mapped_thrust, [(-2.0,), (-0.4,), (0.0,), (0.7,)], constants=dict(thruster=MAPPED)),
     Case(mapped.within_map, [(-50.0,), (0.0,), (70.0,)], constants=dict(thruster=MAPPED)),
     Case(mapped.mapped_step, [(3.0, 10.0), (-5.0, 0.0)], constants=dict(h=0.1, thruster=MAPPED)),
+    Case(mapped.mapped_command, [(-50.0,), (0.0,), (7.0,)], constants=dict(thruster=MAPPED)),
+    Case(
+        mapped.commanded,
+        [(0.3, 0.4), (0.3, -1.0), (0.0, 1.0)],
+        constants=dict(h=0.1, thruster=replace(MAPPED, command_rate=2.0)),
+    ),
     Case(mapped.mapped_loads, [(F, *w) for F in (30.0, -20.0, 0.0) for w in WATER], constants=dict(thruster=MAPPED)),
-    Case(fixed_angles.at_rest, REQUESTS, lambda *row: (row,)),
+    Case(fixed_angles.at_rest, REQUESTS, lambda *row: (row,), dict(parameters=LAYOUT)),
     Case(
         fixed_angles.step,
         [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
         of_layout,
-        dict(h=0.5, parameters=LAYOUT, design=fixed_angles.layout(LAYOUT)),
+        dict(h=0.5, parameters=LAYOUT, design=fixed_angles.design(LAYOUT)),
     ),
+    Case(optimal.step, TURNING_ROWS, of_turning, dict(h=0.5, parameters=TURNING, design=TURNING_DESIGN)),
+    Case(sqp.power_step, TURNING_ROWS, of_turning, dict(h=0.05, design=TURNING_DESIGN)),
+    Case(sqp.nearest_step, TURNING_ROWS, of_proposal, dict(h=0.05, design=TURNING_DESIGN)),
+    Case(sqp.resting, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(azimuths=(0.1, 0.2))),
+    Case(optimal.at_rest, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(parameters=TURNING)),
+    Case(
+        optimal_units.step,
+        TURNING_ROWS,
+        of_turning_units,
+        dict(h=0.5, parameters=TURNING_UNITS, design=optimal_units.design(TURNING_UNITS)),
+    ),
+    Case(optimal_units.at_rest, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(parameters=TURNING_UNITS)),
+    Case(box_qp.solve, [(1.0, 2.0, 3.0, 0.1, 0.2), (9.0, -2.0, 3.0, 0.5, 1.0), (0.0, 0.0, 50.0, 0.0, 9.0)], of_program),
     Case(rudder.propeller_in_wake, [(n, *w) for n in (9.0, -4.0, 0.0) for w in WATER], constants=dict(unit=STERN)),
     Case(
         rudder.rudder_normal_force,
@@ -350,12 +486,29 @@ CASES = [
         of_allocation,
         dict(h=0.5, parameters=UNITS, design=allocation.design(UNITS)),
     ),
+    Case(extended.at_rest, REQUESTS, lambda *row: (row,), dict(parameters=EXTENDED)),
     Case(
-        allocation.used_shares,
-        [(1e4, -1e4, 0.0), (-3e4, 6e4, -2e4)],
-        lambda *row: (allocation.AllocationState(*row, *row, False),),
-        dict(parameters=UNITS),
+        extended.step,
+        [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
+        of_allocation,
+        dict(h=0.5, parameters=EXTENDED, design=extended.design(EXTENDED)),
     ),
+    Case(units.no_thrust, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(azimuths=(0.1, 0.2))),
+    Case(units.load, [(1e3, -2e3)], lambda *f: (f,), dict(effect=((1.0, 0.0, 2.0), (0.0, 1.0, -5.0)))),
+    Case(
+        units.missed,
+        [(1e3, 0.0, 2.0)],
+        lambda *tau: (tau,),
+        dict(thrusts=(1e3, -2e3), effect=((1.0, 0.0, 2.0), (0.0, 1.0, -5.0))),
+    ),
+    Case(units.slack, [(1e3, 0.0, 2.0), (0.0, -5.0, 0.0)], lambda *row: (row, (0.0, 0.0, 2.0))),
+    Case(
+        units.used_shares,
+        [(1e4, -1e4, 0.0), (-3e4, 6e4, -2e4)],
+        lambda *row: (row,),
+        dict(least=(-3e4, -3e4, -2e4), most=(6e4, 6e4, 2e4)),
+    ),
+    Case(units.thruster_power, [(0.1, 0.9, 0.0), (1.0, 0.5, 0.2)], lambda *row: (row,), dict(full=(1e5, 1e5, 2e5))),
     Case(
         power.granted_power,
         [(0.1, 0.9, 0.0, 1e5, 2e5), (0.0, 0.0, 0.0, 0.0, 1e9)],
@@ -448,6 +601,8 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
     covered |= {maths.library_of}  # tells the arithmetics apart
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
+    covered |= {neural.features, neural.network, neural.propose, neural.effects}  # vectors: test_neural compares them
+    covered |= {neural.taken, neural.kept_shares, neural.completed, neural.power}
     covered |= {drive.drive_step}  # by the steps of both thrusters
     covered |= {propeller.loads_at}  # by propeller_loads
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}

@@ -9,7 +9,7 @@ from ships import parameters
 
 from shipcosim.models.allocation import fixed_angles as general
 from shipcosim.models.allocation import pseudo_inverse
-from shipcosim.models.allocation.fixed_angles import FixedAngleParameters, at_rest, layout, step
+from shipcosim.models.allocation.fixed_angles import FixedAngleParameters, at_rest, design, step
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
 
 TWIN = FixedAngleParameters(
@@ -24,7 +24,9 @@ ALL = (True,) * 6
 
 
 def allocated(tau, parameters=TWIN, available=ALL, h=1.0):
-    return step(at_rest(tau), tau, available, h, parameters=parameters, design=layout(parameters))
+    return step(
+        at_rest(tau, parameters=parameters), tau, available, h, parameters=parameters, design=design(parameters)
+    )
 
 
 @pytest.mark.parametrize("tau", [(5e4, 3e4, 2e5), (-4e4, 0.0, -5e5), (0.0, -5e4, 0.0)])
@@ -63,8 +65,8 @@ def test_for_two_azimuths_and_a_tunnel_it_gives_what_their_own_allocator_gives()
         same |= {f"{name}_{i}": getattr(own, f"{side}_{name}") for name in ("x", "y", "azimuth")}
         same |= {f"thrust_min_{i}": -30e3, f"thrust_max_{i}": 60e3, f"thrust_rate_{i}": 1e9}
     for tau in ((5e3, -4e3, 2e4), (2e4, 1e4, -1e5)):
-        at = pseudo_inverse.at_rest(tau)
+        at = pseudo_inverse.at_rest(tau, parameters=own)
         theirs = pseudo_inverse.step(at, tau, (True,) * 3, 1.0, parameters=own, design=pseudo_inverse.design(own))
         ours = allocated(tau, FixedAngleParameters(**same))
-        assert ours.thrusts[:3] == pytest.approx(theirs[:3], abs=1e-6)
+        assert ours.thrusts[:3] == pytest.approx(theirs.thrusts, abs=1e-6)
         assert hypot(*ours.thrusts[:2]) > 0.0 and general.UNITS == 6

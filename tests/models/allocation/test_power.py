@@ -8,7 +8,8 @@ from ships import GUNNERUS, parameters
 
 from shipcosim.models.allocation import pseudo_inverse as allocation
 from shipcosim.models.allocation.power import PowerParameters, granted_power, thrust_shares
-from shipcosim.models.allocation.pseudo_inverse import AllocationParameters, at_rest, design, used_shares
+from shipcosim.models.allocation.pseudo_inverse import AllocationParameters, at_rest, design
+from shipcosim.models.allocation.units import used_shares
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
 from shipcosim.models.propulsion.propeller import bollard_speed, bollard_torque
 from shipcosim.models.propulsion.tunnel import TunnelParameters
@@ -49,16 +50,21 @@ def test_a_quarter_of_the_power_leaves_two_fifths_of_the_thrust():
 
 def held(tau, buses, seconds=120.0, h=0.1):
     """Commands after some time of a constant request with little power."""
-    made, state = design(UNITS), at_rest((0.0, 0.0, 0.0))
+    made, state = design(UNITS), at_rest((0.0, 0.0, 0.0), parameters=UNITS)
     for _ in range(round(seconds / h)):
-        granted = granted_power(used_shares(state, parameters=UNITS), buses, parameters=POWER)
+        granted = granted_power(shares_of(state), buses, parameters=POWER)
         shares = thrust_shares(granted, parameters=POWER)
         state = allocation.step(state, tau, (True,) * 3, h, parameters=UNITS, design=made, shares=shares)
     return state
 
 
+def shares_of(state):
+    low, high, most = UNITS.azimuth_thrust_min, UNITS.azimuth_thrust_max, UNITS.tunnel_thrust_max
+    return used_shares(state.thrusts, (low, low, -most), (high, high, most))
+
+
 def power_of(state):
-    used = used_shares(state, parameters=UNITS)
+    used = shares_of(state)
     return [most * share**1.5 for most, share in zip(POWER.largest, used, strict=True)]
 
 
@@ -72,9 +78,7 @@ def test_commands_use_the_power_of_their_bus_and_no_more():
 
 def test_power_that_is_lost_is_taken_back_at_once():
     state = held((40e3, 5e3, 50e3), (1e9, 1e9))
-    shares = thrust_shares(
-        granted_power(used_shares(state, parameters=UNITS), (40e3, 1e9), parameters=POWER), parameters=POWER
-    )
+    shares = thrust_shares(granted_power(shares_of(state), (40e3, 1e9), parameters=POWER), parameters=POWER)
     after = allocation.step(
         state, (40e3, 5e3, 50e3), (True,) * 3, 0.05, parameters=UNITS, design=design(UNITS), shares=shares
     )

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.core.maths import Arithmetic, clip, cos, sin, where
+from shipcosim.models.allocation.units import Allocated, load, missed
+from shipcosim.models.core.maths import clip, cos, sin, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity, required
 
@@ -79,26 +80,6 @@ class FixedAngleParameters:
         return [getattr(self, f"{name}_{number}") for number in range(1, UNITS + 1)]
 
 
-class Allocated(NamedTuple):
-    """State of the allocator.
-
-    Parameters
-    ----------
-    thrusts : tuple of six floats or (...) arrays or tensors
-        Commanded thrusts. [N]
-    tau_X, tau_Y, tau_N : like the thrusts
-        Load of these thrusts, body frame. [N, N, N.m]
-    saturated : bool or (...) array or tensor of bool
-        True where limits of thrust or missing units keep the commands from meeting the request. [1]
-    """
-
-    thrusts: tuple
-    tau_X: Arithmetic
-    tau_Y: Arithmetic
-    tau_N: Arithmetic
-    saturated: Arithmetic
-
-
 class Layout(NamedTuple):
     """What `step` needs of the parameters.
 
@@ -119,7 +100,7 @@ class Layout(NamedTuple):
     rate: tuple
 
 
-def layout(parameters: FixedAngleParameters) -> Layout:
+def design(parameters: FixedAngleParameters) -> Layout:
     """Effect of the units, and the generalised inverses for all sets of them.
 
     Parameters
@@ -155,13 +136,15 @@ def layout(parameters: FixedAngleParameters) -> Layout:
     return Layout(effect, inverses, tuple(least), tuple(most), tuple(p.of_units("thrust_rate")))
 
 
-def at_rest(tau: Load) -> Allocated:
+def at_rest(tau: Load, *, parameters: FixedAngleParameters) -> Allocated:
     """State at the start: no thrust.
 
     Parameters
     ----------
     tau : tuple of three floats or (...) arrays or tensors
         Any load: it gives shape and type only. [N, N, N.m]
+    parameters : FixedAngleParameters
+        The units.
 
     Returns
     -------
@@ -173,7 +156,7 @@ def at_rest(tau: Load) -> Allocated:
     Definition.
     """
     zero = 0.0 * tau[0]
-    return Allocated((zero,) * UNITS, zero, zero, zero, zero > 0.0)
+    return Allocated((zero,) * UNITS, tuple(parameters.of_units("azimuth")), zero, zero, zero, zero > 0.0)
 
 
 def step(
@@ -200,7 +183,7 @@ def step(
     parameters : FixedAngleParameters
         Units and limits.
     design : Layout
-        Made of the same parameters by `layout`.
+        Made of the same parameters by `design`.
 
     Returns
     -------
@@ -209,28 +192,14 @@ def step(
 
     References
     ----------
-    As `layout`; that thrust beyond a limit is asked of the free units is assumed.
+    As `design`; that thrust beyond a limit is asked of the free units is assumed.
     """
     wanted = _within_limits(tau, available, design)
-    X, Y, N = _missing(tau, wanted, design.effect)
-    missed = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    X, Y, N = missed(tau, wanted, design.effect)
+    squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
     limits = zip(state.thrusts, wanted, available, design.rate, strict=True)
     thrusts = tuple(where(on, old + clip(new - old, -rate * h, rate * h), 0.0 * new) for old, new, on, rate in limits)
-    return Allocated(thrusts, *_load(thrusts, design.effect), missed > 1.0)
-
-
-def _load(thrusts, effect):
-    """Load of thrusts."""
-    X = Y = N = 0.0
-    for thrust, (x, y, n) in zip(thrusts, effect, strict=True):
-        X, Y, N = X + x * thrust, Y + y * thrust, N + n * thrust
-    return X, Y, N
-
-
-def _missing(tau, thrusts, effect):
-    """Load that the thrusts leave unmet."""
-    X, Y, N = _load(thrusts, effect)
-    return tau[0] - X, tau[1] - Y, tau[2] - N
+    return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
 
 
 def _within_limits(tau, available, design):
@@ -238,7 +207,7 @@ def _within_limits(tau, available, design):
     free, held = [where(on, 1.0, 0.0) for on in available], [0.0 * tau[0]] * UNITS
     thrusts = held
     for _ in range(UNITS):
-        found = _solve(_missing(tau, held, design.effect), free, design.inverses)
+        found = _solve(missed(tau, held, design.effect), free, design.inverses)
         given = [clip(f, low, high) for f, low, high in zip(found, design.least, design.most, strict=True)]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = [abs(f - g) > 1e-9 for f, g in zip(found, given, strict=True)]

@@ -9,52 +9,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.core.maths import Arithmetic, clip, cos, sin, where
+from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed
+from shipcosim.models.core.maths import clip, cos, pi, sin, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
 
 
 @dataclass(frozen=True, kw_only=True)
-class AllocationParameters:
+class AllocationParameters(NamedUnits):
     """Two azimuth thrusters at fixed angles and a tunnel thruster."""
 
-    port_x: float = required("m", "port azimuth forward of the origin")
-    port_y: float = required("m", "port azimuth to starboard of the origin")
-    starboard_x: float = required("m", "starboard azimuth forward of the origin")
-    starboard_y: float = required("m", "starboard azimuth to starboard of the origin")
-    tunnel_x: float = required("m", "tunnel thruster forward of the origin")
-    port_azimuth: float = required("rad", "fixed angle of the port azimuth")
-    starboard_azimuth: float = required("rad", "fixed angle of the starboard azimuth")
-    azimuth_thrust_min: float = required("N", "most thrust astern of an azimuth", maximum=0.0)
-    azimuth_thrust_max: float = required("N", "most thrust ahead of an azimuth", minimum=0.0)
-    tunnel_thrust_max: float = required("N", "most thrust of the tunnel thruster to either side", minimum=0.0)
-    thrust_rate_max: float = required("N/s", "quickest change of a command", minimum=0.0)
     azimuth_weight: float = required("1", "price of an azimuth's thrust", minimum=1e-6)
     tunnel_weight: float = required("1", "price of the tunnel's thrust", minimum=1e-6)
-    yaw_lever: float = required("m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1)
-    yaw_lever_degraded: float = required("m", "the same where a unit is missing: position before heading", minimum=0.1)
-
-
-class AllocationState(NamedTuple):
-    """State of the allocator: commanded thrusts and the load they give.
-
-    Parameters
-    ----------
-    port, starboard, tunnel : float or (...) array or tensor
-        Commanded thrusts. [N]
-    tau_X, tau_Y, tau_N : like port
-        Load of these thrusts, body frame. [N, N, N.m]
-    saturated : bool or (...) array or tensor of bool
-        True where limits of thrust or missing units keep the commands from meeting the request. [1]
-    """
-
-    port: Arithmetic
-    starboard: Arithmetic
-    tunnel: Arithmetic
-    tau_X: Arithmetic
-    tau_Y: Arithmetic
-    tau_N: Arithmetic
-    saturated: Arithmetic
 
 
 class Design(NamedTuple):
@@ -137,17 +103,19 @@ def design(parameters: AllocationParameters) -> Design:
     return Design(b, tuple(inverses))
 
 
-def at_rest(tau: Load) -> AllocationState:
+def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
     """State at the start: no thrust.
 
     Parameters
     ----------
     tau : tuple of three floats or (...) arrays or tensors
         Any load: it gives shape and type only. [N, N, N.m]
+    parameters : AllocationParameters
+        Units.
 
     Returns
     -------
-    AllocationState
+    Allocated
         The state.
 
     References
@@ -155,11 +123,11 @@ def at_rest(tau: Load) -> AllocationState:
     Definition.
     """
     zero = 0.0 * tau[0]
-    return AllocationState(zero, zero, zero, zero, zero, zero, zero > 0.0)
+    return Allocated((zero,) * 3, _azimuths(parameters), zero, zero, zero, zero > 0.0)
 
 
 def step(
-    state: AllocationState,
+    state: Allocated,
     tau: Load,
     available: tuple,
     h: float,
@@ -167,12 +135,12 @@ def step(
     parameters: AllocationParameters,
     design: Design,
     shares: tuple = (1.0, 1.0, 1.0),
-) -> AllocationState:
+) -> Allocated:
     """Commands for a requested load, `h` after the last ones.
 
     Parameters
     ----------
-    state : AllocationState
+    state : Allocated
         State at the last commands.
     tau : tuple of three
         Requested load, body frame. [N, N, N.m]
@@ -190,7 +158,7 @@ def step(
 
     Returns
     -------
-    AllocationState
+    Allocated
         Commands, the load they give, and whether limits of thrust or missing units keep them from meeting the request
         (the rate limit is passing, so it does not count).
 
@@ -200,69 +168,20 @@ def step(
     """
     limits = _limits(shares, parameters)
     wanted = _within_limits(tau, available, limits, design=design)
-    X, Y, N = _missing(tau, wanted, design.effect)
-    missed = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    X, Y, N = missed(tau, wanted, design.effect)
+    squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
     reach = parameters.thrust_rate_max * h
     port, starboard, tunnel = [
         where(usable, clip(old + clip(new - old, -reach, reach), *limit), 0.0)
-        for usable, old, new, limit in zip(available, state[:3], wanted, limits, strict=True)
+        for usable, old, new, limit in zip(available, state.thrusts, wanted, limits, strict=True)
     ]
-    X, Y, N = load((port, starboard, tunnel), design.effect)
-    return AllocationState(port, starboard, tunnel, X, Y, N, missed > 1.0)
+    thrusts = (port, starboard, tunnel)
+    return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
 
 
-def load(thrusts: tuple[Arithmetic, Arithmetic, Arithmetic], effect: tuple[tuple, tuple, tuple]) -> Load:
-    """Load of three thrusts, B f.
-
-    Parameters
-    ----------
-    thrusts : tuple of three floats or (...) arrays or tensors
-        Thrusts of port, starboard and tunnel. [N]
-    effect : tuple of three tuples
-        Thruster configuration matrix, as `effect`. [1, 1, m]
-
-    Returns
-    -------
-    tuple of three, like the thrusts
-        X, Y, N. [N, N, N.m]
-
-    References
-    ----------
-    Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.4.
-    """
-    a, b, c = thrusts
-    (aX, aY, aN), (bX, bY, bN), (cX, cY, cN) = effect
-    return aX * a + bX * b + cX * c, aY * a + bY * b + cY * c, aN * a + bN * b + cN * c
-
-
-def _missing(tau, thrusts, effect):
-    """Load that the thrusts leave unmet."""
-    X, Y, N = load(thrusts, effect)
-    return tau[0] - X, tau[1] - Y, tau[2] - N
-
-
-def used_shares(state: AllocationState, *, parameters: AllocationParameters) -> tuple:
-    """Shares of their limits of thrust that the units are commanded.
-
-    Parameters
-    ----------
-    state : AllocationState
-        The commands.
-    parameters : AllocationParameters
-        Limits.
-
-    Returns
-    -------
-    tuple of three, like the commands
-        Of port, starboard and tunnel, 0 to 1. [1]
-
-    References
-    ----------
-    Definition.
-    """
-    p = parameters
-    most = [where(f < 0.0, -p.azimuth_thrust_min, p.azimuth_thrust_max) for f in state[:2]]
-    return abs(state.port) / most[0], abs(state.starboard) / most[1], abs(state.tunnel) / p.tunnel_thrust_max
+def _azimuths(parameters):
+    """Angles of port, starboard and tunnel. [rad]"""
+    return parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi
 
 
 def _limits(shares, parameters):
@@ -278,7 +197,7 @@ def _within_limits(tau, available, limits, *, design):
     missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
     held = [0.0, 0.0, 0.0]
     for _ in range(3):
-        a, b, c = _solve(_missing(tau, held, design.effect), free, missing, design.inverses)
+        a, b, c = _solve(missed(tau, held, design.effect), free, missing, design.inverses)
         given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = a != given[0], b != given[1], c != given[2]

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
+from pathlib import Path
 
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized, sizes_wanted
 from shipcosim.ssp.flatten.bindings import apply_set
@@ -22,7 +23,12 @@ from shipcosim.ssp.xml.document import Findings, read_document
 
 
 def assemble_package(
-    package: Package, parameters: ParameterSets, file: str, findings: Findings, described: dict | None = None
+    package: Package,
+    parameters: ParameterSets,
+    file: str,
+    findings: Findings,
+    described: dict | None = None,
+    swapped: Mapping[str, Path] | None = None,
 ) -> System | None:
     """System of a package, None or incomplete where there are errors.
 
@@ -38,6 +44,8 @@ def assemble_package(
         Takes what is wrong.
     described : dict, optional
         Keeps descriptions of FMUs from one call to the next.
+    swapped : mapping of str to Path, optional
+        FMUs that components run in place of their own.
     """
     document = package.document(findings)
     structure = None if document is None else read_structure(document, findings)
@@ -47,7 +55,7 @@ def assemble_package(
     before = len(findings.problems)
 
     def flat(sizes: Mapping[str, Mapping[str, int]]) -> System:
-        tree = Hierarchy(findings, described, sizes)
+        tree = Hierarchy(findings, described, sizes, swapped)
         take_in(tree, structure, package)
         for values in sets:
             apply_set(tree, values)
@@ -105,6 +113,7 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         parameters=signals.of("parameter", "structuralParameter"),
         experiment=experiment,
         remarks=tuple(dict.fromkeys(findings.remarks)),
+        swapped={name: str(file) for name, file in tree.swapped.items()},
         _packages=tuple(tree.library.packages),
     )
 

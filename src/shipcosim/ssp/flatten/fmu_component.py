@@ -7,6 +7,7 @@ from shipcosim.ssp.flatten.array_elements import element_connectors
 from shipcosim.ssp.flatten.bindings import take_bindings
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Key, Port, variable_port
+from shipcosim.ssp.flatten.swapped import has_connector
 from shipcosim.ssp.fmu.arrays import without_arrays
 from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.read.structure import KIND_NAMES, ComponentElement, Connector
@@ -36,8 +37,12 @@ def take_fmu(tree: Hierarchy, element: ComponentElement, path: ElementPath, plac
     tree.arrays[path] = {} if fmu is None else dict(fmu.arrays)
     connectors, declared = element_connectors(element.connectors, tree.arrays[path], tree.findings)
     tree.arrays[path] |= declared
+    swapped = ".".join(path) in tree.swapped
     for connector in connectors:
-        tree.ports[Key(path, connector.name)] = _port(connector, fmu, tree.findings)
+        lacking = fmu is not None and swapped and not has_connector(fmu, connector)
+        tree.ports[Key(path, connector.name)] = (
+            _port(connector, None, tree.findings) if lacking else _port(connector, fmu, tree.findings)
+        )
     if fmu is not None:
         _check_implementation(element, fmu, tree.findings)
     take_bindings(tree, element.bindings, path, place, near=True, fmu=fmu)
@@ -49,7 +54,7 @@ def _fmu_of(
     if element.source is None:
         tree.findings.error(element.place, "It has no source: there is nothing to run.", "Name an FMU or a system.")
         return None
-    file = tree.library.file(element, element.source, place)
+    file = tree.swapped.get(".".join(path)) or tree.library.file(element, element.source, place)
     fmu = tree.library.fmu(file, place.package) if file else None
     return fmu and without_arrays(fmu, element.place, tree.findings, tree.sizes.get(".".join(path)))
 

@@ -34,6 +34,8 @@ class Hierarchy:
         Keeps descriptions of FMUs without fault for other hierarchies.
     sizes : mapping of str to mapping of str to int, optional
         Values of structural parameters that give the sizes of arrays, by component, where they are not the FMU's own.
+    swapped : mapping of str to Path, optional
+        FMUs that components run in place of their own, by full name.
 
     Attributes
     ----------
@@ -60,6 +62,7 @@ class Hierarchy:
         findings: Findings,
         described: dict | None = None,
         sizes: Mapping[str, Mapping[str, int]] | None = None,
+        swapped: Mapping[str, Path] | None = None,
     ):
         self.findings = findings
         self.components: dict[ElementPath, tuple[ComponentElement, FmuDescription | None]] = {}
@@ -70,7 +73,7 @@ class Hierarchy:
         self.arrays: dict[ElementPath, dict[str, tuple[int, ...]]] = {}
         self.references: dict[Key, Key] = {}
         self.library = Library(findings, described)
-        self.sizes = sizes or {}
+        self.sizes, self.swapped = sizes or {}, swapped or {}
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from shipcosim.errors import LONGEST_NAME, MOST_COMPARED, it_has, suggestion
 from shipcosim.ssp.flatten.conversions import Flow, advance
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.ports import SOURCES_INSIDE, Key, Port, Setting, Wire, variable_port
+from shipcosim.ssp.flatten.swapped import WHERE
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
@@ -52,6 +53,7 @@ class Settings:
         for wire in tree.wires:
             self.outgoing[wire.source].append(wire)
         self.named = self._names()
+        self.unused: dict[str, list[str]] = {}  # of components that run another FMU: parameters which it does not have
 
     def _names(self) -> dict[str, list[Key]]:
         """Ports by their full name; names need not be unique where element names have dots, then all are meant."""
@@ -75,6 +77,9 @@ class Settings:
             self.tolerance = value.tolerance
             for key in keys:
                 self._deliver(value.value, flow, setting, key, value.place)
+        for name, unused in self.unused.items():
+            found = f"{self.tree.swapped[name].name} takes its place and has no {', '.join(dict.fromkeys(unused))}."
+            self.findings.remark(f"{WHERE}, {name}", found, "These values are not used.")
 
     def _deliver(self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str) -> None:
         """Take a value over one step to a port, and on from there; once to each port, also where wires go round."""
@@ -145,6 +150,9 @@ class Settings:
         """A set may hold more than is used here, as the standard says; but what looks like a slip is an error."""
         place, name = setting.value.place, setting.name
         element, known = self._nearest(setting)
+        if element is not None and element in self.tree.swapped:
+            self.unused.setdefault(element, []).append(name.removeprefix(f"{element}."))
+            return
         if element is not None:
             found = f"{element} has no parameter '{name}'."
             if _is_slip(name, known):

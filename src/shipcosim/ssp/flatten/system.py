@@ -96,6 +96,8 @@ class System:
         What a user should know although it stops nothing.
     given : tuple of Connection
         From parameters of the outermost system to variables; the start values follow them already.
+    swapped : mapping of str to str
+        Components that run another FMU than the system structure says, and its file.
     """
 
     name: str
@@ -108,6 +110,7 @@ class System:
     experiment: Experiment = Experiment()
     remarks: tuple[Problem, ...] = ()
     given: tuple[Connection, ...] = ()
+    swapped: Mapping[str, str] = field(default_factory=dict)
     _packages: tuple[Package, ...] = field(default=(), repr=False, compare=False)  # keeps what was unpacked on disk
 
     def __repr__(self) -> str:

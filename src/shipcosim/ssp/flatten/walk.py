@@ -9,6 +9,7 @@ from shipcosim.ssp.flatten.dictionaries import dictionaries_of, join_dictionarie
 from shipcosim.ssp.flatten.fmu_component import take_fmu
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Key, Port
+from shipcosim.ssp.flatten.swapped import take_swapped
 from shipcosim.ssp.flatten.wires import wire_of
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.structure import (
@@ -50,6 +51,7 @@ def take_in(tree: Hierarchy, structure: Structure, package: Package) -> None:
     system = structure.system
     _take_system(tree, system, (), Surroundings(structure, package, (), (system.place,)), ())
     join_dictionaries(tree)
+    take_swapped(tree)
 
 
 def _take_system(

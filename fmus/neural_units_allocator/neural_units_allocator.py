@@ -1,0 +1,20 @@
+"""FMU of our neural thrust allocator for up to six units."""
+
+from pathlib import Path
+
+from shipcosim.fmi import Parameters
+from shipcosim.interfaces import NumberedAllocator
+from shipcosim.models.allocation import neural_units
+from shipcosim.models.core.networks import read_arrays
+
+WEIGHTS = Path(__file__).with_name("weights")
+
+
+class NeuralUnitsAllocator(NumberedAllocator):
+    """Thrust allocation by a trained network within all limits: four azimuth thrusters that know their slipstreams."""
+
+    model = Parameters(neural_units.NeuralUnitsParameters)
+    law = neural_units
+
+    def designed(self):
+        return neural_units.design(self.model, read_arrays(WEIGHTS / "neural-four-azimuths.npz"))

@@ -1,0 +1,6 @@
+"""What FMUs of one kind share: their variables, so that one can take the other's place in a system."""
+
+from shipcosim.interfaces.named_allocator import NamedAllocator
+from shipcosim.interfaces.numbered_allocator import NumberedAllocator
+
+__all__ = ["NamedAllocator", "NumberedAllocator"]

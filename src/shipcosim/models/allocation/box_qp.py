@@ -1,0 +1,204 @@
+"""Quadratic program of an allocator: many commands within bounds, three loads to meet.
+
+    minimise over x:  Σ (x_i - wanted_i)² / (2 ease_i) + Σ s_j² / (2 slack_j),   s = request - Σ effect_i x_i,
+    low_i ≤ x_i ≤ high_i
+
+Commands that are not at a bound are x_i = wanted_i + ease_i effect_i·λ with three multipliers λ, so every step of the
+active-set method is one linear system of three equations, however many commands there are.
+
+Plain floats take a way of their own, some ten times as fast; a test holds the two ways together.
+"""
+
+from typing import NamedTuple
+
+from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, where
+
+ROUNDS = 30
+"""Most steps of the active-set method; each adds a bound or drops one. Of twelve commands few need more than ten."""
+_EDGE = 1e-9  # share of a multiplier below which its sign is not trusted
+
+
+class Command(NamedTuple):
+    """One unknown of the program.
+
+    Parameters
+    ----------
+    X, Y, N : float or (...) array or tensor
+        Effect of a unit of the command. [N, N, N.m over the unit of the command]
+    ease : like X
+        Inverse of the price of its square, positive. [unit of the command squared over that of the price]
+    wanted : like X
+        Its value where nothing is requested. [unit of the command]
+    low, high : like X
+        Bounds; low is not above high. [unit of the command]
+    """
+
+    X: Arithmetic
+    Y: Arithmetic
+    N: Arithmetic
+    ease: Arithmetic
+    wanted: Arithmetic
+    low: Arithmetic
+    high: Arithmetic
+
+
+def solve(request: tuple, commands: list[Command], slack: tuple, start: list | None = None) -> tuple[list, tuple]:
+    """Commands that meet a request at the least price, and the multipliers of the request.
+
+    Parameters
+    ----------
+    request : tuple of three floats or (...) arrays or tensors
+        Load to be met. [N, N, N.m]
+    commands : list of Command
+        The unknowns; with `request` all floats, or some of them arrays or tensors.
+    slack : tuple of three floats or (...) arrays or tensors
+        Load that is missed for a multiplier of one: small, so that a request is met where it can be. [N, N, N.m]
+    start : list of floats or (...) arrays or tensors, optional
+        Commands near the solution, which is then found in fewer steps; it does not depend on them. [unit of each]
+
+    Returns
+    -------
+    list of floats or (...) arrays or tensors
+        The commands, within their bounds whatever is requested. [unit of each]
+    tuple of three, like request
+        Multipliers: what one unit more of each load would cost. [price over N, N, N.m]
+
+    Notes
+    -----
+    From a command within its bounds the step to the optimum of those that are free is taken as far as the first bound,
+    which is then kept; at the optimum the bound that costs most is dropped. The price falls with each step, so the end
+    is reached in finitely many.
+
+    References
+    ----------
+    Härkegård, Efficient active set algorithms for solving constrained least squares problems in aircraft control
+    allocation, Proc. 41st IEEE Conf. on Decision and Control, 2002.
+
+    Examples
+    --------
+    Two of one effect share a request until one is at its bound:
+
+    >>> pair = [Command(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, high) for high in (2.0, 9.0)]
+    >>> [round(x, 6) for x in solve((3.0, 0.0, 0.0), pair, (1e-9, 1e-9, 1e-9))[0]]
+    [1.5, 1.5]
+    >>> [round(x, 6) for x in solve((6.0, 0.0, 0.0), pair, (1e-9, 1e-9, 1e-9))[0]]
+    [2.0, 4.0]
+    """
+    if isinstance(sum(map(sum, commands), request[0]), float):
+        return _solve_floats(request, commands, slack, start or [0.0] * len(commands))
+    return _solve_many(request, commands, slack, start or [0.0] * len(commands))
+
+
+def _solve_floats(request, commands, slack, start):
+    """`solve` of plain floats."""
+    x = [clip(value, command[5], command[6]) for value, command in zip(start, commands, strict=True)]
+    ends = zip(x, commands, strict=True)
+    side, best = [1.0 if at == c[6] else -1.0 if at == c[5] else 0.0 for at, c in ends], list(x)
+    multipliers, freed = (0.0, 0.0, 0.0), -1
+    for _ in range(ROUNDS):
+        multipliers = p, q, r = _multipliers_floats(request, commands, slack, x, side)
+        share, hit, worst, dropped = 1.0, -1, 0.0, -1
+        for i, (X, Y, N, ease, wanted, low, high) in enumerate(commands):
+            pull = X * p + Y * q + N * r
+            if side[i]:
+                loss = side[i] * ((x[i] - wanted) / ease - pull) if low < high else 0.0
+                if loss > worst and loss > _EDGE * abs(pull):
+                    worst, dropped = loss, i
+                continue
+            best[i] = new = wanted + ease * pull
+            bound = high if new > high else low
+            if (new > high or new < low) and (bound - x[i]) / (new - x[i]) < share:
+                share, hit = (bound - x[i]) / (new - x[i]), i
+        x = [old if at else old + share * (new - old) for old, new, at in zip(x, best, side, strict=True)]
+        if hit >= 0 and hit == freed and share <= 0.0:  # by rounding alone: the bound it was freed from is kept
+            break
+        if hit >= 0:
+            side[hit] = 1.0 if best[hit] > commands[hit][6] else -1.0
+            x[hit] = commands[hit][6] if side[hit] > 0.0 else commands[hit][5]
+        elif dropped >= 0:
+            side[dropped] = 0.0
+        else:
+            break
+        freed = dropped if hit < 0 else -1
+    return x, multipliers
+
+
+def _multipliers_floats(request, commands, slack, x, side):
+    """Multipliers at the optimum of the commands that are free."""
+    X0, Y0, N0 = request
+    a, d, f = slack
+    b = c = e = 0.0
+    for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
+        if at:
+            X0, Y0, N0 = X0 - X * value, Y0 - Y * value, N0 - N * value
+        else:
+            X0, Y0, N0 = X0 - X * wanted, Y0 - Y * wanted, N0 - N * wanted
+            p, q = ease * X, ease * Y
+            a, b, c, d, e, f = a + p * X, b + p * Y, c + p * N, d + q * Y, e + q * N, f + ease * N * N
+    return _three_equations(a, b, c, d, e, f, X0, Y0, N0)
+
+
+def _solve_many(request, commands, slack, start):
+    """`solve` of arrays or tensors, each element by itself."""
+    zero = sum(0.0 * value for command in commands for value in command) + 0.0 * request[0]
+    x = [clip(zero + at, zero + c.low, zero + c.high) for at, c in zip(start, commands, strict=True)]
+    ends = zip(x, commands, strict=True)
+    side = [where(at == c.high, zero + 1.0, where(at == c.low, zero - 1.0, zero)) for at, c in ends]
+    multipliers, done, freed = (zero, zero, zero), zero > 1.0, [zero > 1.0] * len(x)
+    for _ in range(ROUNDS):
+        found = _multipliers(request, commands, slack, x, side)
+        multipliers = tuple(where(done, old, new) for old, new in zip(multipliers, found, strict=True))
+        best, loss, steps = _towards(commands, found, x, side)
+        share, worst = zero + 1.0, zero
+        for step, lost in zip(steps, loss, strict=True):
+            share, worst = minimum(share, step), maximum(worst, lost)
+        whole = share >= 1.0
+        done = done | (whole & (worst <= 0.0))
+        for i, (command, new, old, step, lost) in enumerate(zip(commands, best, x, steps, loss, strict=True)):
+            over, hit, drop = new > command.high, (step <= share) & ~whole, whole & (worst > 0.0) & (lost >= worst)
+            done = done | (hit & freed[i] & (share <= 0.0))
+            bound = where(over, zero + command.high, zero + command.low)
+            x[i] = where(hit, bound, old + share * (new - old))
+            side[i] = where(hit, where(over, zero + 1.0, zero - 1.0), where(drop, zero, side[i]))
+            freed[i] = drop
+        if bool(done.all()):
+            break
+    return x, multipliers
+
+
+def _multipliers(request, commands, slack, x, side):
+    """As `_multipliers_floats`."""
+    X0, Y0, N0 = request
+    a, d, f = slack
+    b = c = e = 0.0
+    for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
+        free = at == 0.0
+        value, ease = where(free, 0.0 * value + wanted, value), where(free, 0.0 * value + ease, 0.0 * value)
+        X0, Y0, N0 = X0 - X * value, Y0 - Y * value, N0 - N * value
+        p, q = ease * X, ease * Y
+        a, b, c, d, e, f = a + p * X, b + p * Y, c + p * N, d + q * Y, e + q * N, f + ease * N * N
+    return _three_equations(a, b, c, d, e, f, X0, Y0, N0)
+
+
+def _towards(commands, multipliers, x, side):
+    """Optimum of the free commands, what keeping each bound costs, and the share of the way to the bound of each."""
+    p, q, r = multipliers
+    best, loss, steps = [], [], []
+    for (X, Y, N, ease, wanted, low, high), at, old in zip(commands, side, x, strict=True):
+        pull, free = X * p + Y * q + N * r, at == 0.0
+        new = where(free, wanted + ease * pull, old)
+        lost = where(0.0 * old + low < high, at * ((old - wanted) / ease - pull), 0.0 * old)
+        way, outside = new - old, (new > high) | (new < low)
+        room = where(new > high, high - old, low - old)
+        best.append(new)
+        loss.append(where(lost > _EDGE * abs(pull), lost, 0.0 * old))
+        steps.append(where(outside, room / where(outside, way, 0.0 * old + 1.0), 0.0 * old + 1.0))
+    return best, loss, steps
+
+
+def _three_equations(a, b, c, d, e, f, X, Y, N):
+    """Solution of three equations with the symmetric matrix of rows (a b c), (b d e), (c e f)."""
+    A, B, C = d * f - e * e, c * e - b * f, b * e - c * d
+    D, E, F = a * f - c * c, b * c - a * e, a * d - b * b
+    over = 1.0 / (a * A + b * B + c * C)
+    return (A * X + B * Y + C * N) * over, (B * X + D * Y + E * N) * over, (C * X + E * Y + F * N) * over

@@ -1,0 +1,228 @@
+"""Thrust allocation by a weighted generalised inverse over rectangular force components.
+
+Each azimuth thruster counts as two units, one forward and one to starboard; their forces are turned back into thrust
+and angle. The inverse knows no limits: the unit furthest beyond its limit of thrust is held there and the others are
+asked for the rest, round by round; while a unit still turns, it gives the part of its force that lies in its direction.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.angles import wrap
+from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust
+from shipcosim.models.core.maths import atan2, clip, cos, hypot, minimum, pi, sin, where
+from shipcosim.models.core.motion import Load
+from shipcosim.models.core.parameters import quantity
+
+_DEG = pi / 180.0
+_UNIT_OF = (0, 0, 1, 1, 2)  # of each force component: port, starboard or tunnel
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExtendedParameters(AllocationParameters):
+    """Two azimuth thrusters that turn, and a tunnel thruster."""
+
+    sway_price: float = quantity(
+        1.0, "1", "price of an azimuth's force to the side over that of its force forward", "choice", minimum=1e-6
+    )
+    azimuth_rate_max: float = quantity(
+        10.0 * _DEG, "rad/s", "quickest turning of a command", "Skulstad 2021, paper V", minimum=0.0
+    )
+    turning_thrust: float = quantity(
+        500.0, "N", "an azimuth turns for forces beyond this; below, it keeps its angle", "assumed", minimum=1.0
+    )
+
+
+class Design(NamedTuple):
+    """Configuration matrix of the force components and the generalised inverses of its parts.
+
+    Parameters
+    ----------
+    effect : tuple of five tuples
+        X, Y, N of one newton of each component: port forward, port to starboard, the same of starboard, tunnel.
+        [1, 1, m]
+    inverses : tuple of sixteen tuples
+        For each set of free units five rows of three, as `pseudo_inverse.Design`. [1, 1, 1/m]
+    """
+
+    effect: tuple
+    inverses: tuple
+
+
+def design(parameters: ExtendedParameters) -> Design:
+    """Weighted generalised inverses for all sets of free units.
+
+    Parameters
+    ----------
+    parameters : ExtendedParameters
+        Units and weights.
+
+    Returns
+    -------
+    Design
+        What `step` needs.
+
+    Notes
+    -----
+    As `pseudo_inverse.design`, over the force components.
+
+    References
+    ----------
+    Extended thrust: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021;
+    Sordalen, Optimal thrust allocation for marine vessels, Control Engineering Practice 5 (1997).
+    """
+    p = parameters
+    effect = (
+        *((1.0, 0.0, -p.port_y), (0.0, 1.0, p.port_x)),
+        *((1.0, 0.0, -p.starboard_y), (0.0, 1.0, p.starboard_x)),
+        (0.0, 1.0, p.tunnel_x),
+    )
+    side = p.azimuth_weight * p.sway_price
+    price = np.array([p.azimuth_weight, side, p.azimuth_weight, side, p.tunnel_weight]) ** -0.5
+    inverses = []
+    for lever in (p.yaw_lever, p.yaw_lever_degraded):
+        scale = np.array([1.0, 1.0, 1.0 / lever])
+        for k in range(8):
+            free = np.array([(k >> unit) & 1 for unit in _UNIT_OF])
+            weighted = scale[:, None] * np.array(effect).T * (price * free)
+            inverse = price[:, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale
+            inverses.append(tuple(map(tuple, inverse.tolist())))
+    return Design(effect, tuple(inverses))
+
+
+def at_rest(tau: Load, *, parameters: ExtendedParameters) -> Allocated:
+    """State at the start: no thrust, angles as the parameters say.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays or tensors
+        Any load: it gives shape and type only. [N, N, N.m]
+    parameters : ExtendedParameters
+        Units.
+
+    Returns
+    -------
+    Allocated
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
+    return no_thrust(tau, (parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi))
+
+
+def step(
+    state: Allocated,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    parameters: ExtendedParameters,
+    design: Design,
+    shares: tuple = (1.0, 1.0, 1.0),
+) -> Allocated:
+    """Commands for a requested load, `h` after the last ones.
+
+    Parameters
+    ----------
+    state : Allocated
+        State at the last commands.
+    tau : tuple of three floats or (...) arrays or tensors
+        Requested load, body frame. [N, N, N.m]
+    available : tuple of three bools or (...) arrays or tensors of bool
+        Whether port, starboard and tunnel can be used; the others take over what they can. [1]
+    h : float
+        Time since the last commands, for the limits of the rates. [s]
+    parameters : ExtendedParameters
+        Units, limits and weights.
+    design : Design
+        Made of the same parameters by `design`.
+    shares : tuple of three floats or (...) arrays or tensors
+        Shares of their limits of thrust that power leaves to port, starboard and tunnel. [1]
+
+    Returns
+    -------
+    Allocated
+        Commands, the load they give, and whether limits of thrust or missing units keep them from meeting the request.
+
+    References
+    ----------
+    As `design`; that thrust beyond a limit is asked of the free units is assumed.
+    """
+    p, reach = parameters, parameters.thrust_rate_max * h
+    forces = _within_limits(tau, available, shares, parameters=p, design=design)
+    X, Y, N = missed(tau, forces, design.effect)
+    saturated = X**2 + Y**2 + (N / p.yaw_lever) ** 2 > 1.0
+    thrusts, angles = [], []
+    for unit in (0, 1):
+        X, Y = forces[2 * unit : 2 * unit + 2]
+        old, share = state.azimuths[unit], shares[unit]
+        angle = _turned(old, X, Y, available[unit], h, parameters=p)
+        along = clip(X * cos(angle) + Y * sin(angle), p.azimuth_thrust_min, p.azimuth_thrust_max)
+        limits = share * p.azimuth_thrust_min, share * p.azimuth_thrust_max
+        thrusts.append(_moved(state.thrusts[unit], along, reach, limits, available[unit]))
+        angles.append(angle)
+    limits = -shares[2] * p.tunnel_thrust_max, shares[2] * p.tunnel_thrust_max
+    thrusts.append(_moved(state.thrusts[2], forces[4], reach, limits, available[2]))
+    return Allocated(tuple(thrusts), (*angles, 0.5 * pi), *_load(thrusts, angles, design.effect), saturated)
+
+
+def _turned(old, X, Y, usable, h, *, parameters):
+    """Angle of an azimuth on its way to the direction of a force."""
+    far = (X * X + Y * Y > parameters.turning_thrust**2) & usable
+    wanted = atan2(where(far, Y, sin(old)), where(far, X, cos(old)))
+    reach = parameters.azimuth_rate_max * h
+    return wrap(old + clip(wrap(wanted - old), -reach, reach))
+
+
+def _moved(old, new, reach, limits, usable):
+    """Thrust on its way to another one; what exceeds the limits that power leaves is taken back at once."""
+    return where(usable, clip(old + clip(new - old, -reach, reach), *limits), 0.0 * new)
+
+
+def _load(thrusts, angles, effect):
+    """Load of three thrusts. [N, N, N.m]"""
+    forces = []
+    for thrust, angle in zip(thrusts, angles, strict=False):
+        forces += [thrust * cos(angle), thrust * sin(angle)]
+    return load((*forces, thrusts[2]), effect)
+
+
+def _within_limits(tau, available, shares, *, parameters, design):
+    """Force components for a load, without limits of rates; what the unit furthest beyond cannot give others take."""
+    p = parameters
+    free = [where(usable, 1.0, 0.0) for usable in available]
+    missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
+    most = shares[0] * p.azimuth_thrust_max, shares[1] * p.azimuth_thrust_max, shares[2] * p.tunnel_thrust_max
+    held = forces = [0.0 * tau[0]] * 5
+    for _ in range(3):
+        chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
+        more = _solve(missed(tau, held, design.effect), chosen, design.inverses)
+        forces = [f + g for f, g in zip(held, more, strict=True)]
+        port, starboard, tunnel = hypot(forces[0], forces[1]), hypot(forces[2], forces[3]), abs(forces[4])
+        parts = [
+            minimum(1.0, limit / where(size > 1.0, size, 1.0))
+            for size, limit in zip((port, starboard, tunnel), most, strict=True)
+        ]
+        worst = minimum(minimum(parts[0], parts[1]), parts[2])
+        over = [(part < 1.0) & (part <= worst) for part in parts]
+        forces = [force * parts[unit] for force, unit in zip(forces, _UNIT_OF, strict=True)]
+        held = [where(over[unit], f, h) for f, h, unit in zip(forces, held, _UNIT_OF, strict=True)]
+        free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
+    return forces
+
+
+def _solve(tau, chosen, inverses):
+    """Force components of the free units for a load, 0 for the others."""
+    X, Y, N = tau
+    if isinstance(chosen, float):
+        return [a * X + b * Y + c * N for a, b, c in inverses[int(chosen)]]
+    found = [0.0 * X] * 5
+    for number, rows in enumerate(inverses):
+        here = chosen == number
+        found = [where(here, a * X + b * Y + c * N, old) for (a, b, c), old in zip(rows, found, strict=True)]
+    return found

@@ -1,0 +1,192 @@
+"""One step of the neural allocator: what the network proposes, and the quadratic program that makes it safe.
+
+The network's commands keep limits and rates already. The program takes them to the nearest ones that do so and meet
+the request best, as `sqp.nearest_step`; commands that meet it stay as they are.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.models.allocation import neural, sqp
+from shipcosim.models.allocation.neural import Commands, Units
+from shipcosim.models.allocation.units import no_thrust
+from shipcosim.models.core.maths import Arithmetic, library_of, where
+from shipcosim.models.core.motion import Load
+
+
+class Design(NamedTuple):
+    """What a step needs of the parameters.
+
+    Parameters
+    ----------
+    units : Units
+        The units that there are. [as its fields say]
+    numbers : tuple of int
+        Their places among all units. [1]
+    weights : tuple of pairs of (k, m) and (m,) arrays
+        Matrix and offsets of each layer of the network. [1]
+    safety : sqp.Design
+        The same units for the quadratic program. [as its fields say]
+    """
+
+    units: Units
+    numbers: tuple
+    weights: tuple
+    safety: sqp.Design
+
+
+class Remembered(NamedTuple):
+    """State of the law: as `units.Allocated`, and the smoothed request.
+
+    Parameters
+    ----------
+    thrusts, azimuths : tuple of floats or (...) arrays
+        Commands of each unit; angles are not wrapped, so that they have no jumps. [N, rad]
+    tau_X, tau_Y, tau_N : like a thrust
+        Load of these commands, slipstreams considered, body frame. [N, N, N.m]
+    saturated : bool or (...) array of bool
+        True where limits or missing units keep the commands from meeting the request. [1]
+    smooth : tuple of three, like a thrust
+        Smoothed request. [N, N, N.m]
+    """
+
+    thrusts: tuple
+    azimuths: tuple
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
+    saturated: Arithmetic
+    smooth: tuple
+
+
+def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, lever_degraded: float) -> Design:
+    """Design for some units and a trained network.
+
+    Parameters
+    ----------
+    units : Units
+        The units that there are, in vectors of NumPy. [as its fields say]
+    numbers : tuple of int
+        Their places among all units. [1]
+    arrays : dict of str to array
+        Weights: ``1.weights``, ``1.bias`` and so on for each layer. [1]
+    least_degraded : tuple of floats
+        Least thrust of each unit where another is missing: then units that turn may reverse. [N]
+    lever_degraded : float
+        A missed yaw moment weighs as a missed force at this distance where a unit is missing. [m]
+
+    Returns
+    -------
+    Design
+        What `step` needs.
+
+    Raises
+    ------
+    ValueError
+        The network was trained for another number of units.
+
+    References
+    ----------
+    Definition.
+    """
+    weights = tuple((arrays[f"{k}.weights"], arrays[f"{k}.bias"]) for k in range(1, len(arrays) // 2 + 1))
+    trained = weights[-1][0].shape[-1] // 2
+    if trained != len(units.x):
+        raise ValueError(f"the network was trained for {trained} units, the ship has {len(units.x)}")
+    rows = zip(*(np.asarray(values).tolist() for values in units[:10]), least_degraded, strict=True)
+    safety = sqp.designed(tuple(_unit(*row) for row in rows), 0.0, units.lever, lever_degraded)
+    return Design(units, numbers, weights, safety)
+
+
+def _unit(x, y, azimuth, turn, first, last, least, most, rate, full_power, degraded):
+    """A unit as the quadratic program knows it."""
+    interval = (first, last) if turn > 0.0 else (azimuth, azimuth)
+    return sqp.Unit(x, y, least, most, degraded, rate, *interval, turn, max(full_power, 1.0) / most**1.5)
+
+
+def resting(tau: Load, azimuths: tuple) -> Remembered:
+    """State at the start: no thrust.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays
+        Any load: it gives shape and type only. [N, N, N.m]
+    azimuths : tuple of floats
+        Angles of the units. [rad]
+
+    Returns
+    -------
+    Remembered
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
+    return Remembered(*no_thrust(tau, azimuths), (0.0 * tau[0],) * 3)
+
+
+def step(
+    state: Remembered, tau: Load, available: tuple, h: float, *, design: Design, shares: tuple | None = None
+) -> Remembered:
+    """Commands for a requested load, `h` after the last ones.
+
+    Parameters
+    ----------
+    state : Remembered
+        State at the last commands.
+    tau : tuple of three floats or (...) arrays
+        Requested load, body frame. [N, N, N.m]
+    available : tuple of bools or (...) arrays of bool
+        Whether the units can be used; one that cannot gives 0 at once and keeps its angle. [1]
+    h : float
+        Time since the last commands. [s]
+    design : Design
+        Made by `designed`.
+    shares : tuple of floats or (...) arrays, optional
+        Shares of their limits of thrust that power leaves to the units. [1]
+
+    Returns
+    -------
+    Remembered
+        Commands and the load they give.
+
+    References
+    ----------
+    As `neural.propose` and `sqp.nearest_step`.
+    """
+    units, numbers = design.units, design.numbers
+    left = [shares[k] if shares else 1.0 for k in numbers]
+    usable = [where(available[k], share + 0.0 * tau[0], 0.0 * tau[0]) for k, share in zip(numbers, left, strict=True)]
+    thrusts, azimuths = (tuple(of[k] for k in numbers) for of in (state.thrusts, state.azimuths))
+    before = Commands(_vector(thrusts), _vector(azimuths), _vector(state.smooth))
+    proposed = neural.propose(before, _vector(tau), _vector(usable), h, units=units, weights=design.weights)
+    lost = _entries(neural.taken(before.thrusts, before.azimuths, units=units))  # within a step it hardly changes
+    zero = 0.0 * tau[0]
+    last = sqp.Turned(thrusts, azimuths, zero, zero, zero, zero > 0.0, (zero, zero, zero))
+    asked = tuple(axis + loss for axis, loss in zip(tau, lost, strict=True))
+    on = tuple(available[k] for k in numbers)
+    commands = _entries(proposed.thrusts), _entries(proposed.azimuths)
+    safe = sqp.nearest_step(last, *commands, asked, on, h, design=design.safety, shares=tuple(left))
+    lost = _entries(neural.taken(_vector(safe.thrusts), _vector(safe.azimuths), units=units))
+    X, Y, N = (axis - loss for axis, loss in zip((safe.tau_X, safe.tau_Y, safe.tau_N), lost, strict=True))
+    all_thrusts, all_azimuths = list(state.thrusts), list(state.azimuths)
+    for k, thrust, azimuth in zip(numbers, safe.thrusts, safe.azimuths, strict=True):
+        all_thrusts[k], all_azimuths[k] = thrust, azimuth
+    smooth = _entries(proposed.smooth)
+    return Remembered(tuple(all_thrusts), tuple(all_azimuths), X, Y, N, safe.saturated, smooth)
+
+
+def _vector(values):
+    """Numbers, arrays or tensors along a new last axis."""
+    return np.array(values) if isinstance(values[0], float) else library_of(*values).stack(list(values), -1)
+
+
+def _entries(vector):
+    """The entries of the last axis, floats where they are numbers; three times 0 of nothing taken."""
+    if isinstance(vector, float):
+        return (vector,) * 3
+    if vector.ndim == 1 and isinstance(vector, np.ndarray):
+        return tuple(vector.tolist())
+    return tuple(vector[..., k] for k in range(vector.shape[-1]))

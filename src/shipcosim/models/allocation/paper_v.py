@@ -1,0 +1,202 @@
+"""The neural allocator of paper V: the encoder of an autoencoder turns a requested load into commands.
+
+What it learned of limits, rates, power and sectors it keeps as well as it learned it; nothing holds it to them. It
+knows no missing units: one that is lost gives nothing, and the others do not take over.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper V.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.models.allocation.units import NamedUnits
+from shipcosim.models.core.maths import Arithmetic, clip, cos, sin
+from shipcosim.models.core.motion import Load
+from shipcosim.models.core.networks import Memory, Network, evaluate, network_of
+
+WIDTHS = (64, 64)
+"""Units of the encoder's LSTM layers. [1]"""
+_TOLERANCE = 1e-6  # of a sample: steps add up to a little less
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaperVParameters(NamedUnits):
+    """Two azimuth thrusters and a tunnel thruster; what the network knows of them lies in its weights."""
+
+
+class Design(NamedTuple):
+    """What `step` needs of the training.
+
+    Parameters
+    ----------
+    encoder : Network
+        The network from standardised loads to commands. [1]
+    mean, std : (3,) array
+        By which loads are standardised. [N, N, N.m]
+    ranges : (5,) array
+        By which outputs are multiplied: tunnel, port thrust, port azimuth, starboard thrust, starboard azimuth.
+        [N, N, rad, N, rad]
+    sample_time : float
+        Time between two evaluations. [s]
+    """
+
+    encoder: Network
+    mean: np.ndarray
+    std: np.ndarray
+    ranges: np.ndarray
+    sample_time: float
+
+
+class PaperVState(NamedTuple):
+    """State of the allocator.
+
+    Parameters
+    ----------
+    thrusts : tuple of three floats
+        Commanded thrust of port, starboard and tunnel. [N]
+    azimuths : tuple of three floats
+        Commanded direction of port and starboard, clockwise from the bow; that of the tunnel. [rad]
+    tau_X, tau_Y, tau_N : float
+        Load of these commands, body frame. [N, N, N.m]
+    saturated : bool
+        True where a missing unit or a lack of power changes what the network commands. [1]
+    commands : tuple of five floats
+        Last outputs of the network, as `Design.ranges`. [N, N, rad, N, rad]
+    memory : tuple of Memory
+        Memory of the network. [1]
+    since : float
+        Time since the last sample. [s]
+    """
+
+    thrusts: tuple
+    azimuths: tuple
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
+    saturated: Arithmetic
+    commands: tuple
+    memory: tuple[Memory, ...]
+    since: float
+
+
+def design(arrays: Mapping[str, np.ndarray]) -> Design:
+    """What `step` needs, from what training left.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+        Weights of the encoder, ``mean``, ``std``, ``ranges`` and ``sample_time``. [as Design]
+
+    Returns
+    -------
+    Design
+        What `step` needs. [as its fields]
+
+    Raises
+    ------
+    KeyError
+        An array is missing.
+    """
+    plain = (arrays["mean"], arrays["std"], arrays["ranges"], float(arrays["sample_time"]))
+    return Design(network_of(arrays, "encoder"), *plain)
+
+
+def at_rest(tau: Load, *, parameters: PaperVParameters) -> PaperVState:
+    """State at the start: no thrust, an empty memory, and a sample is due.
+
+    Parameters
+    ----------
+    tau : tuple of three floats
+        Any load. [N, N, N.m]
+    parameters : PaperVParameters
+        Directions at the start.
+
+    Returns
+    -------
+    PaperVState
+        The state.
+    """
+    azimuths = (parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * np.pi)
+    commands = (0.0, 0.0, azimuths[0], 0.0, azimuths[1])
+    memory = tuple(Memory(np.zeros(width), np.zeros(width)) for width in WIDTHS)
+    return PaperVState((0.0,) * 3, azimuths, 0.0, 0.0, 0.0, False, commands, memory, inf)
+
+
+def step(
+    state: PaperVState,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    parameters: PaperVParameters,
+    design: Design,
+    shares: tuple = (1.0, 1.0, 1.0),
+) -> PaperVState:
+    """Commands for a requested load, `h` after the last ones.
+
+    Parameters
+    ----------
+    state : PaperVState
+        State at the last commands.
+    tau : tuple of three floats
+        Requested load, body frame. [N, N, N.m]
+    available : tuple of three bools
+        Whether port, starboard and tunnel can be used. [1]
+    h : float
+        Time since the last commands. [s]
+    parameters : PaperVParameters
+        Places and limits.
+    design : Design
+        What training left.
+    shares : tuple of three floats
+        Shares of their limits of thrust that power leaves to port, starboard and tunnel. [1]
+
+    Returns
+    -------
+    PaperVState
+        Commands and the load that they give.
+    """
+    commands, memory, since = state.commands, state.memory, state.since
+    if since > design.sample_time * (1.0 - _TOLERANCE):
+        found, memory = evaluate(design.encoder, (np.array(tau) - design.mean) / design.std, memory)
+        commands, since = tuple((found * design.ranges).tolist()), 0.0
+    tunnel, port, port_azimuth, starboard, starboard_azimuth = commands
+    wanted, azimuths = (port, starboard, tunnel), (port_azimuth, starboard_azimuth, 0.5 * np.pi)
+    limits = zip(wanted, available, shares, _limits(parameters), strict=True)
+    thrusts = tuple(clip(f, share * low, share * high) if on else 0.0 for f, on, share, (low, high) in limits)
+    load = given((thrusts, azimuths), parameters=parameters)
+    return PaperVState(thrusts, azimuths, *load, thrusts != wanted, commands, memory, since + h)
+
+
+def given(commands: tuple[tuple, tuple], *, parameters: NamedUnits) -> Load:
+    """Load of commands, by the full configuration matrix.
+
+    Parameters
+    ----------
+    commands : tuple of two tuples of three floats or (...) arrays
+        Thrusts and azimuths of port, starboard and tunnel. [N, rad]
+    parameters : NamedUnits
+        Places.
+
+    Returns
+    -------
+    tuple of three, like a thrust
+        X, Y, N. [N, N, N.m]
+    """
+    (port, starboard, tunnel), (a, b, _) = commands
+    p = parameters
+    X1, Y1, X2, Y2 = port * cos(a), port * sin(a), starboard * cos(b), starboard * sin(b)
+    N = p.port_x * Y1 - p.port_y * X1 + p.starboard_x * Y2 - p.starboard_y * X2 + p.tunnel_x * tunnel
+    return X1 + X2, Y1 + Y2 + tunnel, N
+
+
+def _limits(p):
+    """Least and most thrust of port, starboard and tunnel. [N]"""
+    azimuth = (p.azimuth_thrust_min, p.azimuth_thrust_max)
+    return azimuth, azimuth, (-p.tunnel_thrust_max, p.tunnel_thrust_max)

@@ -1,0 +1,375 @@
+"""Thrusts and angles of any units by sequential quadratic programming, one convex program a step.
+
+Around the last commands (f, α) the program of `box_qp` seeks changes (Δf, Δα) of least price that meet the request:
+
+    Σ_i  c_i |f_i + Δf_i|^1.5 (to second order)  +  Σ_i q_i Δα_i² / 2  +  slack,
+    Σ_i  b_i(α_i) Δf_i + f_i b_i'(α_i) Δα_i + s = τ - Σ_i b_i(α_i) f_i,      b(α) = (cos α, sin α, x sin α - y cos α)
+
+with the limits of thrust, angle and their rates as bounds. q_i is the curvature of the power along α_i, f_i b_i·λ with
+the last multipliers λ, times 1 + T/h, so that a unit turns towards the cheapest direction with the time constant T.
+A second program for the thrusts alone, at the new angles, takes away the error of the linearised effect.
+
+A unit keeps to its interval of angles. Outside of it, as at the start, it gives no thrust and turns to its nearer end.
+A unit that turns keeps at least its least thrust, so that it never reverses and turning has an effect at once. Only
+where another unit is missing it may reverse: those that are left could not push the other way in time.
+"""
+
+from typing import NamedTuple
+
+from shipcosim.models.allocation.box_qp import Command, solve
+from shipcosim.models.allocation.units import no_thrust
+from shipcosim.models.core.maths import Arithmetic, atan2, clip, maximum, minimum, sincos, sqrt, where
+from shipcosim.models.core.motion import Load
+
+_GENTLE = 0.02  # share of a unit's largest thrust below which its price is taken as quadratic
+_STIR = 0.004  # share of a unit's largest thrust that turning reckons with at least, so that a unit at rest turns
+_TIGHT = 1e-6  # load that is missed for the dearest unit's price, over the largest thrust
+_NEAR = 1e-4  # N that are missed for one newton of distance from a proposed command
+
+
+class Unit(NamedTuple):
+    """A thruster as the law knows it.
+
+    Parameters
+    ----------
+    x, y : float
+        Place, forward and to starboard of the origin. [m]
+    least, most : float
+        Limits of thrust; `least` is 0 or more for a unit that turns, and negative for one that reverses. [N]
+    least_degraded : float
+        Least thrust where another unit is missing, negative where the unit may then reverse. [N]
+    thrust_rate : float
+        Quickest change of the thrust. [N/s]
+    first, last : float
+        Interval of angles, clockwise from the bow; without limits -inf, inf. [rad]
+    azimuth_rate : float
+        Quickest turning; 0 of a fixed direction. [rad/s]
+    price : float
+        Power over thrust^1.5, in any unit that is the same for all. [W/N^1.5]
+    """
+
+    x: float
+    y: float
+    least: float
+    most: float
+    least_degraded: float
+    thrust_rate: float
+    first: float
+    last: float
+    azimuth_rate: float
+    price: float
+
+
+class Design(NamedTuple):
+    """What a step needs of the parameters.
+
+    Parameters
+    ----------
+    units : tuple of Unit
+        The units; one whose `most` is 0 is none. [as of Unit]
+    turning_time : float
+        Time constant of turning towards the cheapest direction. [s]
+    yaw_lever, yaw_lever_degraded : float
+        A missed yaw moment weighs as a missed force at this distance; the same where a unit is missing. [m]
+    dearest : float
+        Largest price of one newton more of a unit. [W/N]
+    """
+
+    units: tuple
+    turning_time: float
+    yaw_lever: float
+    yaw_lever_degraded: float
+    dearest: float
+
+
+class Turned(NamedTuple):
+    """State of the law.
+
+    Parameters
+    ----------
+    thrusts, azimuths : tuple of floats or (...) arrays or tensors
+        Commands of each unit; angles are not wrapped, so that they have no jumps. [N, rad]
+    tau_X, tau_Y, tau_N : like a thrust
+        Load of these commands, body frame. [N, N, N.m]
+    saturated : bool or (...) array or tensor of bool
+        True where limits or missing units keep the commands from meeting the request. [1]
+    marginal : tuple of three, like a thrust
+        Power that one unit more of each load would cost. [W/N, W/N, W/(N.m)]
+    """
+
+    thrusts: tuple
+    azimuths: tuple
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
+    saturated: Arithmetic
+    marginal: tuple
+
+
+def designed(units: tuple, turning_time: float, yaw_lever: float, yaw_lever_degraded: float) -> Design:
+    """Design for some units.
+
+    Parameters
+    ----------
+    units : tuple of Unit
+        The units. [as of Unit]
+    turning_time, yaw_lever, yaw_lever_degraded : float
+        As of `Design`. [s, m, m]
+
+    Returns
+    -------
+    Design
+        What `power_step` and `nearest_step` need.
+
+    References
+    ----------
+    Definition.
+    """
+    dearest = max(1.5 * unit.price * sqrt(max(unit.most, -unit.least, 0.0)) for unit in units)
+    return Design(units, turning_time, yaw_lever, yaw_lever_degraded, max(dearest, 1e-9))
+
+
+def resting(tau: Load, azimuths: tuple) -> Turned:
+    """State at the start: no thrust.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays or tensors
+        Any load: it gives shape and type only. [N, N, N.m]
+    azimuths : tuple of floats
+        Angles of the units. [rad]
+
+    Returns
+    -------
+    Turned
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
+    return Turned(*no_thrust(tau, azimuths), (0.0 * tau[0],) * 3)
+
+
+def power_step(
+    state: Turned, tau: Load, available: tuple, h: float, *, design: Design, shares: tuple | None = None
+) -> Turned:
+    """Commands that meet a requested load at the least power, `h` after the last ones.
+
+    Parameters
+    ----------
+    state : Turned
+        State at the last commands.
+    tau : tuple of three floats or (...) arrays or tensors
+        Requested load, body frame. [N, N, N.m]
+    available : tuple of bools or (...) arrays or tensors of bool
+        Whether the units can be used; one that cannot gives 0 at once and keeps its angle. [1]
+    h : float
+        Time since the last commands, for the limits of the rates. [s]
+    design : Design
+        The units.
+    shares : tuple of floats or (...) arrays or tensors, optional
+        Shares of their limits of thrust that power leaves to the units; what exceeds them is taken back at once,
+        without limit of the rate. [1]
+
+    Returns
+    -------
+    Turned
+        Commands and the load they give.
+
+    References
+    ----------
+    Johansen, Fossen and Berge, Constrained nonlinear control allocation with singularity avoidance using sequential
+    quadratic programming, IEEE Trans. Control Systems Technology 12(1), 2004. Instead of their price of a singular
+    configuration, units that turn keep a least thrust.
+    """
+    slack = _TIGHT * max(unit.most for unit in design.units) / design.dearest
+    return _step(state, tau, available, h, design, shares, slack, None)
+
+
+def nearest_step(
+    state: Turned,
+    thrusts: tuple,
+    azimuths: tuple,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    design: Design,
+    shares: tuple | None = None,
+) -> Turned:
+    """Admissible commands nearest to proposed ones among those that meet a requested load best.
+
+    A safety layer for any law: whatever is proposed, the commands keep the limits of thrust, angle and their rates, and
+    the request is met as far as they allow. Proposed commands that do both are taken as they are. Distances are those
+    of the tips of the thrusts, seen as vectors.
+
+    Parameters
+    ----------
+    state : Turned
+        State at the last commands.
+    thrusts, azimuths : tuple of floats or (...) arrays or tensors
+        Proposed commands; angles may be wrapped. [N, rad]
+    tau, available, h, design, shares
+        As of `power_step`. [N, N, N.m; 1; s; as of Design; 1]
+
+    Returns
+    -------
+    Turned
+        Commands and the load they give.
+
+    References
+    ----------
+    As `power_step`, with another price.
+    """
+
+    return _step(state, tau, available, h, design, shares, _NEAR, (thrusts, azimuths))
+
+
+def _step(state, tau, available, h, design, shares, slack, proposed):
+    """Both programs: changes of thrust and angle, then thrusts at the new angles."""
+    whole = _all(available, design)
+    around = _around(state, available, whole, h, design, shares or (1.0,) * len(design.units))
+    unmet, changes = tau, []
+    for at in around:
+        unmet = _less(unmet, at.effect, at.thrust)
+        ease, wanted, turn_ease, turn = (
+            _nearest(at, *proposed) if proposed else _cheapest(at, state.marginal, design, h)
+        )
+        X, Y, N = at.effect
+        changes.append(Command(X, Y, N, ease, wanted, at.low - at.thrust, at.high - at.thrust))
+        if at.unit.azimuth_rate > 0.0:
+            (X, Y, N), stir = at.turning, _STIR * at.unit.most
+            f = where(abs(at.thrust) < stir, stir + 0.0 * at.thrust, at.thrust)
+            changes.append(Command(f * X, f * Y, f * N, turn_ease, turn, at.left, at.right))
+    lever = where(whole, design.yaw_lever, design.yaw_lever_degraded)
+    slacks = (slack, slack, slack * lever * lever)
+    found, marginal = solve(unmet, changes, slacks)
+    turned, forces, near, unmet = [], [], [], tau
+    for at in around:
+        command, near, found = changes[len(changes) - len(found)], [*near, found[0]], found[1:]
+        angle = at.azimuth
+        if at.unit.azimuth_rate > 0.0:
+            angle, found = clip(angle + found[0], at.first, at.last), found[1:]
+        effect = X, Y, N = _effect(at.unit, *sincos(angle))
+        turned.append(angle)
+        forces.append(command._replace(X=X, Y=Y, N=N))
+        unmet = _less(unmet, effect, at.thrust)
+    found = solve(unmet, forces, slacks, near)[0]
+    thrusts = [clip(at.thrust + change, at.low, at.high) for at, change in zip(around, found, strict=True)]
+    return _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
+
+
+def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design):
+    """The state of new commands."""
+    zero = 0.0 * tau[0]
+    all_thrusts, azimuths, unmet, moving = [zero] * len(state.thrusts), list(state.azimuths), tau, zero > 0.0
+    for at, f, angle, force in zip(around, thrusts, turned, forces, strict=True):
+        all_thrusts[at.index], azimuths[at.index] = f, angle
+        unmet = _less(unmet, force[:3], f)
+        moving = moving | (abs(f - at.thrust) > 0.999 * at.unit.thrust_rate * h)
+        if at.unit.azimuth_rate > 0.0:
+            moving = moving | (abs(angle - at.azimuth) > 0.999 * at.unit.azimuth_rate * h)
+    X, Y, N = unmet
+    missed = X * X + Y * Y + (N / design.yaw_lever) ** 2 > 1.0
+    load = (tau[0] - X, tau[1] - Y, tau[2] - N)
+    return Turned(tuple(all_thrusts), tuple(azimuths), *load, missed & (moving == False), marginal)  # noqa: E712
+
+
+class _Around(NamedTuple):
+    """A unit at its last command, and the bounds of the next."""
+
+    index: int
+    unit: Unit
+    thrust: Arithmetic
+    azimuth: Arithmetic
+    effect: tuple[Arithmetic, Arithmetic, Arithmetic]
+    turning: tuple[Arithmetic, Arithmetic, Arithmetic]
+    low: Arithmetic
+    high: Arithmetic
+    left: Arithmetic
+    right: Arithmetic
+    first: Arithmetic
+    last: Arithmetic
+
+
+def _around(state, available, whole, h, design, shares):
+    """The units that there are."""
+    found = []
+    units = zip(design.units, state.thrusts, state.azimuths, available, shares, strict=True)
+    for index, (unit, f, angle, on, share) in enumerate(units):
+        if unit.most <= 0.0:
+            continue
+        s, c = sincos(angle)
+        turning = (-s, c, unit.x * c + unit.y * s)
+        bounds = _bounds(
+            unit, f, angle, on, share * where(whole, unit.least, unit.least_degraded), share * unit.most, h
+        )
+        found.append(_Around(index, unit, f, angle, _effect(unit, s, c), turning, *bounds))
+    return found
+
+
+def _bounds(unit, f, angle, on, least, most, h):
+    """Least and largest next thrust, and change of the angle; least and largest next angle."""
+    reach = unit.thrust_rate * h
+    reverses, high = least < 0.0, minimum(most, f + reach)
+    low = where(reverses, clip(f - reach, least, most), minimum(clip(least, f - reach, f + reach), high))
+    high = where(reverses, clip(f + reach, least, most), high)
+    if unit.azimuth_rate <= 0.0:
+        return where(on, low, 0.0 * low), where(on, high, 0.0 * high), 0.0, 0.0, angle, angle
+    turn, end = unit.azimuth_rate * h, clip(angle, unit.first, unit.last)
+    inside, fade = end == angle, clip(0.0 * f, f - reach, f + reach)
+    back = where(abs(f) > 0.0, 0.0 * angle, clip(end - angle, -turn, turn))
+    left = where(inside, maximum(unit.first - angle, -turn), back)
+    right = where(inside, minimum(unit.last - angle, turn), back)
+    return (
+        where(on, where(inside, low, fade), 0.0 * f),
+        where(on, where(inside, high, fade), 0.0 * f),
+        where(on, left, 0.0 * f),
+        where(on, right, 0.0 * f),
+        where(inside, unit.first + 0.0 * f, angle + left),
+        where(inside, unit.last + 0.0 * f, angle + right),
+    )
+
+
+def _cheapest(at, marginal, design, h):
+    """Ease and target of the changes of thrust and angle by the power's price."""
+    unit, f = at.unit, at.thrust
+    k, size, gentle = 1.5 * unit.price, abs(f), _GENTLE * max(unit.most, -unit.least)
+    astern = -min(unit.least, unit.least_degraded)
+    if astern > 0.0 and astern != unit.most:
+        k = where(f < 0.0, k * (unit.most / astern) ** 1.5, k)
+    firm = maximum(size, gentle)
+    root = sqrt(firm)
+    above = where(size > gentle, 2.0, 1.0)
+    ease, wanted = above * root / k, -above * f
+    if unit.azimuth_rate <= 0.0:
+        return ease, wanted, 0.0, 0.0
+    (X, Y, N), (p, q, r) = at.effect, marginal
+    pull = X * p + Y * q + N * r
+    pull = maximum(where(f < 0.0, -pull, pull), k * sqrt(gentle))
+    return ease, wanted, 1.0 / (firm * pull * (1.0 + design.turning_time / h)), 0.0
+
+
+def _nearest(at, thrusts, azimuths):
+    """The same by the distance from proposed commands."""
+    f = at.thrust
+    arm = maximum(abs(f), _GENTLE * at.unit.most)
+    s, c = sincos(azimuths[at.index] - at.azimuth)
+    return 1.0, clip(thrusts[at.index], at.low, at.high) - f, 1.0 / (arm * arm), clip(atan2(s, c), at.left, at.right)
+
+
+def _effect(unit: Unit, s: Arithmetic, c: Arithmetic) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+    """Load of one newton at an angle of given sine and cosine."""
+    return c, s, unit.x * s - unit.y * c
+
+
+def _less(tau, effect, f):
+    """A load without that of a thrust."""
+    return tau[0] - effect[0] * f, tau[1] - effect[1] * f, tau[2] - effect[2] * f
+
+
+def _all(available, design):
+    """Whether no unit is missing."""
+    missing = sum(where(on, 0.0, 1.0) for on, unit in zip(available, design.units, strict=True) if unit.most > 0.0)
+    return missing < 0.5

@@ -1,0 +1,216 @@
+"""What allocators share: two azimuth thrusters and a tunnel thruster as they know them, commands and their power."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from shipcosim.models.core.maths import Arithmetic, maximum, sqrt, where
+from shipcosim.models.core.motion import Load
+from shipcosim.models.core.parameters import required
+
+
+@dataclass(frozen=True, kw_only=True)
+class NamedUnits:
+    """Places and limits of two azimuth thrusters and a tunnel thruster."""
+
+    port_x: float = required("m", "port azimuth forward of the origin")
+    port_y: float = required("m", "port azimuth to starboard of the origin")
+    starboard_x: float = required("m", "starboard azimuth forward of the origin")
+    starboard_y: float = required("m", "starboard azimuth to starboard of the origin")
+    tunnel_x: float = required("m", "tunnel thruster forward of the origin")
+    port_azimuth: float = required("rad", "angle of the port azimuth at the start; fixed where the law turns no unit")
+    starboard_azimuth: float = required("rad", "the same of the starboard azimuth")
+    azimuth_thrust_min: float = required("N", "most thrust astern of an azimuth", maximum=0.0)
+    azimuth_thrust_max: float = required("N", "most thrust ahead of an azimuth", minimum=0.0)
+    tunnel_thrust_max: float = required("N", "most thrust of the tunnel thruster to either side", minimum=0.0)
+    thrust_rate_max: float = required("N/s", "quickest change of a command", minimum=0.0)
+    yaw_lever: float = required("m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1)
+    yaw_lever_degraded: float = required("m", "the same where a unit is missing: position before heading", minimum=0.1)
+
+
+class Allocated(NamedTuple):
+    """State of an allocator: its last commands and what they give.
+
+    A law that has to remember more has a record of its own with these fields and more.
+
+    Parameters
+    ----------
+    thrusts : tuple of three or six floats or (...) arrays or tensors
+        Commanded thrust of each unit: port, starboard, tunnel; or unit 1 to 6. [N]
+    azimuths : tuple, as many
+        Commanded direction of each unit, clockwise from the bow. [rad]
+    tau_X, tau_Y, tau_N : like a thrust
+        Load of these commands, body frame. [N, N, N.m]
+    saturated : bool or (...) array or tensor of bool
+        True where limits of thrust or missing units keep the commands from meeting the request. [1]
+    """
+
+    thrusts: tuple
+    azimuths: tuple
+    tau_X: Arithmetic
+    tau_Y: Arithmetic
+    tau_N: Arithmetic
+    saturated: Arithmetic
+
+
+def no_thrust(tau: Load, azimuths: tuple) -> Allocated:
+    """State at the start: no thrust.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays or tensors
+        Any load: it gives shape and type only. [N, N, N.m]
+    azimuths : tuple of floats
+        Angles of the units. [rad]
+
+    Returns
+    -------
+    Allocated
+        The state.
+
+    References
+    ----------
+    Definition.
+    """
+    zero = 0.0 * tau[0]
+    angles = tuple(zero + angle for angle in azimuths)
+    return Allocated((zero,) * len(azimuths), angles, zero, zero, zero, zero > 0.0)
+
+
+def used_shares(thrusts: tuple, least: tuple, most: tuple) -> tuple:
+    """Shares of their limits of thrust that units are commanded.
+
+    Parameters
+    ----------
+    thrusts : tuple of floats or (...) arrays or tensors
+        Commanded thrusts. [N]
+    least, most : tuple of floats, as many
+        Limits of thrust, astern negative; a unit without thrust has the share 0. [N]
+
+    Returns
+    -------
+    tuple, as many
+        0 to 1. [1]
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    >>> used_shares((30e3, -15e3, 0.0), (-30e3, -30e3, 0.0), (60e3, 60e3, 0.0))
+    (0.5, 0.5, 0.0)
+    """
+    limits = zip(thrusts, least, most, strict=True)
+    return tuple(abs(f) / maximum(where(f < 0.0, -low, high), 1e-9) for f, low, high in limits)
+
+
+def thruster_power(shares: tuple, full: tuple) -> Arithmetic:
+    """Power that commands take, all units together: P = P_full (T / T_max)^1.5.
+
+    Parameters
+    ----------
+    shares : tuple of floats or (...) arrays or tensors
+        As of `used_shares`. [1]
+    full : tuple of floats, as many
+        Power of each unit at its limit of thrust. [W]
+
+    Returns
+    -------
+    like a share
+        Power. [W]
+
+    References
+    ----------
+    Power over thrust of a propeller at bollard: abs(T)^1.5.
+
+    Examples
+    --------
+    >>> thruster_power((1.0, 0.25, 0.0), (100e3, 80e3, 50e3))
+    110000.0
+    """
+    return sum(most * (share * sqrt(maximum(share, 1e-12))) for share, most in zip(shares, full, strict=True))
+
+
+def load(thrusts: Sequence, effect: tuple) -> Load:
+    """Load of thrusts, B f.
+
+    Parameters
+    ----------
+    thrusts : sequence of floats or (...) arrays or tensors
+        Thrusts of the units, or force components. [N]
+    effect : tuple of tuples of three, as many
+        Load of one newton of each: X, Y, N. [1, 1, m]
+
+    Returns
+    -------
+    tuple of three, like a thrust
+        X, Y, N. [N, N, N.m]
+
+    References
+    ----------
+    Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.4.
+
+    Examples
+    --------
+    >>> load((1e3, 2e3), ((1.0, 0.0, 2.0), (0.0, 1.0, -5.0)))
+    (1000.0, 2000.0, -8000.0)
+    """
+    X = Y = N = 0.0
+    for thrust, (x, y, n) in zip(thrusts, effect, strict=True):
+        X, Y, N = X + x * thrust, Y + y * thrust, N + n * thrust
+    return X, Y, N
+
+
+def missed(tau: Load, thrusts: Sequence, effect: tuple) -> Load:
+    """Load that thrusts leave unmet.
+
+    Parameters
+    ----------
+    tau : tuple of three floats or (...) arrays or tensors
+        Requested load, body frame. [N, N, N.m]
+    thrusts, effect : sequence and tuple
+        As of `load`. [N; 1, 1, m]
+
+    Returns
+    -------
+    tuple of three, like tau
+        X, Y, N. [N, N, N.m]
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    >>> missed((3e3, 2e3, 0.0), (1e3, 2e3), ((1.0, 0.0, 2.0), (0.0, 1.0, -5.0)))
+    (2000.0, 0.0, 8000.0)
+    """
+    X, Y, N = load(thrusts, effect)
+    return tau[0] - X, tau[1] - Y, tau[2] - N
+
+
+def slack(tau: Load, given: Load) -> Load:
+    """What commands leave unmet of a requested load; differences below a millionth are rounding and count as none.
+
+    Parameters
+    ----------
+    tau, given : tuple of three floats or (...) arrays or tensors
+        Requested load, and load of the commands, body frame. [N, N, N.m]
+
+    Returns
+    -------
+    tuple of three, like tau
+        Request minus what is given. [N, N, N.m]
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    >>> slack((3e3, 0.0, 1e4), (1e3, 1e-12, 1e4))
+    (2000.0, 0.0, 0.0)
+    """
+    X, Y, N = (where(abs(a - b) < 1e-6, 0.0 * a, a - b) for a, b in zip(tau, given, strict=True))
+    return X, Y, N

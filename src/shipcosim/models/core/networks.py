@@ -1,0 +1,198 @@
+"""Trained networks: dense layers and LSTM layers with their memory, from weights as arrays.
+
+References
+----------
+Hochreiter, Schmidhuber, Long short-term memory, Neural Computation 9, 1997; with the forget gate of Gers, Schmidhuber,
+Cummins, Learning to forget, Neural Computation 12, 2000.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Layer(NamedTuple):
+    """Weights of a layer.
+
+    Parameters
+    ----------
+    weights : (outputs, inputs) array
+        Of a dense layer. Of an LSTM layer of n units (4 n, inputs + n), for inputs and memory: rows of the input gate,
+        the forget gate, the cell and the output gate. [1]
+    bias : (outputs,) array
+        Added to them. [1]
+    """
+
+    weights: np.ndarray
+    bias: np.ndarray
+
+
+class Memory(NamedTuple):
+    """What an LSTM layer keeps from sample to sample.
+
+    Parameters
+    ----------
+    output, cell : (..., n) array
+        Last outputs of the layer, and the contents of its cells. [1]
+    """
+
+    output: np.ndarray
+    cell: np.ndarray
+
+
+class Network(NamedTuple):
+    """LSTM layers and a dense layer without activation.
+
+    Parameters
+    ----------
+    lstm : tuple of Layer
+        LSTM layers, in their order. [1]
+    dense : Layer
+        The last layer. [1]
+    """
+
+    lstm: tuple[Layer, ...]
+    dense: Layer
+
+
+def read_arrays(path: Path) -> dict[str, np.ndarray]:
+    """Arrays of an .npz file.
+
+    Parameters
+    ----------
+    path : Path
+        The file. [no unit]
+
+    Returns
+    -------
+    dict of str to array
+        Arrays by their names, in double precision. [as their names say]
+
+    Raises
+    ------
+    OSError, ValueError
+        The file cannot be read, or is no .npz file of numbers.
+    """
+    with np.load(path, allow_pickle=False) as file:
+        return {name: np.asarray(file[name], dtype=float) for name in file.files}
+
+
+def network_of(arrays: Mapping[str, np.ndarray], name: str) -> Network:
+    """A network from its arrays.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+        ``NAME.lstm.1.weights``, ``NAME.lstm.1.bias`` and so on for each LSTM layer, ``NAME.dense.weights`` and
+        ``NAME.dense.bias``. [1]
+    name : str
+        Name of the network.
+
+    Returns
+    -------
+    Network
+        [1]
+
+    Raises
+    ------
+    KeyError
+        An array is missing.
+    """
+    layers = sum(key.startswith(f"{name}.lstm.") and key.endswith(".bias") for key in arrays)
+    names = [*(f"lstm.{number}" for number in range(1, layers + 1)), "dense"]
+    *lstm, last = (Layer(arrays[f"{name}.{one}.weights"], arrays[f"{name}.{one}.bias"]) for one in names)
+    return Network(tuple(lstm), last)
+
+
+def empty_memory(network: Network, shape: tuple[int, ...] = ()) -> tuple[Memory, ...]:
+    """Memory before the first sample.
+
+    Parameters
+    ----------
+    network : Network
+        The network.
+    shape : tuple of int
+        Shape of the inputs before their last axis. [1]
+
+    Returns
+    -------
+    tuple of Memory
+        Zeros for each LSTM layer. [1]
+    """
+    sizes = [(*shape, len(layer.bias) // 4) for layer in network.lstm]
+    return tuple(Memory(np.zeros(size), np.zeros(size)) for size in sizes)
+
+
+def dense(x: np.ndarray, layer: Layer) -> np.ndarray:
+    """A dense layer without activation.
+
+    Parameters
+    ----------
+    x : (..., inputs) array
+        Inputs. [1]
+    layer : Layer
+        Weights. [1]
+
+    Returns
+    -------
+    (..., outputs) array
+        W x + b. [1]
+    """
+    return x @ layer.weights.T + layer.bias
+
+
+def lstm_step(x: np.ndarray, memory: Memory, layer: Layer) -> Memory:
+    """One sample of an LSTM layer.
+
+    Parameters
+    ----------
+    x : (..., inputs) array
+        Inputs. [1]
+    memory : Memory
+        Of the sample before. [1]
+    layer : Layer
+        Weights. [1]
+
+    Returns
+    -------
+    Memory
+        Outputs of this sample, and contents of the cells. [1]
+
+    Notes
+    -----
+    The gates are 1/(1 + e^-z) = (1 + tanh(z/2))/2, so that one hyperbolic tangent serves all.
+    """
+    n = memory.cell.shape[-1]
+    z = dense(np.concatenate((x, memory.output), axis=-1), layer)
+    z[..., : 2 * n] *= 0.5
+    z[..., 3 * n :] *= 0.5
+    z = np.tanh(z, out=z)
+    into, keep, new, out = z[..., :n], z[..., n : 2 * n], z[..., 2 * n : 3 * n], z[..., 3 * n :]
+    cell = 0.5 * ((1.0 + keep) * memory.cell + (1.0 + into) * new)
+    return Memory(0.5 * (1.0 + out) * np.tanh(cell), cell)
+
+
+def evaluate(network: Network, x: np.ndarray, memory: tuple[Memory, ...]) -> tuple[np.ndarray, tuple[Memory, ...]]:
+    """Outputs of a network for one sample.
+
+    Parameters
+    ----------
+    network : Network
+        Weights. [1]
+    x : (..., inputs) array
+        Inputs. [1]
+    memory : tuple of Memory
+        Of the sample before, as `empty_memory` before the first. [1]
+
+    Returns
+    -------
+    tuple of (..., outputs) array and tuple of Memory
+        Outputs, memory after this sample. [1, 1]
+    """
+    kept = []
+    for layer, before in zip(network.lstm, memory, strict=True):
+        kept.append(lstm_step(x, before, layer))
+        x = kept[-1].output
+    return dense(x, network.dense), tuple(kept)

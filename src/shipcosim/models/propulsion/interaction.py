@@ -1,0 +1,244 @@
+"""Interaction of thrusters: what a unit's slipstream takes of another's thrust, by distance and angle.
+
+The loss of two units one behind the other, and how it goes when the front one turns away, are measured; what is added
+here is assumed: a slipstream slower than the hit unit's own takes proportionally less, several slipstreams multiply,
+tunnel thrusters neither hit nor are hit, and nothing goes with the speed of the ship.
+
+References
+----------
+Dang and Laheij, Hydrodynamic aspects of steerable thrusters, Dynamic Positioning Conference 2004: two equal ducted
+thrusters at bollard in open water.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.angles import wrap
+from shipcosim.models.core.maths import Arithmetic, atan2, hypot, minimum, pi, where
+from shipcosim.models.core.parameters import quantity
+
+UNITS = 6
+_DEGREES = 180.0 / pi
+_STILL = 1e-6  # m/s, added to a slipstream that another is compared with
+
+
+def _place(number, towards):
+    return quantity(0.0, "m", f"unit {number} {towards} of the origin", "no such unit")
+
+
+def _diameter(number):
+    return quantity(0.0, "m", f"propeller diameter of unit {number}; 0: there is none", "no such unit", minimum=0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class InteractionParameters:
+    """Places and sizes of the units that can hit one another."""
+
+    x_1: float = _place(1, "forward")
+    y_1: float = _place(1, "to starboard")
+    diameter_1: float = _diameter(1)
+    x_2: float = _place(2, "forward")
+    y_2: float = _place(2, "to starboard")
+    diameter_2: float = _diameter(2)
+    x_3: float = _place(3, "forward")
+    y_3: float = _place(3, "to starboard")
+    diameter_3: float = _diameter(3)
+    x_4: float = _place(4, "forward")
+    y_4: float = _place(4, "to starboard")
+    diameter_4: float = _diameter(4)
+    x_5: float = _place(5, "forward")
+    y_5: float = _place(5, "to starboard")
+    diameter_5: float = _diameter(5)
+    x_6: float = _place(6, "forward")
+    y_6: float = _place(6, "to starboard")
+    diameter_6: float = _diameter(6)
+    loss_scale: float = quantity(1.0, "1", "factor on all losses; 0: no interaction", "as published", minimum=0.0)
+
+    def of_units(self, name: str) -> list[float]:
+        """A parameter of all units, in their order."""
+        return [getattr(self, f"{name}_{number}") for number in range(1, UNITS + 1)]
+
+
+class Pair(NamedTuple):
+    """One unit behind another.
+
+    Parameters
+    ----------
+    front, behind : int
+        Numbers of the unit whose slipstream it is and of the unit that it can hit, from 0. [1]
+    bearing : float
+        Direction from the front one to the other, clockwise from the bow. [rad]
+    tandem : float
+        Share of its thrust that the other keeps on the axis of the slipstream. [1]
+    """
+
+    front: int
+    behind: int
+    bearing: Arithmetic
+    tandem: Arithmetic
+
+
+def tandem_share(distance: Arithmetic) -> Arithmetic:
+    """Share of its thrust that a unit keeps on the axis of an equal one's slipstream, 1 - 0.8^((x/D)^(2/3)).
+
+    Parameters
+    ----------
+    distance : float or (...) array or tensor
+        Distance over propeller diameter, x/D, above 0. [1]
+
+    Returns
+    -------
+    like distance
+        0 to 1. [1]
+
+    References
+    ----------
+    Dang and Laheij 2004, in open water.
+
+    Examples
+    --------
+    Two diameters behind, two thirds are lost; ten diameters behind, a third:
+
+    >>> [round(tandem_share(distance), 2) for distance in (2.0, 10.0)]
+    [0.3, 0.65]
+    """
+    return 1.0 - 0.8 ** (distance ** (2.0 / 3.0))
+
+
+def kept_share(off_axis: Arithmetic, tandem: Arithmetic, ratio: Arithmetic) -> Arithmetic:
+    """Share of its thrust that a unit keeps beside the axis of a slipstream.
+
+    With t on the axis and φ off it in degrees: t + (1 - t) φ³/(130/t³ + φ³); the loss times the ratio of the
+    slipstreams, up to 1.
+
+    Parameters
+    ----------
+    off_axis : float or (...) array or tensor
+        Angle at the front unit between the axis of its slipstream and the other unit. [rad]
+    tandem : like off_axis
+        Share on the axis, as `tandem_share`. [1]
+    ratio : like off_axis
+        Speed of the slipstream over that of the hit unit's own. [1]
+
+    Returns
+    -------
+    like off_axis
+        0 to 1. [1]
+
+    References
+    ----------
+    Angle: Dang and Laheij 2004. That the loss goes with the ratio is assumed: so does the advance number that a
+    slipstream means for the unit that it hits.
+    """
+    cube = (abs(off_axis) * _DEGREES) ** 3
+    kept = tandem + (1.0 - tandem) * cube / (130.0 / tandem**3 + cube)
+    return 1.0 - (1.0 - kept) * minimum(1.0, ratio)
+
+
+def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
+    """All pairs of units, each in both orders.
+
+    Parameters
+    ----------
+    parameters : InteractionParameters
+        Places and sizes; a unit without diameter is none.
+
+    Returns
+    -------
+    tuple of Pair
+        What `thrust_shares` needs.
+
+    Raises
+    ------
+    ValueError
+        Two units are in the same place.
+
+    References
+    ----------
+    Definition; of unequal units the diameter is that of the front one (assumed).
+    """
+    units = list(zip(*(parameters.of_units(name) for name in ("x", "y", "diameter")), strict=True))
+    found = []
+    for front, (x, y, diameter) in enumerate(units):
+        for behind, (other_x, other_y, other) in enumerate(units):
+            if front == behind or diameter <= 0.0 or other <= 0.0:
+                continue
+            distance = hypot(other_x - x, other_y - y)
+            if distance == 0.0:
+                raise ValueError(f"units {front + 1} and {behind + 1} are in the same place: x {x} m, y {y} m")
+            bearing = atan2(other_y - y, other_x - x)
+            found.append(Pair(front, behind, bearing, tandem_share(distance / diameter)))
+    return tuple(found)
+
+
+def pair_table(parameters: InteractionParameters, numbers: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """The pairs of some units as tables.
+
+    Parameters
+    ----------
+    parameters : InteractionParameters
+        Places and sizes; a unit without diameter neither hits nor is hit.
+    numbers : tuple of int
+        The units, from 0. [1]
+
+    Returns
+    -------
+    (n, n) array
+        Bearing from the unit of the row to that of the column. [rad]
+    (n, n) array
+        Share of its thrust that the unit of the column keeps on the axis of the other's slipstream, 1 where it is not
+        hit. [1]
+
+    Raises
+    ------
+    ValueError
+        Two units are in the same place.
+
+    References
+    ----------
+    As `pairs`.
+    """
+    bearing, tandem = np.zeros((2, UNITS, UNITS))
+    tandem += 1.0
+    for front, behind, angle, kept in pairs(parameters):
+        bearing[front, behind], tandem[front, behind] = angle, kept
+    chosen = np.ix_(numbers, numbers)
+    return bearing[chosen], tandem[chosen]
+
+
+def thrust_shares(
+    azimuths: tuple, washes: tuple, *, found: tuple[Pair, ...], loss_scale: float = 1.0
+) -> tuple[Arithmetic, ...]:
+    """Share of its thrust that the slipstreams of the others leave to each unit.
+
+    Parameters
+    ----------
+    azimuths : tuple of floats or (...) arrays or tensors
+        Directions of positive thrust, clockwise from the bow. [rad]
+    washes : like azimuths
+        Speeds of the slipstreams: shaft speed times diameter, negative astern. The slipstream goes opposite to the
+        thrust. [m/s]
+    found : tuple of Pair
+        Made by `pairs`.
+    loss_scale : float
+        Factor on all losses. [1]
+
+    Returns
+    -------
+    tuple, like azimuths
+        0 to 1, one a unit. [1]
+
+    References
+    ----------
+    As `kept_share`; that several slipstreams multiply is assumed.
+    """
+    shares = [1.0 + 0.0 * azimuth for azimuth in azimuths]
+    for front, behind, bearing, tandem in found:
+        wash = washes[front]
+        towards = where(wash > 0.0, azimuths[front] + pi, azimuths[front])
+        ratio = abs(wash) / (abs(washes[behind]) + _STILL)
+        loss = 1.0 - kept_share(wrap(bearing - towards), tandem, ratio)
+        shares[behind] = shares[behind] * (1.0 - loss_scale * loss)
+    return tuple(shares)

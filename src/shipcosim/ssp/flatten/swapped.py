@@ -1,0 +1,55 @@
+"""Components that run another FMU than the system says: whether it has the connectors that are wired."""
+
+from difflib import get_close_matches
+
+from shipcosim.errors import MOST_COMPARED, suggestion
+from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy
+from shipcosim.ssp.flatten.ports import Key
+from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.read.structure import KIND_NAMES, Connector
+
+WHERE = "components"
+"""Where problems with FMUs in place of others are said to be."""
+
+
+def has_connector(fmu: FmuDescription, connector: Connector) -> bool:
+    """Whether an FMU has a connector of a component: a variable of its name, kind and type."""
+    variable = fmu.variables.get(connector.name)
+    if variable is None or (connector.kind in KIND_NAMES and connector.kind != variable.causality):
+        return False
+    return connector.type in (None, variable.kind)
+
+
+def take_swapped(tree: Hierarchy) -> None:
+    """Check the FMUs that take the place of others; connectors that they lack and nothing is wired to are left out.
+
+    Parameters
+    ----------
+    tree : Hierarchy
+        With all components, ports and wires; takes what is wrong.
+    """
+    known = {".".join(path): path for path in tree.components}
+    wired = {key for wire in tree.wires for key in (wire.source, wire.target)}
+    for name in tree.swapped:
+        if name not in known:
+            tree.findings.error(f"{WHERE}, {name}", f"There is no component '{name}'.", suggestion(name, known))
+        elif (fmu := tree.components[known[name]][1]) is not None:
+            _take(tree, known[name], fmu, wired)
+
+
+def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Key]) -> None:
+    lacking = [key for key, port in tree.ports.items() if key.path == path and port.variable is None]
+    missed = [key for key in lacking if key in wired]
+    for key in lacking:
+        if key not in wired:
+            del tree.ports[key]
+    if not missed:
+        return
+    found = f"{fmu.path.name} cannot take its place: it lacks {', '.join(key.name for key in missed)}, which are wired."
+    close = []
+    for key in missed:
+        names = [name for name in fmu.named(tree.ports[key].kind) if Key(path, name) not in wired][:MOST_COMPARED]
+        close += [f"{name} ({key.name})" for name in get_close_matches(key.name, names, n=1)]
+    has = ", ".join([*fmu.named("input"), *fmu.named("output")][:40])
+    remedy = f"Close to them are {', '.join(close)}." if close else f"It has: {has}."
+    tree.findings.error(f"{WHERE}, {'.'.join(path)}", found, remedy)

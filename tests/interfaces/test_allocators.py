@@ -1,0 +1,124 @@
+"""Every allocator by its interface: bad input is one clear error, and what it cannot give is not piled up."""
+
+import importlib.util
+from math import hypot
+
+import pytest
+from ships import equipped
+
+import shipcosim
+from shipcosim.errors import ShipcosimError
+from shipcosim.interfaces import NamedAllocator, NumberedAllocator
+from shipcosim.interfaces.geometry import check_geometry
+
+NAMED = ("allocator", "extended_allocator", "optimal_allocator")
+
+
+@pytest.fixture
+def allocator(root):
+    """Function from the name of an FMU to its object, with the parameters of R/V Gunnerus where it is a named one."""
+
+    def make(name):
+        spec = importlib.util.spec_from_file_location(f"under_test_{name}", root / "fmus" / name / f"{name}.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        bases = (NamedAllocator, NumberedAllocator)
+        kind = next(c for c in vars(module).values() if isinstance(c, type) and issubclass(c, bases) and c not in bases)
+        return equipped(kind(), "allocator") if issubclass(kind, NamedAllocator) else kind()
+
+    return make
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_slack_is_what_is_asked_and_not_given(name, allocator):
+    fmu = allocator(name)
+    fmu.start()
+    fmu.tau_X_cmd, fmu.tau_Y_cmd, fmu.tau_N_cmd = 5e3, -4e3, 1e5
+    for i in range(400):
+        fmu.step(0.05 * i, 0.05)
+        given = fmu.tau_X + fmu.slack_X, fmu.tau_Y + fmu.slack_Y, fmu.tau_N + fmu.slack_N
+        assert given == pytest.approx((5e3, -4e3, 1e5), abs=1e-5)
+    assert (fmu.slack_X, fmu.slack_Y, fmu.slack_N) == pytest.approx((0.0, 0.0, 0.0), abs=50.0)
+    assert fmu.thruster_power > 0.0 and fmu.solve_time == 0.0 and not fmu.saturated
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_the_time_of_the_law_is_measured_where_it_is_asked_for(name, allocator):
+    fmu = allocator(name)
+    fmu.measure_solve_time = True
+    fmu.start()
+    fmu.step(0.0, 0.05)
+    assert 0.0 < fmu.solve_time < 1.0
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_a_request_that_is_no_number_is_refused_by_its_name(value, allocator):
+    fmu = allocator("allocator")
+    number = [variable.name for variable in fmu.variables].index("tau_Y_cmd")
+    with pytest.raises(Exception, match="tau_Y_cmd") as error:
+        fmu.set_real((number,), (value,))
+    assert "finite" in str(error.value)
+
+
+def test_availability_is_true_or_false():
+    for value in (2.0, "maybe"):
+        with pytest.raises(ShipcosimError, match="port_available"):
+            shipcosim.run("stationkeeping", set={"allocator.port_available": value}, stop_time=0.1)
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_units_without_thrust_are_refused(name, allocator):
+    fmu = allocator(name)
+    fmu.azimuth_thrust_min = fmu.azimuth_thrust_max = fmu.tunnel_thrust_max = 0.0
+    with pytest.raises(ValueError, match="no unit has any thrust: every largest thrust is 0 N"):
+        fmu.start()
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_units_at_one_place_are_refused_with_the_loads_that_they_cannot_give(name, allocator):
+    fmu = allocator(name)
+    fmu.port_x = fmu.starboard_x = fmu.tunnel_x = -10.0
+    fmu.port_y = fmu.starboard_y = 0.0
+    with pytest.raises(ValueError, match="cannot give a force to starboard or a yaw moment by itself"):
+        fmu.start()
+
+
+def test_numbered_units_are_checked_too(allocator):
+    fmu = allocator("fixed_angle_allocator")
+    fmu.yaw_lever = 10.0
+    with pytest.raises(ValueError, match="no unit has any thrust"):
+        fmu.start()
+    fmu.thrust_max_1, fmu.y_1, fmu.thrust_max_2, fmu.y_2 = 50.0, -0.3, 50.0, 0.3
+    with pytest.raises(ValueError, match="cannot give a force to starboard by itself"):
+        fmu.start()
+
+
+def test_a_ship_with_all_three_loads_passes():
+    check_geometry([(1.0, 0.0, 2.0), (1.0, 0.0, -2.0), (0.0, 1.0, 10.0), (0.0, 1.0, 0.0)], [1.0, 1.0, 1.0, 0.0])
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_the_loss_of_a_request_beyond_reach_is_shared_as_the_lever_says(name, allocator):
+    missed = {}
+    for lever in (1.0, 300.0):
+        fmu = allocator(name)
+        fmu.yaw_lever = lever
+        fmu.start()
+        fmu.tau_X_cmd, fmu.tau_Y_cmd, fmu.tau_N_cmd = 0.0, 90e3, 1.5e6
+        for i in range(1500):
+            fmu.step(0.1 * i, 0.1)
+        missed[lever] = hypot(fmu.slack_X, fmu.slack_Y), abs(fmu.slack_N)
+        assert fmu.saturated
+    assert missed[1.0][1] < 0.8 * missed[300.0][1]  # heading first
+    assert missed[300.0][0] < 0.8 * missed[1.0][0]  # position first
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_the_controllers_integral_does_not_run_away_while_thrust_is_at_its_limits(name):
+    """20 m/s on the beam, more than the thrusters hold at first: the bias load sinks although much is missed."""
+    calm = {"environment.wind_speed": 20.0, "environment.significant_wave_height": 0.0, "environment.gust_scale": 0.0}
+    run = shipcosim.run("stationkeeping", components={"allocator": name}, set=calm, stop_time=90.0)
+    early, late = run.sel(time=40.0), run.sel(time=90.0)
+    assert float(abs(early["allocator.slack_Y"])) > 5e3
+    for axis in "YN":
+        assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(early[f"controller.tau_{axis}_bias"])
