@@ -1,0 +1,80 @@
+"""The commands `shipcosim train ...`: from the name of a component to its weights and the training report."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from shipcosim.cli.options import Debug, Force
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+
+EVERY = 30.0  # s between lines that say how far it is, where there is no terminal
+DEFAULT_KIND = "paper-v"
+
+
+def allocator(
+    kind: Annotated[
+        str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
+    ] = DEFAULT_KIND,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
+    ] = None,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Train a neural allocator from scratch, with a fixed seed: a second training gives the same weights.
+
+    Leaves NAME.npz, the weights, and the training report NAME.json and NAME.md. Needs torch:
+    pip install "shipcosim[learn]".
+
+    Example: shipcosim train allocator --kind paper-v
+    """
+    from shipcosim.cli.console import shown_path
+
+    for file in _train(kind, out):
+        typer.echo(shown_path(file))
+
+
+def _train(kind: str, out: Path | None) -> list[Path]:
+    """Train an allocator, write weights and report: the files. Nothing is written where something is wrong."""
+    from shipcosim.cli.results import check_targets
+    from shipcosim.staging import staged
+
+    try:
+        from shipcosim import learn
+    except ModuleNotFoundError as error:
+        if error.name != "torch":
+            raise
+        remedy = 'Install the extra `learn`: pip install "shipcosim[learn]".'
+        raise ShipcosimError(Problem("train", "Training needs torch, which is not installed.", remedy)) from None
+    if kind not in learn.ALLOCATORS:
+        raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, list(learn.ALLOCATORS))))
+    folder = out or Path("results") / f"train-{kind}"
+    check_targets(folder)
+    with staged(folder) as stage, _progress(kind) as progress:
+        written = learn.train_allocator(kind, stage, progress)
+    return [folder / file.name for file in written]
+
+
+@contextmanager
+def _progress(kind: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar of the epochs on a terminal, else a line now and then."""
+    from rich.console import Console
+
+    from shipcosim.cli.console import progress_of
+
+    console, told = Console(stderr=True), time.monotonic()
+    with progress_of(kind) as report:
+
+        def tell(done: int, total: int) -> None:
+            nonlocal told
+            report(done, total)
+            if not console.is_terminal and time.monotonic() - told > EVERY:
+                told = time.monotonic()
+                console.print(f"{kind}: {100 * done // total} % of the longest training", highlight=False)
+
+        yield tell

@@ -1,0 +1,11 @@
+"""Learned components trained from scratch: data, networks, the training loop, weights as arrays, the training report.
+
+The only door to torch, which comes with `pip install "shipcosim[learn]"`. What is trained is evaluated without it, by
+`shipcosim.models.core.networks`. A new component is one file here with a function that returns `Trained`, and one line
+in `kinds`.
+"""
+
+from shipcosim.learn.kinds import ALLOCATORS, Kind, train_allocator
+from shipcosim.learn.results import Trained, write_trained
+
+__all__ = ["ALLOCATORS", "Kind", "Trained", "train_allocator", "write_trained"]

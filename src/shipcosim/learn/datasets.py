@@ -1,0 +1,68 @@
+"""Data to train on: commands drawn at random."""
+
+import hashlib
+
+import numpy as np
+
+
+def independent(ranges: np.ndarray, sequences: int, samples: int, rng: np.random.Generator) -> np.ndarray:
+    """Commands that know nothing of one another, uniform between -range and +range.
+
+    Parameters
+    ----------
+    ranges : (n,) array
+        Largest value of each command. [any units]
+    sequences, samples : int
+        How many, of how many each. [1]
+    rng : numpy.random.Generator
+        Generator.
+
+    Returns
+    -------
+    (sequences, samples, n) array
+        Commands. [the units of ranges]
+    """
+    return rng.uniform(-ranges, ranges, (sequences, samples, len(ranges)))
+
+
+def random_walks(
+    ranges: np.ndarray, steps: np.ndarray, sequences: int, samples: int, rng: np.random.Generator
+) -> np.ndarray:
+    """Commands that wander: each begins anywhere in its range, moves by uniform steps and turns back at its ends.
+
+    Parameters
+    ----------
+    ranges : (n,) array
+        Largest value of each command. [any units]
+    steps : (n,) array
+        Largest step. [the units of ranges]
+    sequences, samples : int
+        How many, of how many each. [1]
+    rng : numpy.random.Generator
+        Generator.
+
+    Returns
+    -------
+    (sequences, samples, n) array
+        Commands. [the units of ranges]
+    """
+    moves = rng.uniform(-steps, steps, (sequences, samples, len(ranges)))
+    moves[:, 0] = rng.uniform(-ranges, ranges, (sequences, len(ranges)))
+    free = np.cumsum(moves, axis=1)
+    return ranges - abs((free + ranges) % (4.0 * ranges) - 2.0 * ranges)
+
+
+def digest(array: np.ndarray) -> str:
+    """Hash of an array, by which data made twice are known to be the same.
+
+    Parameters
+    ----------
+    array : array
+        Any array.
+
+    Returns
+    -------
+    str
+        First 16 digits of its SHA-256.
+    """
+    return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()[:16]

@@ -1,0 +1,68 @@
+"""What can be trained: one line each."""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from shipcosim.learn import neural, paper_i, paper_v
+from shipcosim.learn.results import Trained, write_trained
+from shipcosim.learn.training import Progress
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A component that can be trained.
+
+    Parameters
+    ----------
+    description : str
+        One line for users.
+    train : callable
+        Trains it from scratch: takes a function that is told how far it is.
+    """
+
+    description: str
+    train: Callable[[Progress], Trained]
+
+
+def _paper_v(recipe: paper_v.Recipe) -> Kind:
+    return Kind(recipe.description, lambda progress: paper_v.train(recipe, progress))
+
+
+def _paper_i(recipe: paper_i.Recipe) -> Kind:
+    return Kind(recipe.description, lambda progress: paper_i.train(recipe, progress))
+
+
+def _neural(recipe: neural.Recipe) -> Kind:
+    return Kind(recipe.description, lambda progress: neural.train(recipe, progress))
+
+
+ALLOCATORS: Mapping[str, Kind] = {
+    **{name: _paper_v(recipe) for name, recipe in paper_v.RECIPES.items()},
+    **{name: _paper_i(recipe) for name, recipe in paper_i.RECIPES.items()},
+    **{name: _neural(recipe) for name, recipe in neural.RECIPES.items()},
+}
+"""Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
+
+
+def train_allocator(name: str, folder: Path, progress: Progress) -> list[Path]:
+    """Train an allocator from scratch, and write its weights and report.
+
+    Parameters
+    ----------
+    name : str
+        One of `ALLOCATORS`.
+    folder : Path
+        Where to; it exists.
+    progress : callable
+        Is told how many steps are done, and of how many at most.
+
+    Returns
+    -------
+    list of Path
+        NAME.npz, NAME.json and NAME.md.
+    """
+    clock, processor = time.perf_counter(), time.process_time()
+    trained = ALLOCATORS[name].train(progress)
+    return write_trained(trained, folder, name, time.perf_counter() - clock, time.process_time() - processor)

@@ -1,0 +1,279 @@
+"""Our own neural allocator: trained through a model of the thrusters, over sequences of what a controller requests.
+
+There is nothing to imitate: the loss is what the commands cost over the sequence, power and missed load, and its
+gradient goes through limits, rates and slipstreams back to the network, which so learns what pays half a minute later.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+
+from shipcosim.learn.requests import recorded_requests
+from shipcosim.learn.results import Trained
+from shipcosim.learn.training import Progress, repeatable
+from shipcosim.models.allocation import neural, neural_named, neural_units
+from shipcosim.models.allocation.neural import Commands, Units
+
+EVERY = 10
+"""Steps of the optimiser from one check on held-out sequences to the next."""
+HELD_OUT = 6
+"""Runs of each kind, the last ones, that only decide which weights are kept."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How an allocator is trained.
+
+    Parameters
+    ----------
+    description : str
+        One line for users.
+    units : Units
+        The thrusters, in vectors of NumPy.
+    iterations : int
+        Steps of the optimiser.
+    seed : int
+        Of weights and of what is drawn.
+    hidden : tuple of int
+        Widths of the layers between inputs and outputs.
+    batch, steps, settling : int
+        Sequences in a step of the optimiser, requests in a sequence, one a second, and how many of these come before
+        the cost.
+    learning_rate : float
+        Of Adam at the start; it falls as a cosine. [1]
+    missed : float
+        Price of missing a hundredth of the request, in hundredths of the power that it is worth. [1]
+    turning : float
+        Price of all units turning at their full rates all the time, in the power that the request is worth. [1]
+    """
+
+    description: str
+    units: Units
+    iterations: int = 160
+    seed: int = 1
+    hidden: tuple[int, ...] = (48, 48)
+    batch: int = 128
+    steps: int = 40
+    settling: int = 20
+    learning_rate: float = 1e-3
+    missed: float = 8.0
+    turning: float = 0.02
+
+
+DP_SHIP = {
+    **{"port_x": -14.02, "port_y": -2.0, "starboard_x": -14.02, "starboard_y": 2.0, "tunnel_x": 14.48},
+    **{"port_azimuth": -0.7853981633974483, "starboard_azimuth": 0.7853981633974483, "azimuth_thrust_min": -30e3},
+    **{"azimuth_thrust_max": 60e3, "tunnel_thrust_max": 21.6e3, "thrust_rate_max": 1000.0},
+    **{"yaw_lever": 14.0, "yaw_lever_degraded": 300.0},
+}
+"""The DP ship, as her files have her; a test holds it."""
+POWER = (194e3, 194e3, 200e3)  # W, at the limits of thrust
+DIAMETER = 1.9  # m
+
+
+def _dp_ship(diameter: float) -> Units:
+    parameters = neural_named.NeuralParameters(**DP_SHIP, azimuth_diameter=diameter)
+    return neural_named.units_of(parameters, POWER)
+
+
+def _four_azimuths() -> Units:
+    """As ssp/ships/four-azimuths has them."""
+    places = zip((-14.02, -14.02, 11.0, 11.0), (-2.0, 2.0, -1.5, 1.5), strict=True)
+    each = {"thrust_min": -30e3, "thrust_max": 60e3, "thrust_rate": 1000.0, "thrust_least": 1000.0}
+    each |= {"azimuth_rate": math.radians(10.0), "diameter": DIAMETER}
+    values = {f"{name}_{k}": value for k in range(1, 5) for name, value in each.items()}
+    for k, (x, y) in enumerate(places, 1):
+        middle, half = math.copysign(0.5 * math.pi, -y), math.pi - math.atan(0.1 + DIAMETER / (2.0 * abs(y)))
+        values |= {f"x_{k}": x, f"y_{k}": y, f"azimuth_first_{k}": middle - half, f"azimuth_last_{k}": middle + half}
+    parameters = neural_units.NeuralUnitsParameters(**values, yaw_lever=14.0)
+    return neural_units.units_of(parameters, (POWER[0],) * 6)[0]
+
+
+RECIPES = {
+    "neural": Recipe("Our neural allocator of the DP ship, within the forbidden sectors of paper V", _dp_ship(0.0)),
+    "neural-slipstreams": Recipe(
+        "Our neural allocator of the DP ship, which knows slipstreams instead of sectors", _dp_ship(DIAMETER)
+    ),
+    "neural-four-azimuths": Recipe(
+        "Our neural allocator of the system four_azimuths, which knows slipstreams", _four_azimuths()
+    ),
+}
+"""Allocators by the name that `shipcosim train allocator --kind NAME` takes."""
+
+
+def train(recipe: Recipe, progress: Progress) -> Trained:
+    """Train an allocator from scratch.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how many steps are done, and of how many.
+
+    Returns
+    -------
+    Trained
+        Weights and report.
+    """
+    with repeatable(recipe.seed):
+        weights, history = fit(recipe, progress)
+    arrays = {}
+    for number, (matrix, offset) in enumerate(paired(weights), 1):
+        arrays |= {f"{number}.weights": matrix, f"{number}.bias": offset}
+    runs, seeds, interval = recorded_requests()
+    data = {
+        "requests": "of the DP controller in weather of all kinds, docs/generators/write_requests.py",
+        "runs": sum(len(kind) for kind in runs),
+        "of these to choose the weights by, the last of each kind": HELD_OUT * len(runs),
+        "seeds": f"{seeds.min()} to {seeds.max()}",
+        "interval of the requests [s]": interval,
+        "interval in training [s]": 2 * interval,
+        "drawn for each sequence": "scale 0.5 to 2, mirrored or not, units missing, power short, angles at the start",
+    }
+    names = ("iterations", "hidden", "batch", "steps", "settling", "learning_rate", "missed", "turning")
+    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "Adam, cosine schedule"}
+    return Trained(arrays, recipe.description, recipe.seed, data, settings, history)
+
+
+def tensors(units: Units) -> Units:
+    """The units in tensors of single precision."""
+    found = {name: getattr(units, name) for name in Units._fields}
+    vectors = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
+    return units._replace(**{name: torch.tensor(value, dtype=torch.float32) for name, value in vectors.items()})
+
+
+def first_weights(recipe: Recipe) -> list[torch.Tensor]:
+    """Weights at the start: small in the last layer, so that units stay where they are."""
+    n = len(recipe.units.x)
+    sizes, found = (8 + 5 * n, *recipe.hidden, 2 * n), []
+    for number, (k, m) in enumerate(zip(sizes[:-1], sizes[1:], strict=True), 1):
+        gain = 0.02 if number == len(sizes) - 1 else 1.0
+        found += [gain * torch.randn(k, m) / math.sqrt(k), torch.zeros(m)]
+    return [weight.requires_grad_() for weight in found]
+
+
+def paired(weights: list) -> tuple:
+    """Matrix and offsets of each layer."""
+    return tuple(zip(weights[::2], weights[1::2], strict=True))
+
+
+def smoothed(runs: np.ndarray, interval: float) -> np.ndarray:
+    """Requests as the law smooths them, over whole runs."""
+    found, share = np.empty_like(runs), 1.0 - math.exp(-interval / neural.SMOOTHING)
+    found[:, 0] = runs[:, 0]
+    for k in range(1, runs.shape[1]):
+        found[:, k] = found[:, k - 1] + share * (runs[:, k] - found[:, k - 1])
+    return found
+
+
+class Sequences:
+    """Sequences of requests with the state before each, drawn at random."""
+
+    def __init__(self, recipe: Recipe, held_out: bool):
+        runs, _, self.interval = recorded_requests(every=2)
+        part = slice(-HELD_OUT, None) if held_out else slice(None, -HELD_OUT)
+        self.runs = [(kind[part], smoothed(kind[part], self.interval)) for kind in runs]
+        self.recipe, self.units = recipe, tensors(recipe.units)
+        self.random = np.random.default_rng(recipe.seed + (1000 if held_out else 0))
+
+    def draw(self) -> tuple[torch.Tensor, torch.Tensor, Commands]:
+        """Requests (steps, batch, 3), availability (batch, n) and the state before."""
+        r, size, steps = self.random, self.recipe.batch, self.recipe.steps
+        rows = [self._row(*self.runs[r.integers(len(self.runs))], steps) for _ in range(size)]
+        scale = np.exp(r.uniform(-0.7, 0.7, (size, 1, 1))).astype(np.float32)
+        scale = scale * np.where(r.random((size, 1, 1)) < 0.5, [1.0, -1.0, -1.0], 1.0).astype(np.float32)
+        tau = torch.from_numpy(np.array([tau for tau, _ in rows]) * scale).transpose(0, 1).contiguous()
+        smooth = torch.from_numpy(np.array([smooth for _, smooth in rows]) * scale[:, 0])
+        available = torch.from_numpy(self._availability(size))
+        return tau, available, self._before(tau[0], smooth, available)
+
+    def _row(self, tau, smooth, steps):
+        run, start = self.random.integers(len(tau)), self.random.integers(tau.shape[1] - steps)
+        return tau[run, start : start + steps], smooth[run, start]
+
+    def _availability(self, size):
+        """All units in half of the sequences; else one is missing, in a tenth two; in a fifth less power for all."""
+        r, n = self.random, len(self.recipe.units.x)
+        found = np.ones((size, n), np.float32)
+        rows, lost = np.arange(size), r.integers(n, size=(2, size))
+        found[rows, lost[0]] = np.where(r.random(size) < 0.5, 0.0, 1.0)
+        found[rows, lost[1]] *= np.where(r.random(size) < 0.1, 0.0, 1.0)
+        less = np.where(r.random(size) < 0.2, r.uniform(0.3, 1.0, size), 1.0)
+        return (found * less[:, None]).astype(np.float32)
+
+    def _before(self, tau, smooth, available):
+        """Units at random angles, with thrusts that meet the first request as well as these angles allow."""
+        units, r = self.units, self.random
+        first, last = torch.clamp(units.first, min=-np.pi), torch.clamp(units.last, max=np.pi)
+        last = torch.where(torch.isfinite(units.last), units.last, last)
+        drawn = torch.from_numpy(r.random((len(tau), len(units.x))).astype(np.float32))
+        angles = first + drawn * (last - first)
+        angles = torch.where(units.turn > 0.0, angles, units.azimuth)
+        least, most = units.least * available, units.most * available
+        thrusts = torch.clamp(0.05 * most, min=least)
+        for _ in range(4):
+            effect = neural.effects(thrusts, angles, units=units)
+            thrusts, _ = neural.completed(thrusts, tau, effect, least, most, torch.ones_like(thrusts), units=units)
+        return Commands(thrusts, angles, smooth)
+
+
+def cost(recipe: Recipe, units: Units, weights: tuple, drawn: tuple, interval: float) -> dict[str, torch.Tensor]:
+    """What sequences cost: power, missed load and turning, each over the power that their requests are worth.
+
+    The first requests only bring the units from where they were drawn to where they would be. The objective is the mean
+    of the logarithm of the sum: of each sequence a hundredth less counts the same.
+    """
+    tau, available, state = drawn
+    with torch.no_grad():
+        for request in tau[: recipe.settling]:
+            state = neural.propose(state, request, available, interval, units=units, weights=weights)
+    tau = tau[recipe.settling :]
+    size = (neural._scaled(tau, units.lever) ** 2).sum(-1).mean(0).sqrt() + 1e-3 * units.most.max()
+    worth = units.full_power.max() * (size / units.most.max()) ** 1.5
+    spent, missed, turned = torch.zeros(3, tau.shape[1])
+    for request in tau:
+        before = state
+        state = neural.propose(state, request, available, interval, units=units, weights=weights)
+        left = missing(state, request, units) / size[:, None]
+        spent = spent + neural.power(state.thrusts, units=units) / worth
+        missed = missed + torch.sqrt((left * left).sum(-1) + 1e-5)
+        turn = (state.azimuths - before.azimuths) / (units.turn + 1e-6) / interval
+        turned = turned + (turn * turn * (units.turn > 0.0)).mean(-1)
+    parts = [spent / len(tau), recipe.missed * missed / len(tau), recipe.turning * turned / len(tau)]
+    means = {name: part.mean() for name, part in zip(("power", "missed load", "turning"), parts, strict=True)}
+    return {"objective": torch.log(torch.stack(parts).sum(0)).mean()} | means
+
+
+def missing(state: Commands, request: torch.Tensor, units: Units) -> torch.Tensor:
+    """Load that commands leave unmet, slipstreams considered, the moment over the lever. [N]"""
+    effect = neural.effects(state.thrusts, state.azimuths, units=units)
+    return neural._scaled(request, units.lever) - (effect @ state.thrusts[..., None])[..., 0]
+
+
+def fit(recipe: Recipe, progress: Progress) -> tuple[list[np.ndarray], list[dict[str, float]]]:
+    """Weights of the smallest cost on held-out sequences, and costs on the way."""
+    weights, units = first_weights(recipe), tensors(recipe.units)
+    training, checked = Sequences(recipe, held_out=False), Sequences(replace(recipe, batch=256), held_out=True)
+    test = checked.draw()
+    optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
+    rate = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.iterations, eta_min=1e-4)
+    best, kept, history = math.inf, [], []
+    for number in range(recipe.iterations + 1):
+        if number % EVERY == 0 or number == recipe.iterations:
+            with torch.no_grad():
+                found = cost(recipe, units, paired(weights), test, checked.interval)
+            history.append({"iteration": number} | {name: float(value) for name, value in found.items()})
+            if history[-1]["objective"] < best:
+                best, kept = history[-1]["objective"], [w.detach().numpy().astype(float).copy() for w in weights]
+        if number < recipe.iterations:
+            parts = cost(recipe, units, paired(weights), training.draw(), training.interval)
+            optimiser.zero_grad()
+            parts["objective"].backward()
+            torch.nn.utils.clip_grad_norm_(weights, 1.0)
+            optimiser.step()
+            rate.step()
+            progress(number + 1, recipe.iterations)
+    return kept, history

@@ -1,0 +1,204 @@
+"""The allocators of paper I: extreme learning machines, trained from a recorded exercise of the thrusters.
+
+NumPy alone: random weights, one pseudo-inverse.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper I; Huang, Zhu,
+Siew, Extreme learning machine: a new learning scheme of feedforward neural networks, IJCNN, 2004.
+"""
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.learn.datasets import digest
+from shipcosim.learn.results import Trained
+from shipcosim.learn.training import Progress
+from shipcosim.series import read_table
+
+RECORD = Path(__file__).with_name("paper_i_exercise.csv.gz")
+"""The exercise: 7800 rows at 20 Hz of the load that all thrusters give, and their commands. Written by
+docs/generators/write_exercise.py from a run of scenarios/paper_i/exercise.toml."""
+UNITS, NEURONS, SEED, HELD_OUT = 6, 20, 1, 0.1
+DIGITS = 1e-15
+"""Cutoff of a pseudo-inverse to the digits of its numbers. [1]"""
+NOTES = (
+    "Not printed in the paper, and chosen here: inputs divided by their largest size in the exercise; weights of the"
+    " hidden layer uniform in -1 to 1, its biases in 0 to 1, as in the code of the method's authors; how long full"
+    " thrust is held between the ramps.",
+    "With five signals, units 5 and 6 get one command. Of allocator 1 that is the same network as with six, since each"
+    " output has weights of its own, and those of units 5 and 6 have the same targets.",
+    "Held out are 10 % of the rows, drawn at random as in the paper: their neighbours at 20 Hz are trained on. The"
+    " exercise never shows two thrusters at work together, but for the two main propellers.",
+)
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """One variant.
+
+    Parameters
+    ----------
+    description : str
+        One line.
+    cutoff : float
+        Singular values below this share of the largest are left out of the pseudo-inverse. [1]
+    """
+
+    description: str
+    cutoff: float = DIGITS
+
+
+_OF = "Allocators 1 and 2 of paper I, 82.7 m vessel"
+RECIPES = {
+    "paper-i": Recipe(f"{_OF}, as printed"),
+    "paper-i-cutoff": Recipe(f"{_OF}, singular values below 1 % of the largest left out", cutoff=0.01),
+}
+
+
+def read_exercise(path: Path = RECORD) -> tuple[np.ndarray, np.ndarray]:
+    """The recorded exercise.
+
+    Parameters
+    ----------
+    path : Path
+        A table with `tau_X`, `tau_Y`, `tau_N` and `command_1` to `command_6`.
+
+    Returns
+    -------
+    tuple of (n, 3) and (n, 6) array
+        Loads and commands. [N, N, N.m; rpm, deg]
+    """
+    table = read_table(path)
+    loads = np.stack([table[f"tau_{axis}"].values for axis in "XYN"], axis=-1)
+    return loads, np.stack([table[f"command_{unit}"].values for unit in range(1, UNITS + 1)], axis=-1)
+
+
+def samples(loads: np.ndarray, commands: np.ndarray, allocator: int, signals: int) -> tuple[np.ndarray, np.ndarray]:
+    """Inputs and targets of an allocator.
+
+    Parameters
+    ----------
+    loads, commands : (n, 3), (n, 6) array
+        The exercise. [N, N, N.m; rpm, deg]
+    allocator : int
+        1: inputs are the loads; 2: the commands of the row before as well.
+    signals : int
+        6, or 5 for one command to units 5 and 6.
+
+    Returns
+    -------
+    tuple of (n, 3 or 3 + signals) and (n, signals) array
+        Inputs, targets. [N, N, N.m, units of the commands]
+    """
+    targets = commands[:, :signals]
+    before = np.vstack([np.zeros(signals), targets[:-1]])
+    return (loads if allocator == 1 else np.hstack([loads, before])), targets
+
+
+def fitted(
+    inputs: np.ndarray, targets: np.ndarray, *, neurons: int = NEURONS, seed: int = SEED, cutoff: float = DIGITS
+) -> dict:
+    """An extreme learning machine: random hidden layer, output weights by the pseudo-inverse.
+
+    Parameters
+    ----------
+    inputs, targets : (n, inputs), (n, outputs) array
+        What it is trained on.
+    neurons, seed : int
+        Of the hidden layer. [1]
+    cutoff : float
+        Of the singular values, over the largest. [1]
+
+    Returns
+    -------
+    dict of str to array
+        `scale`, `hidden`, `bias`, `output`, as `models.allocation.extreme_learning.Network` has them.
+    """
+    rng = np.random.default_rng(seed)
+    scale = np.abs(inputs).max(axis=0)
+    found = {"scale": scale, "hidden": rng.uniform(-1.0, 1.0, (neurons, inputs.shape[1])), "bias": rng.random(neurons)}
+    inverse = np.linalg.pinv(hidden_layer(found, inputs), rcond=cutoff)
+    return found | {"output": (inverse @ targets).T}
+
+
+def hidden_layer(network: dict, inputs: np.ndarray) -> np.ndarray:
+    """Outputs of the hidden neurons.
+
+    Parameters
+    ----------
+    network : dict of str to array
+        With `scale`, `hidden`, `bias`.
+    inputs : (n, inputs) array
+        Inputs.
+
+    Returns
+    -------
+    (n, neurons) array
+        Between 0 and 1. [1]
+    """
+    return 1.0 / (1.0 + np.exp(-(inputs / network["scale"] @ network["hidden"].T + network["bias"])))
+
+
+def train(recipe: Recipe, progress: Progress) -> Trained:
+    """Train both allocators with both numbers of signals.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        The variant.
+    progress : callable
+        Is told how far it is.
+
+    Returns
+    -------
+    Trained
+        Weights and report.
+    """
+    loads, commands = read_exercise()
+    arrays: dict[str, np.ndarray] = {"least": commands.min(axis=0), "most": commands.max(axis=0)}
+    settings: dict = {"hidden neurons": NEURONS, "cutoff of the pseudo-inverse": recipe.cutoff}
+    for done, (allocator, signals) in enumerate(((1, 6), (1, 5), (2, 6), (2, 5))):
+        progress(done, 4)
+        inputs, targets = samples(loads, commands, allocator, signals)
+        start = time.perf_counter()
+        found = fitted(inputs, targets, cutoff=recipe.cutoff)
+        seconds = time.perf_counter() - start
+        arrays |= {f"{allocator}.{signals}.{name}": array for name, array in found.items()}
+        named = f"allocator {allocator}, {signals} signals"
+        settings[f"{named}: RMSE on the exercise by output"] = _rounded(_rmse(found, inputs, targets))
+        settings[f"{named}: RMSE held out, over the range, by neurons"] = _by_neurons(inputs, targets, recipe.cutoff)
+        settings[f"{named}: time of one training (s)"] = round(seconds, 3)
+    return Trained(arrays, recipe.description, SEED, _about(loads, commands), settings, (), NOTES)
+
+
+def _rmse(network, inputs, targets):
+    return np.sqrt(((hidden_layer(network, inputs) @ network["output"].T - targets) ** 2).mean(axis=0))
+
+
+def _by_neurons(inputs, targets, cutoff):
+    """Error on held-out rows over the range of the commands, mean of the outputs, for some numbers of neurons."""
+    held = np.random.default_rng(SEED).random(len(inputs)) < HELD_OUT
+    found = {}
+    for neurons in (5, 10, 20, 40, 80):
+        network = fitted(inputs[~held], targets[~held], neurons=neurons, cutoff=cutoff)
+        found[neurons] = float((_rmse(network, inputs[held], targets[held]) / np.ptp(targets, axis=0)).mean())
+    return ", ".join(f"{neurons}: {error:.2g}" for neurons, error in found.items())
+
+
+def _rounded(values):
+    return [float(f"{value:.3g}") for value in values]
+
+
+def _about(loads, commands):
+    return {
+        "rows, at 20 Hz": len(loads),
+        "exercise": "each thruster alone, main propellers together: to full ahead, full astern, stop, at its rates",
+        "largest load (N, N, N.m)": _rounded(np.abs(loads).max(axis=0)),
+        "least command (rpm, deg)": _rounded(commands.min(axis=0)),
+        "most command (rpm, deg)": _rounded(commands.max(axis=0)),
+        "SHA-256 of the exercise": digest(np.hstack([loads, commands])),
+    }
