@@ -4,10 +4,9 @@ import functools
 
 import pytest
 
-from shipcosim.cosim import simulate
+from shipcosim.cosim import simulate, system_of
 from shipcosim.library import build_stale
 from shipcosim.scenario import read_scenario
-from shipcosim.ssp import read_system
 
 
 @pytest.fixture(scope="session")
@@ -33,8 +32,7 @@ def run(fmus):
     """Table of a scenario's run."""
 
     def run(scenario):
-        system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[fmus])
-        return simulate(system, scenario)
+        return simulate(system_of(scenario), scenario)
 
     return run
 

@@ -12,7 +12,12 @@ from shipcosim.scenario import judge
 
 FOLDER = Path(__file__).parents[2] / "scenarios"
 NAMES = sorted(path.relative_to(FOLDER).with_suffix("").as_posix() for path in FOLDER.rglob("*.toml"))
-REPRESENTATIVE = {"sensors/all_references_lost", "failures/port_full_thrust", "failures/bus_a_short_of_power"}
+REPRESENTATIVE = {
+    "sensors/all_references_lost",
+    "failures/port_full_thrust",
+    "failures/bus_a_short_of_power",
+    "paper_i/north",
+}
 """Scenarios in folders that run with the fast tests."""
 SCENARIOS = [
     pytest.param(name, marks=[pytest.mark.slow] if "/" in name and name not in REPRESENTATIVE else []) for name in NAMES

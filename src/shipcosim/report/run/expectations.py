@@ -8,6 +8,7 @@ from xarray import Dataset
 
 from shipcosim.angles import compass
 from shipcosim.report.run.details import parsed
+from shipcosim.report.theme.display import units_to_read
 from shipcosim.report.theme.views import Outcome
 from shipcosim.scenario import Expectation, Verdict
 
@@ -73,6 +74,29 @@ def judged(verdicts: Sequence[Verdict], shown: Dataset) -> tuple[Judged, ...]:
     tuple of Judged
     """
     return tuple(_judged(verdict, shown[verdict.expect.signal[0]].attrs) for verdict in verdicts)
+
+
+def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:
+    """Expectations as sentences with the units that people read.
+
+    Parameters
+    ----------
+    expectations : sequence of Expectation
+        With plain numbers, as `shipcosim.scenario.with_numbers` gives them.
+    table : xarray.Dataset
+        The run. [SI]
+
+    Returns
+    -------
+    list of str
+    """
+    units, said = units_to_read(table), []
+    for expect in expectations:
+        given = table[expect.signal[0]].attrs.get("units")
+        unit, factor = units.get(given, (given, 1.0))
+        during = " during {:g} to {:g} s".format(*expect.during) if expect.during else ""
+        said.append(f"{_claim(expect, unit or '', factor)}{during}")
+    return said
 
 
 def _judged(verdict: Verdict, shown_as: dict[str, Any]) -> Judged:

@@ -1,13 +1,15 @@
 """Which time series a page draws, in sections of panels; what a table does not hold is left out."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from xarray import Dataset
 
 from shipcosim.report.run.bands import Band, bands_of, distance_bands
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE, desired
-from shipcosim.report.run.roles import Roles, join
+from shipcosim.report.run.roles import Roles
+from shipcosim.report.run.vessels import Unit, find_units, start_values
+from shipcosim.report.run.zones import Zone, angle_zones, thrust_zones
 from shipcosim.report.theme import palette
 from shipcosim.scenario import Verdict
 
@@ -28,13 +30,17 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """Curves over time on one axis, with the limits they should keep; `states` draws logical signals as bars."""
+    """Curves over time on one axis, with the limits they should keep; `states` draws logical signals as bars.
+
+    `zones` are values that cannot or must not be: from and to, in the panel's unit.
+    """
 
     title: str
     unit: str
     lines: tuple[Line, ...]
     bands: tuple[Band, ...] = ()
     states: bool = False
+    zones: tuple[Zone, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,6 +73,7 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
         "Other expectations": _expected(shown, verdicts, {line.signal for panel in motion for line in panel.lines}),
         "Forces on the ship": _loads(shown, roles),
         "Thrusters": _thrusters(shown, roles),
+        "Allocation": _allocation(shown, roles),
         "Environment": _environment(shown, roles),
     }
     return tuple(Section(title, tuple(panels)) for title, panels in made.items() if panels)
@@ -145,14 +152,17 @@ def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
 
 def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     """Thrust commanded and delivered per thruster; angles, speeds, power and limits of all."""
-    panels = []
-    for unit in roles.thrusters:
+    panels, units = [], find_units(shown.data_vars, start_values(shown))
+    for unit in units:
         lines = [
-            Line(roles.command(unit, "thrust"), "commanded", palette.COMMAND, "dot"),
-            Line(join(unit, "thrust"), "delivered", palette.SHIP),
+            Line(unit.thrust_command, "commanded", palette.COMMAND, "dot"),
+            Line(unit.thrust, "delivered", palette.SHIP),
         ]
-        panels += _panel(shown, f"Thrust, {unit}", lines)
-    panels += _panel(shown, "Azimuth", _angles(roles))
+        panels += [
+            replace(panel, zones=thrust_zones(shown, [line.signal for line in panel.lines], unit.limits))
+            for panel in _panel(shown, f"Thrust, {unit.name}", lines)
+        ]
+    panels += _azimuths(shown, units)
     turning = [unit for unit in roles.thrusters if roles.signal(unit, "azimuth")]
     for units in (turning, [unit for unit in roles.thrusters if unit not in turning]):
         lines = _coloured({roles.signal(unit, "rpm"): unit for unit in units})
@@ -165,12 +175,36 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
 
 
-def _angles(roles: Roles) -> list[Line]:
+def _azimuths(shown: Dataset, units: Sequence[Unit]) -> list[Panel]:
+    """Angles: of all units in one panel where no sector, or the same, is forbidden to them; else of each in its own."""
+    turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
+    alike = len({unit.sectors for unit in turning}) < 2
+    groups = [("Azimuth", turning)] if alike else [(f"Azimuth, {unit.name}", [unit]) for unit in turning]
+    return [
+        replace(panel, zones=angle_zones(shown, [line.signal for line in panel.lines], members[0].sectors))
+        for title, members in groups
+        for panel in _panel(shown, title, _angles(members))
+    ]
+
+
+def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
+    """What the commands miss of the request, and what they take."""
+    slack = {axis: roles.anywhere(f"slack_{axis}") for axis in LOADS}
+    forces = _coloured({_first(slack[axis]): title for axis, title in (("X", "forward"), ("Y", "to starboard"))})
+    panels = _panel(shown, "Force missed by the allocator", forces)
+    panels += _panel(shown, "Yaw moment missed by the allocator", _coloured({_first(slack["N"]): "clockwise"}))
+    power = {_first(roles.anywhere("thruster_power")): "all thrusters"}
+    panels += _panel(shown, "Power of the thrusters, estimated by the allocator", _coloured(power))
+    times = [name for name in roles.anywhere("solve_time") if name in shown and shown[name].values.any()]
+    return panels + _panel(shown, "Time of an allocation", _coloured(dict.fromkeys(times, "by the clock")))
+
+
+def _angles(units: Sequence[Unit]) -> list[Line]:
     lines = []
-    for k, unit in enumerate(roles.thrusters):
-        commanded = roles.command(unit, "azimuth")
-        lines.append(Line(commanded, f"{unit} commanded", palette.CYCLE[k % len(palette.CYCLE)], "dot"))
-        lines.append(Line(roles.signal(unit, "azimuth"), unit, palette.CYCLE[k % len(palette.CYCLE)]))
+    for k, unit in enumerate(units):
+        colour = palette.CYCLE[k % len(palette.CYCLE)]
+        lines.append(Line(unit.azimuth_command, f"{unit.name} commanded", colour, "dot"))
+        lines.append(Line(unit.azimuth, unit.name, colour))
     return lines
 
 

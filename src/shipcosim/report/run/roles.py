@@ -49,6 +49,10 @@ class Roles:
             iter(self.anywhere(f"{unit.rpartition('.')[2]}_{quantity}_cmd")), None
         )
 
+    def allocators(self) -> list[str]:
+        """Components that command several thrusters."""
+        return [c for c, has in self.connectors.items() if sum("thrust_cmd" in connector for connector in has) > 1]
+
     def flagged(self, connector: str) -> dict[str, str]:
         """Signals of this connector by their component, of all components that have it: who says 'saturated'."""
         return {component: join(component, connector) for component, has in self.connectors.items() if connector in has}

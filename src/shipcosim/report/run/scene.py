@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import degrees
 from typing import Any
 
 import numpy as np
@@ -194,6 +195,7 @@ def _unit(unit: Unit, columns: _Columns, to_scale: bool) -> dict[str, Any] | Non
         "force": _force(unit, columns),
         "place": unit.place if to_scale else None,
         "limits": None if unit.limits is None else [limit / 1000.0 for limit in unit.limits],
+        "sectors": [[round(degrees(angle), 3) for angle in sector] for sector in unit.sectors],
         "largest": float(np.nanmax(np.abs(values))) if values is not None else 0.0,
         **{flag: columns.add(getattr(unit, flag), "") for flag in ("saturated", "failed", "available")},
     }

@@ -37,6 +37,8 @@ class Unit:
         Forward and to starboard. [m, m]
     limits : (float, float), optional
         Least and largest thrust. [N, N]
+    sectors : tuple of (float, float)
+        Angles that its allocator does not give it, from and to, clockwise from the bow. [rad, rad]
     """
 
     name: str
@@ -50,6 +52,7 @@ class Unit:
     available: str | None
     place: tuple[float, float] | None
     limits: tuple[float, float] | None
+    sectors: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
@@ -240,7 +243,7 @@ def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
         velocity=tuple(_there(join(owner, axis), names) for axis in "uvr"),
         aims=_aims(pose, names),
         size=None if length is None or breadth is None or min(length, breadth) <= 0.0 else (length, breadth),
-        units=_units(names, known),
+        units=find_units(names, known),
     )
 
 
@@ -257,8 +260,20 @@ def _aims(pose: Pose, names: list[str]) -> dict[str, tuple[str, str, str | None]
     return found
 
 
-def _units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Unit, ...]:
-    """Thrusters of these signals."""
+def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Unit, ...]:
+    """Thrusters of these signals.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Signals.
+    known : mapping of str to value
+        Start values, as `start_values` gives them.
+
+    Returns
+    -------
+    tuple of Unit
+    """
     roles = find_roles(names)
     force = {unit: [roles.signal(unit, f"tau_{axis}") for axis in "XY"] for unit in roles.thrusters}
     return tuple(
@@ -274,6 +289,7 @@ def _units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Unit, .
             available=roles.signal(unit, "available"),
             place=_place(unit, known),
             limits=_limits(unit, known),
+            sectors=_sectors(unit, roles.signal(unit, "azimuth"), _place(unit, known), roles.allocators(), known),
         )
         for unit in roles.thrusters
     )
@@ -291,6 +307,29 @@ def _limits(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
     if most is None or most <= 0.0:
         return None
     return (-most if least is None else least, most)
+
+
+def _sectors(
+    unit: str,
+    azimuth: str | None,
+    place: tuple[float, float] | None,
+    allocators: Iterable[str],
+    known: Mapping[str, Any],
+) -> tuple[tuple[float, float], ...]:
+    """What is left of a turn outside the range of angles that an allocator gives a unit. [rad, rad]
+
+    The unit is found by its name in that of the range, `port_azimuth_first`, or by the place of `azimuth_first_1`.
+    """
+    if azimuth is None:
+        return ()
+    for allocator in allocators:
+        for before, after in ((f"{unit.rpartition('.')[2]}_", ""), *(("", f"_{n}") for n in range(1, 10))):
+            names = (f"{before}azimuth_{end}{after}" for end in ("first", "last"))
+            first, last = (_first_number(known, allocator, (name,)) for name in names)
+            there = before or place == tuple(_first_number(known, allocator, (axis + after,)) for axis in "xy")
+            if there and first is not None and last is not None and 0.0 < last - first < 2.0 * np.pi:
+                return ((last, first + 2.0 * np.pi),)
+    return ()
 
 
 def _there(name: str, names: list[str]) -> str | None:

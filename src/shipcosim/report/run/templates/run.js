@@ -52,11 +52,12 @@
       ? axis({ tickvals: panel.lines.map((_, k) => panel.lines.length - 0.6 - k), ticktext: panel.lines.map((l) => markup(l.label)), range: [-0.1, panel.lines.length], showgrid: false, zeroline: false })
       : axis();
     const event = (t) => ({ type: "line", x0: t, x1: t, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: colour("faint"), width: 1, dash: "dot" } });
+    const zone = ({ lower, upper }) => ({ type: "rect", xref: "paper", x0: 0, x1: 1, y0: lower, y1: upper, layer: "below", fillcolor: painted("@vermillion/0.16"), line: { width: 0 } });
     return layout({
       title, yaxis, margin: { l: 56, r: 24, t: panel.states ? 54 : headroom(place, panel), b: 34 }, hovermode: "x unified", dragmode: touch ? false : "zoom", uirevision: "keep",
       legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom", font: { size: 11 } },
       xaxis: axis({ automargin: false, range: shownWindow.slice(), ticksuffix: " s", showticksuffix: "last", hoverformat: ".6~g", unifiedhovertitle: { text: "%{x} s" } }),
-      shapes: data.events.filter((t) => t > whole[0]).map(event),
+      shapes: [...panel.zones.map(zone), ...data.events.filter((t) => t > whole[0]).map(event)],
     });
   }
 
@@ -152,7 +153,7 @@
     for (const unit of Object.keys(chosenPlaces)) if (!units[unit]) { chosenPlaces[unit].remove(); delete chosenPlaces[unit]; }
     for (const [unit, names] of Object.entries(units)) {
       const lines = names.map((signal, k) => ({ signal, label: signal, colour: cycle[k % cycle.length], dash: "solid", width: 1.5 }));
-      const panel = { title: names.length > 1 ? "Chosen signals" : names[0], unit, lines, bands: [], states: false };
+      const panel = { title: names.length > 1 ? "Chosen signals" : names[0], unit, lines, bands: [], zones: [], states: false };
       const place = (chosenPlaces[unit] ??= newPlace());
       draw(place, () => drawPanel(place, panel), true);
     }
