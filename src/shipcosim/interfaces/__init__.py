@@ -2,5 +2,6 @@
 
 from shipcosim.interfaces.named_allocator import NamedAllocator
 from shipcosim.interfaces.numbered_allocator import NumberedAllocator
+from shipcosim.interfaces.predictor import MotionPredictor
 
-__all__ = ["NamedAllocator", "NumberedAllocator"]
+__all__ = ["MotionPredictor", "NamedAllocator", "NumberedAllocator"]

@@ -1,0 +1,129 @@
+"""Interface of the predictors of the motion to come, from what a ship knows."""
+
+from typing import Any, NamedTuple
+
+from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.sampling import samples_due
+from shipcosim.models.prediction.known import Known
+from shipcosim.models.ship.mast import MastParameters, wind_from_mast
+
+HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
+
+
+class Prediction(NamedTuple):
+    """What a predictor says, each with one value a horizon.
+
+    Parameters
+    ----------
+    motions : tuple of Motion
+        The ship at the horizons.
+    position_regions : tuple of float
+        Radii of circles about the predicted places that have the true ones in 90 % of cases; 0 where nobody has
+        calibrated them. [m]
+    heading_regions : tuple of float
+        Half-widths about the predicted headings, likewise. [rad]
+    learned : float
+        Share of a learned correction that is in the prediction. [1]
+    """
+
+    motions: tuple[Motion, ...]
+    position_regions: tuple[float, ...]
+    heading_regions: tuple[float, ...]
+    learned: float = 0.0
+
+
+class MotionPredictor(Fmu):
+    """Variables of every predictor, so that one can take another's place. See docs/prediction.md.
+
+    An FMU of a predictor has a state of its own, and declares three methods:
+
+    - ``begin(known)``: the state at the start,
+    - ``follow(state, known, since)``: the state `since` seconds later, from what is known then,
+    - ``predict(state, known)``: the `Prediction` from there.
+
+    They are called once each `prediction_period`, and at the start. Between predictions the outputs hold. `known` is a
+    `models.prediction.known.Known`: what is aboard, and nothing else.
+    """
+
+    x_hat = Input("m", "estimated north position")
+    y_hat = Input("m", "estimated east position")
+    psi_hat = Input("rad", "estimated heading, clockwise from north")
+    u_hat = Input("m/s", "estimated surge velocity over ground")
+    v_hat = Input("m/s", "estimated sway velocity over ground")
+    r_hat = Input("rad/s", "estimated yaw rate")
+    tau_X_bias = Input("N", "estimated force forward that neither thrust nor measured wind explains")
+    tau_Y_bias = Input("N", "estimated force to starboard that neither thrust nor measured wind explains")
+    tau_N_bias = Input("N.m", "estimated yaw moment that neither thrust nor measured wind explains")
+    tau_X_allocated = Input("N", "force forward that the allocator's commands give")
+    tau_Y_allocated = Input("N", "force to starboard that the allocator's commands give")
+    tau_N_allocated = Input("N.m", "yaw moment that the allocator's commands give")
+    wind_speed_meas = Input("m/s", "measured apparent wind speed at the mast")
+    wind_from_meas = Input("rad", "measured direction of the apparent wind at the mast, clockwise from the bow")
+    wind_rejected = Input("1", "the anemometer is lost or not believed: the bias has the wind's load", start=False)
+
+    predicted_at = Output("s", "time at which the prediction was made, from which its seconds count")
+    x_10 = Output("m", "north position in 10 s")
+    y_10 = Output("m", "east position in 10 s")
+    psi_10 = Output("rad", "heading in 10 s")
+    position_region_10 = Output("m", "radius about the place in 10 s that has the true one in 90 % of cases, or 0")
+    heading_region_10 = Output("rad", "half-width about the heading in 10 s that has the true one in 90 %, or 0")
+    x_30 = Output("m", "north position in 30 s")
+    y_30 = Output("m", "east position in 30 s")
+    psi_30 = Output("rad", "heading in 30 s")
+    position_region_30 = Output("m", "radius about the place in 30 s that has the true one in 90 % of cases, or 0")
+    heading_region_30 = Output("rad", "half-width about the heading in 30 s that has the true one in 90 %, or 0")
+    x_60 = Output("m", "north position in 60 s")
+    y_60 = Output("m", "east position in 60 s")
+    psi_60 = Output("rad", "heading in 60 s")
+    position_region_60 = Output("m", "radius about the place in 60 s that has the true one in 90 % of cases, or 0")
+    heading_region_60 = Output("rad", "half-width about the heading in 60 s that has the true one in 90 %, or 0")
+    learned = Output("1", "share of the learned correction in the prediction; 0 is the equations of motion alone")
+
+    mast = Parameters(MastParameters)
+    prediction_period = Parameter(1.0, "s", "time between predictions", minimum=0.01)
+
+    def start(self) -> None:
+        self.made = samples_due(self.start_time, self.prediction_period)
+        known = self._known()
+        self.state = self.begin(known)
+        self._show(known, self.start_time)
+
+    def step(self, t: float, h: float) -> None:
+        due = samples_due(t, self.prediction_period)
+        if self.made < due:
+            known, since = self._known(), (due - self.made) * self.prediction_period
+            self.made = due
+            self.state = self.follow(self.state, known, since)
+            self._show(known, t)
+
+    def begin(self, known: Known) -> Any:
+        """State at the start."""
+        raise NotImplementedError(f"{type(self).__name__} has no begin(self, known)")
+
+    def follow(self, state: Any, known: Known, since: float) -> Any:
+        """State `since` seconds later, from what is known then."""
+        raise NotImplementedError(f"{type(self).__name__} has no follow(self, state, known, since)")
+
+    def predict(self, state: Any, known: Known) -> Prediction:
+        """Prediction from a state, and what is known at the same time."""
+        raise NotImplementedError(f"{type(self).__name__} has no predict(self, state, known)")
+
+    def _known(self):
+        ship = Motion(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat)
+        return Known(
+            ship,
+            (self.tau_X_bias, self.tau_Y_bias, self.tau_N_bias),
+            (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated),
+            *wind_from_mast(self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast),
+            1.0 - self.wind_rejected,
+        )
+
+    def _show(self, known, t):
+        self.predicted_at = t
+        motions, positions, headings, self.learned = self.predict(self.state, known)
+        self.x_10, self.y_10, self.psi_10 = motions[0][:3]
+        self.x_30, self.y_30, self.psi_30 = motions[1][:3]
+        self.x_60, self.y_60, self.psi_60 = motions[2][:3]
+        self.position_region_10, self.position_region_30, self.position_region_60 = positions
+        self.heading_region_10, self.heading_region_30, self.heading_region_60 = headings
