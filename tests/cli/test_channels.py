@@ -45,3 +45,12 @@ def test_the_table_of_a_run_has_a_channel_file(gunnerus, tmp_path):
     (tmp_path / "channels.toml").write_text(found.text)
     log = read_log(tmp_path / "result.csv", tmp_path / "channels.toml")
     assert log["heading"].values[10] == pytest.approx(np.degrees(0.5)) and log["port_rpm"].values[0] == 60.0
+
+
+def test_names_say_centimetres_and_which_side_is_positive(tmp_path):
+    rows = np.column_stack([T, 100.0 * T, 0 * T, 0 * T, 0 * T + 2.0])
+    header = "time [s],north_cm,east_cm,heading,rot_port_deg_s"
+    np.savetxt(tmp_path / "log.csv", rows, delimiter=",", header=header, comments="")
+    (tmp_path / "channels.toml").write_text(proposed(tmp_path / "log.csv").text)
+    log = read_log(tmp_path / "log.csv", tmp_path / "channels.toml")
+    assert log["north"].values[10] == pytest.approx(T[10]) and log["yaw_rate"].values[0] == -2.0

@@ -22,6 +22,7 @@ Thrusters = Mapping[str, tuple[str, ...]]
 EXACT, SURE, GUESS = 0, 1, 2
 UNUSED = Channel(column="-")
 _THRUSTER_UNITS = {"rpm": "rpm", "azimuth": "deg", "thrust": "N"}
+_TO_STARBOARD = ("sway", "yaw_rate")  # roles that are positive to starboard
 _SUFFIXES = ("m/s", "deg/s", "deg", "s", "m", "rpm", "N", "%")  # units that names end in
 
 
@@ -126,9 +127,11 @@ def _by_meaning(column, words, stated, values):
         shown = next(str(value) for value in values if value is not None)[:20]
         return Guess(column, why=f"it holds texts such as '{shown}'")
     given = unit if unit and not stated else None
-    channel = Channel(column=column, unit=unit_for(given, ROLES[role].unit) if given else None)
-    rank = GUESS if meaning.doubt else SURE
-    return Guess(column, role, channel, rank, meaning.doubt, unit=unit)
+    doubt, sign = meaning.doubt, 1
+    if doubt and role in _TO_STARBOARD and "port" in words:
+        doubt, sign = "by its name positive to port", -1
+    channel = Channel(column=column, unit=unit_for(given, ROLES[role].unit) if given else None, sign=sign)
+    return Guess(column, role, channel, GUESS if doubt else SURE, doubt, unit=unit)
 
 
 def _measures(unit, role):
