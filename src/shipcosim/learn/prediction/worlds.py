@@ -1,0 +1,265 @@
+"""Worlds in which predictors are trained and tested: a seed gives a ship that differs from her nominal model.
+
+The ship is R/V Gunnerus under DP, co-simulated as `gunnerus_dp`. Her controller, allocator and predictor keep the
+nominal numbers; the ship herself, her thrusters, sensors and the weather are drawn. She is held, makes some low-speed
+manoeuvres, loses all thrust at a drawn time and drifts for 160 s.
+"""
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import lru_cache
+from math import pi
+
+import numpy as np
+
+from shipcosim.cosim import simulate, system_of
+from shipcosim.scenario import Event, Scenario
+
+TRAINING, CALIBRATION, TUNING = range(1, 200), range(200, 300), range(300, 400)
+"""Seeds of worlds to train on, to calibrate regions on, and to choose by."""
+HELD_OUT = range(8000, 8048)
+"""Seeds of worlds that nobody looks at before the end."""
+KNOWN = (
+    *("x_hat", "y_hat", "psi_hat", "u_hat", "v_hat", "r_hat", "tau_X_bias", "tau_Y_bias", "tau_N_bias"),
+    *("tau_X_allocated", "tau_Y_allocated", "tau_N_allocated", "wind_speed_meas", "wind_from_meas", "wind_rejected"),
+)
+"""Inputs of a predictor, from the observer, the allocator and the wind sensor."""
+TRUTH = ("x", "y", "psi", "u", "v", "r")
+"""The low-frequency ship."""
+TOLERATED = (
+    *("vessel.mass", "vessel.inertia_yaw", "vessel.A11", "vessel.A22", "vessel.A66", "vessel.cross_flow_drag"),
+    *("vessel.X_uu", "vessel.lift", "vessel.lift_x", "vessel.wind_load_scale"),
+    *("port.thrust_scale", "port.thrust_scale_outside", "port.side_force_coefficient", "port.azimuth_offset"),
+    *("starboard.thrust_scale", "starboard.thrust_scale_outside", "starboard.side_force_coefficient"),
+    *("starboard.azimuth_offset", "tunnel.thrust_coefficient"),
+)
+"""Numbers that are off by their tolerance in the parameter set, as a standard deviation."""
+SYSTEM, PARAMETERS = "gunnerus_dp", "gunnerus-33m9"
+STEP = 0.1  # s
+DRIFT = 160.0  # s
+_THRUSTERS = ("port", "starboard", "tunnel")
+
+
+@dataclass(frozen=True)
+class World:
+    """One ship, her weather and what happens to her.
+
+    Parameters
+    ----------
+    seed : int
+        From which it was drawn. [1]
+    distance : float
+        How far truth and nominal model are apart: 1 for the tolerances. [1]
+    lost_at : float
+        When she loses all thrust. [s]
+    set : dict
+        Start values that differ from those of the system.
+    events : tuple of Event
+        Setpoints, turns of current and wind, loss of thrust.
+    """
+
+    seed: int
+    distance: float
+    lost_at: float
+    set: dict
+    events: tuple
+
+
+@dataclass(frozen=True)
+class Record:
+    """What a world gives, at 1 Hz.
+
+    Parameters
+    ----------
+    seed : int
+        Of the world. [1]
+    lost_at : float
+        When all thrust was lost, a whole second. [s]
+    time : (n,) array
+        [s]
+    known : (n, 15) array
+        What the ship knows, columns `KNOWN`; angles wrapped. [m, rad, m/s, rad/s, N, N.m]
+    truth : (n, 6) array
+        What became of her, columns `TRUTH`; for scoring, never to learn from. [m, m, rad, m/s, m/s, rad/s]
+    """
+
+    seed: int
+    lost_at: float
+    time: np.ndarray
+    known: np.ndarray
+    truth: np.ndarray
+
+    def column(self, name: str) -> np.ndarray:
+        """A column of what the ship knows, by its name."""
+        return self.known[:, KNOWN.index(name)]
+
+
+def draw(seed: int, distance: float = 1.0) -> World:
+    """Draw a world.
+
+    Parameters
+    ----------
+    seed : int
+        Worlds of other seeds are independent. [1]
+    distance : float
+        How far truth and nominal model are apart: 0 alike, 1 the tolerances, 2 outside what is trained on. What is
+        drawn is the same for each distance, only its size differs. [1]
+
+    Returns
+    -------
+    World
+        To be sailed.
+    """
+    rng = np.random.default_rng([26, seed])
+    lost_at = float(rng.integers(180, 301))
+    values, weather = _weather(rng, distance, lost_at)
+    values |= _parameters(rng, distance)
+    values |= {"environment.seed": seed, "sensors.seed": 20000 + seed, "predictor.prediction_period": 1e6}
+    lost = Event(time=lost_at, override={f"{name}.failed": True for name in _THRUSTERS})
+    events = sorted([*_setpoints(rng, lost_at), *weather, lost], key=lambda event: event.time)
+    return World(seed, distance, lost_at, values, tuple(events))
+
+
+def scenario(world: World, *, step_size: float = STEP, drift: float = DRIFT) -> Scenario:
+    """The scenario of a world, for `shipcosim.cosim.simulate`.
+
+    Parameters
+    ----------
+    world : World
+        As drawn.
+    step_size : float
+        Of the co-simulation. [s]
+    drift : float
+        How long she drifts. [s]
+
+    Returns
+    -------
+    Scenario
+        Of `gunnerus_dp`; her predictor rests, set `predictor.prediction_period` back to 1 s to wake it.
+    """
+    return Scenario(
+        description=f"World {world.seed} at distance {world.distance:g}",
+        system=SYSTEM,
+        parameters=[PARAMETERS],
+        stop_time=world.lost_at + drift,
+        step_size=step_size,
+        output_interval=1.0,
+        set=world.set,
+        events=list(world.events),
+    )
+
+
+def sail(world: World, *, step_size: float = STEP) -> Record:
+    """Co-simulate a world.
+
+    Parameters
+    ----------
+    world : World
+        As drawn.
+    step_size : float
+        Of the co-simulation. [s]
+
+    Returns
+    -------
+    Record
+        At 1 Hz from the start on.
+    """
+    table = simulate(system_of(scenario(world)), scenario(world, step_size=step_size))
+    known = [np.asarray(table[_source(name)], float) for name in KNOWN]
+    truth = [np.asarray(table[f"vessel.{name}"], float) for name in TRUTH]
+    time = np.asarray(table["time"], float)
+    return Record(world.seed, world.lost_at, time, np.column_stack(known), np.column_stack(truth))
+
+
+def sail_all(
+    worlds: Iterable[World], *, processes: int = 2, progress: Callable[[int, int], None] | None = None
+) -> list[Record]:
+    """Co-simulate several worlds, in their order.
+
+    Parameters
+    ----------
+    worlds : iterable of World
+        As drawn.
+    processes : int
+        How many sail at a time. [1]
+    progress : callable, optional
+        Is told how many are done, and of how many.
+
+    Returns
+    -------
+    list of Record
+        One a world.
+    """
+    worlds, records = list(worlds), []
+    with ProcessPoolExecutor(processes) as pool:
+        for record in pool.map(sail, worlds):
+            records.append(record)
+            if progress:
+                progress(len(records), len(worlds))
+    return records
+
+
+def _source(name: str) -> str:
+    """Signal that feeds an input of the predictor."""
+    if name.endswith("_allocated"):
+        return f"allocator.{name.removesuffix('_allocated')}"
+    return f"{'sensors' if name.endswith('_meas') else 'controller'}.{name}"
+
+
+@lru_cache(maxsize=1)
+def _nominal() -> dict[str, tuple[float, float]]:
+    """Value and tolerance of each number of `TOLERATED`."""
+    system = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
+    found = {}
+    for signal in TOLERATED:
+        component, name = signal.split(".")
+        found[signal] = float(system.components[component].start[name]), system.components[component].tolerances[name]
+    return found
+
+
+def _parameters(rng: np.random.Generator, distance: float) -> dict[str, float]:
+    """Numbers of hull, wind and thrusters off by their tolerances."""
+    return {name: value + distance * std * rng.standard_normal() for name, (value, std) in _nominal().items()}
+
+
+def _weather(rng: np.random.Generator, distance: float, lost_at: float) -> tuple[dict[str, float], list[Event]]:
+    """Weather in which DP holds her, and how current and wind change: at most some tens of degrees."""
+    wind, wind_from = rng.uniform(3.0, 9.0), rng.uniform(-pi, pi)
+    current, current_to = rng.uniform(0.0, 0.5), rng.uniform(-pi, pi)
+    values = {
+        "environment.wind_speed": wind,
+        "environment.wind_from": wind_from,
+        "environment.current_speed": current,
+        "environment.current_to": current_to,
+        "environment.significant_wave_height": rng.uniform(0.1, 0.6),
+        "environment.peak_period": rng.uniform(4.0, 7.0),
+        "environment.waves_from": wind_from + rng.normal(0.0, 0.4),
+        "environment.gust_scale": 1.0 + distance * rng.uniform(-0.3, 0.3),
+    }
+    turned = {
+        "environment.current_speed": abs(current + distance * rng.normal(0.0, 0.05)),
+        "environment.current_to": current_to + distance * rng.normal(0.0, 0.4),
+    }
+    veered = {
+        "environment.wind_speed": wind * (1.0 + distance * rng.uniform(-0.1, 0.1)),
+        "environment.wind_from": wind_from + distance * rng.normal(0.0, 0.15),
+    }
+    times = rng.integers(-60, 120, 2) + int(lost_at)
+    return values, [Event(time=float(t), override=new) for t, new in zip(times, (turned, veered), strict=True)]
+
+
+def _setpoints(rng: np.random.Generator, lost_at: float) -> list[Event]:
+    """Low-speed manoeuvres: two changes of place and heading, the second up to the loss of thrust."""
+    times = 40.0, float(rng.integers(110, int(lost_at) + 1))
+    return [
+        Event(
+            time=time,
+            override={
+                "reference.x_set": rng.uniform(-15.0, 15.0),
+                "reference.y_set": rng.uniform(-15.0, 15.0),
+                "reference.psi_set": rng.uniform(-pi / 2.0, pi / 2.0),
+            },
+        )
+        for time in times
+    ]
