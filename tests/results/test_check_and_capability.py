@@ -73,7 +73,12 @@ def test_out_of_a_run_keeps_the_earlier_one(tmp_path):
     for _ in range(2):
         sc.run("gust", stop_time=0.1, out=tmp_path / "gust")
     assert sorted(one.name for one in tmp_path.iterdir()) == ["gust", "gust-1"]
-    assert {one.name for one in (tmp_path / "gust").iterdir()} == {"result.nc", "result.csv", "report.html"}
+    assert {one.name for one in (tmp_path / "gust").iterdir()} == {
+        "result.nc",
+        "result.csv",
+        "report.html",
+        "predictions.csv",
+    }
     sc.run("gust", stop_time=0.1, out=tmp_path / "gust", force=True)
     assert not (tmp_path / "gust-2").exists()
 

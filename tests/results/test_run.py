@@ -41,7 +41,12 @@ def test_a_scenario_runs_by_its_name_in_an_empty_folder_and_writes_nothing(empty
 
 def test_out_gets_what_the_command_writes(empty):
     found = sc.run("gust", stop_time=1.0, out="results/gust")
-    assert {path.name for path in Path("results/gust").iterdir()} == {"result.nc", "result.csv", "report.html"}
+    assert {path.name for path in Path("results/gust").iterdir()} == {
+        "result.nc",
+        "result.csv",
+        "report.html",
+        "predictions.csv",
+    }
     assert sc.read_table("results/gust/result.nc").equals(found.table)
 
 

@@ -77,11 +77,14 @@ def print_summary(
 ) -> None:
     """How a run went: its expectations, what must not be overlooked, where the page is."""
     from shipcosim.report import digest
+    from shipcosim.report.run.predictions import make_predictions, summarise, texts
 
     console = Console(stderr=to_stderr, highlight=False, soft_wrap=True)
     outcome, remarks, judged = digest(table, verdicts)
     if judged:
         console.print(_expectations(judged))
+    if predicted := texts(summarise(make_predictions(table))):
+        console.print(_listed(("predicted", "position", "heading", ""), predicted))
     for remark in remarks:
         console.print(Text(remark, style="yellow"))
     console.print(Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence))
@@ -115,6 +118,15 @@ def _expectations(judged):
     for passed, *texts in judged:
         word = Text("pass", style="green") if passed else Text("FAIL", style="bold red")
         listed.add_row(word, *map(Text, texts))
+    return listed
+
+
+def _listed(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    listed = Table(box=None, pad_edge=False)
+    for heading in headings:
+        listed.add_column(heading, no_wrap=True)
+    for row in rows:
+        listed.add_row(*map(Text, row))
     return listed
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from shipcosim.ssp import System
 
 PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
+PREDICTIONS = "predictions.csv"
 
 
 def save(
@@ -28,7 +29,7 @@ def save(
     system: System,
     verdicts: Sequence[Verdict] = (),
 ) -> Path:
-    """Write table and page; a complete run takes away what an interrupted one left before it.
+    """Write table, page, and predictions where there are; a complete run takes away what an interrupted one left.
 
     Parameters
     ----------
@@ -52,12 +53,15 @@ def save(
         If something cannot be written.
     """
     from shipcosim.report import write_report
+    from shipcosim.report.run.predictions import make_predictions, write_predictions
     from shipcosim.series import write_table
 
     page = "report.html" if stem == "result" else f"{stem}.html"
-    with staged(Path(folder), PARTIAL if stem == "result" else ()) as stage:
+    with staged(Path(folder), (*PARTIAL, PREDICTIONS) if stem == "result" else ()) as stage:
         for suffix in (".nc", ".csv"):
             write_table(table, stage / f"{stem}{suffix}")
+        if stem == "result" and len(predictions := make_predictions(table)):
+            write_predictions(predictions, stage / PREDICTIONS)
         write_report(table, stage / page, scenario=scenario, verdicts=verdicts, system=system)
     return Path(folder) / page
 

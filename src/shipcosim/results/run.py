@@ -65,6 +65,18 @@ class Run(LikeTable, Result):
         """Of the scenario, or of the system where there is no scenario file."""
         return self.scenario.name or self.system.name
 
+    @property
+    def predictions(self) -> pandas.DataFrame:
+        """Every prediction of the run's predictors, beside what became of the ship; no rows where nothing predicts.
+
+        A row for each prediction and horizon: time, component, horizon, predicted and true x, y, psi, errors north,
+        east and of heading, radius and half-width of the regions, whether the truth is in them (1, 0, or no number
+        where there is no region or the run ends before), and the share of what is learned. SI and radians.
+        """
+        from shipcosim.report.run.predictions import make_predictions
+
+        return make_predictions(self.table)
+
     def plot(self, *signals: str) -> Picture:
         """Signals over time, a panel for each unit; moments of events are marked.
 
@@ -124,7 +136,7 @@ class Run(LikeTable, Result):
         return HtmlPage(self.name, page)
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write result.nc, result.csv and report.html, as `shipcosim run` does; returns the folder.
+        """Write result.nc, result.csv, report.html and, where something predicts, predictions.csv; returns the folder.
 
         Parameters
         ----------
@@ -138,11 +150,14 @@ class Run(LikeTable, Result):
         ShipcosimError
             If they cannot be written.
         """
+        from shipcosim.report.run.predictions import write_predictions
         from shipcosim.series import write_table
 
-        with staged(Path(folder), force=force) as stage:
+        with staged(Path(folder), ["predictions.csv"], force=force) as stage:
             for name in ("result.nc", "result.csv"):
                 write_table(self.table, stage / name)
+            if len(predictions := self.predictions):
+                write_predictions(predictions, stage / "predictions.csv")
             self.page().save(stage / "report.html")
         return Path(folder)
 

@@ -1,15 +1,18 @@
 """Key figures of a run."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from xarray import Dataset
 
 from shipcosim.report.run.derived import ERRORS, FROM_REFERENCE
+from shipcosim.report.run.predictions import PredictionSummary, texts
 from shipcosim.report.run.roles import Roles
 from shipcosim.report.theme.views import Table
 
 
-def key_figures(shown: Dataset, roles: Roles) -> Table:
-    """Errors, power and time at a limit: what people compare runs by.
+def key_figures(shown: Dataset, roles: Roles, predictions: Sequence[PredictionSummary] = ()) -> Table:
+    """Errors, power, time at a limit, errors of predictions: what people compare runs by.
 
     Parameters
     ----------
@@ -17,6 +20,8 @@ def key_figures(shown: Dataset, roles: Roles) -> Table:
         Table in the page's units, with the derived signals.
     roles : Roles
         What the signals stand for.
+    predictions : sequence of PredictionSummary
+        How far off the run's predictions are.
 
     Returns
     -------
@@ -36,4 +41,5 @@ def key_figures(shown: Dataset, roles: Roles) -> Table:
     for component, name in roles.flagged("saturated").items():
         if name in shown:
             figures.append((f"At a limit, {component}", f"{100 * np.mean(shown[name].values):.0f} % of the time"))
+    figures += [(f"Predicted by {what}", ", ".join(said)) for what, *said in texts(predictions)]
     return Table(tuple(figures))

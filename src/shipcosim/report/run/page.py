@@ -12,6 +12,7 @@ from shipcosim.report.run.details import Detail, details, parsed
 from shipcosim.report.run.expectations import Judged, judged, outcome
 from shipcosim.report.run.key_figures import key_figures
 from shipcosim.report.run.panels import Section, make_sections
+from shipcosim.report.run.predictions import make_predictions, summarise
 from shipcosim.report.run.remarks import remarks
 from shipcosim.report.run.roles import Roles, find_roles
 from shipcosim.report.run.scene import Run, make_run
@@ -159,7 +160,7 @@ def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict]
         changed=tuple(parsed(table.attrs.get("changed", "[]"))),
         weather=weather(shown, roles),
         expectations=judged(verdicts, shown),
-        key_figures=key_figures(shown, roles),
+        key_figures=key_figures(shown, roles, summarise(make_predictions(table))),
         thinned=thin,
         sections=sections,
         details=details(table, scenario, system),

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from xarray import Dataset
 
 from shipcosim.angles import unwrap_series
+from shipcosim.report.run.predictions import predicted_tracks
 from shipcosim.report.run.roles import find_roles
 from shipcosim.report.run.track import hull_outline, outline_rows, symbol_size
 from shipcosim.report.run.vessels import Unit, Vessel, find_vessels, in_unit, start_values
@@ -45,6 +46,8 @@ class Run:
         Limits that alarms of the position and heading watch. [m, deg]
     read_as : list of str
         What had to be supposed.
+    predicted : list of dict
+        Tracks that predictors foretold, of the first vessel.
     """
 
     label: str
@@ -55,6 +58,7 @@ class Run:
     circles: list[dict[str, Any]]
     watch: dict[str, float]
     read_as: list[str]
+    predicted: list[dict[str, Any]]
 
 
 @dataclass
@@ -121,6 +125,7 @@ def make_run(table: Dataset, verdicts: Sequence[Verdict] = (), label: str = "", 
         [circle for verdict in verdicts for vessel in vessels for circle in _circle(verdict, vessel, shift)],
         _watch(table),
         supposed,
+        predicted_tracks(table, shift),
     )
 
 

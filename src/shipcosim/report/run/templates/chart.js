@@ -146,6 +146,25 @@
     return { what: "hull", run: run.label, vessel: vessel.name, colour: colour(run.colour), position: [state.north, state.east], heading: state.heading, ...hull };
   }
 
+  const FORETOLD = ["purple", "olive", "sky"];  // of several predictors
+
+  function predictions(c, p, { run, vessels, predicted }) {  // of the first vessel: line, places, regions, and where she came to be
+    return predicted.flatMap((places, k) => {
+      const own = vessels[0], shade = runs.length > 1 ? run.colour : FORETOLD[k % 3];
+      if (!own) return [];
+      path(c, p, [own.east, ...places.map((one) => one.east)], [own.north, ...places.map((one) => one.north)]); stroke(c, shade, 1.6, [7, 3]);
+      return places.map(({ seconds, north, east, heading, radius, true: then }) => {
+        const x = p.x(east), y = p.y(north), a = (heading * Math.PI) / 180;
+        if (radius > 0) { ring(c, p, east, north, radius); c.fillStyle = colour(`${shade}/0.1`); c.fill(); stroke(c, shade, 1.2); }
+        c.beginPath(); c.moveTo(x, y); c.lineTo(x + 14 * Math.sin(a), y - 14 * Math.cos(a)); stroke(c, shade, 2);
+        c.beginPath(); c.arc(x, y, 3.5, 0, 2 * Math.PI); c.fillStyle = colour(shade); c.fill();
+        if (then) { const u = p.x(then[1]), v = p.y(then[0]); c.beginPath(); c.moveTo(u - 4, v - 4); c.lineTo(u + 4, v + 4); c.moveTo(u + 4, v - 4); c.lineTo(u - 4, v + 4); stroke(c, runs.length > 1 ? run.colour : "ink", 1.5); }
+        c.fillStyle = colour("ink"); c.textAlign = "left"; c.textBaseline = "middle"; c.fillText(`${seconds} s`, x + 8, y + 9);
+        return { what: "predicted", run: run.label, of: run.predicted[k].name, seconds, north, east, heading, radius, true: then };
+      });
+    });
+  }
+
   function title(c, p, { vessel, hull }) {  // where there are several, beside the outline
     if (scene.vessels.length < 2) return;
     c.fillStyle = colour("ink"); c.textAlign = "left"; c.textBaseline = "middle";
@@ -195,7 +214,7 @@
     for (const state of states) trails(c, p, state);
     if (scene.ghost !== null) for (const { run, vessels } of scene.at(scene.ghost)) for (const vessel of vessels) drawn.push(ship(c, p, run, vessel, true));
     for (const { run, vessels } of states) for (const vessel of vessels) drawn.push(ship(c, p, run, vessel));
-    for (const state of states) drawn.push(...circles(c, p, state, t));
+    for (const state of states) drawn.push(...predictions(c, p, state), ...circles(c, p, state, t));
     for (const { run, vessels } of states) for (const vessel of vessels) { drawn.push(...aims(c, p, run, vessel), ...thrusters(c, p, run, vessel)); title(c, p, vessel); }
     c.restore();
     legend(p);
@@ -212,6 +231,10 @@
     const has = (what) => runs.some((run) => run.vessels.some((v) => v.aims[what]));
     if (has("reference")) entries.push(["reference", "dash", runs.length > 1 ? "soft" : "orange"]);
     if (has("set point")) entries.push(["set point", "cross", "ink"]);
+    for (const [k, one] of (runs.length > 1 ? [] : runs[0].predicted.entries())) entries.push([`${one.name}: in ${one.horizons.join(", ")} s`, "dash", FORETOLD[k % 3]]);
+    if (runs.length > 1 && runs.some((run) => run.predicted.length)) entries.push(["predicted", "dash", "soft"]);
+    if (runs.some((run) => run.predicted.some((one) => one.radius.some((column) => column.some((r) => r > 0))))) entries.push(["region of 90 %", "ring", runs.length > 1 ? "soft" : FORETOLD[0]]);
+    if (runs.some((run) => run.predicted.length)) entries.push(["× where she came to be", "none", "soft"]);
     if (runs.some((run) => run.circles.length)) entries.push(["limit held", "ring", "green"]);
     if (runs.some((run) => run.circles.some(({ passed }) => !passed))) entries.push(["limit missed", "ring", "vermillion"]);
     if (runs.some((run) => run.watch.position)) entries.push([`watch circle ${+runs.find((run) => run.watch.position).watch.position.toPrecision(3)} m`, "ring", "caution"]);

@@ -10,7 +10,11 @@ const scene = (() => {
   const runs = data.scene.map((run, k) => {
     const time = report.series(run.time), columns = {};
     for (const [name, packed] of Object.entries(run.columns)) columns[name] = report.series(packed, time.length);
-    return { ...run, time, columns, colour: COLOURS[k] };
+    const predicted = run.predicted.map((one) => {
+      const made = report.series(one.made), read = (what) => one[what].map((packed) => report.series(packed, made.length));
+      return { ...one, made, north: read("north"), east: read("east"), heading: read("heading"), radius: read("radius") };
+    });
+    return { ...run, time, columns, predicted, colour: COLOURS[k] };
   });
   const start = Math.min(...runs.map((run) => run.time[0])), end = Math.max(...runs.map((run) => run.time[run.time.length - 1]));
 
@@ -76,6 +80,20 @@ const scene = (() => {
     };
   }
 
+  // The prediction that held at a time, place by place: where she was to be, and where she came to be.
+  function predictedAt(run, one, t) {
+    let last = -1;
+    for (let low = 0, high = one.made.length - 1; low <= high;) {
+      const middle = (low + high) >> 1;
+      if (one.made[middle] <= t + 1e-6) { last = middle; low = middle + 1; } else high = middle - 1;
+    }
+    if (last < 0) return null;
+    return one.horizons.map((seconds, k) => {
+      const then = place(run, one.made[last] + seconds), [north, east] = run.vessels[0].pose.map((name) => value(run, name, then));
+      return { seconds, north: one.north[k][last], east: one.east[k][last], heading: one.heading[k][last], radius: one.radius[k][last], true: Number.isFinite(north + east) ? [north, east] : null };
+    });
+  }
+
   function flowAt(run, flow, where) {
     if (flow.height) return { ...flow, size: value(run, flow.height, where), degrees: compass(value(run, flow.direction, where)), unit: "m" };
     const [north, east] = flow.velocity.map((name) => value(run, name, where));
@@ -86,7 +104,7 @@ const scene = (() => {
   function at(t) {
     return runs.map((run) => {
       const where = place(run, t);
-      return { run, where, vessels: run.vessels.map((vessel) => where && vesselAt(run, vessel, where)).filter(Boolean), flows: where ? run.flows.map((flow) => flowAt(run, flow, where)) : [] };
+      return { run, where, vessels: run.vessels.map((vessel) => where && vesselAt(run, vessel, where)).filter(Boolean), flows: where ? run.flows.map((flow) => flowAt(run, flow, where)) : [], predicted: where ? run.predicted.map((one) => predictedAt(run, one, t)).filter(Boolean) : [] };
     });
   }
 

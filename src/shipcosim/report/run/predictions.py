@@ -1,0 +1,261 @@
+"""What predictors of a run foretold, beside what became of the ship."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.angles import unwrap_series, wrap_series
+from shipcosim.report.run.roles import Roles, find_roles, join
+from shipcosim.report.theme.packing import LEVELS, packed_series
+from shipcosim.series import write_file
+
+if TYPE_CHECKING:
+    import pandas
+    from xarray import Dataset
+
+MOST_DRAWN = 1200  # predictions in the scene
+UNITS = {
+    "time": "s",
+    "component": "",
+    "horizon": "s",
+    "x": "m",
+    "y": "m",
+    "psi": "rad",
+    "true_x": "m",
+    "true_y": "m",
+    "true_psi": "rad",
+    "error_north": "m",
+    "error_east": "m",
+    "error_heading": "rad",
+    "position_region": "m",
+    "heading_region": "rad",
+    "in_position_region": "",
+    "in_heading_region": "",
+    "learned": "1",
+}
+"""Columns of the table of predictions, with their units."""
+
+
+class PredictionSummary(NamedTuple):
+    """How far off the predictions of one component are at one horizon.
+
+    Attributes
+    ----------
+    component : str
+    horizon : float
+        [s]
+    count : int
+        Predictions whose time the run reached.
+    position, heading : float
+        Root mean square of distance and angle off. [m, rad]
+    in_position_region, in_heading_region : float
+        Shares within the regions; no number where there are none. [1]
+    """
+
+    component: str
+    horizon: float
+    count: int
+    position: float
+    heading: float
+    in_position_region: float
+    in_heading_region: float
+
+
+def find_predictors(roles: Roles) -> dict[str, tuple[int, ...]]:
+    """Components with the outputs of `interfaces.MotionPredictor`, and their horizons. [s]"""
+    found = {}
+    for component, connectors in roles.connectors.items():
+        ends = [int(match[1]) for name in connectors if (match := re.fullmatch(r"x_(\d+)", name))]
+        known = tuple(sorted(end for end in ends if {f"y_{end}", f"psi_{end}"} <= set(connectors)))
+        if known and "predicted_at" in connectors:
+            found[component] = known
+    return found
+
+
+def first_rows(table: Dataset, component: str) -> NDArray:
+    """Rows at which a new prediction of a component is there."""
+    made = table[join(component, "predicted_at")].values
+    return np.flatnonzero(np.r_[True, np.diff(made) != 0.0]) if len(made) else np.zeros(0, int)
+
+
+def make_predictions(table: Dataset) -> pandas.DataFrame:
+    """Every prediction of a run at every horizon.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        A run.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns as `UNITS`, angles in [-π, π); no rows where the system has no predictor or no ship. Truth and errors
+        are no numbers where the run ends before, shares where there is no region.
+
+    Notes
+    -----
+    The truth between two rows of the table is taken on the straight line. A region of 0 is none.
+    """
+    import pandas
+
+    roles = find_roles(table.data_vars)
+    parts = []
+    if roles.signal(roles.ship, "x") is not None:
+        for component, horizons in find_predictors(roles).items():
+            rows = first_rows(table, component)
+            parts += [_at_horizon(table.isel(time=rows), table, roles, component, end) for end in horizons]
+    columns = {name: np.concatenate([part[name] for part in parts]) if parts else np.zeros(0) for name in UNITS}
+    frame = pandas.DataFrame(columns)
+    return frame.sort_values(["component", "time", "horizon"], kind="stable", ignore_index=True)
+
+
+def _at_horizon(made: Dataset, table: Dataset, roles: Roles, component: str, horizon: int) -> dict[str, NDArray]:
+    """Columns of the predictions of one component at one horizon."""
+
+    def read(connector):
+        name = join(component, connector)
+        return made[name].values.astype(float) if name in made else np.zeros(made.sizes["time"])
+
+    time = read("predicted_at")
+    place = {axis: read(f"{axis}_{horizon}") for axis in ("x", "y", "psi")}
+    true = _truth(table, roles, time + horizon)
+    off = {axis: place[axis] - true[axis] for axis in place}
+    off["psi"] = wrap_series(off["psi"], 2.0 * np.pi)
+    circle, width = read(f"position_region_{horizon}"), read(f"heading_region_{horizon}")
+    return {
+        "time": time,
+        "component": np.full(len(time), component, dtype=object),
+        "horizon": np.full(len(time), float(horizon)),
+        **place,
+        **{f"true_{axis}": values for axis, values in true.items()},
+        "error_north": off["x"],
+        "error_east": off["y"],
+        "error_heading": off["psi"],
+        "position_region": circle,
+        "heading_region": width,
+        "in_position_region": _within(np.hypot(off["x"], off["y"]), circle),
+        "in_heading_region": _within(np.abs(off["psi"]), width),
+        "learned": read("learned"),
+    }
+
+
+def _truth(table: Dataset, roles: Roles, time: NDArray) -> dict[str, NDArray]:
+    """Pose of the ship at any times; no number beyond the run."""
+    clock = table["time"].values
+    found = {}
+    for axis in ("x", "y", "psi"):
+        values = table[roles.signal(roles.ship, axis)].values.astype(float)
+        values = unwrap_series(values) if axis == "psi" else values
+        found[axis] = np.where(time <= clock[-1] + 1e-6, np.interp(time, clock, values), np.nan)
+    found["psi"] = wrap_series(found["psi"], 2.0 * np.pi)
+    return found
+
+
+def _within(size: NDArray, region: NDArray) -> NDArray:
+    """1 where it lies within the region, 0 where not, no number where there is no region or no truth."""
+    return np.where(np.isfinite(size) & (region > 0.0), (size <= region).astype(float), np.nan)
+
+
+def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]:
+    """What the scene draws of a run's predictions.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        A run.
+    shift : float
+        Added to its times. [s]
+
+    Returns
+    -------
+    list of dict
+        One a predictor: its name, when its predictions were made [s], its horizons [s], and packed by horizon: place
+        north and east [m], heading [deg], radius of the region [m].
+    """
+    found = []
+    for component, horizons in find_predictors(find_roles(table.data_vars)).items():
+        rows = first_rows(table, component)
+        rows = rows[np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DRAWN)).round().astype(int))]
+        made = table.isel(time=rows)
+
+        def packed(connector, resolution, made=made, component=component):
+            name = join(component, connector)
+            values = made[name].values.astype(float) if name in made else np.zeros(made.sizes["time"])
+            values = np.degrees(unwrap_series(values)) if connector.startswith("psi") else values
+            return packed_series(values, max(LEVELS, float(np.ptp(values)) / resolution))
+
+        if len(rows):
+            made_at = made[join(component, "predicted_at")].values.astype(float) + shift
+            parts = {"north": ("x_", 0.01), "east": ("y_", 0.01), "heading": ("psi_", 0.02)}
+            parts |= {"radius": ("position_region_", 0.01)}
+            columns = {what: [packed(f"{stem}{end}", r) for end in horizons] for what, (stem, r) in parts.items()}
+            found.append(
+                {"name": component, "made": packed_series(made_at, 1e9), "horizons": list(horizons), **columns}
+            )
+    return found
+
+
+def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
+    """How far off predictions are, by component and horizon.
+
+    Parameters
+    ----------
+    predictions : pandas.DataFrame
+        As `make_predictions` gives them.
+
+    Returns
+    -------
+    list of PredictionSummary
+        Without what no run reached.
+    """
+    found = []
+    for (component, horizon), part in predictions.dropna(subset="true_x").groupby(["component", "horizon"]):
+        distance = np.hypot(part["error_north"], part["error_east"])
+        found.append(
+            PredictionSummary(
+                str(component),
+                float(horizon),
+                len(part),
+                float(np.sqrt(np.mean(distance**2))),
+                float(np.sqrt(np.mean(part["error_heading"] ** 2))),
+                float(part["in_position_region"].mean()),
+                float(part["in_heading_region"].mean()),
+            )
+        )
+    return found
+
+
+def texts(summaries: Iterable[PredictionSummary]) -> list[tuple[str, str, str, str]]:
+    """Summaries in words: what is predicted, position and heading off, share within the regions."""
+    return [
+        (
+            f"{one.component}, {one.horizon:g} s ahead",
+            f"{one.position:.2f} m rms",
+            f"{np.degrees(one.heading):.1f} deg rms",
+            _shares({"places": one.in_position_region, "headings": one.in_heading_region}),
+        )
+        for one in summaries
+    ]
+
+
+def _shares(shares: Mapping[str, float]) -> str:
+    said = [f"{100.0 * share:.0f} % of {what}" for what, share in shares.items() if np.isfinite(share)]
+    return f"{' and '.join(said)} within the regions" if said else "no regions"
+
+
+def write_predictions(predictions: pandas.DataFrame, path: str | os.PathLike[str]) -> None:
+    """Write a table of predictions as CSV, units in its header.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be written.
+    """
+    named = predictions.rename(columns={name: f"{name} [{unit}]" for name, unit in UNITS.items() if unit})
+    write_file(path, named.to_csv(index=False, lineterminator="\n").encode())
