@@ -26,7 +26,7 @@ test-all: .venv/installed-test
 
 benchmarks: .venv/installed-test
 	$(BIN)/shipcosim build
-	$(BIN)/pytest -m "" -s tests/bench/speed tests/bench/rivals tests/bench/allocation tests/bench/trial/test_diagnosis_trial.py
+	$(BIN)/pytest -m "" -s tests/bench/speed tests/bench/rivals tests/bench/allocation tests/bench/prediction tests/bench/trial/test_diagnosis_trial.py
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

@@ -1,0 +1,1 @@
+"""Predictors of a drift side by side."""
