@@ -40,6 +40,7 @@ UNITS = {
     "learned": "1",
 }
 """Columns of the table of predictions, with their units."""
+SUMMARISED = ("error_north", "error_east", "error_heading", "in_position_region", "in_heading_region")
 
 
 class PredictionSummary(NamedTuple):
@@ -214,18 +215,23 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
     list of PredictionSummary
         Without what no run reached.
     """
+    columns = {name: predictions[name].to_numpy() for name in predictions}
+    known = np.isfinite(columns["true_x"].astype(float))
     found = []
-    for (component, horizon), part in predictions.dropna(subset="true_x").groupby(["component", "horizon"]):
-        distance = np.hypot(part["error_north"], part["error_east"])
+    for component, horizon in sorted(set(zip(columns["component"][known], columns["horizon"][known], strict=True))):
+        of = known & (columns["component"] == component) & (columns["horizon"] == horizon)
+        north, east, heading, place, width = (columns[name][of] for name in SUMMARISED)
         found.append(
             PredictionSummary(
                 str(component),
                 float(horizon),
-                len(part),
-                float(np.sqrt(np.mean(distance**2))),
-                float(np.sqrt(np.mean(part["error_heading"] ** 2))),
-                float(part["in_position_region"].mean()),
-                float(part["in_heading_region"].mean()),
+                int(of.sum()),
+                float(np.sqrt(np.mean(north**2 + east**2))),
+                float(np.sqrt(np.mean(heading**2))),
+                *(
+                    float(np.mean(one[np.isfinite(one)])) if np.isfinite(one).any() else np.nan
+                    for one in (place, width)
+                ),
             )
         )
     return found
