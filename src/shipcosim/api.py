@@ -118,7 +118,7 @@ def run(
     stop_time, step_size, output_interval : float, optional
         In place of the scenario's, in s or such as ``"10 min"``. [s]
     out : path, optional
-        Folder that gets result.nc, result.csv and report.html; nothing is written without.
+        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
     engine, inputs, progress, order, until, resume, store, isolate, timeout
@@ -189,7 +189,7 @@ def simulate(
     start_time : float, optional
         As in `shipcosim.options.RunOptions`; where nobody says anything, the system's default experiment does. [s]
     out : path, optional
-        Folder that gets result.nc, result.csv and report.html; nothing is written without.
+        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
     engine, inputs, progress, order, until, resume, store, isolate, timeout

@@ -54,7 +54,8 @@ def run(
     force: Force = False,
     debug: Debug = False,
 ) -> None:
-    """Run a scenario and check what it expects. Leaves result.nc, result.csv and report.html in results/SCENARIO.
+    """Run a scenario and check what it expects. Leaves result.nc, result.csv, report.html and, where something
+    predicts, predictions.csv in results/SCENARIO.
 
     A part of a run is checked for what is expected within it. The scenarios of a folder are run one after another;
     report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it.

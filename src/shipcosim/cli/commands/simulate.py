@@ -74,7 +74,8 @@ def simulate(
     force: Force = False,
     debug: Debug = False,
 ) -> None:
-    """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP.
+    """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP, and
+    predictions.csv where something predicts.
 
     Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
 
