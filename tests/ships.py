@@ -79,6 +79,7 @@ def lend(structure: Any, component: str, *kinds: type) -> None:
 
 COMPONENT_OF = {
     "vessel": "vessel",
+    "rough_vessel": "vessel",
     "azimuth_thruster": "port",
     "tunnel_thruster": "tunnel",
     "sensors": "sensors",

@@ -32,6 +32,7 @@ DURATION, INTERVAL = 60.0, 0.5  # s
 COMPONENTS = {
     "environment": "environment",
     "vessel": "vessel",
+    "rough_vessel": "vessel",
     "azimuth_thruster": "port",
     "tunnel_thruster": "tunnel",
     "sensors": "sensors",
@@ -84,6 +85,11 @@ PARAMETERS = {
         **{"azimuth_first_1": -1.4, "azimuth_last_1": 1.4, "azimuth_first_2": 1.74, "azimuth_last_2": 4.54},
         **{"x_3": 25.0, "azimuth_3": 1.5708, "thrust_min_3": -8e4, "thrust_max_3": 8e4, "thrust_least_1": 4e3},
         **{"thrust_rate_1": 2.3e4, "thrust_rate_2": 2.3e4, "thrust_rate_3": 8e3, "yaw_lever": 25.0},
+    },
+    "rough_vessel": {
+        **{"strip_factors": "-1 1.3; 0 1; 1 0.8", "cross_flow_power": 1.9, "drag_power": 2.1},
+        **{"wind_factors": "0 1 1 1; 90 1.1 0.9 1.2; 360 1 1 1", "memory_surge": 0.1, "memory_sway": 0.2},
+        **{"memory_yaw": 0.1, "memory_time": 5.0},
     },
     "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
 }

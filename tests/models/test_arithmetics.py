@@ -60,7 +60,7 @@ from shipcosim.models.propulsion import (
     tunnel,
 )
 from shipcosim.models.propulsion.failures import Failures
-from shipcosim.models.ship import hull, instruments, mast, vessel
+from shipcosim.models.ship import hull, instruments, mast, rough_form, vessel
 from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
@@ -123,6 +123,13 @@ class Case:
         return f"{self.function.__module__.rpartition('.')[2]}.{self.function.__name__}"
 
 
+ROUGH = rough_form.RoughFormParameters(
+    strip_factors="-1 1.3; 0 1; 1 0.8",
+    cross_flow_power=1.9,
+    drag_power=2.1,
+    wind_factors="0 1 1 1; 90 1.1 0.9 1.2; 360 1 1 1",
+    memory_sway=0.2,
+)
 DP_SHIP, NOISE, UNITS = (
     parameters(observer.DpShip),
     parameters(observer.ObserverParameters),
@@ -335,6 +342,18 @@ CASES = [
         for function in (vessel.nu_dot, vessel.at_present)
     ),
     Case(vessel.step, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(h=0.5, hull=SHORT)),
+    Case(rough_form.form_loads, WATER, constants=dict(hull=LONG, form=ROUGH)),
+    Case(
+        rough_form.memory_loads,
+        [(*w, *w[::-1]) for w in WATER],
+        lambda *row: (row[:3], row[3:]),
+        dict(h=0.5, hull=LONG, form=ROUGH),
+    ),
+    Case(
+        rough_form.rough_wind_loads,
+        [(8.0, -2.0), (5.0, 0.0), (3.0, 3.14)],
+        constants=dict(wind=parameters(wind.WindParameters), form=ROUGH),
+    ),
     Case(wind.apparent_wind, [(0.4, 1.0, -0.2, -8.0, 3.0), (-3.0, 0.0, 0.2, 5.0, 6.0)]),
     *(
         Case(wind.wind_loads, [(8.0, -2.0), (5.0, 0.0), (3.0, 3.14)], constants=dict(wind=vane))

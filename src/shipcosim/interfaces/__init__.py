@@ -3,5 +3,6 @@
 from shipcosim.interfaces.named_allocator import NamedAllocator
 from shipcosim.interfaces.numbered_allocator import NumberedAllocator
 from shipcosim.interfaces.predictor import MotionPredictor
+from shipcosim.interfaces.ship import Ship
 
-__all__ = ["MotionPredictor", "NamedAllocator", "NumberedAllocator"]
+__all__ = ["MotionPredictor", "NamedAllocator", "NumberedAllocator", "Ship"]

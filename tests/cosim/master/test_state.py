@@ -33,6 +33,7 @@ NOT_NEUTRAL = {
     "instruments": {"lag": 1.33},
     "mapped_thruster": {"x": 1.0, "y": 0.5, "thrust_table": "-1 -5; 1 5", "time_constant": 2.0, "speed_loss": 0.1},
     "optimal_units_allocator": THREE_UNITS,
+    "rough_vessel": {"strip_factors": "-1 1.3; 1 0.8", "memory_sway": 0.2, "wind_factors": "0 1 1 1; 360 1.2 1 1"},
     "thruster_interaction": {"x_1": 5.0, "diameter_1": 1.0, "diameter_2": 1.0},
     "thruster_monitor": {"position_limit": 0.15, "alarm_delay": 0.2},
     "varying_current": {"north_end": 0.5},

@@ -55,3 +55,13 @@ def test_what_she_knows_is_near_what_became_of_her_but_is_not_it(record):
     assert KNOWN[:6] == ("x_hat", "y_hat", "psi_hat", "u_hat", "v_hat", "r_hat")
     assert (rms > 0.0).all()
     assert (rms < [0.3, 0.3, 0.02, 0.05, 0.05, 0.005]).all()
+
+
+def test_at_distance_0_the_form_is_neutral():
+    values = draw(5, 0.0).set
+    ones = {"vessel.strip_factors": 2, "vessel.wind_factors": 4}
+    for name, width in ones.items():
+        rows = [[float(value) for value in row.split()] for row in values[name].split(";")]
+        assert all(len(row) == width and set(row[1:]) == {1.0} for row in rows)
+    assert (values["vessel.drag_power"], values["vessel.cross_flow_power"]) == (2.0, 2.0)
+    assert not any(values[f"vessel.{name}"] for name in ("X_u", "Y_v", "N_r", "memory_surge", "memory_sway"))

@@ -14,6 +14,7 @@ from math import pi
 import numpy as np
 
 from shipcosim.cosim import simulate, system_of
+from shipcosim.models.core.tables import text
 from shipcosim.scenario import Event, Scenario
 
 TRAINING, CALIBRATION, TUNING = range(1, 200), range(200, 300), range(300, 400)
@@ -36,6 +37,21 @@ TOLERATED = (
 )
 """Numbers that are off by their tolerance in the parameter set, as a standard deviation."""
 SYSTEM, PARAMETERS = "gunnerus_dp", "gunnerus-33m9"
+NOISY = tuple(
+    f"sensors.{name}"
+    for name in (
+        *("position_noise_std", "position_drift_std", "velocity_noise_std", "heading_noise_std", "heading_drift_std"),
+        *("yaw_rate_noise_std", "wind_speed_noise", "wind_from_noise_std"),
+    )
+)
+"""Errors of sensors that are larger or smaller than those of the parameter set."""
+HULL = ("vessel.water_density", "vessel.length", "vessel.draught")
+STRIPS, WIND, POWER, DAMPING, MEMORY, NOISE = 0.30, 0.15, 0.15, 0.4, 0.25, 0.2
+"""Most at distance 1: of the drag factor at five places along the hull, of the wind load factors at eight directions,
+of powers of speed from 2, of linear damping over the quadratic one at `SPEEDS`, of the added mass that remembers, of
+the errors of sensors. [1]"""
+SPEEDS = (1.0, 0.3, 0.02)  # m/s, m/s, rad/s
+MEMORY_TIMES = (3.0, 12.0)  # s
 STEP = 0.1  # s
 DRIFT = 160.0  # s
 _THRUSTERS = ("port", "starboard", "tunnel")
@@ -115,6 +131,7 @@ def draw(seed: int, distance: float = 1.0) -> World:
     lost_at = float(rng.integers(180, 301))
     values, weather = _weather(rng, distance, lost_at)
     values |= _parameters(rng, distance)
+    values |= _form(np.random.default_rng([26, seed, 1]), distance, values)
     values |= {"environment.seed": seed, "sensors.seed": 20000 + seed, "predictor.prediction_period": 1e6}
     lost = Event(time=lost_at, override={f"{name}.failed": True for name in _THRUSTERS})
     events = sorted([*_setpoints(rng, lost_at), *weather, lost], key=lambda event: event.time)
@@ -142,6 +159,7 @@ def scenario(world: World, *, step_size: float = STEP, drift: float = DRIFT) -> 
         description=f"World {world.seed} at distance {world.distance:g}",
         system=SYSTEM,
         parameters=[PARAMETERS],
+        components={"vessel": "rough_vessel"},
         stop_time=world.lost_at + drift,
         step_size=step_size,
         output_interval=1.0,
@@ -151,7 +169,7 @@ def scenario(world: World, *, step_size: float = STEP, drift: float = DRIFT) -> 
 
 
 def sail(world: World, *, step_size: float = STEP) -> Record:
-    """Co-simulate a world.
+    """Co-simulate a world; some 400 s of simulated time, about 6 s on a quiet core.
 
     Parameters
     ----------
@@ -209,18 +227,42 @@ def _source(name: str) -> str:
 
 @lru_cache(maxsize=1)
 def _nominal() -> dict[str, tuple[float, float]]:
-    """Value and tolerance of each number of `TOLERATED`."""
+    """Value and tolerance of each number of `TOLERATED`, `NOISY` and `HULL`."""
     system = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
     found = {}
-    for signal in TOLERATED:
-        component, name = signal.split(".")
-        found[signal] = float(system.components[component].start[name]), system.components[component].tolerances[name]
+    for signal in (*TOLERATED, *NOISY, *HULL):
+        name, variable = signal.split(".")
+        component = system.components[name]
+        found[signal] = float(component.start[variable]), component.tolerances.get(variable, 0.0)
     return found
 
 
 def _parameters(rng: np.random.Generator, distance: float) -> dict[str, float]:
-    """Numbers of hull, wind and thrusters off by their tolerances."""
-    return {name: value + distance * std * rng.standard_normal() for name, (value, std) in _nominal().items()}
+    """Numbers of hull, wind and thrusters off by their tolerances, errors of sensors by their share."""
+    nominal = _nominal()
+    found = {name: nominal[name][0] + distance * nominal[name][1] * rng.standard_normal() for name in TOLERATED}
+    return found | {name: nominal[name][0] * (1.0 + distance * NOISE * rng.uniform(-1.0, 1.0)) for name in NOISY}
+
+
+def _form(rng: np.random.Generator, distance: float, values: dict[str, float]) -> dict[str, float | str]:
+    """Drag along the hull, wind round her, powers of speed, linear damping and memory; `values` are her own numbers."""
+    density, length, draught = (_nominal()[name][0] for name in HULL)
+    cross = 0.5 * density * draught * values["vessel.cross_flow_drag"]
+    quadratic = np.array([values["vessel.X_uu"], -cross * length, -cross * length**4 / 32.0])
+    damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
+    memory = distance * MEMORY * rng.uniform(0.0, 1.0, 3)
+    along = 1.0 + distance * STRIPS * rng.uniform(-1.0, 1.0, 5)
+    powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
+    around = 1.0 + distance * WIND * rng.uniform(-1.0, 1.0, (8, 3))
+    return {
+        "vessel.strip_factors": text(zip(np.linspace(-1.0, 1.0, 5), along, strict=True)),
+        "vessel.drag_power": float(powers[0]),
+        "vessel.cross_flow_power": float(powers[1]),
+        "vessel.wind_factors": text(np.column_stack([np.arange(0.0, 361.0, 45.0), np.vstack([around, around[:1]])])),
+        **dict(zip(("vessel.X_u", "vessel.Y_v", "vessel.N_r"), damping.tolist(), strict=True)),
+        **dict(zip(("vessel.memory_surge", "vessel.memory_sway", "vessel.memory_yaw"), memory.tolist(), strict=True)),
+        "vessel.memory_time": float(rng.uniform(*MEMORY_TIMES)),
+    }
 
 
 def _weather(rng: np.random.Generator, distance: float, lost_at: float) -> tuple[dict[str, float], list[Event]]:
