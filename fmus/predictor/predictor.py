@@ -6,7 +6,6 @@ from shipcosim.interfaces.predictor import HORIZONS, Prediction
 from shipcosim.models.control.observer import DpShip
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import dead_reckoning, surroundings
-from shipcosim.models.prediction.regions import RegionParameters
 from shipcosim.models.prediction.surroundings import SurroundingsParameters
 from shipcosim.models.ship.hull import HullParameters
 
@@ -26,7 +25,6 @@ class Predictor(MotionPredictor):
     wind = Parameters(WindParameters)
     ship = Parameters(DpShip)
     assumed = Parameters(SurroundingsParameters)
-    regions = Parameters(RegionParameters)
     longest_step = Parameter(2.0, "s", "longest step of the integration", minimum=0.01)
 
     def begin(self, known):

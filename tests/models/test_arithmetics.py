@@ -47,7 +47,7 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
-from shipcosim.models.prediction import dead_reckoning, known, surroundings
+from shipcosim.models.prediction import dead_reckoning, known, regions, surroundings
 from shipcosim.models.propulsion import (
     azimuth,
     drive,
@@ -555,6 +555,19 @@ CASES = [
         dict(parameters=WATCH),
     ),
     Case(known.air_velocity, SHIP, lambda *row: (of_known(*row),)),
+    Case(
+        regions.own_errors,
+        SHIP,
+        lambda *row: ((0.1, 0.01), Motion(*row), Motion(*(0.9 * value for value in row)), 1.0),
+        dict(regions=regions.RegionParameters()),
+    ),
+    Case(
+        regions.widening,
+        [(0.2, 0.05, -1.0), (0.1, 0.0, 5.0), (0.4, 0.02, 50.0)],
+        lambda *row: (row[:2], row[2]),
+        dict(regions=regions.RegionParameters(later_position_share=0.6)),
+    ),
+    Case(regions.at_horizon, [(5.0,), (20.0,), (45.0,)], lambda h: (h, (0.5, 2.0, 8.0))),
     Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(parameters=ASSUMED)),
     Case(surroundings.step, SHIP, of_surroundings, dict(h=1.0, **AROUND)),
     Case(dead_reckoning.predict, SHIP, of_prediction, AHEAD),

@@ -6,9 +6,11 @@ from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.regions import FORESIGHT, RegionParameters, own_errors, widening
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 
 HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
+NO_LOAD = 1.0  # N and N.m, below which no thruster is told to give anything
 
 
 class Prediction(NamedTuple):
@@ -19,8 +21,8 @@ class Prediction(NamedTuple):
     motions : tuple of Motion
         The ship at the horizons.
     position_regions : tuple of float
-        Radii of circles about the predicted places that have the true ones in 90 % of cases; 0 where nobody has
-        calibrated them. [m]
+        Radii of circles about the predicted places that have the true ones in 90 % of cases just after all thrust was
+        lost, with a good record of the predictor's own; 0 where nobody has calibrated them. [m]
     heading_regions : tuple of float
         Half-widths about the predicted headings, likewise. [rad]
     learned : float
@@ -41,6 +43,9 @@ class MotionPredictor(Fmu):
     - ``begin(known)``: the state at the start,
     - ``follow(state, known, since)``: the state `since` seconds later, from what is known then,
     - ``predict(state, known)``: the `Prediction` from there.
+
+    Regions are the predictor's, widened by its own record: how far she came from where she was foreseen 10 s ago. While
+    thrusters act there are none, they are calibrated for the drift.
 
     They are called once each `prediction_period`, and at the start. Between predictions the outputs hold. `known` is a
     `models.prediction.known.Known`: what is aboard, and nothing else.
@@ -81,12 +86,13 @@ class MotionPredictor(Fmu):
     learned = Output("1", "share of the learned correction in the prediction; 0 is the equations of motion alone")
 
     mast = Parameters(MastParameters)
+    regions = Parameters(RegionParameters)
     prediction_period = Parameter(1.0, "s", "time between predictions", minimum=0.01)
 
     def start(self) -> None:
         self.made = samples_due(self.start_time, self.prediction_period)
         known = self._known()
-        self.state = self.begin(known)
+        self.state, self.errors, self.lost_for, self.awaited = self.begin(known), (0.0, 0.0), -1.0, []
         self._show(known, self.start_time)
 
     def step(self, t: float, h: float) -> None:
@@ -95,7 +101,16 @@ class MotionPredictor(Fmu):
             known, since = self._known(), (due - self.made) * self.prediction_period
             self.made = due
             self.state = self.follow(self.state, known, since)
+            self._judge_itself(known, since, t)
             self._show(known, t)
+
+    def _judge_itself(self, known, since, t):
+        """Compare what was foreseen for now with what is known now, and count the time without thrust."""
+        while self.awaited and self.awaited[0][0] <= t + 1e-6:
+            foreseen = self.awaited.pop(0)[1]
+            self.errors = own_errors(self.errors, known.ship, foreseen, since, regions=self.regions)
+        without = all(abs(load) < NO_LOAD for load in known.thrusters)
+        self.lost_for = max(self.lost_for, 0.0) + since if without else -1.0
 
     def begin(self, known: Known) -> Any:
         """State at the start."""
@@ -122,6 +137,9 @@ class MotionPredictor(Fmu):
     def _show(self, known, t):
         self.predicted_at = t
         motions, positions, headings, self.learned = self.predict(self.state, known)
+        self.awaited.append((t + FORESIGHT, motions[0]))
+        wider, wider_heading = widening(self.errors, self.lost_for, regions=self.regions)
+        positions, headings = [wider * one for one in positions], [wider_heading * one for one in headings]
         self.x_10, self.y_10, self.psi_10 = motions[0][:3]
         self.x_30, self.y_30, self.psi_30 = motions[1][:3]
         self.x_60, self.y_60, self.psi_60 = motions[2][:3]

@@ -1,15 +1,36 @@
-"""Regions about predictions that have the truth in 90 % of cases."""
+"""Regions about predictions that have the truth in 90 % of cases.
 
+Calibrated widths hold for ships like those of the calibration. What widens them for another is the predictor's own
+record: how far she came from where she was foreseen ten seconds ago, which needs no truth.
+
+References
+----------
+Normalised conformal prediction: Papadopoulos, Gammerman and Vovk, Normalized nonconformity measures for regression
+conformal prediction, AIA 2008; the measure of difficulty is chosen here.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from shipcosim.angles import wrap
+from shipcosim.models.core.interpolation import interp
+from shipcosim.models.core.maths import Arithmetic, exp, hypot, sqrt, where
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
+
+FORESIGHT = 10.0
+"""How far ahead the predictions of the own record were made. [s]"""
+JUST_LOST = 20.0
+"""Time from the loss of thrust in which regions are those of a ship that has just lost it. [s]"""
+HORIZONS = (10.0, 30.0, 60.0)
+"""Horizons of the calibrated widths. [s]"""
 
 _NONE = "neutral: not calibrated"
 
 
 @dataclass(frozen=True, kw_only=True)
 class RegionParameters:
-    """Sizes of the regions about predictions 10, 30 and 60 s ahead."""
+    """Sizes of the regions about predictions 10, 30 and 60 s ahead, of a ship that has just lost all thrust."""
 
     position_half_width_10: float = quantity(0.0, "m", "radius of 90 % of the places in 10 s", _NONE, minimum=0.0)
     position_half_width_30: float = quantity(0.0, "m", "radius of 90 % of the places in 30 s", _NONE, minimum=0.0)
@@ -24,6 +45,24 @@ class RegionParameters:
         0.0, "rad", "half-width of 90 % of the headings in 60 s", _NONE, minimum=0.0
     )
 
+    later_position_share: float = quantity(
+        1.0, "1", "factor on the radii from 20 s after the loss of thrust on", "neutral", minimum=0.0
+    )
+    later_heading_share: float = quantity(
+        1.0, "1", "factor on the half-widths of heading from 20 s after the loss of thrust on", "neutral", minimum=0.0
+    )
+    ordinary_position_error: float = quantity(
+        0.3, "m", "own error of 10 s at which the radii are 1.4 times as large", "chosen by seeds 300-311", minimum=1e-3
+    )
+    ordinary_heading_error: float = quantity(
+        0.03,
+        "rad",
+        "own error of 10 s at which the half-widths of heading are 1.4 times as large",
+        "chosen by seeds 300-311",
+        minimum=1e-4,
+    )
+    error_time: float = quantity(20.0, "s", "over which own errors are averaged", "assumed", minimum=1.0)
+
     @property
     def positions(self) -> tuple[float, float, float]:
         """Radii by horizon. [m]"""
@@ -33,3 +72,79 @@ class RegionParameters:
     def headings(self) -> tuple[float, float, float]:
         """Half-widths by horizon. [rad]"""
         return self.heading_half_width_10, self.heading_half_width_30, self.heading_half_width_60
+
+
+def own_errors(
+    errors: tuple[Arithmetic, Arithmetic], ship: Motion, foreseen: Motion, h: float, *, regions: RegionParameters
+) -> tuple[Arithmetic, Arithmetic]:
+    """Mean errors of the predictor's own record, a sample later.
+
+    Parameters
+    ----------
+    errors : tuple of two floats, (...) arrays or tensors
+        Mean errors of position and heading up to now. [m, rad]
+    ship : Motion
+        The ship now, as estimated.
+    foreseen : Motion
+        What was predicted for now, ten seconds ago.
+    h : float
+        Time since the last sample. [s]
+    regions : RegionParameters
+        For the time over which errors are averaged.
+
+    Returns
+    -------
+    tuple of two, like errors
+        Position and heading. [m, rad]
+    """
+    share = 1.0 - exp(-h / regions.error_time)
+    position = hypot(ship.x - foreseen.x, ship.y - foreseen.y)
+    heading = abs(wrap(ship.psi - foreseen.psi))
+    return errors[0] + share * (position - errors[0]), errors[1] + share * (heading - errors[1])
+
+
+def widening(
+    errors: tuple[Arithmetic, Arithmetic], lost_for: Arithmetic, *, regions: RegionParameters
+) -> tuple[Arithmetic, Arithmetic]:
+    """Factors on the calibrated widths: larger by the own errors, smaller in a long drift, 0 while thrusters act.
+
+    Parameters
+    ----------
+    errors : tuple of two floats, (...) arrays or tensors
+        Mean own errors of position and heading. [m, rad]
+    lost_for : like errors
+        Time since all thrust was lost; negative while thrusters act. [s]
+    regions : RegionParameters
+        What was calibrated.
+
+    Returns
+    -------
+    tuple of two, like errors
+        For radii and for half-widths of heading. [1]
+    """
+    found = []
+    for error, ordinary, later in (
+        (errors[0], regions.ordinary_position_error, regions.later_position_share),
+        (errors[1], regions.ordinary_heading_error, regions.later_heading_share),
+    ):
+        grown = sqrt(1.0 + (error / ordinary) * (error / ordinary))
+        found.append(grown * where(lost_for < 0.0, 0.0, where(lost_for < JUST_LOST, 1.0, later)))
+    return found[0], found[1]
+
+
+def at_horizon(horizon: Arithmetic, widths: Sequence[float]) -> Arithmetic:
+    """Half-width at any horizon: straight lines from 0 through the calibrated ones.
+
+    Parameters
+    ----------
+    horizon : float or (...) array or tensor
+        How far ahead, up to 60 s. [s]
+    widths : three floats
+        Half-widths at 10, 30 and 60 s. [any unit]
+
+    Returns
+    -------
+    like horizon
+        Half-width. [the unit of widths]
+    """
+    return interp(horizon, (0.0, *HORIZONS), (0.0, *widths))

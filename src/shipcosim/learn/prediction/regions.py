@@ -1,0 +1,163 @@
+"""Regions about predictions, calibrated in worlds of their own: by horizon, and by what a predictor knows of itself.
+
+A predictor is an FMU. It is run alone over the records of worlds, with regions of width 1: its outputs are then the
+factors by which it widens regions. The errors over those factors are the scores, whose quantile is the width.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+from shipcosim import library
+from shipcosim.angles import wrap
+from shipcosim.cosim import RunOptions, simulate, system_of
+from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, STEP, SYSTEM, Record
+from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST
+from shipcosim.scenario import Scenario
+from shipcosim.series import make_table
+from shipcosim.ssp import read_system, with_values
+
+SHARE = 0.9
+"""Of the cases that a region is to have inside. [1]"""
+UNCALIBRATED = {
+    **{f"{kind}_half_width_{horizon:.0f}": 1.0 for kind in ("position", "heading") for horizon in HORIZONS},
+    **{"later_position_share": 1.0, "later_heading_share": 1.0},
+}
+"""Regions of width 1."""
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Errors of one record's predictions over the factors by which the predictor widens its regions.
+
+    Parameters
+    ----------
+    lost_for : (m,) array
+        Time from the loss of thrust to the prediction. [s]
+    position, heading : (m, 3) array
+        By horizon; NaN beyond the end of the record. [m, rad]
+    factors : (m, 2) array
+        Of position and heading. [1]
+    """
+
+    lost_for: np.ndarray
+    position: np.ndarray
+    heading: np.ndarray
+    factors: np.ndarray
+
+
+def scores(record: Record, fmu: str = "predictor", *, by_truth: bool = False) -> Scores:
+    """Run a predictor over a record, and score what it says from the loss of thrust on.
+
+    Parameters
+    ----------
+    record : Record
+        Of a world.
+    fmu : str
+        Name of a predictor's FMU, which gets the numbers of the system's predictor.
+    by_truth : bool
+        Errors against the truth, for tests. Regions are calibrated against what the ship knows of herself afterwards.
+
+    Returns
+    -------
+    Scores
+        One row a second.
+    """
+    table = _predictions(record, fmu)
+    made = np.rint(np.asarray(table[f"{fmu}.predicted_at"])).astype(int)
+    kept = np.flatnonzero((made > record.lost_at) & (np.diff(made, prepend=-1) > 0))
+    made, reached = made[kept], record.truth if by_truth else record.known
+    position, heading = np.full((len(kept), 3), np.nan), np.full((len(kept), 3), np.nan)
+    for i, horizon in enumerate(int(h) for h in HORIZONS):
+        inside = made + horizon < len(record.time)
+        then = reached[made[inside] + horizon]
+        x, y, psi = (np.asarray(table[f"{fmu}.{name}_{horizon}"])[kept][inside] for name in ("x", "y", "psi"))
+        position[inside, i], heading[inside, i] = (
+            np.hypot(x - then[:, 0], y - then[:, 1]),
+            abs(wrap(psi - then[:, 2])),
+        )
+    names = f"{fmu}.position_region_10", f"{fmu}.heading_region_10"
+    factors = np.column_stack([np.asarray(table[name])[kept] for name in names])
+    without = factors[:, 0] > 0.0
+    lost_for = np.cumsum(without).astype(float)
+    made_in = [values[without] for values in (lost_for, position, heading, factors)]
+    return Scores(made_in[0], made_in[1] / made_in[3][:, :1], made_in[2] / made_in[3][:, 1:], made_in[3])
+
+
+def calibrated(found: Sequence[Scores]) -> dict[str, float]:
+    """Widths that have the share of the cases inside, from worlds that nothing else was chosen by.
+
+    Starts within a world are no independent cases, worlds are: the quantile is that of all starts at the level
+    0.9 (1 + 1/n) with n worlds.
+
+    Parameters
+    ----------
+    found : sequence of Scores
+        One a world.
+
+    Returns
+    -------
+    dict of str to float
+        Parameters of `models.prediction.regions.RegionParameters`. The shares of a long drift are the largest of the
+        horizons.
+    """
+    level, widths = min(1.0, SHARE * (1.0 + 1.0 / len(found))), {}
+    for kind in ("position", "heading"):
+        later = []
+        for i, horizon in enumerate(HORIZONS):
+            early, rest = (_quantile(found, kind, i, level, late=late) for late in (False, True))
+            widths[f"{kind}_half_width_{horizon:.0f}"] = early
+            later.append(rest / early)
+        widths[f"later_{kind}_share"] = max(later)
+    return widths
+
+
+def coverage(found: Sequence[Scores], widths: dict[str, float], *, late: bool) -> dict[str, list[tuple[float, float]]]:
+    """Share of the cases that are inside calibrated regions, and the mean width of these.
+
+    Parameters
+    ----------
+    found : sequence of Scores
+        One a world, of other worlds than those of the calibration.
+    widths : dict of str to float
+        As calibrated.
+    late : bool
+        Whether of predictions made later than 20 s after the loss, or of those made before.
+
+    Returns
+    -------
+    dict of str to list of two floats
+        For position and heading: share [1] and mean width [m, rad] by horizon.
+    """
+    shares = {}
+    for column, kind in enumerate(("position", "heading")):
+        shares[kind] = []
+        for i, horizon in enumerate(HORIZONS):
+            width = widths[f"{kind}_half_width_{horizon:.0f}"] * (widths[f"later_{kind}_share"] if late else 1.0)
+            chosen = [(one.lost_for >= JUST_LOST) == late for one in found]
+            values = np.concatenate([getattr(one, kind)[rows, i] for one, rows in zip(found, chosen, strict=True)])
+            factors = np.concatenate([one.factors[rows, column] for one, rows in zip(found, chosen, strict=True)])
+            there = np.isfinite(values)
+            shares[kind].append((float(np.mean(values[there] <= width)), float(np.mean(width * factors[there]))))
+    return shares
+
+
+def _quantile(found: Iterable[Scores], kind: str, horizon: int, level: float, *, late: bool) -> float:
+    """Quantile of the scores of all starts early or late in the drift."""
+    values = np.concatenate([getattr(one, kind)[(one.lost_for >= JUST_LOST) == late, horizon] for one in found])
+    values = np.sort(values[np.isfinite(values)])
+    return float(values[min(len(values), ceil(level * len(values))) - 1])
+
+
+def _predictions(record: Record, fmu: str):
+    """Table of a predictor's outputs over a record, one row a second."""
+    nominal = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
+    system = read_system(library.find("fmu", fmu))
+    known = system.components[fmu].fmu.variables
+    values = {name: value for name, value in nominal.components["predictor"].start.items() if name in known}
+    system = with_values(system, {f"{fmu}.{name}": value for name, value in (values | UNCALIBRATED).items()})
+    columns = [(name, record.known[:, i], known[name].unit or "1", name) for i, name in enumerate(KNOWN)]
+    scenario = Scenario(system=fmu, stop_time=float(record.time[-1]), step_size=1.0)
+    return simulate(system, scenario, RunOptions(inputs=make_table(record.time, columns)))

@@ -1,0 +1,33 @@
+"""Regions widen by the predictor's own record, and there are none while thrusters act."""
+
+from math import exp, pi
+
+import pytest
+
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.prediction.regions import RegionParameters, at_horizon, own_errors, widening
+
+REGIONS = RegionParameters(later_position_share=0.6, later_heading_share=0.5)
+
+
+def test_own_errors_are_an_exponential_mean_of_the_distance_to_where_she_was_foreseen():
+    errors, ship, foreseen = (0.0, 0.0), Motion(3.0, 4.0, pi - 0.1, 0, 0, 0), Motion(0.0, 0.0, 0.1 - pi, 0, 0, 0)
+    for _ in range(20):
+        errors = own_errors(errors, ship, foreseen, 1.0, regions=REGIONS)
+    reached = 1.0 - exp(-1.0)
+    assert errors == pytest.approx((5.0 * reached, 0.2 * reached))
+
+
+def test_no_region_while_thrusters_act_and_smaller_ones_in_a_long_drift():
+    assert widening((1.0, 0.1), -1.0, regions=REGIONS) == (0.0, 0.0)
+    assert widening((0.0, 0.0), 5.0, regions=REGIONS) == (1.0, 1.0)
+    assert widening((0.0, 0.0), 50.0, regions=REGIONS) == (0.6, 0.5)
+
+
+def test_large_own_errors_widen_in_proportion():
+    once, twice = (widening((size, 0.0), 5.0, regions=REGIONS)[0] for size in (30.0, 60.0))
+    assert twice == pytest.approx(2.0 * once, rel=1e-3)
+
+
+def test_half_width_at_any_horizon_passes_through_the_calibrated_ones():
+    assert [at_horizon(h, (0.5, 2.0, 8.0)) for h in (0.0, 10.0, 30.0, 45.0, 60.0)] == [0.0, 0.5, 2.0, 5.0, 8.0]
