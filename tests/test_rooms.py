@@ -18,7 +18,7 @@ MAY_IMPORT = {
     "library": {"fmi", "errors"},
     "ssp": {"library", "series", "errors", "units"},
     "scenario": {"library", "series", "errors", "units", "angles"},
-    "learn": {"library", "models", "series", "ssp", "scenario", "cosim"},
+    "learn": {"library", "angles", "models", "series", "ssp", "scenario", "cosim"},
     "cosim": {"library", "series", "ssp", "scenario", "fmi", "errors", "options", "units"},
     "diagnose": {"library", "errors", "angles", "options", "units", "models", "series", "ssp", "scenario", "cosim"},
     "ships": {"errors", "units", "models", "ssp"},

@@ -143,7 +143,8 @@ class Ship(Fmu):
         )
 
     def _with_form(self, tau):
-        return tuple(load + form for load, form in zip(tau, self.form_load(), strict=True))
+        X, Y, N = self.form_load()
+        return tau[0] + X, tau[1] + Y, tau[2] + N
 
     def _add_connected(self):
         """Sum of the connected loads."""
