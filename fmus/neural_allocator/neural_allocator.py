@@ -15,6 +15,7 @@ class NeuralAllocator(NamedAllocator):
 
     model = Parameters(neural_named.NeuralParameters)
     law = neural_named
+    turns = True
 
     def designed(self):
         name = "neural-slipstreams" if self.model.azimuth_diameter > 0.0 else "neural"
