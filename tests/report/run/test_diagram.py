@@ -53,6 +53,24 @@ def test_arrow_is_the_force_of_the_unit_bow_up_on_one_scale(browse, file, table)
         assert item["sectors"] == SECTORS[name]
 
 
+def test_units_without_a_shaft_are_drawn_by_the_force_that_they_give(browse, table, tmp_path):
+    """As mapped_thruster puts it out: a thrust, its command in the unit of the map, forces on the ship, no rpm."""
+    mapped = table.drop_vars([name for name in table.data_vars if str(name).startswith("tunnel.")])
+    thrust = table["tunnel.thrust"]
+    for name, values in (("thrust", thrust), ("tau_X", 0.0 * thrust), ("tau_Y", thrust)):
+        mapped[f"tunnel.{name}"] = ("time", values.values, {"units": "N", "long_name": name})
+    known = {"tunnel.x": 10.0, "tunnel.y": 0.0, "tunnel.thrust_table": "-10 -6000; 0 0; 10 7000"}
+    mapped.attrs["start_values"] = json.dumps(START | known)
+    path = tmp_path / "report.html"
+    write_report(mapped, path)
+    page = browse(path)
+    item = drawn(page, 700.0)["tunnel"]
+    right, down = np.subtract(item["to"], item["middle"])
+    force = float(thrust.sel(time=700.0)) / 1e3 * item["radius"] / item["range"]
+    assert (right, down) == pytest.approx((force, 0.0), abs=0.3) and abs(force) > 5.0
+    assert item["limits"] == [-6.0, 7.0]
+
+
 def painted(page, east, north):
     """Colour of the diagram of port at a place, in radii from its middle, beside that of clear ground."""
     script = (
@@ -118,6 +136,24 @@ def test_two_allocators_lie_over_each_other(browse, table, tmp_path):
         if item["what"] == "diagram" and item["unit"] == "port"
     }
     assert ends["inverse"] == pytest.approx(-ends["optimal"], abs=0.3)
+
+
+@pytest.mark.parametrize("width", [500, 1280])
+def test_states_of_two_runs_have_a_line_each(shown_at, table, tmp_path, width):
+    units = ("port", "starboard", "tunnel")
+    flags = [f"{unit}.failed" for unit in units] + ["allocator.saturated"]
+    failing = table.assign({flag: table["port.saturated"] for flag in flags})
+    path = tmp_path / "report.html"
+    write_comparison((failing, failing.isel(time=slice(0, -1))), ("generalised inverse", "optimal"), path)
+    page = shown_at(path, width)
+    page.ask("document.querySelectorAll('.panel').forEach(p => p.scrollIntoView())")
+    labels = (
+        "const plot = [...document.querySelectorAll('.panel')].find(p => p._fullLayout?.title.text.includes('failed'));"
+        "return [...(plot?.querySelectorAll('.ytick text') ?? [])].map(e => e.getBoundingClientRect().toJSON())"
+    )
+    page.wait(f"return (() => {{ {labels} }})().length === 14")
+    boxes = sorted(page.ask(labels), key=lambda box: box["top"])
+    assert all(box["bottom"] <= below["top"] + 1.0 for box, below in zip(boxes, boxes[1:], strict=False))
 
 
 @pytest.mark.parametrize("width", [500, 1280])

@@ -5,6 +5,7 @@ from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 LOAD = re.compile(r"tau_([A-Za-z]\w*)_([XYN])")
+FORCE = ("tau_X", "tau_Y")  # of a unit on the ship
 NOT_A_SOURCE = ("cmd", "allocated", "bias", "max", "min")
 
 
@@ -19,7 +20,7 @@ class Roles:
     reference : str or None
         Component with x_d, y_d and psi_d.
     thrusters : tuple of str
-        Components with a thrust and a shaft.
+        Components with a thrust, and with a shaft or the force that they give the ship.
     environment : str or None
         Component with the wind over ground.
     connectors : dict of str to list of str
@@ -99,7 +100,9 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     return Roles(
         ship=next(iter(ships), None),
         reference=next(iter(having("x_d", "y_d", "psi_d")), None),
-        thrusters=tuple(c for c in having("thrust") if {"rpm", "power", "torque"} & set(connectors[c])),
+        thrusters=tuple(
+            c for c in having("thrust") if {"rpm", "power", "torque"} & set(connectors[c]) or c in having(*FORCE)
+        ),
         environment=next(iter([c for c in winds if c not in ships] or winds), None),
         connectors=connectors,
     )

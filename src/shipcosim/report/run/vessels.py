@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.errors import ShipcosimError
+from shipcosim.models.core.tables import columns
 from shipcosim.report.run.roles import find_roles, join
 from shipcosim.series import conversion
 
@@ -304,9 +305,20 @@ def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
 
 def _limits(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
     most, least = (_first_number(known, unit, (f"thrust_{end}",)) for end in ("max", "min"))
+    if most is None:
+        least, most = _ends_of_map(known.get(join(unit, "thrust_table")))
     if most is None or most <= 0.0:
         return None
     return (-most if least is None else least, most)
+
+
+def _ends_of_map(table: Any) -> tuple[float, float] | tuple[None, None]:
+    """Least and largest thrust of a map, rows 'command thrust' as text. [N, N]"""
+    try:
+        thrusts = columns(table if isinstance(table, str) else "", 2)[1]
+    except ValueError:
+        return None, None
+    return thrusts[0], thrusts[-1]
 
 
 def _sectors(

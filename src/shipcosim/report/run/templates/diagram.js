@@ -22,12 +22,17 @@
     range = nice(Math.max(most, 1e-3));
     section.hidden = !circles.length;
     const shaded = circles.some(({ parts }) => parts.some(({ unit }) => unit.sectors.length)) ? " Shaded: angles that the allocator does not give the unit." : "", beyond = circles.some(({ limits }) => limits && Math.max(-limits[0], limits[1]) <= range) ? " Hatched: beyond the limit of thrust." : "";
-    section.querySelector(".hint").textContent = `Bow up; every circle ends at ${range} kN. Arrow: the force on the ship now, its trace over the run; ticks on the circle: angle of the unit (solid) and as commanded (hollow).${shaded}${beyond}`;
+    const ticks = circles.some(({ parts }) => parts.some(({ unit }) => unit.azimuth || unit.azimuth_command)) ? "; ticks on the circle: angle of the unit (solid) and as commanded (hollow)" : "";
+    section.querySelector(".hint").textContent = `Bow up; every circle ends at ${range} kN. Arrow: the force on the ship now, its trace over the run${ticks}.${shaded}${beyond}`;
   }
 
   // ---- drawing
 
-  const columns = (width) => Math.max(1, Math.min(circles.length, Math.floor(width / 230) || 1));
+  function columns(width) {  // as many as fit, in rows of equal length
+    const most = Math.max(1, Math.floor(width / 230));
+    return Math.max(1, Math.ceil(circles.length / Math.ceil(circles.length / most)));
+  }
+  const number = (value, digits) => (+value.toFixed(digits) || 0).toFixed(digits).replace("-", "−");
   const side = (width) => Math.min(width / columns(width), 340);
   const place = scene.canvas("diagram", (width) => Math.ceil(circles.length / columns(width)) * (side(width) + TEXT));
   const layer = scene.layer();
@@ -89,7 +94,7 @@
         if (Number.isFinite(found.azimuth)) tick(c, f, found.azimuth, shade, true);
         arrow(c, f.x, f.y, f.x + starboard * scale, f.y - forward * scale, shade, 3);
         c.beginPath(); c.arc(f.x, f.y, 3, 0, TURN); c.fillStyle = colour(shade); c.fill();
-        said.push(`${found.state === "failed" ? "failed" : `${found.thrust.toFixed(1).replace("-", "−")} kN`}${Number.isFinite(found.azimuth) ? ` at ${Math.round(scene.wrapped(found.azimuth)).toString().replace("-", "−")}°` : ""}`);
+        said.push(`${found.state === "failed" ? "failed" : `${number(found.thrust, 1)} kN`}${Number.isFinite(found.azimuth) ? ` at ${number(scene.wrapped(found.azimuth), 0)}°` : ""}`);
         drawn.push({ what: "diagram", run: run.label, unit: name, force: found.force, to: [f.x + starboard * scale, f.y - forward * scale], middle: [f.x, f.y], range, radius: f.R, azimuth: found.azimuth, limits, sectors: unit.sectors });
       }
       c.textAlign = "center"; c.textBaseline = "middle"; c.fillStyle = colour("soft");

@@ -62,6 +62,7 @@
   }
 
   function drawPanel(place, panel) {
+    if (panel.states) place.style.height = `max(250px, ${88 + 19 * panel.lines.length}px)`;  // a line of text for each state
     const traces = panel.states ? stateTraces(panel) : [...bandTraces(panel), ...lineTraces(panel)];
     Plotly.newPlot(place, traces, layoutOf(place, panel), config);
     place.on("plotly_relayout", (change) => follow(place, change));
