@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from shipcosim.fmi import Output, Parameter, Parameters
+from shipcosim.fmi import FmuError, Output, Parameter, Parameters
 from shipcosim.interfaces import NumberedAllocator
 from shipcosim.models.allocation import extreme_learning
 from shipcosim.models.core.networks import read_arrays
@@ -27,7 +27,7 @@ class PaperIAllocator(NumberedAllocator):
     def designed(self):
         known = sorted(file.stem for file in WEIGHTS.glob("*.npz"))
         if self.variant not in known:
-            raise ValueError(f"variant '{self.variant}': there is none. There are {', '.join(known)}.")
+            raise FmuError(f"variant '{self.variant}': there is none. There are {', '.join(known)}.")
         return extreme_learning.network_of(read_arrays(WEIGHTS / f"{self.variant}.npz"), self.model)
 
     def _show(self, state):

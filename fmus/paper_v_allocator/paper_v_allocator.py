@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from shipcosim.fmi import Parameter, Parameters
+from shipcosim.fmi import FmuError, Parameter, Parameters
 from shipcosim.interfaces import NamedAllocator
 from shipcosim.models.allocation import paper_v
 from shipcosim.models.core.networks import read_arrays
@@ -20,5 +20,5 @@ class PaperVAllocator(NamedAllocator):
     def designed(self):
         known = sorted(file.stem for file in WEIGHTS.glob("*.npz"))
         if self.variant not in known:
-            raise ValueError(f"variant '{self.variant}': there is none. There are {', '.join(known)}.")
+            raise FmuError(f"variant '{self.variant}': there is none. There are {', '.join(known)}.")
         return paper_v.design(read_arrays(WEIGHTS / f"{self.variant}.npz"))

@@ -8,6 +8,7 @@ from ships import equipped
 
 import shipcosim
 from shipcosim.errors import ShipcosimError
+from shipcosim.fmi import FmuError
 from shipcosim.interfaces import NamedAllocator, NumberedAllocator
 from shipcosim.interfaces.geometry import check_geometry
 
@@ -60,17 +61,30 @@ def test_a_request_that_is_no_number_is_refused_by_its_name(value, allocator):
     assert "finite" in str(error.value)
 
 
-def test_availability_is_true_or_false():
-    for value in (2.0, "maybe"):
-        with pytest.raises(ShipcosimError, match="port_available"):
-            shipcosim.run("stationkeeping", set={"allocator.port_available": value}, stop_time=0.1)
+@pytest.mark.parametrize("value", [2, 0.5, "maybe"])
+def test_availability_is_true_or_false(value):
+    event = {"time": 0.0, "override": {"allocator.port_available": value}}
+    with pytest.raises(ShipcosimError, match="'allocator.port_available' with .* Override it with true or false"):
+        shipcosim.run("stationkeeping", events=[event], stop_time=0.1)
+
+
+@pytest.mark.parametrize("name", [*NAMED, "paper_v_allocator"])
+def test_a_geometry_that_controls_no_axis_ends_a_run_with_one_sentence(name):
+    """Where, what and what would be right, without a traceback: nobody has to read our code."""
+    values = dict.fromkeys(("port_x", "port_y", "starboard_x", "starboard_y", "tunnel_x"), 0.0)
+    given = {f"allocator.{one}": value for one, value in values.items()}
+    with pytest.raises(ShipcosimError) as error:
+        shipcosim.run("stationkeeping", components={"allocator": name}, set=given, stop_time=0.1)
+    (problem,) = error.value.problems
+    assert problem.where == "allocator" and "cannot give a yaw moment by itself" in problem.found
+    assert "Right would be units at different places" in problem.found and "Traceback" not in problem.found
 
 
 @pytest.mark.parametrize("name", NAMED)
 def test_units_without_thrust_are_refused(name, allocator):
     fmu = allocator(name)
     fmu.azimuth_thrust_min = fmu.azimuth_thrust_max = fmu.tunnel_thrust_max = 0.0
-    with pytest.raises(ValueError, match="no unit has any thrust: every largest thrust is 0 N"):
+    with pytest.raises(FmuError, match="no unit has any thrust: every largest thrust is 0 N"):
         fmu.start()
 
 
@@ -79,17 +93,17 @@ def test_units_at_one_place_are_refused_with_the_loads_that_they_cannot_give(nam
     fmu = allocator(name)
     fmu.port_x = fmu.starboard_x = fmu.tunnel_x = -10.0
     fmu.port_y = fmu.starboard_y = 0.0
-    with pytest.raises(ValueError, match="cannot give a force to starboard or a yaw moment by itself"):
+    with pytest.raises(FmuError, match="cannot give a force to starboard or a yaw moment by itself"):
         fmu.start()
 
 
 def test_numbered_units_are_checked_too(allocator):
     fmu = allocator("fixed_angle_allocator")
     fmu.yaw_lever = 10.0
-    with pytest.raises(ValueError, match="no unit has any thrust"):
+    with pytest.raises(FmuError, match="no unit has any thrust"):
         fmu.start()
     fmu.thrust_max_1, fmu.y_1, fmu.thrust_max_2, fmu.y_2 = 50.0, -0.3, 50.0, 0.3
-    with pytest.raises(ValueError, match="cannot give a force to starboard by itself"):
+    with pytest.raises(FmuError, match="cannot give a force to starboard by itself"):
         fmu.start()
 
 
