@@ -96,18 +96,20 @@ def _is_ship(path: Path) -> bool:
 
 
 def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:
-    """What tools would make of a system, or of a scenario's; None for other files."""
-    from shipcosim.scenario import read_scenario
+    """What tools would make of a system, or of a scenario's with the FMUs that it swaps; None for other files."""
+    from shipcosim.scenario import check_files, read_scenario
     from shipcosim.ssp.portability.check import check_for
 
     if path.suffix.lower() not in (".toml", *library.SYSTEMS) and not path.is_dir():
         return None
-    system = file
+    system, swapped = file, {}
     if path.suffix == ".toml":
         scenario = read_scenario(path)
-        system = scenario.system_path
+        if check_files(scenario):
+            return []
+        system, swapped = scenario.system_path, scenario.component_paths(build=False)
     fmus = library.fmus(system, build=False)
-    return [problem for host in hosts for problem in check_for(host, system, fmus=fmus)]
+    return [problem for host in hosts for problem in check_for(host, system, fmus=fmus, components=swapped)]
 
 
 def variables_in(file: str) -> list[tuple[str, ...]]:

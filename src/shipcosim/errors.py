@@ -113,7 +113,8 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     if not names:
         return "There is none."
     shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")
-    close = get_close_matches(name, names[:MOST_COMPARED], n=1) if len(name) < LONGEST_NAME else ()
+    same = [known for known in names[:MOST_COMPARED] if known.lower() == name.lower()]
+    close = same or get_close_matches(name, names[:MOST_COMPARED], n=1) if len(name) < LONGEST_NAME else ()
     return f"There is: {shown}." + (f" Did you mean '{close[0]}'?" if close else "")
 
 

@@ -65,7 +65,10 @@ def test_an_fmu_of_the_same_interface_takes_another_ones_place(dp):
 def test_what_is_wired_and_missing_is_named_at_once_with_what_is_close(dp):
     text = refusal(dp, allocator=fmu("fixed_angle_allocator"))
     assert text.count("components, allocator") == 1
-    assert "fixed_angle_allocator.fmu cannot take its place: it lacks port_available, starboard_available" in text
+    assert (
+        "fixed_angle_allocator.fmu cannot take the place of 'allocator': it lacks port_available, starboard_available"
+        in text
+    )
     assert "(port_thrust_cmd)" in text and "tau_X_cmd," not in text
 
 

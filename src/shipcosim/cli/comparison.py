@@ -72,12 +72,15 @@ def reading(
     Raises
     ------
     ShipcosimError
-        If it is none of these, or something happens in the scenario.
+        If it is none of these, a component runs another FMU than the file says, or something happens in the scenario.
     """
     given = library.find_any(given)
     path, fmus = Path(given), library.fmus(given)
     if parameters:
         raise ShipcosimError(Problem("--parameters", "A tool that reads the file itself does not know them."))
+    if system.swapped:
+        found = f"A tool that reads the file itself runs the FMU that it names for {', '.join(system.swapped)}."
+        raise ShipcosimError(Problem(given, found, "Compare FMUs in place of others without --as-read."))
     if system.experiment.start_time:
         found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
         raise ShipcosimError(Problem(given, found, "Let it start at 0."))

@@ -59,6 +59,7 @@ def system_and_scenario(
     step_size: float | None = None,
     events: Path | None = None,
     strict: bool = False,
+    components: Iterable[str] | None = None,
 ) -> tuple[System, Scenario]:
     """System and scenario of an argument that is either.
 
@@ -74,20 +75,23 @@ def system_and_scenario(
         Scenario file of OSP: what happens besides.
     strict : bool
         Refuse what breaks a standard, also where it can mean one thing only. Without it this is said.
+    components : iterable of str, optional
+        FMUs in place of components' own, over those of the scenario; as for `parsed_components`.
 
     Raises
     ------
     ShipcosimError
         If there is no such thing, or the times do not fit.
     """
+    swapped = parsed_components(components or ())
     if not is_scenario(given):
-        system = system_of(given, parameters, strict=strict)
+        system = system_of(given, parameters, strict=strict, components=swapped)
         print_problems(problem for problem in system.remarks if problem.flaw)
         return system, with_osp_events(experiment_of(system, stop_time, step_size), events)
     scenario = read_scenario(library.find("scenario", given))
     if missing := check_files(scenario):
         raise ShipcosimError(missing)
-    system = cosim.system_of(scenario, parameters=parameters or (), strict=strict)
+    system = cosim.system_of(scenario, parameters=parameters or (), components=swapped, strict=strict)
     print_problems(problem for problem in system.remarks if problem.flaw)
     times = {"stop_time": stop_time, "step_size": step_size}
     scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
@@ -97,7 +101,11 @@ def system_and_scenario(
 
 
 def system_to_export(
-    given: str, parameters: Sequence[Path] | None, step_size: float | None, strict: bool = False
+    given: str,
+    parameters: Sequence[Path] | None,
+    step_size: float | None,
+    strict: bool = False,
+    components: Iterable[str] | None = None,
 ) -> tuple[System, float]:
     """System of an argument that is a system or a scenario, with the scenario's start values, and its step size. [s]
 
@@ -111,6 +119,8 @@ def system_to_export(
         In place of that of the scenario or the system. [s]
     strict : bool
         Whether flaws of form are errors.
+    components : iterable of str, optional
+        As for `system_and_scenario`.
 
     Raises
     ------
@@ -118,9 +128,11 @@ def system_to_export(
         If there is no such thing, or nothing says a step size.
     """
     if is_scenario(given):
-        system, scenario = system_and_scenario(given, parameters, step_size=step_size, strict=strict)
+        system, scenario = system_and_scenario(
+            given, parameters, step_size=step_size, strict=strict, components=components
+        )
         return with_values(system, scenario.set, given), scenario.step_size
-    system = system_of(given, parameters, strict=strict)
+    system = system_of(given, parameters, strict=strict, components=parsed_components(components or ()))
     return system, experiment_of(system, system.experiment.stop_time or step_size or 1.0, step_size).step_size
 
 

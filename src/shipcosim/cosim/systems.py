@@ -4,8 +4,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from shipcosim import library
+from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
+from shipcosim.scenario.locations import problem_at
 from shipcosim.ssp import System, read_system
+from shipcosim.ssp.flatten.swapped import WHERE
 
 
 def system_of(
@@ -40,10 +43,20 @@ def system_of(
         With everything that is wrong.
     """
     path = scenario.system_path if system is None else system
-    return read_system(
-        path,
-        [*scenario.parameter_paths, *parameters],
-        fmus=library.fmus(path, build),
-        components=scenario.component_paths(build) | dict(components or {}),
-        strict=strict,
-    )
+    swapped = scenario.component_paths(build)
+    of_scenario = {f"{WHERE}, {name}": name for name in swapped if name not in (components or {})}
+
+    def located(problem: Problem) -> Problem:
+        name = of_scenario.get(problem.where)
+        return problem_at(scenario, ("components", name), problem.found, problem.remedy) if name else problem
+
+    try:
+        return read_system(
+            path,
+            [*scenario.parameter_paths, *parameters],
+            fmus=library.fmus(path, build),
+            components=swapped | dict(components or {}),
+            strict=strict,
+        )
+    except ShipcosimError as error:
+        raise ShipcosimError([located(problem) for problem in error.problems]) from None

@@ -50,7 +50,7 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
     _check_kind(kind, text)
     path, known = Path(text.partition("#")[0]), names(kind, near)
     is_plain = text in known and not _is_one(kind, path)
-    if path.exists() and not is_plain and (kind != "scenario" or path.is_file()):
+    if path.exists() and not is_plain and (kind not in ("scenario", "fmu") or path.is_file()):
         return Path(text)
     if text in known:
         return built_fmu(known[text], build) if kind == "fmu" else known[text]

@@ -6,6 +6,7 @@ import typer
 
 from shipcosim.cli.exits import FAILED
 from shipcosim.cli.options import (
+    Components,
     Debug,
     OspEvents,
     Parameters,
@@ -22,6 +23,7 @@ def compare(
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
+    components: Components = None,
     events: OspEvents = None,
     tolerance: Annotated[
         float, typer.Option("--tolerance", min=0.0, help="Largest difference between engines, of a signal's range.")
@@ -45,7 +47,7 @@ def compare(
     from shipcosim.cosim.compare import compare as compare_engines
     from shipcosim.options import RunOptions
 
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict)
+    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components)
     for said in not_compared():
         typer.echo(said, err=True)
     how = reading(what, system, scenario, parameters) if as_read else nullcontext({})

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import (
+    Components,
     Debug,
     Force,
     OspEvents,
@@ -26,6 +27,7 @@ def fmu(
         time_option("--step-size", "Of the exchange inside; in s, or as '50 ms'. Default: the system's."),
     ] = None,
     parameters: Parameters = None,
+    components: Components = None,
     connectors_only: Annotated[
         bool, typer.Option("--connectors-only", help="Show the system's own connectors, nothing of its components.")
     ] = False,
@@ -48,7 +50,7 @@ def fmu(
     from shipcosim.cosim import export_fmu
     from shipcosim.staging import set_file_aside
 
-    system, step = system_to_export(what, parameters, step_size, strict)
+    system, step = system_to_export(what, parameters, step_size, strict, components)
     print_problems(problem for problem in system.remarks if problem.flaw)
     target = out / f"{system.name}.fmu"
     set_file_aside(target)
@@ -62,6 +64,7 @@ def osp(
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
+    components: Components = None,
     events: OspEvents = None,
     strict: Strict = False,
     force: Force = False,
@@ -78,7 +81,7 @@ def osp(
     from shipcosim.cosim.export.osp import SCENARIO, STRUCTURE, write_osp
     from shipcosim.staging import set_aside
 
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict)
+    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components)
     set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))])
     print_problems(write_osp(system, scenario, out))
     for path in sorted(out.glob("*")):

@@ -55,8 +55,8 @@ def readers(
     ShipcosimError
         If something happens in the scenario.
     """
-    if scenario.events or scenario.set:
-        found = "A tool that reads the file itself knows no events or start values of ours."
+    if scenario.events or scenario.set or scenario.components:
+        found = "A tool that reads the file itself knows no events, start values or swapped FMUs of ours."
         raise ShipcosimError(Problem(scenario.name or "scenario", found, "Compare the system alone."))
     hosts = ["libcosim"] if Path(path).suffix == ".xml" else ["libcosim", "ecos"]
     return {host: partial(_run, host, str(path), scenario, set_name) for host in hosts}

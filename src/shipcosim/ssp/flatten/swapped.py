@@ -8,6 +8,7 @@ from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.structure import KIND_NAMES, Connector
 
+MOST_NAMED = 12  # connectors that an error lists
 WHERE = "components"
 """Where problems with FMUs in place of others are said to be."""
 
@@ -45,11 +46,14 @@ def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Ke
             del tree.ports[key]
     if not missed:
         return
-    found = f"{fmu.path.name} cannot take its place: it lacks {', '.join(key.name for key in missed)}, which are wired."
+    shown, more = missed[:MOST_NAMED], f" and {len(missed) - MOST_NAMED} more" if len(missed) > MOST_NAMED else ""
+    lacks = ", ".join(key.name for key in shown) + more
+    name = ".".join(path)
+    found = f"{fmu.path.name} cannot take the place of '{name}': it lacks {lacks}, which are wired."
     close = []
-    for key in missed:
+    for key in shown:
         names = [name for name in fmu.named(tree.ports[key].kind) if Key(path, name) not in wired][:MOST_COMPARED]
         close += [f"{name} ({key.name})" for name in get_close_matches(key.name, names, n=1)]
     has = ", ".join([*fmu.named("input"), *fmu.named("output")][:40])
     remedy = f"Close to them are {', '.join(close)}." if close else f"It has: {has}."
-    tree.findings.error(f"{WHERE}, {'.'.join(path)}", found, remedy)
+    tree.findings.error(f"{WHERE}, {name}", found, remedy)

@@ -1,6 +1,6 @@
 """Checks of a system for a tool that reads its file itself: what it would ignore, misread, refuse or crash on."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -24,7 +24,13 @@ def check_host(host: str) -> None:
         raise ShipcosimError(Problem(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS)))
 
 
-def check_for(host: str, path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> list[Problem]:
+def check_for(
+    host: str,
+    path: str | PathLike[str],
+    *,
+    fmus: Iterable[str | PathLike[str]] = (),
+    components: Mapping[str, Path] | None = None,
+) -> list[Problem]:
     """What a tool that reads the file itself would ignore, misread, refuse or crash on.
 
     Parameters
@@ -35,6 +41,8 @@ def check_for(host: str, path: str | PathLike[str], *, fmus: Iterable[str | Path
         As for `read_system`.
     fmus : iterable of path
         Folders searched for FMUs that are not beside the system structure.
+    components : mapping of str to Path, optional
+        FMUs that components run in place of their own: the tool is taken to be given these.
 
     Returns
     -------
@@ -51,7 +59,7 @@ def check_for(host: str, path: str | PathLike[str], *, fmus: Iterable[str | Path
     if osp is not None and host == "ecos":
         remedy = "Give it the system as an SSP."
         return [Problem(str(path), "ecos does not read an OspSystemStructure.xml.", remedy)]
-    subject = subject_of(path, fmus) if osp is None else _osp_subject(osp, fmus)
+    subject = subject_of(path, fmus, components) if osp is None else _osp_subject(osp, fmus, components)
     if subject is None:
         return []
     known = (feature for feature in FEATURES if host in feature.becomes)
@@ -67,8 +75,10 @@ def _problems(host: str, feature: Feature, subject: Subject) -> Iterator[Problem
         yield replace(problem, severity="remark") if verdict == TOLD else problem
 
 
-def _osp_subject(path: Path, fmus: Iterable[str | PathLike[str]]) -> Subject | None:
+def _osp_subject(
+    path: Path, fmus: Iterable[str | PathLike[str]], components: Mapping[str, Path] | None
+) -> Subject | None:
     findings = Findings()
-    system = assemble_osp(path, (), fmus, findings)
+    system = assemble_osp(path, (), fmus, findings, components)
     document = read_document(path, str(path), findings)
     return None if system is None or document is None or findings.errors else Subject(document, system)

@@ -1,9 +1,10 @@
 """Input to the portability checks: an SSP as written in its outermost file, and as resolved."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
+from pathlib import Path
 
 import lxml.etree as etree
 
@@ -121,12 +122,16 @@ class Subject:
         return [(name, component.fmu) for name, component in self.system.components.items()]
 
 
-def subject_of(path: str | PathLike[str], fmus: Iterable[str | PathLike[str]] = ()) -> Subject | None:
+def subject_of(
+    path: str | PathLike[str],
+    fmus: Iterable[str | PathLike[str]] = (),
+    components: Mapping[str, Path] | None = None,
+) -> Subject | None:
     """Subject of an SSP, or None where it has errors.
 
     Parameters
     ----------
-    path, fmus
+    path, fmus, components
         As for `shipcosim.ssp.read_system`.
 
     Returns
@@ -139,9 +144,9 @@ def subject_of(path: str | PathLike[str], fmus: Iterable[str | PathLike[str]] = 
     structure = None if document is None else read_structure(document, findings)
     if package is None or document is None or structure is None:
         return None
-    tree = Hierarchy(findings)
+    tree = Hierarchy(findings, swapped=components)
     take_in(tree, structure, package)
-    system = assemble_package(package, (), str(path), findings)
+    system = assemble_package(package, (), str(path), findings, swapped=components)
     return None if system is None or findings.errors else Subject(document, system, structure, package, tree)
 
 
