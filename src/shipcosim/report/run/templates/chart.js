@@ -159,7 +159,9 @@
         c.beginPath(); c.moveTo(x, y); c.lineTo(x + 14 * Math.sin(a), y - 14 * Math.cos(a)); stroke(c, shade, 2);
         c.beginPath(); c.arc(x, y, 3.5, 0, 2 * Math.PI); c.fillStyle = colour(shade); c.fill();
         if (then) { const u = p.x(then[1]), v = p.y(then[0]); c.beginPath(); c.moveTo(u - 4, v - 4); c.lineTo(u + 4, v + 4); c.moveTo(u + 4, v - 4); c.lineTo(u - 4, v + 4); stroke(c, runs.length > 1 ? run.colour : "ink", 1.5); }
-        c.fillStyle = colour("ink"); c.textAlign = "left"; c.textBaseline = "middle"; c.fillText(`${seconds} s`, x + 8, y + 9);
+        if (!places.some((one) => one.seconds > seconds && Math.hypot(p.x(one.east) - x, p.y(one.north) - y) < 32)) {  // else they lie over each other
+          c.fillStyle = colour("ink"); c.textAlign = "left"; c.textBaseline = "middle"; c.fillText(`${seconds} s`, x + 8, y + 9);
+        }
         return { what: "predicted", run: run.label, of: run.predicted[k].name, seconds, north, east, heading, radius, true: then };
       });
     });
