@@ -92,6 +92,7 @@ COMPONENT_OF = {
     "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
+    "drift_predictor": "predictor",
 }
 """FMU: the component of the DP ship that it is."""
 ELSEWHERE = {

@@ -44,6 +44,7 @@ COMPONENTS = {
     "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
+    "drift_predictor": "predictor",
 }
 """FMU: the component of gunnerus_dp whose inputs it gets."""
 SHIP = "gunnerus-33m9"

@@ -47,7 +47,7 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
-from shipcosim.models.prediction import dead_reckoning, known, regions, surroundings
+from shipcosim.models.prediction import dead_reckoning, known, own_record, regions, surroundings
 from shipcosim.models.propulsion import (
     azimuth,
     drive,
@@ -635,6 +635,9 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
     covered |= {neural.features, neural.network, neural.propose, neural.effects}  # vectors: test_neural compares them
     covered |= {neural.taken, neural.kept_shares, neural.completed, neural.power}
+    # vectors and records: test_own_record compares them
+    covered |= {own_record.begin, own_record.step, own_record.predict, own_record.thrust_told, own_record.delivered}
+    covered |= {own_record.residual_load}
     covered |= {drive.drive_step}  # by the steps of both thrusters
     covered |= {propeller.loads_at}  # by propeller_loads
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}

@@ -63,6 +63,7 @@ for _function in (export.fmu, export.osp):
 for _function in (new.fmu, new.scenario, new_ship.ship, new.system):
     making.command(epilog=EXIT_CODES)(guarded(_function))
 training.command(epilog=EXIT_CODES)(guarded(train.allocator))
+training.command(epilog=EXIT_CODES)(guarded(train.drift))
 app.add_typer(exporting, name="export")
 app.add_typer(making, name="new")
 app.add_typer(training, name="train")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from shipcosim.learn import neural, paper_i, paper_v
+from shipcosim.learn.prediction import training as drift
 from shipcosim.learn.results import Trained, write_trained
 from shipcosim.learn.training import Progress
 
@@ -45,14 +46,22 @@ ALLOCATORS: Mapping[str, Kind] = {
 }
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
 
+DRIFT: Mapping[str, Kind] = {
+    "ours": Kind(drift.OURS.description, lambda progress: drift.train_ours(drift.OURS, progress)),
+    "paper-iv": Kind(drift.PAPER_IV.description, lambda progress: drift.train_paper_iv(drift.PAPER_IV, progress)),
+}
+"""Drift predictors by the name that `shipcosim train drift --kind NAME` takes; the first is the default."""
 
-def train_allocator(name: str, folder: Path, progress: Progress) -> list[Path]:
-    """Train an allocator from scratch, and write its weights and report.
+
+def train(kinds: Mapping[str, Kind], name: str, folder: Path, progress: Progress) -> list[Path]:
+    """Train a component from scratch, and write its weights and report.
 
     Parameters
     ----------
+    kinds : mapping of str to Kind
+        `ALLOCATORS` or `DRIFT`.
     name : str
-        One of `ALLOCATORS`.
+        One of them.
     folder : Path
         Where to; it exists.
     progress : callable
@@ -64,5 +73,5 @@ def train_allocator(name: str, folder: Path, progress: Progress) -> list[Path]:
         NAME.npz, NAME.json and NAME.md.
     """
     clock, processor = time.perf_counter(), time.process_time()
-    trained = ALLOCATORS[name].train(progress)
+    trained = kinds[name].train(progress)
     return write_trained(trained, folder, name, time.perf_counter() - clock, time.process_time() - processor)

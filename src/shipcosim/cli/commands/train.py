@@ -35,12 +35,34 @@ def allocator(
     """
     from shipcosim.cli.console import shown_path
 
-    for file in _train(kind, out):
+    for file in _train("ALLOCATORS", kind, out):
         typer.echo(shown_path(file))
 
 
-def _train(kind: str, out: Path | None) -> list[Path]:
-    """Train an allocator, write weights and report: the files. Nothing is written where something is wrong."""
+def drift(
+    kind: Annotated[str, typer.Option("--kind", metavar="NAME", help="ours or paper-iv.")] = "ours",
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
+    ] = None,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Train a predictor of the drift after a loss of thrust, from simulated worlds, with fixed seeds.
+
+    Simulates the worlds first, two at a time. Leaves NAME.npz, the weights, and the training report NAME.json and
+    NAME.md. Needs torch: pip install "shipcosim[learn]".
+
+    Example: shipcosim train drift --kind ours
+    """
+    from shipcosim.cli.console import shown_path
+
+    for file in _train("DRIFT", kind, out):
+        typer.echo(shown_path(file))
+
+
+def _train(group: str, kind: str, out: Path | None) -> list[Path]:
+    """Train a component, write weights and report: the files. Nothing is written where something is wrong."""
     from shipcosim.cli.results import check_targets
     from shipcosim.staging import staged
 
@@ -51,12 +73,13 @@ def _train(kind: str, out: Path | None) -> list[Path]:
             raise
         remedy = 'Install the extra `learn`: pip install "shipcosim[learn]".'
         raise ShipcosimError(Problem("train", "Training needs torch, which is not installed.", remedy)) from None
-    if kind not in learn.ALLOCATORS:
-        raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, list(learn.ALLOCATORS))))
+    kinds = getattr(learn, group)
+    if kind not in kinds:
+        raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, list(kinds))))
     folder = out or Path("results") / f"train-{kind}"
     check_targets(folder)
     with staged(folder) as stage, _progress(kind) as progress:
-        written = learn.train_allocator(kind, stage, progress)
+        written = learn.train(kinds, kind, stage, progress)
     return [folder / file.name for file in written]
 
 

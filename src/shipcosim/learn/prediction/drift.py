@@ -1,0 +1,207 @@
+"""Our drift predictor: what is believed of ships before their own record, trained through estimator and equations.
+
+The loss is what predictions miss after a loss of thrust, 10, 30 and 60 s ahead. Its gradient goes back through the
+whole prediction, and through the Kalman filter over the minutes before, to the beliefs with which the filter begins.
+The targets are the ship's own later estimates of place and heading: nothing that a real ship has not.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+import torch
+
+from shipcosim.learn.prediction.rollouts import Sailed, Ship, ahead, errors, followed
+from shipcosim.learn.training import Progress
+from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.prediction.own_record import COEFFICIENTS, STATES, Learned
+
+STD = np.array(
+    [0.05, 0.05, 0.002, 0.4, 0.4, 800.0, 800.0, 4e3]
+    + [0.5, 0.5, 0.25, 0.25, 0.05, 0.05, 0.1, 0.05, 0.05]
+    + [0.15, 0.15, 0.15, 0.3]
+    + [0.1, 0.1, 0.1, 1.0, 1.0]
+)
+"""Standard deviations of the states where training begins: assumed. [units of `STATES`]"""
+REST = np.array([0.004, 0.0003, 0.01, 0.0006, 0.003, 100.0, 60.0, 30.0, 1.0, 3.0, 1.6])
+"""The other fields of `Learned` where training begins: assumed. [their units]"""
+SCALES = np.array([[0.15, 0.15, 0.0087], [0.7, 0.7, 0.035], [2.0, 2.0, 0.07]])
+"""Errors that count alike, north, east and in heading, by horizon: larger ones count in proportion. [m, m, rad]"""
+STARTS = (1, 2, 3, 4, 5, 7, 9, 12, 16, 20)
+"""Seconds after the loss at which predictions of the loss function start. [s]"""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How it is trained.
+
+    Parameters
+    ----------
+    description : str
+        One line for users.
+    seeds : tuple of int
+        Worlds to train on.
+    common : int
+        Steps of the optimiser on all worlds.
+    members, own : int
+        Members of the ensemble, and steps of each on worlds drawn for it with replacement.
+    seed : int
+        Of these draws.
+    before : int
+        Seconds before the loss that are used. [s]
+    learning_rate : float
+        Of Adam at the start; it falls as a cosine. [1]
+    pull : float
+        Price of the square of each number that leaves where training begins. [1]
+    kept : float
+        Share of the way from there that is kept in the end: few worlds are learned by heart. [1]
+    margin : float
+        Limits of what was learned over the largest in training. [1]
+    """
+
+    description: str
+    seeds: tuple[int, ...]
+    common: int = 24
+    members: int = 5
+    own: int = 2
+    seed: int = 1
+    before: int = 170
+    learning_rate: float = 0.15
+    pull: float = 0.002
+    kept: float = 0.25
+    margin: float = 1.5
+
+
+def learned_of(numbers: Arithmetic, library: ModuleType = np) -> Learned:
+    """Beliefs from the numbers that are trained: of means in standard deviations, of all others logarithms of factors.
+
+    Parameters
+    ----------
+    numbers : (..., 55) array or tensor
+        Zero where training begins. [1]
+    library : module
+        numpy or torch.
+
+    Returns
+    -------
+    Learned
+        (...) arrays or tensors.
+    """
+    first, second = len(COEFFICIENTS), len(COEFFICIENTS) + len(STATES)
+    std, rest = (library.asarray(one, dtype=numbers.dtype) for one in (STD, REST))
+    rest = rest * library.exp(numbers[..., second:])
+    mean, std = numbers[..., :first] * std[8:], std * library.exp(numbers[..., first:second])
+    return Learned(mean, std, rest[..., 0:2], rest[..., 2:4], *(rest[..., k] for k in range(4, 11)))
+
+
+SIZE = len(COEFFICIENTS) + len(STATES) + len(REST)
+
+
+def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: Recipe) -> torch.Tensor:
+    """What predictions miss, nearly in proportion where it is much.
+
+    Parameters
+    ----------
+    numbers : (55,) tensor
+        As `learned_of` takes them.
+    sailed : Sailed
+        Records.
+    ship : Ship
+        The ship's own model.
+    recipe : Recipe
+        For the pull.
+
+    Returns
+    -------
+    () tensor
+        [1]
+    """
+    learned = learned_of(numbers, torch)
+    motions = ahead(learned, *followed(learned, sailed, STARTS, ship, torch, grid=2), ship)
+    missed = errors(motions, sailed, STARTS) / torch.from_numpy(SCALES)[:, None, None, :]
+    return (torch.sqrt(1.0 + missed * missed) - 1.0).mean() + recipe.pull * (numbers * numbers).sum()
+
+
+def descend(
+    numbers: np.ndarray,
+    sailed: Sailed,
+    ship: Ship,
+    recipe: Recipe,
+    steps: int,
+    rate: float,
+    tell: Callable[[], None],
+) -> tuple[np.ndarray, list[float]]:
+    """Steps of Adam down the loss.
+
+    Parameters
+    ----------
+    numbers : (55,) array
+        Where to begin.
+    sailed : Sailed
+        Records.
+    ship : Ship
+        The ship's own model.
+    recipe : Recipe
+        How.
+    steps : int
+        How many.
+    rate : float
+        Learning rate at the start.
+    tell : callable
+        Is called after each step.
+
+    Returns
+    -------
+    (55,) array, list of float
+        Where it ended; the loss before each step.
+    """
+    at, history = torch.tensor(numbers, requires_grad=True), []
+    optimiser = torch.optim.Adam([at], lr=rate)
+    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
+    for _ in range(steps):
+        optimiser.zero_grad()
+        value = loss(at, sailed, ship, recipe)
+        value.backward()
+        torch.nn.utils.clip_grad_norm_([at], 1.0)
+        optimiser.step()
+        schedule.step()
+        history.append(float(value.detach()))
+        tell()
+    return at.detach().numpy().copy(), history
+
+
+def fit(sailed: Sailed, ship: Ship, recipe: Recipe, progress: Progress) -> tuple[np.ndarray, list[dict[str, float]]]:
+    """Train the ensemble.
+
+    Parameters
+    ----------
+    sailed : Sailed
+        Records of the training worlds.
+    ship : Ship
+        The ship's own model.
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how many steps are done, and of how many.
+
+    Returns
+    -------
+    (members, 55) array, list of dict
+        Numbers as `learned_of` takes them; losses of each step.
+    """
+    total, done = recipe.common + recipe.members * recipe.own, 0
+
+    def tell():
+        nonlocal done
+        done += 1
+        progress(done, total)
+
+    common, history = descend(np.zeros(SIZE), sailed, ship, recipe, recipe.common, recipe.learning_rate, tell)
+    rng, worlds = np.random.default_rng(recipe.seed), sailed.known.shape[1]
+    epochs, members = [{"all worlds": value} for value in history], []
+    for _ in range(recipe.members):
+        drawn = Sailed(sailed.known[:, rng.integers(worlds, size=worlds)], sailed.lost)
+        numbers, _ = descend(common, drawn, ship, recipe, recipe.own, recipe.learning_rate / 3.0, tell)
+        members.append(numbers)
+    return np.array(members), epochs

@@ -1,0 +1,168 @@
+"""The networks of paper IV: residual accelerations of the equations of motion, a second ahead, in DP and manoeuvres.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper IV and ch. 4.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from shipcosim.learn.prediction.rollouts import Sailed, Ship, known_of, mapped
+from shipcosim.learn.training import Progress, repeatable
+from shipcosim.models.prediction import paper_iv
+
+NOTES = (
+    "Printed: nine inputs (velocities and accelerations of the equations of motion, the last residual), two layers of"
+    " 20 hyperbolic tangents, three linear outputs, 3000 samples at 1 Hz of DP and low-speed manoeuvring, the mean of"
+    " an ensemble, velocity and heading averaged over 3 s, wind and commands held.",
+    "Not printed, and taken here: an ensemble of five; inputs and outputs scaled to mean 0 and standard deviation 1;"
+    " Adam, learning rate 0.003, mini-batches of 100; a tenth of the samples held out, which decide when to stop; real"
+    " accelerations as differences of the observer's velocities over a second; explicit steps of a second.",
+    "The paper trains on 50 minutes of one ship in one place and weather, right before the loss of thrust. Worlds here"
+    " hold their ship for three to five minutes, so the samples are drawn from the records of many, before their loss.",
+)
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How the networks are trained.
+
+    Parameters
+    ----------
+    description : str
+        One line for users.
+    seeds : tuple of int
+        Worlds to train on.
+    samples, members, width : int
+        Samples, networks, units in each of two layers. [1]
+    seed : int
+        Of samples, order and weights.
+    batch, most_epochs, patience : int
+        Samples in a step, epochs at most, epochs without gain before the end. [1]
+    learning_rate : float
+        Of Adam. [1]
+    """
+
+    description: str
+    seeds: tuple[int, ...]
+    samples: int = 3000
+    members: int = 5
+    width: int = 20
+    seed: int = 1
+    batch: int = 100
+    most_epochs: int = 200
+    patience: int = 15
+    learning_rate: float = 3e-3
+
+
+def samples(sailed: Sailed, ship: Ship, first: int = 10) -> tuple[np.ndarray, np.ndarray]:
+    """Inputs and targets of every second before the loss.
+
+    Parameters
+    ----------
+    sailed : Sailed
+        Records.
+    ship : Ship
+        The ship's own model.
+    first : int
+        Rows that are left out at the start. [1]
+
+    Returns
+    -------
+    (n, 9) and (n, 3) array
+        [m/s, rad/s, m/s2, rad/s2]
+    """
+    everything = known_of(sailed.known, ship)
+    now = mapped(lambda array: array[0], everything)
+    past, inputs, targets = paper_iv.begin(now), [], []
+    for row in range(1, sailed.lost):
+        now = mapped(lambda array, row=row: array[row], everything)
+        psi, *nu = past.states[-1]
+        dot = paper_iv.model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=ship.hull, wind=ship.wind)
+        before = [np.broadcast_to(one, np.shape(psi)) for one in (*nu, *dot, *past.residual)]
+        past = paper_iv.step(past, now, hull=ship.hull, wind=ship.wind)
+        if row >= first:
+            inputs.append(np.stack(before, axis=-1))
+            targets.append(np.stack(past.residual, axis=-1))
+    return np.concatenate(inputs), np.concatenate(targets)
+
+
+def fit(
+    inputs: np.ndarray, targets: np.ndarray, recipe: Recipe, progress: Progress
+) -> tuple[dict[str, np.ndarray], list[dict[str, float]]]:
+    """Train the ensemble, all networks at once.
+
+    Parameters
+    ----------
+    inputs, targets : (n, 9), (n, 3) array
+        As `samples` gives them; `recipe.samples` of them are drawn.
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how many epochs are done, and of how many at most.
+
+    Returns
+    -------
+    dict of str to array, list of dict
+        Arrays as `models.prediction.paper_iv.ensemble_of` reads them; losses of each epoch.
+    """
+    rng = np.random.default_rng(recipe.seed)
+    chosen = rng.permutation(len(inputs))[: recipe.samples]
+    x, y = inputs[chosen], targets[chosen]
+    scales = {"input_mean": x.mean(0), "input_std": x.std(0), "output_mean": y.mean(0), "output_std": y.std(0)}
+    x = torch.from_numpy((x - scales["input_mean"]) / scales["input_std"])
+    y = torch.from_numpy((y - scales["output_mean"]) / scales["output_std"])
+    held, order = len(x) // 10, np.random.default_rng(recipe.seed)
+    with repeatable(recipe.seed):
+        weights = first_weights((x.shape[1], recipe.width, recipe.width, y.shape[1]), recipe.members)
+    optimiser, epochs = torch.optim.Adam(weights, lr=recipe.learning_rate), []
+    best, kept, since = np.inf, [one.detach().clone() for one in weights], 0
+    for number in range(recipe.most_epochs):
+        for rows in np.array_split(held + order.permutation(len(x) - held), (len(x) - held) // recipe.batch or 1):
+            optimiser.zero_grad()
+            squares(weights, x[rows], y[rows]).backward()
+            optimiser.step()
+        with torch.no_grad():
+            found = {
+                name: float(squares(weights, x[part], y[part]))
+                for name, part in (("training", slice(held, None)), ("held out", slice(held)))
+            }
+        epochs.append(found)
+        progress(number + 1, recipe.most_epochs)
+        since += 1
+        if found["held out"] < best:
+            best, kept, since = found["held out"], [one.detach().clone() for one in weights], 0
+        if since >= recipe.patience:
+            break
+    return arrays_of(kept) | scales, epochs
+
+
+def first_weights(sizes: Sequence[int], members: int) -> list[torch.Tensor]:
+    """Weights at the start, uniform as Glorot and Bengio have them, and biases 0."""
+    found = []
+    for n, m in zip(sizes[:-1], sizes[1:], strict=True):
+        limit = (6.0 / (n + m)) ** 0.5
+        found += [limit * (2.0 * torch.rand(members, n, m, dtype=torch.float64) - 1.0)]
+        found += [torch.zeros(members, 1, m, dtype=torch.float64)]
+    return [one.requires_grad_() for one in found]
+
+
+def squares(weights: list[torch.Tensor], x: torch.Tensor, y: torch.Tensor) -> torch.Tensor:
+    """Mean square error of all networks."""
+    for k in range(0, len(weights) - 2, 2):
+        x = torch.tanh(x @ weights[k] + weights[k + 1])
+    return ((x @ weights[-2] + weights[-1] - y) ** 2).mean()
+
+
+def arrays_of(weights: list[torch.Tensor]) -> dict[str, np.ndarray]:
+    """Weights and biases by their names."""
+    pairs = zip(weights[::2], weights[1::2], strict=True)
+    return {
+        f"{k}.{name}": one.numpy().copy()
+        for k, pair in enumerate(pairs, 1)
+        for name, one in zip(("weights", "bias"), pair, strict=True)
+    }

@@ -1,0 +1,175 @@
+"""Records of many ships beside one another, and predictions of all of them through the models in torch or NumPy."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import torch
+
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction import drift_off, own_record
+from shipcosim.models.prediction.known import Known
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters, wind_from_mast
+
+HORIZONS = (10.0, 30.0, 60.0)
+"""How far ahead. [s]"""
+
+
+class Ship(NamedTuple):
+    """The ship's own model.
+
+    Parameters
+    ----------
+    hull, wind, mast : parameter sets
+        Her nominal numbers.
+    """
+
+    hull: HullParameters
+    wind: WindParameters
+    mast: MastParameters
+
+
+class Sailed(NamedTuple):
+    """Records of many worlds at 1 Hz, with their losses of thrust in one row.
+
+    Parameters
+    ----------
+    known : (n, worlds, 15) array
+        Columns as `worlds.KNOWN`.
+    lost : int
+        The row at which thrust is lost; from the next row on the ship knows.
+    """
+
+    known: np.ndarray
+    lost: int
+
+
+def known_of(rows: np.ndarray, ship: Ship) -> Known:
+    """What is known, from the columns of records.
+
+    Parameters
+    ----------
+    rows : (..., 15) array
+        Columns as `worlds.KNOWN`.
+    ship : Ship
+        For the place of the anemometer.
+
+    Returns
+    -------
+    Known
+        With (...) arrays.
+    """
+    c = np.moveaxis(rows, -1, 0)
+    wind = wind_from_mast(c[12], c[13], *c[3:6], mast=ship.mast)
+    return Known(Motion(*c[:6]), tuple(c[6:9]), tuple(c[9:12]), *wind, 1.0 - c[14])
+
+
+def tensors(record: Any) -> Any:
+    """The same nested tuples with tensors instead of arrays."""
+    return mapped(lambda array: torch.from_numpy(np.ascontiguousarray(array, dtype=float)), record)
+
+
+def mapped(function: Any, record: Any) -> Any:
+    """Nested tuples with a function of each array in them."""
+    if not isinstance(record, tuple):
+        return function(record)
+    parts = [mapped(function, part) for part in record]
+    return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+
+
+def stacked(records: Sequence[Any], library: Any) -> Any:
+    """Nested tuples of one form as one, their arrays stacked along a new first axis."""
+    first = records[0]
+    if not isinstance(first, tuple):
+        return library.stack(list(records))
+    parts = [stacked([record[k] for record in records], library) for k in range(len(first))]
+    return type(first)(*parts) if hasattr(first, "_fields") else tuple(parts)
+
+
+def followed(
+    learned: own_record.Learned, sailed: Sailed, starts: Sequence[int], ship: Ship, library: Any, grid: int = 1
+) -> tuple[own_record.Record, Known]:
+    """What the records of all worlds say at some rows after the loss.
+
+    Parameters
+    ----------
+    learned : Learned
+        Arrays or tensors that broadcast with the worlds.
+    sailed : Sailed
+        Records.
+    starts : sequence of int
+        Rows after that of the loss, increasing. [1]
+    ship : Ship
+        The ship's own model.
+    library : module
+        torch or numpy.
+    grid : int
+        Every so-manieth row is used before the loss; all after it. [1]
+
+    Returns
+    -------
+    tuple of Record and Known
+        With starts along their first axis.
+    """
+    lost, last = sailed.lost, sailed.lost + max(starts)
+    rows = [*range(lost % grid, lost, grid), *range(lost, last + 1)]
+    everything = known_of(sailed.known, ship)
+    if library is torch:
+        everything = tensors(everything)
+    now = mapped(lambda array: array[rows[0]], everything)
+    record, found = own_record.begin(now, learned=learned, hull=ship.hull), []
+    for before, row in zip(rows[:-1], rows[1:], strict=True):
+        now = mapped(lambda array, row=row: array[row], everything)
+        record = own_record.step(record, now, float(row - before), learned=learned, hull=ship.hull, wind=ship.wind)
+        if row - lost in starts:
+            found.append((record, now))
+    return stacked([one for one, _ in found], library), stacked([one for _, one in found], library)
+
+
+def ahead(learned: own_record.Learned, record: own_record.Record, known: Known, ship: Ship) -> tuple[Motion, ...]:
+    """Motions at `HORIZONS`.
+
+    Parameters
+    ----------
+    learned : Learned
+        As in `followed`.
+    record, known : Record, Known
+        As `followed` gives them.
+    ship : Ship
+        The ship's own model.
+
+    Returns
+    -------
+    tuple of Motion
+        One per horizon.
+    """
+    return own_record.predict(
+        record, known, horizons=HORIZONS, steps=drift_off.STEPS, learned=learned, hull=ship.hull, wind=ship.wind
+    )
+
+
+def errors(motions: Sequence[Motion], sailed: Sailed, starts: Sequence[int]) -> torch.Tensor:
+    """What predictions miss of the ship's own later record: her estimated place and heading.
+
+    Parameters
+    ----------
+    motions : sequence of Motion
+        At `HORIZONS`; (starts, worlds) tensors.
+    sailed : Sailed
+        Records.
+    starts : sequence of int
+        Rows after that of the loss. [1]
+
+    Returns
+    -------
+    (horizons, starts, worlds, 3) tensor
+        North, east, heading. [m, m, rad]
+    """
+    rows, found = sailed.lost + np.array(starts), []
+    for horizon, motion in zip(HORIZONS, motions, strict=True):
+        x, y, psi = torch.from_numpy(np.moveaxis(sailed.known[rows + int(horizon), :, :3], -1, 0).copy())
+        turned = motion.psi - psi
+        found.append(torch.stack([motion.x - x, motion.y - y, torch.atan2(turned.sin(), turned.cos())], -1))
+    return torch.stack(found)

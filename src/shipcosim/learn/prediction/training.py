@@ -1,0 +1,222 @@
+"""What `shipcosim train drift` does: worlds sailed, what is learned from them, weights and report."""
+
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from shipcosim.cosim import system_of
+from shipcosim.learn.datasets import digest
+from shipcosim.learn.prediction import drift, paper_iv, worlds
+from shipcosim.learn.prediction.rollouts import Sailed, Ship, ahead, followed, mapped
+from shipcosim.learn.results import Trained
+from shipcosim.learn.training import Progress, repeatable
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction import drift_off
+from shipcosim.models.prediction.own_record import Learned
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters
+
+OURS = drift.Recipe("Our drift predictor of the DP ship: beliefs that her own record corrects", tuple(range(1, 13)))
+PAPER_IV = paper_iv.Recipe("The drift predictor of paper IV for the DP ship", tuple(range(1, 13)))
+NOTES = (
+    "Targets are the ships' own later estimates of place and heading; no true state, current or wind is used.",
+    "An epoch is a step of the optimiser with all worlds. Each member of the ensemble goes on from the last of them, on"
+    " as many worlds drawn with replacement.",
+    "Twelve worlds are few: the share of the way from the assumed beliefs that is kept, 0.25 instead of 0.5 or all, was"
+    " chosen on worlds 300 to 311; all of it was worse there than the assumed beliefs in north.",
+)
+SETTINGS = ("common", "members", "own", "learning_rate", "pull", "kept", "margin", "before")
+SAILING = 0.5
+"""Share of the progress that sailing the worlds is. [1]"""
+
+
+def ship() -> Ship:
+    """The DP ship as her predictor knows her."""
+    values = system_of(worlds.scenario(worlds.draw(1, 0.0))).components["predictor"].start
+
+    def given(kind: Any) -> Any:
+        return kind(**{one.name: values[one.name] for one in fields(kind)})
+
+    return Ship(given(HullParameters), given(WindParameters), given(MastParameters))
+
+
+def aligned(records: Sequence[worlds.Record], before: int, after: int = 81) -> Sailed:
+    """Records beside one another, with their losses in one row.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        As `worlds.sail` gives them.
+    before, after : int
+        Rows before that of the loss, and after it. [1]
+
+    Returns
+    -------
+    Sailed
+        Of `before + 1 + after` rows.
+    """
+    cut = []
+    for record in records:
+        lost = int(np.searchsorted(record.time, record.lost_at - 1e-6))
+        cut.append(record.known[lost - before : lost + after + 1])
+    return Sailed(np.stack(cut, axis=1), before)
+
+
+def sail(seeds: Sequence[int], progress: Progress) -> list[worlds.Record]:
+    """Records of worlds to train on.
+
+    Parameters
+    ----------
+    seeds : sequence of int
+        Theirs, all of `worlds.TRAINING`.
+    progress : callable
+        Is told how many are sailed, of how many.
+
+    Returns
+    -------
+    list of Record
+        In their order.
+    """
+    if outside := [seed for seed in seeds if seed not in worlds.TRAINING]:
+        raise ValueError(f"seeds {outside} are not of worlds to train on, {worlds.TRAINING}")
+    return worlds.sail_all([worlds.draw(seed) for seed in seeds], progress=progress)
+
+
+def parts(progress: Progress, first: bool) -> Progress:
+    """Progress of sailing, which comes first, or of what follows, as that of the whole in thousandths."""
+
+    def tell(done, total):
+        share = done / total
+        progress(round(1000 * (SAILING * share if first else SAILING + (1.0 - SAILING) * share)), 1000)
+
+    return tell
+
+
+def train_ours(recipe: drift.Recipe, progress: Progress) -> Trained:
+    """Train our predictor from scratch.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how far it is.
+
+    Returns
+    -------
+    Trained
+        Weights and report.
+    """
+    return ours(sail(recipe.seeds, parts(progress, True)), recipe, parts(progress, False))
+
+
+def ours(records: Sequence[worlds.Record], recipe: drift.Recipe, progress: Progress) -> Trained:
+    """`train_ours` from records of worlds that have been sailed.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of the recipe's worlds.
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how far it is.
+
+    Returns
+    -------
+    Trained
+        Weights and report.
+    """
+    sailed, about = aligned(records, recipe.before), ship()
+    with repeatable(recipe.seed):
+        numbers, epochs = drift.fit(sailed, about, recipe, progress)
+    learned = drift.learned_of(recipe.kept * numbers)
+    arrays = {name: np.asarray(getattr(learned, name)) for name in Learned._fields}
+    arrays["limits"] = recipe.margin * limits(learned, sailed, about)
+    settings = {name: getattr(recipe, name) for name in SETTINGS}
+    settings |= {"optimiser": "Adam, cosine schedule", "starts of predictions after the loss (s)": drift.STARTS}
+    return Trained(arrays, recipe.description, recipe.seed, _about(recipe.seeds, sailed.known), settings, epochs, NOTES)
+
+
+def limits(learned: Learned, sailed: Sailed, about: Ship) -> np.ndarray:
+    """The largest of each of `drift_off.MEASURES` in training, up to 60 s after the loss.
+
+    Parameters
+    ----------
+    learned : Learned
+        Of the members, along the first axis of its arrays.
+    sailed : Sailed
+        Records of the training worlds.
+    about : Ship
+        The ship's own model.
+
+    Returns
+    -------
+    (9,) array
+        [units of `MEASURES`]
+    """
+    apart = members(learned)
+    record, known = followed(apart, sailed, range(1, 61), about, np)
+    found = []
+    for k in range(len(record.psi)):
+        own, now = mapped(lambda array, k=k: array[k], (record, known))
+        found.append(drift_off.measures(own, now, ahead(apart, own, now, about)[-1], apart))
+    return np.stack(found, axis=1).reshape(len(drift_off.MEASURES), -1).max(axis=1)
+
+
+def members(learned: Learned) -> Learned:
+    """The same with an axis of worlds after that of the members."""
+    return Learned(*(one[:, None] for one in learned))
+
+
+def train_paper_iv(recipe: paper_iv.Recipe, progress: Progress) -> Trained:
+    """Train the networks of paper IV from scratch.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how far it is.
+
+    Returns
+    -------
+    Trained
+        Weights and report.
+    """
+    return as_paper_iv(sail(recipe.seeds, parts(progress, True)), recipe, parts(progress, False))
+
+
+def as_paper_iv(records: Sequence[worlds.Record], recipe: paper_iv.Recipe, progress: Progress) -> Trained:
+    """`train_paper_iv` from records of worlds that have been sailed.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of the recipe's worlds.
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how far it is.
+
+    Returns
+    -------
+    Trained
+        Weights and report.
+    """
+    inputs, targets = paper_iv.samples(aligned(records, OURS.before), ship())
+    arrays, epochs = paper_iv.fit(inputs, targets, recipe, progress)
+    names = ("samples", "members", "width", "batch", "most_epochs", "patience", "learning_rate")
+    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "Adam"}
+    data = _about(recipe.seeds, inputs)
+    return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, paper_iv.NOTES)
+
+
+def _about(seeds: Sequence[int], data: np.ndarray) -> dict[str, Any]:
+    return {
+        "worlds": f"seeds {min(seeds)} to {max(seeds)}, learn/prediction/worlds, at distance 1",
+        "numbers": data.size,
+        "SHA-256 of the data, rounded": digest(np.round(data, 3) + 0.0),
+    }
