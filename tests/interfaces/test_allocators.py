@@ -142,6 +142,17 @@ def test_the_controllers_integral_does_not_run_away_while_thrust_is_at_its_limit
         assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(early[f"controller.tau_{axis}_bias"])
 
 
+@pytest.mark.parametrize("name", ["optimal_units_allocator", "neural_units_allocator"])
+def test_the_controllers_integral_does_not_run_away_with_numbered_units(name):
+    """The same: 17 kN and 150 kNm are missed after 20 s, and the bias load is gone at 60 s."""
+    calm = {"environment.wind_speed": 20.0, "environment.significant_wave_height": 0.0, "environment.gust_scale": 0.0}
+    run = shipcosim.run("allocation/four_azimuths", components={"allocator": name}, set=calm, stop_time=60.0)
+    early, late = run.sel(time=20.0), run.sel(time=60.0)
+    assert float(abs(early["allocator.slack_Y"])) > 5e3
+    for axis in "YN":
+        assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(early[f"controller.tau_{axis}_bias"])
+
+
 @pytest.mark.parametrize("name", NUMBERED)
 def test_numbered_units_share_the_loss_as_the_lever_says(name, allocator):
     missed = {}

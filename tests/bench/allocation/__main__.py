@@ -7,7 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # allocation; ships, dp_loop
 
-from allocation import measuring, pages  # noqa: E402
+from allocation import measuring, pages, slipstreams  # noqa: E402
 from allocation.laws import LAWS, there  # noqa: E402
 
 
@@ -23,7 +23,8 @@ def main(arguments=None):
     found = {name: measuring.measured(name, options.seeds, options.random, options.into) for name in options.laws}
     for name, one in found.items():
         one["seconds"] = measuring.times(name, options.seeds, options.into, again=options.times)
-    text = pages.page(found)
+    kinds = ("neural-slipstreams", "neural-four-azimuths") if "neural_allocator" in found else ()
+    text = pages.page(found, {kind: slipstreams.measured(kind, options.seeds, folder=options.into) for kind in kinds})
     print(text)
     if options.write:
         pages.PAGE.write_text(text, encoding="utf-8")
