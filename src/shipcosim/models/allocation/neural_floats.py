@@ -103,7 +103,9 @@ def floats_of(units: Units, weights: tuple) -> Floats:
     return Floats(tuple(Unit(*row) for row in zip(*columns, strict=True)), u.lever, largest, tuple(pairs), weights)
 
 
-def propose(thrusts: list, azimuths: list, smooth: tuple, tau: tuple, usable: list, lost: tuple, h: float, of: Floats):
+def propose(
+    thrusts: list, azimuths: list, smooth: tuple, tau: tuple, usable: list, lost: tuple, h: float, of: Floats
+) -> tuple[list, list, tuple]:
     """As `neural.propose`.
 
     Parameters
