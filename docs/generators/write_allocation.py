@@ -31,14 +31,6 @@ PICTURES = {
             "optimal_allocator": ("optimal_allocator", None),
         },
     ),
-    "allocation_paper_v": (
-        "allocation/paper_v_four_corner",
-        {
-            "generalised inverse, ±45 deg": ("allocator", None),
-            "paper V": (PAPER_V, "paper-v"),
-            "trained on random walks": (PAPER_V, "paper-v-walks"),
-        },
-    ),
     "allocation_k4": (
         "allocation/paper_v_stationkeeping",
         {

@@ -96,21 +96,21 @@ def floats_of(units: Units, weights: tuple) -> Floats:
     steep = u.full_power / u.full_power.max() * (largest / u.most) ** 1.5
     own = u.azimuth, u.turn, u.first, u.last, u.least, u.most, u.rate, astern, neural._GENTLE * u.most, steep
     columns = (np.asarray(values, float).tolist() for values in (u.x / u.lever, u.y / u.lever, *own))
-    pairs = []
-    for front, behind in np.argwhere(u.tandem < 1.0).tolist() if u.tandem is not None else ():
-        bearing, tandem = float(u.bearing[front, behind]), float(u.tandem[front, behind])
+    pairs, kept = [], np.ones((len(u.x), len(u.x))) if u.tandem is None else u.tandem
+    for front, behind in np.argwhere(kept < 1.0).tolist():
+        bearing, tandem = float(u.bearing[front, behind]), float(kept[front, behind])
         pairs.append((front, behind, bearing, tandem, 130.0 / tandem**3))
     return Floats(tuple(Unit(*row) for row in zip(*columns, strict=True)), u.lever, largest, tuple(pairs), weights)
 
 
 def propose(
-    thrusts: list, azimuths: list, smooth: tuple, tau: tuple, usable: list, lost: tuple, h: float, of: Floats
-) -> tuple[list, list, tuple]:
+    thrusts: tuple, azimuths: tuple, smooth: tuple, tau: tuple, usable: list, lost: tuple, h: float, of: Floats
+) -> tuple[tuple, tuple, tuple]:
     """As `neural.propose`.
 
     Parameters
     ----------
-    thrusts, azimuths : list of floats
+    thrusts, azimuths : tuple of floats
         The last commands. [N, rad]
     smooth, tau : tuple of three floats
         Smoothed request before, request. [N, N, N.m]
@@ -125,7 +125,7 @@ def propose(
 
     Returns
     -------
-    tuple of two lists and a tuple
+    tuple of three tuples
         Thrusts, angles and the smoothed request. [N, rad; N, N, N.m]
 
     References
@@ -147,15 +147,15 @@ def propose(
     steep = [unit.steep * exp(price) for unit, price in zip(of.units, said[len(angles) :], strict=True)]
     found = _completed(thrusts, asked, effects, bounds, steep, of)[0]
     share = 1.0 - exp(-h / neural.SMOOTHING)
-    return found, angles, tuple(old + share * (new - old) for old, new in zip(smooth, tau, strict=True))
+    return tuple(found), tuple(angles), tuple(old + share * (new - old) for old, new in zip(smooth, tau, strict=True))
 
 
-def taken(thrusts: list, azimuths: list, of: Floats) -> tuple[float, float, float]:
+def taken(thrusts: tuple, azimuths: tuple, of: Floats) -> tuple[float, float, float]:
     """As `neural.taken`.
 
     Parameters
     ----------
-    thrusts, azimuths : list of floats
+    thrusts, azimuths : tuple of floats
         Commands. [N, rad]
     of : Floats
         The units.

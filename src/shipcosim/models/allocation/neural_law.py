@@ -170,16 +170,16 @@ def step(
     usable = [where(unit, share + zero, zero) for unit, share in zip(on, left, strict=True)]
     thrusts, azimuths = (tuple(of[k] for k in numbers) for of in (state.thrusts, state.azimuths))
     lost = _taken(thrusts, azimuths, design)
-    proposed = _proposed((thrusts, azimuths, state.smooth), tau, usable, lost, h, design)
+    wanted, angles, smooth = _proposed((thrusts, azimuths, state.smooth), tau, usable, lost, h, design)
     last = sqp.Turned(thrusts, azimuths, zero, zero, zero, zero > 0.0, (zero, zero, zero))
-    asked = tuple(axis + loss for axis, loss in zip(tau, lost, strict=True))  # within a step the loss hardly changes
-    safe = sqp.nearest_step(last, *proposed[:2], asked, on, h, design=design.safety, shares=left)
+    asked = tau[0] + lost[0], tau[1] + lost[1], tau[2] + lost[2]  # within a step the loss hardly changes
+    safe = sqp.nearest_step(last, wanted, angles, asked, on, h, design=design.safety, shares=left)
     lost = _taken(safe.thrusts, safe.azimuths, design)
     X, Y, N = (axis - loss for axis, loss in zip((safe.tau_X, safe.tau_Y, safe.tau_N), lost, strict=True))
     all_thrusts, all_azimuths = list(state.thrusts), list(state.azimuths)
     for k, thrust, azimuth in zip(numbers, safe.thrusts, safe.azimuths, strict=True):
         all_thrusts[k], all_azimuths[k] = thrust, azimuth
-    return Remembered(tuple(all_thrusts), tuple(all_azimuths), X, Y, N, safe.saturated, proposed[2], proposed[:2])
+    return Remembered(tuple(all_thrusts), tuple(all_azimuths), X, Y, N, safe.saturated, smooth, (wanted, angles))
 
 
 def _proposed(before, tau, usable, lost, h, design):
