@@ -92,6 +92,7 @@ PARAMETERS = {
         **{"wind_factors": "0 1 1 1; 90 1.1 0.9 1.2; 360 1 1 1", "memory_surge": 0.1, "memory_sway": 0.2},
         **{"memory_yaw": 0.1, "memory_time": 5.0},
     },
+    "neural_units_allocator": {f"diameter_{number}": 1.9 for number in range(1, 5)},
     "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
 }
 """FMU: its parameters in its reference result that are neither the ship's nor as by default."""

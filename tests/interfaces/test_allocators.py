@@ -13,6 +13,8 @@ from shipcosim.interfaces import NamedAllocator, NumberedAllocator
 from shipcosim.interfaces.geometry import check_geometry
 
 NAMED = ("allocator", "extended_allocator", "optimal_allocator")
+NUMBERED = ("fixed_angle_allocator", "optimal_units_allocator", "neural_units_allocator")
+FOUR = (("x", (-14.02, -14.02, 11.0, 11.0)), ("y", (-2.0, 2.0, -1.5, 1.5)), ("azimuth", (-0.785, 0.785, -0.785, 0.785)))
 
 
 @pytest.fixture
@@ -25,9 +27,22 @@ def allocator(root):
         spec.loader.exec_module(module)
         bases = (NamedAllocator, NumberedAllocator)
         kind = next(c for c in vars(module).values() if isinstance(c, type) and issubclass(c, bases) and c not in bases)
-        return equipped(kind(), "allocator") if issubclass(kind, NamedAllocator) else kind()
+        return equipped(kind(), "allocator") if issubclass(kind, NamedAllocator) else with_four_units(kind())
 
     return make
+
+
+def with_four_units(fmu):
+    """Four azimuths as those of the system four_azimuths, for a law that turns units and for one that does not."""
+    for k in range(4):
+        values = {name: places[k] for name, places in FOUR}
+        values |= {"thrust_min": -30e3, "thrust_max": 60e3, "thrust_rate": 1000.0, "azimuth_rate": 0.17}
+        values |= {"thrust_least": 1000.0}
+        for name, value in values.items():
+            if hasattr(fmu, f"{name}_{k + 1}"):
+                setattr(fmu, f"{name}_{k + 1}", value)
+    fmu.yaw_lever = 14.0
+    return fmu
 
 
 @pytest.mark.parametrize("name", NAMED)
@@ -99,10 +114,13 @@ def test_units_at_one_place_are_refused_with_the_loads_that_they_cannot_give(nam
 
 def test_numbered_units_are_checked_too(allocator):
     fmu = allocator("fixed_angle_allocator")
-    fmu.yaw_lever = 10.0
+    for k in range(1, 5):
+        setattr(fmu, f"thrust_min_{k}", 0.0)
+        setattr(fmu, f"thrust_max_{k}", 0.0)
     with pytest.raises(FmuError, match="no unit has any thrust"):
         fmu.start()
     fmu.thrust_max_1, fmu.y_1, fmu.thrust_max_2, fmu.y_2 = 50.0, -0.3, 50.0, 0.3
+    fmu.azimuth_1 = fmu.azimuth_2 = 0.0
     with pytest.raises(FmuError, match="cannot give a force to starboard by itself"):
         fmu.start()
 
@@ -136,3 +154,60 @@ def test_the_controllers_integral_does_not_run_away_while_thrust_is_at_its_limit
     assert float(abs(early["allocator.slack_Y"])) > 5e3
     for axis in "YN":
         assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(early[f"controller.tau_{axis}_bias"])
+
+
+@pytest.mark.parametrize("name", ["optimal_units_allocator", "neural_units_allocator"])
+def test_the_controllers_integral_does_not_run_away_with_numbered_units(name):
+    """The same: 17 kN and 150 kNm are missed after 20 s, and the bias load is gone at 60 s."""
+    calm = {"environment.wind_speed": 20.0, "environment.significant_wave_height": 0.0, "environment.gust_scale": 0.0}
+    run = shipcosim.run("allocation/four_azimuths", components={"allocator": name}, set=calm, stop_time=60.0)
+    early, late = run.sel(time=20.0), run.sel(time=60.0)
+    assert float(abs(early["allocator.slack_Y"])) > 5e3
+    for axis in "YN":
+        assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(early[f"controller.tau_{axis}_bias"])
+
+
+@pytest.mark.parametrize("name", NUMBERED)
+def test_numbered_units_share_the_loss_as_the_lever_says(name, allocator):
+    missed = {}
+    for lever in (1.0, 300.0):
+        fmu = allocator(name)
+        fmu.yaw_lever = lever
+        fmu.start()
+        asked(fmu, 0.0, 250e3, 1.5e6, steps=1000)
+        missed[lever] = hypot(fmu.slack_X, fmu.slack_Y), abs(fmu.slack_N)
+        assert fmu.saturated or name == "neural_units_allocator"  # its units still turn by a degree back and forth
+    assert missed[1.0][1] < 0.8 * missed[300.0][1]  # heading first
+    assert missed[300.0][0] < 0.8 * missed[1.0][0]  # position first
+
+
+@pytest.mark.parametrize("name", (*NUMBERED, *NAMED, "neural_allocator"))
+def test_a_request_beyond_reach_leaves_nothing_behind(name, allocator):
+    """No law has an integral of its own: after what nobody can give, thrusts come back as quickly as they may."""
+    fmu = allocator(name)
+    fmu.start()
+    asked(fmu, 0.0, 400e3, 4e6, steps=1500)
+    assert hypot(fmu.slack_X, fmu.slack_Y) > 50e3
+    asked(fmu, 3e3, 4e3, 2e4, steps=1000)  # 100 s, and 60 s from end to end at 1000 N/s
+    assert (fmu.slack_X, fmu.slack_Y, fmu.slack_N) == pytest.approx((0.0, 0.0, 0.0), abs=50.0)
+
+
+def test_the_network_of_paper_v_shares_no_loss_but_says_what_it_misses(allocator):
+    """No weight reaches it: the same commands with both levers, and the controller is told what they give."""
+    given = []
+    for lever in (1.0, 300.0):
+        fmu = allocator("paper_v_allocator")
+        fmu.yaw_lever = lever
+        fmu.start()
+        asked(fmu, 0.0, 90e3, 1.5e6, steps=100)
+        assert (fmu.tau_Y + fmu.slack_Y, fmu.tau_N + fmu.slack_N) == pytest.approx((90e3, 1.5e6))
+        assert fmu.slack_Y > 50e3
+        given.append((fmu.tau_X, fmu.tau_Y, fmu.tau_N))
+    assert given[0] == given[1]
+
+
+def asked(fmu, X, Y, N, steps):
+    """A request, held for some tenths of a second."""
+    fmu.tau_X_cmd, fmu.tau_Y_cmd, fmu.tau_N_cmd = X, Y, N
+    for i in range(steps):
+        fmu.step(0.1 * i, 0.1)

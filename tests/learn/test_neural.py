@@ -70,7 +70,8 @@ def test_recipe_has_the_units_of_the_ship(kind, diameter):
 def test_recipe_of_four_azimuths_has_her_units():
     said = ship("four-azimuths").entries["allocator"]
     made = NeuralUnitsParameters(
-        **{f.name: said[f.name].value for f in fields(NeuralUnitsParameters) if f.name in said}
+        **{f.name: said[f.name].value for f in fields(NeuralUnitsParameters) if f.name in said},
+        **{f"diameter_{k}": neural.DIAMETER for k in range(1, 5)},
     )
     same(neural.RECIPES["neural-four-azimuths"].units, numbered_units_of(made, (neural.POWER[0],) * 6)[0], "azimuth")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # allocation; ships, dp_loop
 
-from allocation import measuring, pages  # noqa: E402
+from allocation import measuring, pages, slipstreams  # noqa: E402
 from allocation.laws import LAWS, there  # noqa: E402
 
 
@@ -17,10 +17,14 @@ def main(arguments=None):
     parser.add_argument("--seeds", type=_range, default=range(1, 9), help="FROM:TO of the wind; 7200:7208 to report")
     parser.add_argument("--random", type=int, default=20_000, help="random and adversarial requests; 1000000 to report")
     parser.add_argument("--into", type=Path, default=measuring.FOLDER, help="measures: what stands there is not redone")
+    parser.add_argument("--times", action="store_true", help="measure times again, on a machine that is quiet")
     parser.add_argument("--write", action="store_true", help="docs/generated/allocation.md too")
     options = parser.parse_args(arguments)
     found = {name: measuring.measured(name, options.seeds, options.random, options.into) for name in options.laws}
-    text = pages.page(found)
+    for name, one in found.items():
+        one["seconds"] = measuring.times(name, options.seeds, options.into, again=options.times)
+    kinds = ("neural-slipstreams", "neural-four-azimuths") if "neural_allocator" in found else ()
+    text = pages.page(found, {kind: slipstreams.measured(kind, options.seeds, folder=options.into) for kind in kinds})
     print(text)
     if options.write:
         pages.PAGE.write_text(text, encoding="utf-8")

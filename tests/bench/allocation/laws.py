@@ -18,11 +18,15 @@ UNITS = ("port", "starboard", "tunnel")
 
 
 class Commands(NamedTuple):
-    """Thrusts of port, starboard and tunnel [N], angles of port and starboard [rad], time that it took [s]."""
+    """Thrusts of port, starboard and tunnel [N], angles of port and starboard [rad], time that it took [s].
+
+    `proposed` are thrusts and three angles before a safety layer, of a law that has one.
+    """
 
     thrusts: tuple[float, float, float]
     azimuths: tuple[float, float]
     seconds: float
+    proposed: tuple | None = None
 
 
 class FmuLaw:
@@ -50,7 +54,8 @@ class FmuLaw:
         fmu.step(0.0, h)
         seconds = fmu.solve_time
         thrusts = fmu.port_thrust_cmd, fmu.starboard_thrust_cmd, fmu.tunnel_thrust_cmd
-        return Commands(thrusts, (fmu.port_azimuth_cmd, fmu.starboard_azimuth_cmd), seconds)
+        angles = fmu.port_azimuth_cmd, fmu.starboard_azimuth_cmd
+        return Commands(thrusts, angles, seconds, getattr(fmu.state, "proposed", None))
 
 
 class RivalLaw:

@@ -35,6 +35,8 @@ class Commanded:
         Time that each allocation took. [s]
     available : (n, m, 3) array of bool
         Whether port, starboard and tunnel could be used.
+    proposed : (n, m, 2, 3) array, optional
+        Thrusts and angles before the safety layer of a law that has one. [N, rad]
     """
 
     step: float
@@ -43,6 +45,7 @@ class Commanded:
     azimuths: np.ndarray
     seconds: np.ndarray
     available: np.ndarray
+    proposed: np.ndarray | None = None
 
 
 class InLoop:
@@ -147,12 +150,14 @@ def replay(law: str, asked: np.ndarray, available: np.ndarray | None = None, ste
     """What a law commands on requests, (n, m, 3), at rest before each seed; all units can be used by default."""
     usable = np.ones(asked.shape, bool) if available is None else available
     thrusts, azimuths = np.zeros(asked.shape), np.zeros((*asked.shape[:2], 2))
-    seconds = np.zeros(asked.shape[:2])
+    seconds, proposed = np.zeros(asked.shape[:2]), np.zeros((*asked.shape[:2], 2, 3))
     for seed in range(asked.shape[1]):
         one = LAWS[law]()
         for k, (tau, units) in enumerate(zip(asked[:, seed].tolist(), usable[:, seed].tolist(), strict=True)):
-            thrusts[k, seed], azimuths[k, seed], seconds[k, seed] = one.step(tau, units, step)
-    return Commanded(step, asked, thrusts, azimuths, seconds, usable)
+            thrusts[k, seed], azimuths[k, seed], seconds[k, seed], before = one.step(tau, units, step)
+            if before is not None:
+                proposed[k, seed] = before
+    return Commanded(step, asked, thrusts, azimuths, seconds, usable, proposed if proposed.any() else None)
 
 
 def _settings(given, component):

@@ -1,6 +1,7 @@
 """What is measured of a law, kept in results/allocation/, one file a law: what stands there is not redone."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +16,32 @@ SPARSE = 20  # every how many requests the exact optimum is computed: every 2 s
 
 def measured(law: str, seeds, random_steps: int, folder: Path = FOLDER) -> dict:
     """Measures of a law over seeds of wind: JSON as `_measure` makes it, read where it is there."""
-    path = folder / f"{law.replace(', ', '-').replace(' ', '-')}.json"
-    if path.exists():
-        return json.loads(path.read_text(encoding="utf-8"))
-    found = _measure(law, seeds, random_steps, folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(found, indent=1), encoding="utf-8")
-    return found
+    return _kept(_path(law, folder), lambda: _measure(law, seeds, random_steps, folder))
+
+
+def times(law: str, seeds, folder: Path = FOLDER, again: bool = False) -> list[float] | None:
+    """Median and 99th percentile of the time of an allocation, as `_seconds`; None where they were not measured. [s]
+
+    They are kept in a file of their own, so that a machine that is quiet can measure them again, and nothing else.
+    """
+    path = _path(f"{law} times", folder)
+    if again:
+        path.unlink(missing_ok=True)
+        return _kept(path, lambda: _seconds(law, requests("stationkeeping", seeds, folder)[:, :1]))
+    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
+
+
+def _path(name, folder):
+    return folder / f"{name.replace(', ', '-').replace(' ', '-')}.json"
+
+
+def _kept(path, make):
+    """What a file holds, made if it is not there."""
+    if not path.exists():
+        found = make()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(found, indent=1), encoding="utf-8")
+    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def requests(scenario: str, seeds, folder: Path = FOLDER) -> np.ndarray:
@@ -51,7 +71,6 @@ def _measure(law, seeds, random_steps, folder):
         commanded = loops.replay(law, requests(scenario, seeds, folder))
         found["replayed"][scenario] = _of_requests(commanded, *least(scenario, seeds, folder))
         found["steps"] += commanded.seconds.size
-    found["seconds"] = _seconds(law, requests("stationkeeping", seeds, folder)[:, :1])
     if law in RIVALS:
         return found
     asked, available = drawn.requests(random_steps, seeds[0])
@@ -74,9 +93,16 @@ def _of_requests(commanded, best, met):
         counts = np.where(where, 1.0, 0.0)[first:]
         return (counts * values[first:]).sum(0) / np.maximum(counts.sum(0), 1.0)
 
+    before = {}
+    if commanded.proposed is not None:
+        thrusts, azimuths = commanded.proposed[:, :, 0], commanded.proposed[:, :, 1, :2]
+        early = measures.missed(replace(commanded, thrusts=thrusts, azimuths=azimuths))
+        names = "force_error_before", "moment_error_before"
+        before = {name: mean(values[::SPARSE], within_rates) for name, values in zip(names, early, strict=True)}
     return _listed(
         {
             **measures.violations(commanded),
+            **before,
             "power": mean(measures.power(commanded.thrusts)[::SPARSE], met),
             "optimum": mean(best, met),
             "force_error": mean(force, met),

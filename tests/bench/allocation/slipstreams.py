@@ -7,6 +7,7 @@ does: so all laws give the same mean load, and their powers can be compared.
 """
 
 import argparse
+import json
 import sys
 from math import pi
 from pathlib import Path
@@ -17,7 +18,9 @@ import numpy as np
 HERE = Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # allocation; ships, dp_loop
 
-from allocation.loops import SCENARIOS, requests  # noqa: E402
+from allocation.loops import SCENARIOS  # noqa: E402
+from allocation.measures import spread  # noqa: E402
+from allocation.measuring import FOLDER, requests  # noqa: E402
 from shipcosim.learn.neural import RECIPES  # noqa: E402
 from shipcosim.models.allocation import neural, neural_law, sqp  # noqa: E402
 from shipcosim.models.core.networks import read_arrays  # noqa: E402
@@ -104,17 +107,42 @@ def run(law, units, asked, lost):
     return [np.array(column) for column in zip(*rows, strict=True)]
 
 
-def measured(kind, scenario, seeds, lost):
-    """Power [kW], missed force and moment [N, N.m], median and mean, of each law."""
+def measured(kind, seeds, lost=-1, folder=FOLDER):
+    """Of each law and scenario power [kW], mean missed force and moment [N, N.m], one value a seed each.
+
+    Kept in the folder, one file a kind: what stands there is not redone.
+    """
+    name = kind if lost < 0 else f"{kind}-without-{lost + 1}"
+    path = folder / f"slipstreams-{name}-{seeds[0]}-{seeds[-1]}.json"
+    if not path.exists():
+        found = {scenario: dict(_measure(kind, scenario, seeds, lost, folder)) for scenario in SCENARIOS}
+        path.write_text(json.dumps(found, indent=1), encoding="utf-8")
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def _measure(kind, scenario, seeds, lost, folder):
     laws, units = laws_of(kind)
-    asked = requests(scenario, seeds)[:: round(STEP / 0.1)][: round(650.0 / STEP)]
+    asked = requests(scenario, seeds, folder)[:: round(STEP / 0.1)][: round(650.0 / STEP)]
     skip = round(SETTLED / STEP)
     for name, law in laws.items():
         thrusts, _, given = run(law, units, asked, lost)
-        power = neural.power(thrusts, units=units)[skip:].mean() / 1e3
         missed = np.abs(asked - given)[skip:]
-        force, moment = np.hypot(missed[..., 0], missed[..., 1]), missed[..., 2]
-        yield name, power, force.mean(), np.median(force), moment.mean(), np.median(moment)
+        force, moment = np.hypot(missed[..., 0], missed[..., 1]).mean(0), missed[..., 2].mean(0)
+        power = neural.power(thrusts, units=units)[skip:].mean(0) / 1e3
+        yield name, {"power": power.tolist(), "force": force.tolist(), "moment": moment.tolist()}
+
+
+def lines(kind, found):
+    """The table in Markdown: power of each law against the first one, and what it misses."""
+    said = [f"| {kind} | power [kW] | against the first [%] | missed [N] | missed [N m] |", "|---|---|---|---|---|"]
+    for scenario, laws in found.items():
+        first = np.array(next(iter(laws.values()))["power"])
+        for name, one in laws.items():
+            more = spread(100.0 * (np.array(one["power"]) / first - 1.0))
+            power, force, moment = (np.mean(one[key]) for key in ("power", "force", "moment"))
+            change = f"{more.mean:+.1f} ± {more.half:.1f}"
+            said.append(f"| {scenario}: {name} | {power:.2f} | {change} | {force:.0f} | {moment:.0f} |")
+    return said
 
 
 def _degraded(units):
@@ -125,7 +153,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("kind", choices=list(RECIPES))
     parser.add_argument("--lost", type=int, help="number of a unit that is missing, from 1")
+    parser.add_argument("--seeds", default="1:9", help="FROM:TO of the wind; 7200:7208 to report")
     options = parser.parse_args()
-    for scenario in SCENARIOS:
-        for row in measured(options.kind, scenario, range(1, 9), (options.lost or 0) - 1):
-            print("| {} | {} | {:.2f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} |".format(scenario, *row), flush=True)
+    first, last = map(int, options.seeds.split(":"))
+    print("\n".join(lines(options.kind, measured(options.kind, range(first, last), (options.lost or 0) - 1))))

@@ -43,8 +43,14 @@ class Row:
 
 
 def over_requests(key: str, scale: float = 1.0):
-    """Mean over both scenarios' recorded requests, one value a seed."""
-    return lambda one, laws: [scale * sum(pair) / len(pair) for pair in _by_seed(one["replayed"], key)]
+    """Mean over both scenarios' recorded requests, one value a seed; None of a law without such a measure."""
+
+    def measure(one, laws):
+        if any(key not in run for run in one["replayed"].values()):
+            return None
+        return [scale * sum(pair) / len(pair) for pair in _by_seed(one["replayed"], key)]
+
+    return measure
 
 
 def broken(one, laws):
@@ -112,8 +118,8 @@ def after_loss(unit: str, key: str):
 
 
 def microseconds(which: int):
-    """Median or 99th percentile of the time of an allocation. [us]"""
-    return lambda one, laws: [1e6 * one["seconds"][which]]
+    """Median or 99th percentile of the time of an allocation, None where it was not measured. [us]"""
+    return lambda one, laws: [1e6 * one["seconds"][which]] if one["seconds"] else None
 
 
 OPTIMAL, OURS, PAPER_V = "optimal_allocator", "neural_allocator", "paper_v_allocator"
@@ -138,6 +144,12 @@ OPEN_LOOP = (
     Row("in stationkeeping, what the exact optimum gives [%]", of_scenario("stationkeeping", "optimum"), {}, ".1f"),
     Row("force missed where limits and rates allow [N]", over_requests("force_error_within_rates"), beside(5.0)),
     Row("moment missed there [N m]", over_requests("moment_error_within_rates"), beside(10.0)),
+    Row(
+        "force before the safety layer, where limits and rates allow [N]",
+        over_requests("force_error_before"),
+        {OURS: 20.0},
+    ),
+    Row("moment before the safety layer [N m]", over_requests("moment_error_before"), {OURS: 60.0}),
     Row("share of requests that they allow [%]", over_requests("attainable_within_rates", 100.0)),
     Row("force missed where limits allow [N]", over_requests("force_error")),
     Row("moment missed there [N m]", over_requests("moment_error")),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from ships import parameters
 
-from shipcosim.models.allocation import neural, neural_law, neural_named, neural_units
+from shipcosim.models.allocation import neural, neural_floats, neural_law, neural_named, neural_units
 from shipcosim.models.allocation.neural import Commands
 from shipcosim.models.allocation.neural_named import NeuralParameters
 
@@ -99,6 +99,26 @@ def test_floats_give_what_arrays_give():
         assert all(type(f) is float for f in one.thrusts)
         np.testing.assert_allclose(one.thrusts, [f[k] for f in many.thrusts], rtol=1e-9, atol=1e-6)
         np.testing.assert_allclose(one.azimuths, [a[k] for a in many.azimuths], rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("diameter", [0.0, 1.9])
+def test_proposals_in_floats_are_those_in_vectors(diameter):
+    """Also where units are missing or short of power, and where one has to reverse."""
+    _, design = named(diameter)
+    random, u = np.random.default_rng(11), design.units
+    for kind in ("anywhere", "back and forth", "out of reach", "nearly nothing") * 10:
+        tau, smooth = requests(kind, 1, random)[:, 0], requests("anywhere", 1, random)[:, 0]
+        usable = np.where(random.random(3) > 0.3, random.choice([0.5, 1.0], 3), 0.0)
+        f, a = random.uniform(-3e3, 9e3, 3), random.uniform(-1.0, 1.0, 3) + [0.0, pi, 0.5 * pi]
+        a[2] = 0.5 * pi
+        lost = neural.taken(f, a, units=u) + np.zeros(3)
+        vectors = neural.propose(Commands(f, a, smooth), tau, usable, H, units=u, weights=design.weights)
+        f, a, smooth, tau, usable = (values.tolist() for values in (f, a, smooth, tau, usable))
+        of = design.floats
+        np.testing.assert_allclose(neural_floats.taken(f, a, of), lost, rtol=1e-12, atol=1e-9)
+        found = neural_floats.propose(f, a, smooth, tau, usable, lost.tolist(), H, of)
+        for one, other, scale in zip(found, vectors, (1e4, 1.0, 1e4), strict=True):
+            np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-9 * scale)
 
 
 def test_attainable_request_is_met_even_by_an_untrained_network():

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation import neural, sqp
+from shipcosim.models.allocation import neural, neural_floats, sqp
 from shipcosim.models.allocation.neural import Commands, Units
+from shipcosim.models.allocation.neural_floats import Floats, floats_of
 from shipcosim.models.allocation.units import no_thrust
 from shipcosim.models.core.maths import Arithmetic, library_of, where
 from shipcosim.models.core.motion import Load
@@ -28,16 +29,19 @@ class Design(NamedTuple):
         Matrix and offsets of each layer of the network. [1]
     safety : sqp.Design
         The same units for the quadratic program. [as its fields say]
+    floats : Floats
+        Units and network for one allocation in floats. [as its fields say]
     """
 
     units: Units
     numbers: tuple
     weights: tuple
     safety: sqp.Design
+    floats: Floats
 
 
 class Remembered(NamedTuple):
-    """State of the law: as `units.Allocated`, and the smoothed request.
+    """State of the law: as `units.Allocated`, the smoothed request and what the network proposed.
 
     Parameters
     ----------
@@ -49,6 +53,8 @@ class Remembered(NamedTuple):
         True where limits or missing units keep the commands from meeting the request. [1]
     smooth : tuple of three, like a thrust
         Smoothed request. [N, N, N.m]
+    proposed : tuple of two tuples, like thrusts and azimuths of the units that there are
+        Commands of the network, before the program that makes them safe. [N, rad]
     """
 
     thrusts: tuple
@@ -58,6 +64,7 @@ class Remembered(NamedTuple):
     tau_N: Arithmetic
     saturated: Arithmetic
     smooth: tuple
+    proposed: tuple
 
 
 def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, lever_degraded: float) -> Design:
@@ -96,7 +103,7 @@ def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, 
         raise ValueError(f"the network was trained for {trained} units, the ship has {len(units.x)}")
     rows = zip(*(np.asarray(values).tolist() for values in units[:10]), least_degraded, strict=True)
     safety = sqp.designed(tuple(_unit(*row) for row in rows), 0.0, units.lever, lever_degraded)
-    return Design(units, numbers, weights, safety)
+    return Design(units, numbers, weights, safety, floats_of(units, weights))
 
 
 def _unit(x, y, azimuth, turn, first, last, least, most, rate, full_power, degraded):
@@ -124,7 +131,8 @@ def resting(tau: Load, azimuths: tuple) -> Remembered:
     ----------
     Definition.
     """
-    return Remembered(*no_thrust(tau, azimuths), (0.0 * tau[0],) * 3)
+    rest, zero = no_thrust(tau, azimuths), 0.0 * tau[0]
+    return Remembered(*rest, (zero, zero, zero), (rest.thrusts, rest.azimuths))
 
 
 def step(
@@ -156,37 +164,48 @@ def step(
     ----------
     As `neural.propose` and `sqp.nearest_step`.
     """
-    units, numbers = design.units, design.numbers
-    left = [shares[k] if shares else 1.0 for k in numbers]
-    usable = [where(available[k], share + 0.0 * tau[0], 0.0 * tau[0]) for k, share in zip(numbers, left, strict=True)]
+    numbers = design.numbers
+    left = tuple(shares[k] if shares else 1.0 for k in numbers)
+    on, zero = tuple(available[k] for k in numbers), 0.0 * tau[0]
+    usable = [where(unit, share + zero, zero) for unit, share in zip(on, left, strict=True)]
     thrusts, azimuths = (tuple(of[k] for k in numbers) for of in (state.thrusts, state.azimuths))
-    before = Commands(_vector(thrusts), _vector(azimuths), _vector(state.smooth))
-    proposed = neural.propose(before, _vector(tau), _vector(usable), h, units=units, weights=design.weights)
-    lost = _entries(neural.taken(before.thrusts, before.azimuths, units=units))  # within a step it hardly changes
-    zero = 0.0 * tau[0]
+    lost = _taken(thrusts, azimuths, design)
+    wanted, angles, smooth = _proposed((thrusts, azimuths, state.smooth), tau, usable, lost, h, design)
     last = sqp.Turned(thrusts, azimuths, zero, zero, zero, zero > 0.0, (zero, zero, zero))
-    asked = tuple(axis + loss for axis, loss in zip(tau, lost, strict=True))
-    on = tuple(available[k] for k in numbers)
-    commands = _entries(proposed.thrusts), _entries(proposed.azimuths)
-    safe = sqp.nearest_step(last, *commands, asked, on, h, design=design.safety, shares=tuple(left))
-    lost = _entries(neural.taken(_vector(safe.thrusts), _vector(safe.azimuths), units=units))
+    asked = tau[0] + lost[0], tau[1] + lost[1], tau[2] + lost[2]  # within a step the loss hardly changes
+    safe = sqp.nearest_step(last, wanted, angles, asked, on, h, design=design.safety, shares=left)
+    lost = _taken(safe.thrusts, safe.azimuths, design)
     X, Y, N = (axis - loss for axis, loss in zip((safe.tau_X, safe.tau_Y, safe.tau_N), lost, strict=True))
     all_thrusts, all_azimuths = list(state.thrusts), list(state.azimuths)
     for k, thrust, azimuth in zip(numbers, safe.thrusts, safe.azimuths, strict=True):
         all_thrusts[k], all_azimuths[k] = thrust, azimuth
-    smooth = _entries(proposed.smooth)
-    return Remembered(tuple(all_thrusts), tuple(all_azimuths), X, Y, N, safe.saturated, smooth)
+    return Remembered(tuple(all_thrusts), tuple(all_azimuths), X, Y, N, safe.saturated, smooth, (wanted, angles))
+
+
+def _proposed(before, tau, usable, lost, h, design):
+    """What the network proposes: thrusts, angles, and the smoothed request."""
+    if isinstance(tau[0], float):
+        thrusts, azimuths, smooth = before
+        return neural_floats.propose(thrusts, azimuths, smooth, tau, usable, lost, h, design.floats)
+    state = Commands(*(_vector(values) for values in before))
+    found = neural.propose(state, _vector(tau), _vector(usable), h, units=design.units, weights=design.weights)
+    return tuple(_entries(vector) for vector in found)
+
+
+def _taken(thrusts, azimuths, design):
+    """Load that slipstreams take: X, Y, N."""
+    if isinstance(thrusts[0], float):
+        return neural_floats.taken(thrusts, azimuths, design.floats)
+    if design.units.tandem is None:
+        return 0.0, 0.0, 0.0
+    return _entries(neural.taken(_vector(thrusts), _vector(azimuths), units=design.units))
 
 
 def _vector(values):
-    """Numbers, arrays or tensors along a new last axis."""
-    return np.array(values) if isinstance(values[0], float) else library_of(*values).stack(list(values), -1)
+    """Arrays or tensors along a new last axis."""
+    return library_of(*values).stack(list(values), -1)
 
 
 def _entries(vector):
-    """The entries of the last axis, floats where they are numbers; three times 0 of nothing taken."""
-    if isinstance(vector, float):
-        return (vector,) * 3
-    if vector.ndim == 1 and isinstance(vector, np.ndarray):
-        return tuple(vector.tolist())
+    """The entries of the last axis."""
     return tuple(vector[..., k] for k in range(vector.shape[-1]))
