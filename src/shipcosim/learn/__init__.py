@@ -5,7 +5,7 @@ The only door to torch, which comes with `pip install "shipcosim[learn]"`. What 
 in `kinds`.
 """
 
-from shipcosim.learn.kinds import ALLOCATORS, Kind, train_allocator
+from shipcosim.learn.kinds import ALLOCATORS, COMPONENTS, DEAD_RECKONING, Kind, train
 from shipcosim.learn.results import Trained, write_trained
 
-__all__ = ["ALLOCATORS", "Kind", "Trained", "train_allocator", "write_trained"]
+__all__ = ["ALLOCATORS", "COMPONENTS", "DEAD_RECKONING", "Kind", "Trained", "train", "write_trained"]

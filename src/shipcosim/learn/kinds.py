@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from shipcosim.learn import neural, paper_i, paper_v
+from shipcosim.learn.dead_reckoning import recipes as dead_reckoning
 from shipcosim.learn.results import Trained, write_trained
 from shipcosim.learn.training import Progress
 
@@ -46,13 +47,21 @@ ALLOCATORS: Mapping[str, Kind] = {
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
 
 
-def train_allocator(name: str, folder: Path, progress: Progress) -> list[Path]:
-    """Train an allocator from scratch, and write its weights and report.
+DEAD_RECKONING: Mapping[str, Kind] = {name: Kind(*one) for name, one in dead_reckoning.KINDS.items()}
+"""Dead reckoning by the name that `shipcosim train dead-reckoning --kind NAME` takes; the first is the default."""
+COMPONENTS: Mapping[str, Mapping[str, Kind]] = {"allocator": ALLOCATORS, "dead-reckoning": DEAD_RECKONING}
+"""What `shipcosim train` takes."""
+
+
+def train(component: str, name: str, folder: Path, progress: Progress) -> list[Path]:
+    """Train a component from scratch, and write its weights and report.
 
     Parameters
     ----------
+    component : str
+        One of `COMPONENTS`.
     name : str
-        One of `ALLOCATORS`.
+        One of its kinds.
     folder : Path
         Where to; it exists.
     progress : callable
@@ -64,5 +73,5 @@ def train_allocator(name: str, folder: Path, progress: Progress) -> list[Path]:
         NAME.npz, NAME.json and NAME.md.
     """
     clock, processor = time.perf_counter(), time.process_time()
-    trained = ALLOCATORS[name].train(progress)
+    trained = COMPONENTS[component][name].train(progress)
     return write_trained(trained, folder, name, time.perf_counter() - clock, time.process_time() - processor)
