@@ -116,7 +116,10 @@ def design(arrays: Mapping[str, np.ndarray]) -> Design:
         An array is missing.
     """
     return Design(
-        *(_regressor(arrays, axis) for axis in ("surge", "sway")), arrays["full_power"], arrays["full_command"]
+        surge=_regressor(arrays, "surge"),
+        sway=_regressor(arrays, "sway"),
+        full_power=arrays["full_power"],
+        full_command=arrays["full_command"],
     )
 
 
