@@ -16,8 +16,7 @@ from shipcosim.learn.training import Schedule
 def tiny(monkeypatch):
     """A kind that is trained at once."""
     recipe = replace(paper_v.RECIPES["paper-v"], batches=10, sequences=2, samples=8, schedule=Schedule(most_epochs=1))
-    monkeypatch.setattr(learn, "ALLOCATORS", {"tiny": kinds._paper_v(recipe)})
-    monkeypatch.setattr(kinds, "ALLOCATORS", learn.ALLOCATORS)
+    monkeypatch.setitem(learn.COMPONENTS, "allocator", {"tiny": kinds._paper_v(recipe)})
 
 
 def train(*arguments):

@@ -47,7 +47,7 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
-from shipcosim.models.prediction import dead_reckoning, known, own_record, regions, surroundings
+from shipcosim.models.prediction import dead_reckoning, known, motion_filter, outage, own_record, regions, surroundings
 from shipcosim.models.propulsion import (
     azimuth,
     drive,
@@ -153,6 +153,13 @@ LAYER = extreme_learning.Network(
 )
 PLAIN = parameters(filtered_pid.FilteredPidParameters, "osv")
 ASSUMED = parameters(surroundings.SurroundingsParameters)
+RECKONING = motion_filter.Design(
+    **dict(bow=2e-7, stern=1e-7, ahead=4e-5, astern=5e-5, surge_time=40.0, sway_time=30.0, wind_surge_1=-1e-5),
+    **dict(wind_surge_3=1e-6, wind_sway_1=-4e-5, wind_sway_3=-2e-6, position_by_position=0.1, position_by_velocity=0.2),
+    **dict(velocity_by_position=0.01, velocity_by_velocity=0.05, load_by_position=1e-4, load_by_velocity=5e-4),
+    **dict(position_in_sea=1.0, velocity_in_sea=0.5, load_in_sea=2.0, load_time=100.0, mean_time=200.0),
+)
+REGION = outage.Region((0.0, 30.0, 60.0), (0.5, 1.0, 2.0), 3.0)
 AROUND = dict(hull=LONG, wind=parameters(wind.WindParameters), ship=DP_SHIP, parameters=ASSUMED)
 REQUESTS = [(5e3, -4e3, 2e4), (9e3, 7e4, 1e5), (-2e5, 0.0, 9e5)]
 
@@ -243,6 +250,20 @@ def of_known(*row):
 def of_surroundings(*row):
     start = of_known(*row)
     return surroundings.unknown(start, parameters=ASSUMED), start
+
+
+def of_outage(*row):
+    """What is aboard, with and without GNSS."""
+    x, y, psi, u, v, r = row
+    valid = 1.0 * (x > 0.5)
+    return outage.Measured(x, y, u, v, valid, psi, 5.0 + u, r - 2.0, (60.0 * u, -20.0, v, 3.0, 9.0 * u, -4.0 * u))
+
+
+def of_reckoning(*row):
+    zero = 0.0 * row[0]
+    return motion_filter.State(
+        *row[:2], *row[3:5], 1e-3, -2e-3, 5e-4, zero, 0.01 + zero, 20.0 * (row[0] < 0.5)
+    ), of_outage(*row)
 
 
 def of_prediction(*row):
@@ -568,6 +589,9 @@ CASES = [
         dict(regions=regions.RegionParameters(later_position_share=0.6)),
     ),
     Case(regions.at_horizon, [(5.0,), (20.0,), (45.0,)], lambda h: (h, (0.5, 2.0, 8.0))),
+    Case(motion_filter.start, SHIP, lambda *row: (of_outage(*row),), dict(design=RECKONING)),
+    Case(motion_filter.step, SHIP, of_reckoning, dict(h=1.0, design=RECKONING)),
+    Case(outage.radius, [(0.0, 0.01), (25.0, 0.2), (90.0, 0.1)], constants=dict(region=REGION)),
     Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(parameters=ASSUMED)),
     Case(surroundings.step, SHIP, of_surroundings, dict(h=1.0, **AROUND)),
     Case(dead_reckoning.predict, SHIP, of_prediction, AHEAD),

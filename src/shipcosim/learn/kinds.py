@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from shipcosim.learn import neural, paper_i, paper_v
+from shipcosim.learn.dead_reckoning import recipes as dead_reckoning
 from shipcosim.learn.prediction import training as drift
 from shipcosim.learn.results import Trained, write_trained
 from shipcosim.learn.training import Progress
@@ -52,16 +53,25 @@ DRIFT: Mapping[str, Kind] = {
 }
 """Drift predictors by the name that `shipcosim train drift --kind NAME` takes; the first is the default."""
 
+DEAD_RECKONING: Mapping[str, Kind] = {name: Kind(*one) for name, one in dead_reckoning.KINDS.items()}
+"""Dead reckoning by the name that `shipcosim train dead-reckoning --kind NAME` takes; the first is the default."""
+COMPONENTS: Mapping[str, Mapping[str, Kind]] = {
+    "allocator": ALLOCATORS,
+    "drift": DRIFT,
+    "dead-reckoning": DEAD_RECKONING,
+}
+"""What `shipcosim train` takes."""
 
-def train(kinds: Mapping[str, Kind], name: str, folder: Path, progress: Progress) -> list[Path]:
+
+def train(component: str, name: str, folder: Path, progress: Progress) -> list[Path]:
     """Train a component from scratch, and write its weights and report.
 
     Parameters
     ----------
-    kinds : mapping of str to Kind
-        `ALLOCATORS` or `DRIFT`.
+    component : str
+        One of `COMPONENTS`.
     name : str
-        One of them.
+        One of its kinds.
     folder : Path
         Where to; it exists.
     progress : callable
@@ -73,5 +83,5 @@ def train(kinds: Mapping[str, Kind], name: str, folder: Path, progress: Progress
         NAME.npz, NAME.json and NAME.md.
     """
     clock, processor = time.perf_counter(), time.process_time()
-    trained = kinds[name].train(progress)
+    trained = COMPONENTS[component][name].train(progress)
     return write_trained(trained, folder, name, time.perf_counter() - clock, time.process_time() - processor)

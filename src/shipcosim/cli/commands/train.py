@@ -35,7 +35,7 @@ def allocator(
     """
     from shipcosim.cli.console import shown_path
 
-    for file in _train("ALLOCATORS", kind, out):
+    for file in _train("allocator", kind, out):
         typer.echo(shown_path(file))
 
 
@@ -57,11 +57,35 @@ def drift(
     """
     from shipcosim.cli.console import shown_path
 
-    for file in _train("DRIFT", kind, out):
+    for file in _train("drift", kind, out):
         typer.echo(shown_path(file))
 
 
-def _train(group: str, kind: str, out: Path | None) -> list[Path]:
+def dead_reckoning(
+    kind: Annotated[
+        str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
+    ] = "motion-filter",
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
+    ] = None,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Train dead reckoning of the 82.7 m vessel from scratch, its records by co-simulation included.
+
+    Leaves NAME.npz, the weights, and the training report NAME.json and NAME.md. Needs torch:
+    pip install "shipcosim[learn]".
+
+    Example: shipcosim train dead-reckoning --kind paper-ii
+    """
+    from shipcosim.cli.console import shown_path
+
+    for file in _train("dead-reckoning", kind, out):
+        typer.echo(shown_path(file))
+
+
+def _train(component: str, kind: str, out: Path | None) -> list[Path]:
     """Train a component, write weights and report: the files. Nothing is written where something is wrong."""
     from shipcosim.cli.results import check_targets
     from shipcosim.staging import staged
@@ -73,13 +97,13 @@ def _train(group: str, kind: str, out: Path | None) -> list[Path]:
             raise
         remedy = 'Install the extra `learn`: pip install "shipcosim[learn]".'
         raise ShipcosimError(Problem("train", "Training needs torch, which is not installed.", remedy)) from None
-    kinds = getattr(learn, group)
+    kinds = list(learn.COMPONENTS[component])
     if kind not in kinds:
-        raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, list(kinds))))
+        raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, kinds)))
     folder = out or Path("results") / f"train-{kind}"
     check_targets(folder)
     with staged(folder) as stage, _progress(kind) as progress:
-        written = learn.train(kinds, kind, stage, progress)
+        written = learn.train(component, kind, stage, progress)
     return [folder / file.name for file in written]
 
 

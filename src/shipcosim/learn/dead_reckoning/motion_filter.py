@@ -1,0 +1,197 @@
+"""Our filter: the ship's equations of motion, with numbers learned through whole outages of her own records.
+
+The cost is what matters in the end: how far off the reckoned place is in each second of an outage. The records are
+drills: GNSS is masked for a minute, DP rides on dead reckoning, and a second receiver is logged. Records with GNSS do
+not do: there DP answers each disturbance, so thrust tells of loads that the filter does not know, and it learns that
+thrust does little. The gradient goes through the filter before the loss as well, so the observer is learned together
+with the model. Few numbers, so Levenberg and Marquardt's method needs no torch: it runs all changed
+numbers side by side.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from shipcosim.learn.dead_reckoning.worlds import Record
+from shipcosim.learn.training import Progress
+from shipcosim.models.prediction import motion_filter
+from shipcosim.models.prediction.motion_filter import Design
+from shipcosim.models.prediction.outage import Measured
+
+MASS_SURGE, MASS_SWAY = (
+    10.18e6 + 1.857e6,
+    10.18e6 + 7.068e6,
+)  # kg, with added mass
+KNOWN = {
+    **{"bow": 176e3 / 204.0**2 / MASS_SWAY, "stern": 124e3 / 276.0**2 / MASS_SWAY},
+    **{"ahead": 378e3 / 28.7**2 / MASS_SURGE, "astern": 245.7e3 / 21.5**2 / MASS_SURGE},
+    **{"surge_time": MASS_SURGE / 3.0e5, "sway_time": MASS_SWAY / 5.5e5},
+    **{"wind_surge_1": -169.0 / MASS_SURGE, "wind_surge_3": 9.8 / MASS_SURGE},
+    **{"wind_sway_1": -581.0 / MASS_SWAY, "wind_sway_3": -31.0 / MASS_SWAY},
+}
+"""The model as the files of ssp/ships/osv have it, which a test holds: what a filter knows that learned nothing."""
+GAINS = {
+    **{"position_by_position": 0.06, "position_by_velocity": 0.2, "velocity_by_position": 0.002},
+    **{"velocity_by_velocity": 0.06, "load_by_position": 1e-5, "load_by_velocity": 5e-4},
+    **{"position_in_sea": 1.0, "velocity_in_sea": 1.0, "load_in_sea": 1.0, "load_time": 100.0, "mean_time": 200.0},
+}
+"""Gains at the start: chosen by hand, for poles at some 5 to 60 s."""
+SIGNED = ("wind_surge_1", "wind_surge_3", "wind_sway_1", "wind_sway_3")
+"""Numbers that may change their sign; the others are learned as logarithms."""
+WEIGHT = {**dict.fromkeys(KNOWN, 0.3), **dict.fromkeys(GAINS, 1.5)}
+"""How far a number may be from where it starts, as one standard deviation of its logarithm. Assumed."""
+
+
+def measured_at(record: Record, k: int, valid: np.ndarray) -> Measured:
+    """What is aboard at a sample.
+
+    Parameters
+    ----------
+    record : Record
+        Of (worlds, n) arrays.
+    k : int
+        Sample. [1]
+    valid : (worlds, n) array
+        1 where GNSS works. [1]
+
+    Returns
+    -------
+    Measured
+        Of (worlds,) arrays.
+    """
+    now = {name: values[:, k] for name, values in record.measured.items()}
+    return Measured(
+        x=now["x"],
+        y=now["y"],
+        u=now["u"],
+        v=now["v"],
+        valid=valid[:, k],
+        psi=now["psi"],
+        wind_speed=now["wind_speed"],
+        wind_from=now["wind_from"],
+        commands=tuple(now[f"command_{number}"] for number in range(1, 7)),
+    )
+
+
+def reckoned(record: Record, law: Any, design: Any, valid: np.ndarray | None = None) -> list:
+    """States of a law over records, sample by sample.
+
+    Parameters
+    ----------
+    record : Record
+        Of (worlds, n) arrays.
+    law : module
+        With `start` and `step`: `motion_filter` or `velocity_network`.
+    design : Design
+        Of that law; of the filter also with (m, 1) arrays for m designs at once.
+    valid : (worlds, n) array, optional
+        1 where GNSS works, else as recorded. [1]
+
+    Returns
+    -------
+    list of State
+        Of (worlds,) or (m, worlds) arrays.
+    """
+    valid = record.measured["valid"] if valid is None else valid
+    found = [law.start(measured_at(record, 0, valid), design=design)]
+    for k in range(1, record.x.shape[1]):
+        found.append(law.step(found[-1], measured_at(record, k, valid), 1.0, design=design))
+    return found
+
+
+def design_of(change: np.ndarray) -> Design:
+    """Numbers of the filter, from how far each is from where it starts.
+
+    Parameters
+    ----------
+    change : (..., n) array
+        Logarithms of factors, or shares to be added of those in `SIGNED`. [1]
+
+    Returns
+    -------
+    Design
+        Of (...) arrays.
+    """
+    found = {}
+    for position, name in enumerate(Design._fields):
+        one, at_start = change[..., position], (KNOWN | GAINS)[name]
+        found[name] = at_start + one * abs(at_start) if name in SIGNED else at_start * np.exp(one)
+    return Design(**found)
+
+
+def residuals(record: Record, change: np.ndarray) -> np.ndarray:
+    """Errors of all reckoned places, and of the numbers against where they start.
+
+    Parameters
+    ----------
+    record : Record
+        To learn from: drills, in all worlds at the same times.
+    change : (m, n) array
+        As `design_of`, several at once. [1]
+
+    Returns
+    -------
+    (m, k) array
+        Errors north and east, compressed beyond some metres, over the root of how many there are, then the changes
+        over their standard deviations. [m, 1]
+    """
+    design, m, errors = design_of(change[..., None, :]), record.measured, []
+    for k, state in enumerate(reckoned(record, motion_filter, design)):
+        if m["valid"][0, k] < 0.5:
+            north, east = state.x - m["second_x"][:, k], state.y - m["second_y"][:, k]
+            shrunk = (1.0 + (north * north + east * east) / ROBUST**2) ** -0.25  # the cost grows as the distance
+            errors += [shrunk * north, shrunk * east]
+    found = np.concatenate(errors, axis=1)
+    spread = np.array([WEIGHT[name] for name in Design._fields])
+    return np.concatenate([found / np.sqrt(found.shape[1] / 2), PRIOR * change / spread], axis=1)
+
+
+ROBUST, PRIOR = 1.0, 0.05  # m; 1, assumed: 400 outages worth of metres against one prior
+
+
+def fitted(record: Record, progress: Progress, iterations: int = 20) -> tuple[Design, list[dict[str, float]]]:
+    """Numbers of the filter learned from records.
+
+    Parameters
+    ----------
+    record : Record
+        To learn from.
+    progress : callable
+        Is told how many iterations are done, and of how many.
+    iterations : int
+        At most.
+
+    Returns
+    -------
+    tuple of Design and list of dict
+        The numbers, and the cost at each iteration.
+
+    References
+    ----------
+    Marquardt, An algorithm for least-squares estimation of nonlinear parameters, J. SIAM 11, 1963.
+    """
+    return _descended(lambda change: residuals(record, change), len(Design._fields), progress, iterations)
+
+
+def _descended(
+    of: Callable[[np.ndarray], np.ndarray], size: int, progress: Progress, iterations: int
+) -> tuple[Design, list[dict[str, float]]]:
+    """Levenberg and Marquardt's method with slopes by finite differences, all in one call."""
+    change, damping, history = np.zeros(size), 1e-2, []
+    for number in range(1, iterations + 1):
+        found = of(np.concatenate([change[None], change + 1e-4 * np.eye(size)]))
+        now, slopes = found[0], (found[1:] - found[0]) / 1e-4
+        cost, gradient, normal = float(now @ now), slopes @ now, slopes @ slopes.T
+        history.append({"cost": cost})
+        dampings = damping * np.array([0.1, 1.0, 10.0, 100.0, 1000.0])
+        steps = [np.linalg.solve(normal + one * np.diag(np.diag(normal)), gradient) for one in dampings]
+        tried = np.clip(change - np.array(steps), -4.0, 4.0)
+        costs = (of(tried) ** 2).sum(axis=1)
+        best = int(np.argmin(costs))
+        progress(number, iterations)
+        if not costs[best] < cost * (1.0 - 1e-4):
+            break
+        change, damping = tried[best], float(np.clip(dampings[best], 1e-6, 1e3))
+    progress(iterations, iterations)
+    return design_of(change), history

@@ -1,0 +1,170 @@
+"""The networks of paper II: velocity from wind and thrusters.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper II.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from shipcosim.learn.dead_reckoning.motion_filter import measured_at
+from shipcosim.learn.dead_reckoning.worlds import Record
+from shipcosim.learn.networks import Recurrent, arrays_of
+from shipcosim.learn.training import Progress, Schedule, fit, repeatable
+from shipcosim.models.prediction import velocity_network as law
+
+FULL_POWER, FULL_COMMAND = np.array([1.2e6, 0.9e6, 3.0e6]), np.array([204.0, 276.0, 28.7])
+"""Of bow tunnel, stern tunnel, main propeller. [W, rpm, rpm, deg] As ssp/ships/osv has them; a test holds it."""
+INPUTS = {
+    "surge": ("wind angle", "wind speed", "main power", "main action"),
+    "sway": ("wind angle", "wind speed", "bow power", "stern power"),
+}
+"""What the paper keeps, of Table III above 0.4."""
+BATCH, HELD_OUT = 64, 0.1
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """One kind of networks.
+
+    Parameters
+    ----------
+    description : str
+        One line for users.
+    recurrent : bool
+        LSTM, else one layer of sigmoids.
+    width, learning_rate : tuple of a number for surge and one for sway
+        Units, and of Adam. [1]
+    seed, patience, most_epochs : int
+        As `Schedule`. [1]
+    """
+
+    description: str
+    recurrent: bool = True
+    width: tuple[int, int] = (43, 26)
+    learning_rate: tuple[float, float] = (0.0070, 0.0165)
+    seed: int = 1
+    patience: int = 8
+    most_epochs: int = 60
+
+
+RECIPES = {
+    "paper-ii": Recipe("Dead reckoning of paper II: LSTM of 43 units for surge and 26 for sway"),
+    "paper-ii-single-layer": Recipe(
+        "Dead reckoning of paper II with a single layer of 55 sigmoids for surge and 93 for sway",
+        recurrent=False,
+        width=(55, 93),
+        learning_rate=(0.005, 0.005),
+    ),
+}
+NOTES = (
+    "Not printed in the paper, and chosen here: Adam with mini-batches of 64 samples; early stopping on the tenth of"
+    " the samples that the paper validates with, the last of each world; the LSTM sees the ten samples one after the"
+    " other, from an empty memory; learning rates of the single layer; how power follows from the command.",
+    "Widths and learning rates of the LSTM are the printed result of the paper's search, which is not made again.",
+)
+
+
+class SingleLayer(torch.nn.Module):
+    """A hidden layer of sigmoids over all samples of all inputs."""
+
+    def __init__(self, inputs: int, width: int):
+        super().__init__()
+        self.hidden, self.dense = torch.nn.Linear(inputs * law.HISTORY, width), torch.nn.Linear(width, 1)
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        """Standardised velocity (n, 1, 1) of histories (n, samples, inputs)."""
+        return self.dense(torch.sigmoid(self.hidden(x.flatten(1))))[:, None]
+
+
+def features_of(record: Record) -> np.ndarray:
+    """Inputs that the paper considers, over records.
+
+    Parameters
+    ----------
+    record : Record
+        Of (worlds, n) arrays.
+
+    Returns
+    -------
+    (worlds, n, 9) array
+        By `velocity_network.FEATURES`.
+    """
+    samples = [measured_at(record, k, record.measured["valid"]) for k in range(record.x.shape[1])]
+    return np.stack([law.features(one, FULL_POWER, FULL_COMMAND) for one in samples], axis=1)
+
+
+def trained(recipe: Recipe, record: Record, progress: Progress) -> tuple[dict[str, np.ndarray], list[dict]]:
+    """Networks of both velocities, trained from scratch.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        How.
+    record : Record
+        Of (worlds, n) arrays, with GNSS.
+    progress : callable
+        Is told how many mini-batches are done, and of how many at most.
+
+    Returns
+    -------
+    tuple of dict of str to array, and list of dict
+        Weights as `velocity_network.design` reads them; losses by epoch, of surge and then of sway.
+    """
+    features, found, epochs = features_of(record), {"full_power": FULL_POWER, "full_command": FULL_COMMAND}, []
+    for number, (axis, name) in enumerate((("surge", "u"), ("sway", "v"))):
+        velocity = record.measured[name]
+
+        def told(done: int, total: int, number: int = number) -> None:
+            progress(number * total + done, 2 * total)
+
+        arrays, losses = _one(recipe, number, features, velocity, INPUTS[axis], told)
+        found |= {f"{axis}.{key}": array for key, array in arrays.items()}
+        epochs += [{"network": number + 1} | one for one in losses]
+    return found, epochs
+
+
+def _one(recipe, number, features, velocity, names, progress):
+    """Network of one velocity: its arrays by name, and its losses."""
+    inputs = np.array([law.FEATURES.index(name) for name in names])
+    mean, std = features[..., inputs].mean((0, 1)), features[..., inputs].std((0, 1))
+    scale = float(velocity.mean()), float(velocity.std())
+    x = np.lib.stride_tricks.sliding_window_view((features[..., inputs] - mean) / std, law.HISTORY, axis=1)
+    x, y = x[:, :-1].swapaxes(2, 3), ((velocity - scale[0]) / scale[1])[:, law.HISTORY :]
+    kept = round((1.0 - HELD_OUT) * y.shape[1])
+    rng = np.random.default_rng(recipe.seed)
+    batches, held_out = _batches(x[:, :kept], y[:, :kept], rng), _batches(x[:, kept:], y[:, kept:], rng)
+    width, rate = recipe.width[number], recipe.learning_rate[number]
+    with repeatable(recipe.seed):
+        network = Recurrent(len(names), width, 1, 1) if recipe.recurrent else SingleLayer(len(names), width)
+        schedule = Schedule(recipe.seed, rate, recipe.patience, recipe.most_epochs)
+
+        def losses(batch):
+            return {"squared error": ((network(batch[0])[:, -1, 0] - batch[1]) ** 2).mean()}
+
+        epochs = fit(network, losses, batches, held_out, schedule, progress)
+    plain = {"inputs": inputs, "mean": mean, "std": std}
+    plain |= {"velocity_mean": np.array(scale[0]), "velocity_std": np.array(scale[1])}
+    return plain | _weights(network), epochs
+
+
+def _batches(x, y, rng):
+    """Mini-batches of samples in random order."""
+    x, y = x.reshape(-1, *x.shape[2:]), y.reshape(-1)
+    order = rng.permutation(len(y))
+    parts = np.array_split(order, max(1, len(y) // BATCH))
+    return [(torch.from_numpy(x[part]).float(), torch.from_numpy(y[part]).float()) for part in parts]
+
+
+def _weights(network):
+    if isinstance(network, Recurrent):
+        return {name.removeprefix("net."): array for name, array in arrays_of(network, "net").items()}
+    layers = {"hidden": network.hidden, "dense": network.dense}
+    return {
+        f"{name}.{key}": getattr(layer, kind).detach().numpy().copy()
+        for name, layer in layers.items()
+        for key, kind in (("weights", "weight"), ("bias", "bias"))
+    }

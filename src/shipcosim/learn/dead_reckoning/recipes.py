@@ -1,0 +1,184 @@
+"""What can be trained for dead reckoning, from records to weights and report."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.learn.datasets import digest
+from shipcosim.learn.dead_reckoning import inputs, motion_filter, paper_ii, worlds
+from shipcosim.learn.dead_reckoning.motion_filter import GAINS, KNOWN, reckoned
+from shipcosim.learn.dead_reckoning.regions import TIMES, calibrated
+from shipcosim.learn.dead_reckoning.worlds import CALIBRATION, TRAINING, Record
+from shipcosim.learn.results import Trained
+from shipcosim.learn.training import Progress
+from shipcosim.models.prediction import motion_filter as filter_law
+from shipcosim.models.prediction import velocity_network as network_law
+from shipcosim.models.prediction.motion_filter import Design
+
+CALIBRATED_FOR = 720.0  # s, with four of the drills
+UNLEARNED = {
+    "kinetic": "The filter with the numbers of the ship's files and gains by hand: nothing is learned",
+    "last-position": "For comparison: the ship is taken to stay where she was, the mean of some ten seconds",
+}
+FILTER = "motion-filter"
+DESCRIPTION = "Our filter: equations of motion and observer, learned through drills of a minute without GNSS"
+NOTES = (
+    "Drills: GNSS is masked for a minute out of two, DP rides on the filter as it is before training, and a second"
+    " receiver, which DP does not see, is logged. The region is calibrated in other worlds, against the true place.",
+)
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is trained on; smaller in tests.
+
+    Parameters
+    ----------
+    training, calibration : sequence of int
+        Seeds of worlds.
+    duration, calibrated_for : float
+        Of a run. [s]
+    """
+
+    training: Sequence[int] = TRAINING
+    calibration: Sequence[int] = CALIBRATION
+    duration: float = worlds.DURATION
+    calibrated_for: float = CALIBRATED_FOR
+
+
+def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
+    """Train one kind from scratch, records included.
+
+    Parameters
+    ----------
+    name : str
+        One of `UNLEARNED`, `FILTER` or `paper_ii.RECIPES`.
+    progress : callable
+        Is told how far it is, in hundredths.
+    size : Size, optional
+        How much is trained on.
+
+    Returns
+    -------
+    Trained
+        Weights, data and losses.
+    """
+    size = size or Size()
+    if name in UNLEARNED:
+        return _unlearned(name, progress)
+    return _filter(progress, size) if name == FILTER else _networks(name, progress, size)
+
+
+def design_of(name: str) -> Design:
+    """Numbers of the filter that nothing was learned for.
+
+    Parameters
+    ----------
+    name : str
+        One of `UNLEARNED`.
+
+    Returns
+    -------
+    Design
+        Numbers.
+    """
+    known = Design(**KNOWN, **GAINS)
+    return known._replace(surge_time=1e-3, sway_time=1e-3, **STILL) if name == "last-position" else known
+
+
+STILL = {"position_by_velocity": 0.0, "velocity_by_position": 0.0, "velocity_by_velocity": 0.0, "position_in_sea": 0.0}
+
+
+def _unlearned(name, progress):
+    progress(1, 1)
+    region = {"region.times": np.array([0.0, 60.0]), "region.radii": np.array([0.5, 3.0])}
+    notes = ("Its region is no more than a guess: half a metre at once, three metres after a minute.",)
+    arrays = _arrays(design_of(name)) | region | {"region.sea_share": np.array(1.0)}
+    return Trained(arrays, UNLEARNED[name], 0, {"worlds": 0}, {}, [], notes)
+
+
+def _filter(progress, size):
+    """Drills, numbers, region."""
+    record = _recorded(size.training, size.duration, _share(progress, 0, 35), worlds.DRILLS)
+    design, epochs = motion_filter.fitted(record, _share(progress, 35, 45))
+    apart = _recorded(size.calibration, size.calibrated_for, _share(progress, 45, 100), worlds.DRILLS)
+    arrays = _arrays(design) | _region(apart, reckoned(apart, filter_law, design))
+    settings = {"numbers": len(design), "robust beyond (m)": motion_filter.ROBUST}
+    settings |= {"weight of the start": motion_filter.PRIOR}
+    for name, at_start in (KNOWN | GAINS).items():
+        settings[f"{name}, from {at_start:.4g} to"] = float(f"{getattr(design, name):.4g}")
+    return Trained(arrays, DESCRIPTION, 0, _about(size, record, "drills"), settings, epochs, NOTES)
+
+
+def _networks(name, progress, size):
+    """Records with GNSS, mutual information, both networks, region."""
+    recipe = paper_ii.RECIPES[name]
+    record = _recorded(size.training, size.duration, _share(progress, 0, 40), ())
+    arrays, epochs = paper_ii.trained(recipe, record, _share(progress, 40, 60))
+    apart = _recorded(size.calibration, size.calibrated_for, _share(progress, 60, 100), worlds.DRILLS)
+    arrays |= _region(apart, reckoned(apart, network_law, network_law.design(arrays)))
+    table = inputs.table(record, paper_ii.features_of(record))
+    told = {
+        f"mutual information with {axis} velocity": {key: round(one, 2) for key, one in row.items()}
+        for axis, row in table.items()
+    }
+    settings = {
+        "network": "LSTM and a dense layer" if recipe.recurrent else "a layer of sigmoids and a dense layer",
+        "units, surge and sway": list(recipe.width),
+        "learning rates": list(recipe.learning_rate),
+        "inputs": {axis: list(names) for axis, names in paper_ii.INPUTS.items()},
+        "patience": recipe.patience,
+        "most epochs": recipe.most_epochs,
+        "mini-batch": paper_ii.BATCH,
+    }
+    about = _about(size, record, "stationkeeping with GNSS") | told
+    return Trained(arrays, recipe.description, recipe.seed, about, settings, epochs, paper_ii.NOTES)
+
+
+def _recorded(seeds, duration, progress, losses):
+    return worlds.recorded([worlds.drawn(seed) for seed in seeds], duration, progress, losses)
+
+
+def _region(record: Record, states: list) -> dict[str, np.ndarray]:
+    """Region by all samples without GNSS."""
+    names = ("x", "y", "lost_for", "sea")
+    x, y, lost_for, sea = (np.stack([getattr(state, name) for state in states], axis=-1) for name in names)
+    error, lost = np.hypot(x - record.x, y - record.y), record.measured["valid"] < 0.5
+    return calibrated(lost_for[lost], sea[lost], error[lost])
+
+
+def _about(size: Size, record: Record, kind: str) -> dict:
+    measured = np.stack([record.measured[name] for name in worlds.MEASURED])
+    return {
+        "records": f"{kind}, co-simulation of {worlds.SYSTEM}, one sample a second",
+        "seeds of the worlds": f"{size.training[0]} to {size.training[-1]}",
+        "seeds of the worlds that calibrate the region": f"{size.calibration[0]} to {size.calibration[-1]}",
+        "times of the region (s)": list(TIMES),
+        "samples": int(record.x.size),
+        "SHA-256 of the measurements": digest(measured.round(6)),
+    }
+
+
+def _arrays(design: Design) -> dict[str, np.ndarray]:
+    return {name: np.array(float(one)) for name, one in design._asdict().items()}
+
+
+def _share(progress: Progress, first: int, last: int) -> Progress:
+    """Tells part of the way as hundredths of the whole."""
+
+    def told(done: int, total: int) -> None:
+        progress(round(first + (last - first) * done / max(total, 1)), 100)
+
+    return told
+
+
+KINDS: dict[str, tuple[str, Callable[[Progress], Trained]]] = {
+    name: (about, lambda progress, name=name: train(name, progress))
+    for name, about in (
+        (FILTER, DESCRIPTION),
+        *((name, recipe.description) for name, recipe in paper_ii.RECIPES.items()),
+        *UNLEARNED.items(),
+    )
+}
+"""Kinds by name: one line for users, and what trains it."""

@@ -1,0 +1,269 @@
+"""Worlds in which the 82.7 m vessel holds her place, and their records: what she measures, and apart from it the truth.
+
+The true ship is not the one that models know: less linear damping and some that is quadratic, other wind loads, weaker
+thrusters. She is the same in all worlds, as a ship that learns from her own data is. Weather, current and the errors
+of sensors belong to a world. Nobody aboard knows any of it.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper II: Table I for
+noise, Table IV for sea states, IV-A for how the weather changes.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.cosim import simulate, system_of
+from shipcosim.learn.training import Progress
+from shipcosim.scenario import Event, Scenario
+
+SYSTEM, PARAMETERS, STEP = "osv_gnss_loss", "osv", 0.2
+SEA_STATES = ((1.0, 2.0), (2.0, 4.0), (3.0, 7.0), (4.0, 11.0))
+"""Significant wave height and wind speed. [m, m/s] Paper II, Table IV."""
+TRANSITION, SETTLED, DURATION = 420.0, 600.0, 840.0
+"""The wind has changed; three minutes later; the end of a condition. [s] Paper II, IV-A and IV-C."""
+TRAINING, CALIBRATION, TUNING, HELD_OUT = range(1, 13), range(200, 224), range(300, 312), range(8100, 8148)
+"""Seeds of worlds, each for one purpose."""
+SHIP: Mapping[str, float | str] = {
+    **{"vessel.X_u": -2.3e5, "vessel.X_uu": -1e5, "vessel.Y_v": -4.2e5, "vessel.cross_flow_drag": 0.6},
+    **{"vessel.N_r": -1.6e8, "vessel.mass_scale": 1.03, "vessel.wind_load_scale": 1.25},
+    **{"vessel.apparent_wind_offset": "4 deg", "bow_1.thrust_loss": 0.10, "bow_2.thrust_loss": 0.04},
+    **{
+        "stern_1.thrust_loss": 0.02,
+        "stern_2.thrust_loss": 0.12,
+        "port.thrust_loss": 0.08,
+        "starboard.thrust_loss": 0.05,
+    },
+}
+"""The true ship where she differs from her parameter set, within its tolerances or in a form that it does not have."""
+SENSORS: Mapping[str, float | str] = {
+    **{"sensors.period": 0.2, "sensors.position_period": 0.2, "sensors.position_drift_std": 0.1},
+    **{"sensors.position_noise_std": 0.2, "sensors.velocity_noise_std": 0.02, "sensors.heading_drift_std": "0.1 deg"},
+    **{"sensors.heading_noise_std": "0.1 deg", "sensors.yaw_rate_noise_std": "0.05 deg/s"},
+    **{"sensors.wind_speed_noise": 0.02, "sensors.wind_from_noise_std": "1 deg"},
+}
+"""Noise of Table I of paper II; of velocities, yaw rate and wind, which it does not print, as of the DP ship."""
+UNITS = ("bow_1", "bow_2", "stern_1", "stern_2", "port", "starboard")
+MEASURED: Mapping[str, str] = {
+    **{"x": "sensors.x_1_meas", "y": "sensors.y_1_meas", "psi": "sensors.psi_1_meas"},
+    **{"u": "sensors.u_1_meas", "v": "sensors.v_1_meas"},
+    **{"wind_speed": "sensors.wind_speed_meas", "wind_from": "sensors.wind_from_meas"},
+    **{f"command_{number}": f"{unit}.command" for number, unit in enumerate(UNITS, 1)},
+    **{f"asked_{number}": f"allocator.thrust_cmd_{number}" for number in range(1, 7)},
+    **{"valid": "sensors.position_1_valid", "second_x": "sensors.x_2_meas", "second_y": "sensors.y_2_meas"},
+}
+"""What is aboard, by our name: the signal that measures it. The second receiver is logged, and DP does not see it."""
+RECKONED: Mapping[str, str] = {name: f"reckoning.{name}" for name in ("x_hat", "y_hat", "position_region", "lost_for")}
+"""What the FMU in the loop gave."""
+DRILLS = tuple((time, time + 60.0) for time in (240.0, 360.0, 480.0, 600.0, 720.0))
+"""From when to when GNSS is masked in a drill: DP rides on dead reckoning, the second receiver is logged. [s]"""
+
+
+@dataclass(frozen=True)
+class World:
+    """Weather and errors of sensors in one run.
+
+    Parameters
+    ----------
+    seed : int
+        Of gusts, waves and noise. [1]
+    wave_height, wave_period : float
+        Of the sea, over the whole run. [m, s]
+    wind_speed, wind_from : tuple of two floats
+        Mean wind at the start, and from `TRANSITION` on; the waves come from where the second does. [m/s, rad]
+    current_speed, current_to : float
+        Current. [m/s, rad]
+    position_bias : tuple of two floats
+        Error of the position that stays. [m]
+    heading_bias : float
+        Error of the heading that stays. [rad]
+    """
+
+    seed: int
+    wave_height: float
+    wave_period: float
+    wind_speed: tuple[float, float]
+    wind_from: tuple[float, float]
+    current_speed: float
+    current_to: float
+    position_bias: tuple[float, float]
+    heading_bias: float
+
+
+class Record(NamedTuple):
+    """Of one world or several.
+
+    Parameters
+    ----------
+    measured : dict of str to (..., n) array
+        One sample a second of what is aboard, by the names of `MEASURED`. [m, rad, m/s, units of the maps, N]
+    x, y : (..., n) array
+        True position, waves included. [m]
+    reckoned : dict of str to (..., n) array
+        By the names of `RECKONED`. [m, s]
+    """
+
+    measured: dict[str, np.ndarray]
+    x: np.ndarray
+    y: np.ndarray
+    reckoned: dict[str, np.ndarray]
+
+
+def drawn(seed: int) -> World:
+    """A world of random weather within Table IV: wind and waves rise together, directions are any.
+
+    Parameters
+    ----------
+    seed : int
+        Seed of all that is random. [1]
+
+    Returns
+    -------
+    World
+    """
+    rng = np.random.default_rng([26, seed])
+    severity, before = rng.uniform(0.0, 3.0, 2)
+    heights, speeds = zip(*SEA_STATES, strict=True)
+    wind = tuple(float(np.interp(one, range(4), speeds)) for one in (before, severity))
+    towards = rng.uniform(-math.pi, math.pi, 2)
+    return _world(seed, float(np.interp(severity, range(4), heights)), wind, tuple(map(float, towards)), rng)
+
+
+def tested(seed: int, sea_state: int, direction: float) -> World:
+    """A world of paper II's test: one sea state from one direction, after the one before it in the sequence.
+
+    Parameters
+    ----------
+    seed : int
+        Seed of all that is random. [1]
+    sea_state : int
+        Row of `SEA_STATES`. [1]
+    direction : float
+        Where wind and waves come from; the ship heads north. [rad]
+
+    Returns
+    -------
+    World
+    """
+    first = sea_state == 0
+    wind = SEA_STATES[sea_state - 1][1], SEA_STATES[sea_state][1]  # -1: the last of the direction before
+    towards = direction - math.radians(30.0) if first else direction, direction
+    return _world(seed, SEA_STATES[sea_state][0], wind, towards, np.random.default_rng([26, seed]))
+
+
+def worlds_of_test(seeds: Sequence[int]) -> list[World]:
+    """Worlds of the test, direction by direction, with rising sea states: 48 of 48 seeds."""
+    return [tested(seed, n % 4, math.radians(30.0 * (n // 4 % 12))) for n, seed in enumerate(seeds)]
+
+
+def _world(seed, height, wind, towards, rng):
+    current, bias = rng.uniform([0.0, -math.pi], [0.4, math.pi]), rng.uniform(-0.2, 0.2, 2)
+    return World(
+        seed,
+        height,
+        5.0 * math.sqrt(height),  # s; not printed: a wind sea of steepness 1/39
+        wind,
+        towards,
+        float(current[0]),
+        float(current[1]),
+        (float(bias[0]), float(bias[1])),
+        float(rng.uniform(-1.0, 1.0) * math.radians(0.1)),
+    )
+
+
+def scenario_of(
+    world: World, duration: float = DURATION, losses: Sequence[tuple[float, float]] = (), variant: str = "kinetic"
+) -> Scenario:
+    """The run of a world: the wind changes over seven minutes, then holds.
+
+    Parameters
+    ----------
+    world : World
+        The world.
+    duration : float
+        How long. [s]
+    losses : sequence of two floats
+        From when to when GNSS is lost, and DP rides on dead reckoning. [s]
+    variant : str
+        What reckons then.
+
+    Returns
+    -------
+    Scenario
+        Of the system `SYSTEM`.
+    """
+    turn = abs((world.wind_from[1] - world.wind_from[0] + math.pi) % (2.0 * math.pi) - math.pi)
+    values = {
+        "environment.wind_speed": world.wind_speed[0],
+        "environment.wind_from": world.wind_from[0],
+        "environment.wind_speed_rate": abs(world.wind_speed[1] - world.wind_speed[0]) / TRANSITION,
+        "environment.wind_turn_rate": turn / TRANSITION,
+        "environment.significant_wave_height": world.wave_height,
+        "environment.peak_period": world.wave_period,
+        "environment.waves_from": world.wind_from[1],
+        "environment.current_speed": world.current_speed,
+        "environment.current_to": world.current_to,
+        "environment.seed": world.seed,
+        "sensors.seed": world.seed,
+        "sensors.position_1_north": world.position_bias[0],
+        "sensors.position_1_east": world.position_bias[1],
+        "sensors.compass_1_offset": world.heading_bias,
+        "reckoning.variant": variant,
+    }
+    wind = {"environment.wind_speed": world.wind_speed[1], "environment.wind_from": world.wind_from[1]}
+    events = [Event(time=0.0, override=wind)]
+    for lost, found in losses:
+        events.append(Event(time=lost, override={"sensors.position_1_lost": True}))
+        events.append(Event(time=found, reset=["sensors.position_1_lost"]))
+    return Scenario(
+        description=f"World {world.seed}",
+        system=SYSTEM,
+        parameters=PARAMETERS,
+        stop_time=duration,
+        step_size=STEP,
+        output_interval=1.0,
+        set={**SHIP, **SENSORS, **values},
+        events=[event for event in events if event.time < duration],
+    )
+
+
+def recorded(
+    worlds: Sequence[World],
+    duration: float,
+    progress: Progress,
+    losses: Sequence[tuple[float, float]] = (),
+    variant: str = "kinetic",
+) -> Record:
+    """Records of worlds by co-simulation, one after the other.
+
+    Parameters
+    ----------
+    worlds : sequence of World
+        The worlds.
+    duration : float
+        How long each. [s]
+    progress : callable
+        Is told how many are done, and of how many.
+    losses, variant
+        As in `scenario_of`.
+
+    Returns
+    -------
+    Record
+        With (worlds, duration + 1) arrays.
+    """
+    tables, system = [], system_of(scenario_of(worlds[0], duration))
+    for number, world in enumerate(worlds, 1):
+        tables.append(simulate(system, scenario_of(world, duration, losses, variant)))
+        progress(number, len(worlds))
+
+    def stacked(signal):
+        return np.stack([table[signal].values.astype(float) for table in tables])
+
+    measured, reckoned = ({name: stacked(signal) for name, signal in names.items()} for names in (MEASURED, RECKONED))
+    x, y = (stacked(f"vessel.{axis}") + stacked(f"vessel.{axis}_wave") for axis in "xy")
+    return Record(measured, x, y, reckoned)
