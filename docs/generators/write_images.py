@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import matplotlib
 from PIL import Image
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
@@ -64,7 +65,9 @@ def fresh(name: str, folder: Path) -> bytes:
     """A picture that is made now, in a folder that the caller deletes. PNG."""
     if name in PAGES:
         return of_page(name, folder)
-    DRAWN[name](folder / f"{name}.png")
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()  # whatever another generator has set
+        DRAWN[name](folder / f"{name}.png")
     return (folder / f"{name}.png").read_bytes()
 
 

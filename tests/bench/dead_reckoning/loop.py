@@ -98,7 +98,7 @@ class Loop:
         self.means = weather.EnvironmentState(speed[:, 0], towards[:, 0], *self.setpoints[2:])
         sea = column["wave_height"], column["wave_period"], towards[:, 1]
         self.sea = waves.components(*sea, 3.3 + 0.0 * sea[0], column["seed"])
-        self.bias, self.heading_bias = column["position_bias"].T, column["heading_bias"]
+        self.bias, self.compass_error = column["position_bias"].T, column["compass_error"]
 
     def _air(self, t):
         return weather.air_velocity(t, self.means, gust_scale=1.0, seed=self.weather.seed)
@@ -116,7 +116,7 @@ class Loop:
 
     def _failures(self, lost):
         first = sensors.ReferenceFailure(lost=lost, north=self.bias[0], east=self.bias[1])
-        healthy, compass = sensors.SensorFailures(), sensors.CompassFailure(offset=self.heading_bias)
+        healthy, compass = sensors.SensorFailures(), sensors.CompassFailure(offset=self.compass_error)
         return sensors.SensorFailures((first, *healthy.positions[1:]), (compass, healthy.compasses[1]))
 
     def _measured(self):

@@ -27,7 +27,9 @@ def main(arguments=None):
             for name in options.predictors:
                 found[name][distance].append(measuring.measured(name, seed, distance, options.into))
             print(f"world {seed} at {distance:g}: {time.monotonic() - before:.0f} s", file=sys.stderr)
-    command = f"python tests/bench/prediction --seeds {options.seeds[0]}:{options.seeds[-1] + 1} --write"
+    distances = " ".join(f"{distance:g}" for distance in options.distances)
+    seeds = f"{options.seeds[0]}:{options.seeds[-1] + 1}"
+    command = f"python tests/bench/prediction --seeds {seeds} --distances {distances} --write"
     text = pages.page(found, options.seeds, command)
     print(text)
     if options.write:

@@ -11,8 +11,10 @@ noise, Table IV for sea states, IV-A for how the weather changes.
 """
 
 import math
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -28,17 +30,7 @@ TRANSITION, SETTLED, DURATION = 420.0, 600.0, 840.0
 """The wind has changed; three minutes later; the end of a condition. [s] Paper II, IV-A and IV-C."""
 TRAINING, CALIBRATION, TUNING, HELD_OUT = range(1, 13), range(200, 224), range(300, 312), range(8100, 8148)
 """Seeds of worlds, each for one purpose."""
-SHIP: Mapping[str, float | str] = {
-    **{"vessel.X_u": -2.3e5, "vessel.X_uu": -1e5, "vessel.Y_v": -4.2e5, "vessel.cross_flow_drag": 0.6},
-    **{"vessel.N_r": -1.6e8, "vessel.mass_scale": 1.03, "vessel.wind_load_scale": 1.25},
-    **{"vessel.apparent_wind_offset": "4 deg", "bow_1.thrust_loss": 0.10, "bow_2.thrust_loss": 0.04},
-    **{
-        "stern_1.thrust_loss": 0.02,
-        "stern_2.thrust_loss": 0.12,
-        "port.thrust_loss": 0.08,
-        "starboard.thrust_loss": 0.05,
-    },
-}
+SHIP: Mapping[str, float | str] = tomllib.loads(Path(__file__).with_name("true_ship.toml").read_text("utf-8"))
 """The true ship where she differs from her parameter set, within its tolerances or in a form that it does not have."""
 SENSORS: Mapping[str, float | str] = {
     **{"sensors.period": 0.2, "sensors.position_period": 0.2, "sensors.position_drift_std": 0.1},
@@ -79,7 +71,7 @@ class World:
         Current. [m/s, rad]
     position_bias : tuple of two floats
         Error of the position that stays. [m]
-    heading_bias : float
+    compass_error : float
         Error of the heading that stays. [rad]
     """
 
@@ -91,7 +83,7 @@ class World:
     current_speed: float
     current_to: float
     position_bias: tuple[float, float]
-    heading_bias: float
+    compass_error: float
 
 
 class Record(NamedTuple):
@@ -211,7 +203,7 @@ def scenario_of(
         "sensors.seed": world.seed,
         "sensors.position_1_north": world.position_bias[0],
         "sensors.position_1_east": world.position_bias[1],
-        "sensors.compass_1_offset": world.heading_bias,
+        "sensors.compass_1_offset": world.compass_error,
         "reckoning.variant": variant,
     }
     wind = {"environment.wind_speed": world.wind_speed[1], "environment.wind_from": world.wind_from[1]}

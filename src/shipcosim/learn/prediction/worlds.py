@@ -5,11 +5,13 @@ nominal numbers; the ship herself, her thrusters, sensors and the weather are dr
 manoeuvres, loses all thrust at a drawn time and drifts for 160 s.
 """
 
+import tomllib
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
+from pathlib import Path
 
 import numpy as np
 
@@ -28,12 +30,10 @@ KNOWN = (
 """Inputs of a predictor, from the observer, the allocator and the wind sensor."""
 TRUTH = ("x", "y", "psi", "u", "v", "r")
 """The low-frequency ship."""
-TOLERATED = (
-    *("vessel.mass", "vessel.inertia_yaw", "vessel.A11", "vessel.A22", "vessel.A66", "vessel.cross_flow_drag"),
-    *("vessel.X_uu", "vessel.lift", "vessel.lift_x", "vessel.wind_load_scale"),
-    *("port.thrust_scale", "port.thrust_scale_outside", "port.side_force_coefficient", "port.azimuth_offset"),
-    *("starboard.thrust_scale", "starboard.thrust_scale_outside", "starboard.side_force_coefficient"),
-    *("starboard.azimuth_offset", "tunnel.thrust_coefficient"),
+TOLERATED = tuple(
+    f"{component}.{name}"
+    for component, names in tomllib.loads(Path(__file__).with_name("tolerated.toml").read_text("utf-8")).items()
+    for name in names
 )
 """Numbers that are off by their tolerance in the parameter set, as a standard deviation."""
 SYSTEM, PARAMETERS = "gunnerus_dp", "gunnerus-33m9"

@@ -107,6 +107,10 @@ def design(arrays: Mapping) -> Design:
     ------
     KeyError
         A number is missing.
+
+    References
+    ----------
+    Definition.
     """
     return Design(*(float(arrays[name]) for name in Design._fields))
 

@@ -79,6 +79,10 @@ def region_of(arrays: Mapping[str, np.ndarray]) -> Region:
     ------
     KeyError
         An array is missing.
+
+    References
+    ----------
+    Definition.
     """
     times, radii = (tuple(map(float, arrays[f"region.{name}"])) for name in ("times", "radii"))
     return Region(times, radii, float(arrays["region.sea_share"]))
