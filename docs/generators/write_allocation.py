@@ -60,8 +60,9 @@ def run(name, law, variant):
 
 
 def averaged(values):
-    """Moving mean over `MEAN` rows, cut off at both ends."""
-    return np.convolve(values, np.ones(MEAN) / MEAN, "same")
+    """Moving mean over `MEAN` rows, over fewer at both ends."""
+    window = np.ones(MEAN)
+    return np.convolve(values, window, "same") / np.convolve(np.ones_like(values), window, "same")
 
 
 def curves(table):
