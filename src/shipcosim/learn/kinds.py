@@ -48,8 +48,10 @@ ALLOCATORS: Mapping[str, Kind] = {
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
 
 DRIFT: Mapping[str, Kind] = {
-    "ours": Kind(drift.OURS.description, lambda progress: drift.train_ours(drift.OURS, progress)),
-    "paper-iv": Kind(drift.PAPER_IV.description, lambda progress: drift.train_paper_iv(drift.PAPER_IV, progress)),
+    "ours": Kind(drift.OURS.description, lambda progress: drift.train(drift.ours, drift.OURS, progress)),
+    "paper-iv": Kind(
+        drift.PAPER_IV.description, lambda progress: drift.train(drift.as_paper_iv, drift.PAPER_IV, progress)
+    ),
 }
 """Drift predictors by the name that `shipcosim train drift --kind NAME` takes; the first is the default."""
 

@@ -13,16 +13,17 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 EVERY = 30.0  # s between lines that say how far it is, where there is no terminal
 DEFAULT_KIND = "paper-v"
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
+]
 
 
 def allocator(
     kind: Annotated[
         str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
     ] = DEFAULT_KIND,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
-    ] = None,
+    out: Out = None,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -41,10 +42,7 @@ def allocator(
 
 def drift(
     kind: Annotated[str, typer.Option("--kind", metavar="NAME", help="ours or paper-iv.")] = "ours",
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
-    ] = None,
+    out: Out = None,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -65,10 +63,7 @@ def dead_reckoning(
     kind: Annotated[
         str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
     ] = "motion-filter",
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
-    ] = None,
+    out: Out = None,
     force: Force = False,
     debug: Debug = False,
 ) -> None:

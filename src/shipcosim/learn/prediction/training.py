@@ -1,6 +1,6 @@
 """What `shipcosim train drift` does: worlds sailed, what is learned from them, weights and report."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -94,13 +94,15 @@ def parts(progress: Progress, first: bool) -> Progress:
     return tell
 
 
-def train_ours(recipe: drift.Recipe, progress: Progress) -> Trained:
-    """Train our predictor from scratch.
+def train(learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe: Any, progress: Progress) -> Trained:
+    """Train a predictor from scratch: sail the worlds of its recipe, and learn from their records.
 
     Parameters
     ----------
+    learn : callable
+        `ours` or `as_paper_iv`.
     recipe : Recipe
-        How.
+        How; that of `learn`.
     progress : callable
         Is told how far it is.
 
@@ -109,11 +111,11 @@ def train_ours(recipe: drift.Recipe, progress: Progress) -> Trained:
     Trained
         Weights and report.
     """
-    return ours(sail(recipe.seeds, parts(progress, True)), recipe, parts(progress, False))
+    return learn(sail(recipe.seeds, parts(progress, True)), recipe, parts(progress, False))
 
 
 def ours(records: Sequence[worlds.Record], recipe: drift.Recipe, progress: Progress) -> Trained:
-    """`train_ours` from records of worlds that have been sailed.
+    """Our predictor, learned from records of worlds.
 
     Parameters
     ----------
@@ -171,26 +173,8 @@ def members(learned: Learned) -> Learned:
     return Learned(*(one[:, None] for one in learned))
 
 
-def train_paper_iv(recipe: paper_iv.Recipe, progress: Progress) -> Trained:
-    """Train the networks of paper IV from scratch.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        How.
-    progress : callable
-        Is told how far it is.
-
-    Returns
-    -------
-    Trained
-        Weights and report.
-    """
-    return as_paper_iv(sail(recipe.seeds, parts(progress, True)), recipe, parts(progress, False))
-
-
 def as_paper_iv(records: Sequence[worlds.Record], recipe: paper_iv.Recipe, progress: Progress) -> Trained:
-    """`train_paper_iv` from records of worlds that have been sailed.
+    """The networks of paper IV, learned from records of worlds.
 
     Parameters
     ----------
