@@ -36,6 +36,7 @@ COMPONENTS = {
     "ExtendedParameters": "allocator",
     "PowerParameters": "allocator",
     "SurroundingsParameters": "predictor",
+    "HelmParameters": "docking_predictor",
 }
 """Class of parameters: a component that has them."""
 
@@ -102,6 +103,7 @@ ELSEWHERE = {
     "paper_i_allocator": ("osv", "allocator"),
     "thruster_interaction": ("four-azimuths", "interaction"),
     "neural_units_allocator": ("four-azimuths", "allocator"),
+    "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
 }
 """FMU that the DP ship has not: a ship and her component that it is."""
 

@@ -56,6 +56,7 @@ ELSEWHERE = {
     "paper_i_allocator": ("osv", "allocator"),
     "neural_units_allocator": ("four-azimuths", "allocator"),
     "paper_v_allocator": ("thesis-28m9", "allocator"),
+    "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
 }
 """FMU that she has not: a ship and her component that it is."""
 OTHERS = {"optimal_allocator": [AllocationParameters], "neural_allocator": [AllocationParameters]}

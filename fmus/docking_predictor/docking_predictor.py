@@ -1,0 +1,92 @@
+"""FMU that predicts where a ship that is steered by hand will be, as she comes into a harbour."""
+
+from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.sampling import samples_due
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction import helm
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters, wind_from_mast
+
+HORIZONS = (10, 20, 30)  # s, as the outputs are named
+
+
+class DockingPredictor(Fmu):
+    """Position and heading in 10, 20 and 30 s, from what is measured aboard and how the thrusters are commanded now."""
+
+    x_meas = Input("m", "measured north position")
+    y_meas = Input("m", "measured east position")
+    psi_meas = Input("rad", "measured heading, clockwise from north")
+    u_meas = Input("m/s", "measured surge velocity over ground")
+    v_meas = Input("m/s", "measured sway velocity over ground")
+    r_meas = Input("rad/s", "measured yaw rate")
+    wind_speed_meas = Input("m/s", "measured apparent wind speed at the mast")
+    wind_from_meas = Input("rad", "measured direction of the apparent wind at the mast, clockwise from the bow")
+    port_thrust_cmd = Input("N", "commanded thrust of the port azimuth")
+    port_azimuth_cmd = Input("rad", "commanded direction of the port azimuth, clockwise from the bow")
+    port_rpm = Input("rpm", "shaft speed of the port azimuth")
+    port_azimuth = Input("rad", "direction of the port azimuth, clockwise from the bow")
+    starboard_thrust_cmd = Input("N", "commanded thrust of the starboard azimuth")
+    starboard_azimuth_cmd = Input("rad", "commanded direction of the starboard azimuth, clockwise from the bow")
+    starboard_rpm = Input("rpm", "shaft speed of the starboard azimuth")
+    starboard_azimuth = Input("rad", "direction of the starboard azimuth, clockwise from the bow")
+    tunnel_thrust_cmd = Input("N", "commanded thrust of the tunnel, positive to starboard")
+    tunnel_rpm = Input("rpm", "motor speed of the tunnel")
+
+    predicted_at = Output("s", "time at which the prediction was made, from which its seconds count")
+    x_10 = Output("m", "north position in 10 s")
+    y_10 = Output("m", "east position in 10 s")
+    psi_10 = Output("rad", "heading in 10 s")
+    position_region_10 = Output("m", "radius about the place in 10 s that has the true one in 90 % of cases, or 0")
+    heading_region_10 = Output("rad", "half-width about the heading in 10 s that has the true one in 90 %, or 0")
+    x_20 = Output("m", "north position in 20 s")
+    y_20 = Output("m", "east position in 20 s")
+    psi_20 = Output("rad", "heading in 20 s")
+    position_region_20 = Output("m", "radius about the place in 20 s that has the true one in 90 % of cases, or 0")
+    heading_region_20 = Output("rad", "half-width about the heading in 20 s that has the true one in 90 %, or 0")
+    x_30 = Output("m", "north position in 30 s")
+    y_30 = Output("m", "east position in 30 s")
+    psi_30 = Output("rad", "heading in 30 s")
+    position_region_30 = Output("m", "radius about the place in 30 s that has the true one in 90 % of cases, or 0")
+    heading_region_30 = Output("rad", "half-width about the heading in 30 s that has the true one in 90 %, or 0")
+    learned = Output("1", "share of the learned correction in the prediction; 0 is the equations of motion alone")
+
+    mast = Parameters(MastParameters)
+    hull = Parameters(HullParameters)
+    wind = Parameters(WindParameters)
+    helm = Parameters(helm.HelmParameters)
+    variant = Parameter("kinetic", "1", "what predicts: kinetic, the equations of motion alone", origin="choice")
+
+    def start(self):
+        if self.variant != "kinetic":
+            raise ValueError(f"variant '{self.variant}': there is none. There is kinetic.")
+        self.made, self.latest = samples_due(self.start_time, 1.0), ()
+        self._predict(self.start_time)
+
+    def step(self, t, h):
+        due = samples_due(t, 1.0)
+        if self.made < due:
+            self.made = due
+            self._predict(t)
+
+    def _aboard(self):
+        ship = Motion(self.x_meas, self.y_meas, self.psi_meas, self.u_meas, self.v_meas, self.r_meas)
+        return helm.Aboard(
+            ship,
+            *wind_from_mast(self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast),
+            (self.port_thrust_cmd, self.starboard_thrust_cmd, self.tunnel_thrust_cmd),
+            (self.port_azimuth_cmd, self.starboard_azimuth_cmd),
+            (self.port_rpm, self.starboard_rpm, self.tunnel_rpm),
+            (self.port_azimuth, self.starboard_azimuth),
+        )
+
+    def _predict(self, t):
+        aboard = self._aboard()
+        self.latest = helm.remembered(self.latest, aboard.ship)
+        aboard = aboard._replace(ship=helm.smoothed(self.latest, aboard.ship))
+        motions = helm.predict(aboard, hull=self.hull, wind=self.wind, helm=self.helm)
+        self.predicted_at = t
+        ten, twenty, thirty = (motions[horizon - 1] for horizon in HORIZONS)
+        self.x_10, self.y_10, self.psi_10 = ten[:3]
+        self.x_20, self.y_20, self.psi_20 = twenty[:3]
+        self.x_30, self.y_30, self.psi_30 = thirty[:3]

@@ -1,0 +1,255 @@
+"""A ship that is steered by hand, and her motion to come by her equations of motion while levers and wheel stay put.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper III: "A Hybrid
+Approach to Motion Prediction for Ship Docking", Sec. III-B. Current and waves are left out there, and wind is held.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from shipcosim.angles import wrap
+from shipcosim.models.core.integrate import midpoint_motion
+from shipcosim.models.core.kinematics import load_at, to_body, to_ned, velocity_at
+from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, sin
+from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.parameters import quantity, required, required_table
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, propeller_loads
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import accelerations, through_water
+
+SMOOTHING = 3
+"""Samples, one a second, over which heading and velocity at the start are averaged. [1] Paper IV has three seconds."""
+LONGEST = 30
+"""How far ahead is predicted. [s] Paper III."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HelmParameters:
+    """Two azimuth thrusters, alike, one at each side, and a bow tunnel, as the predictor knows them."""
+
+    x: float = required("m", "position of the azimuths forward")
+    y: float = required("m", "position of the port azimuth to starboard", maximum=0.0)
+    diameter: float = required("m", "propeller diameter of an azimuth", minimum=0.01)
+    thrust_polynomial: str = required_table(
+        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"), "KT of an azimuth's propeller, as its own parameter"
+    )
+    torque_polynomial: str = required_table(
+        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"), "KQ of an azimuth's propeller, as its own parameter"
+    )
+    thrust_factors: str = required_table(
+        ("angle [deg]", "factor [1]"), "factors on CT of an azimuth's propeller, as its own parameter"
+    )
+    torque_factors: str = required_table(
+        ("angle [deg]", "factor [1]"), "factors on CQ of an azimuth's propeller, as its own parameter"
+    )
+    thrust_scale_outside: float = quantity(
+        1.0, "1", "factor on the thrust of an azimuth outside the first quadrant", "neutral", minimum=0.0
+    )
+    side_force_coefficient: float = required("1", "side force coefficient of an azimuth", minimum=0.0)
+    thrust_rate: float = required("N/s", "largest rate of the thrust command of an azimuth", minimum=0.0)
+    azimuth_rate: float = required("rad/s", "largest rate at which an azimuth turns", minimum=0.0)
+    tunnel_x: float = required("m", "position of the tunnel thruster forward")
+    tunnel_thrust_coefficient: float = required("N/rpm2", "thrust of the tunnel over squared motor speed", minimum=1e-9)
+    tunnel_thrust_rate: float = required("N/s", "largest rate of the tunnel's thrust command", minimum=0.0)
+
+    @cached_property
+    def propeller(self):
+        """Propeller of an azimuth."""
+        names = "diameter thrust_polynomial torque_polynomial thrust_factors torque_factors thrust_scale_outside"
+        return PropellerParameters(**{name: getattr(self, name) for name in names.split()})
+
+
+class Aboard(NamedTuple):
+    """What is known aboard, each a float or a (...) array.
+
+    Parameters
+    ----------
+    ship : Motion
+        Measured, or averaged over the last seconds.
+    wind_speed, wind_from : float or (...) array
+        Measured apparent wind at 10 m above the ship: speed, and direction it comes from, clockwise from the bow.
+        [m/s, rad]
+    thrust_cmd : tuple of three, like wind_speed
+        What port azimuth, starboard azimuth and tunnel are told to give. [N]
+    azimuth_cmd : tuple of two, like wind_speed
+        Where the azimuths are told to point. [rad]
+    rpm : tuple of three, like wind_speed
+        Measured shaft speeds, of the tunnel that of its motor. [rpm]
+    azimuth : tuple of two, like wind_speed
+        Measured directions. [rad]
+    """
+
+    ship: Motion
+    wind_speed: Arithmetic
+    wind_from: Arithmetic
+    thrust_cmd: tuple[Arithmetic, Arithmetic, Arithmetic]
+    azimuth_cmd: tuple[Arithmetic, Arithmetic]
+    rpm: tuple[Arithmetic, Arithmetic, Arithmetic]
+    azimuth: tuple[Arithmetic, Arithmetic]
+
+
+Start = tuple[tuple[Arithmetic, Arithmetic, Arithmetic, Arithmetic], ...]
+"""Latest heading, surge and sway velocity and yaw rate, the newest last, at most `SMOOTHING` of them."""
+
+
+def remembered(before: Start, ship: Motion) -> Start:
+    """What is averaged at the start of a prediction, with the newest sample.
+
+    Parameters
+    ----------
+    before : tuple of tuples of four
+        A second ago; empty at the start. [rad, m/s, m/s, rad/s]
+    ship : Motion
+        As measured now.
+
+    Returns
+    -------
+    tuple of tuples of four
+        [rad, m/s, m/s, rad/s]
+    """
+    return (*before, ship[2:])[-SMOOTHING:]
+
+
+def smoothed(latest: Start, ship: Motion) -> Motion:
+    """The measured ship with heading and velocity averaged over the latest samples.
+
+    Parameters
+    ----------
+    latest : tuple of tuples of four
+        As `remembered` gives them. [rad, m/s, m/s, rad/s]
+    ship : Motion
+        As measured now.
+
+    Returns
+    -------
+    Motion
+        The place is that of now.
+    """
+    share = 1.0 / len(latest)
+    psi = wrap(ship.psi + share * sum(wrap(one[0] - ship.psi) for one in latest))
+    u, v, r = (share * sum(one[k] for one in latest) for k in (1, 2, 3))
+    return Motion(ship.x, ship.y, psi, u, v, r)
+
+
+def thruster_loads(
+    aboard: Aboard, water: tuple[Arithmetic, Arithmetic], *, helm: HelmParameters
+) -> Callable[[float, Arithmetic, Arithmetic, Arithmetic], Load]:
+    """Load of the thrusters over time and the ship's velocity through the water, while their commands stay put.
+
+    Thrust and direction run from what shaft speed and direction give now to what is commanded, at their largest rates.
+    Once a drive has the thrust that it was told it keeps it at any speed.
+
+    Parameters
+    ----------
+    aboard : Aboard
+        What is known now.
+    water : tuple of two floats or (...) arrays
+        Velocity of the ship through the water now, forward and to starboard. [m/s]
+    helm : HelmParameters
+        The thrusters.
+
+    Returns
+    -------
+    callable
+        ``loads(t, u_r, v_r, r)`` gives the load after t seconds. [N, N, N.m]
+    """
+    tunnel_now = helm.tunnel_thrust_coefficient * aboard.rpm[2] * abs(aboard.rpm[2])
+    units = [_azimuth(aboard, k, y, water, helm) for k, y in enumerate((helm.y, -helm.y))]
+
+    def loads(t, u_r, v_r, r):
+        tunnel = _towards(tunnel_now, aboard.thrust_cmd[2], t * helm.tunnel_thrust_rate)
+        X, Y, N = 0.0, tunnel, helm.tunnel_x * tunnel
+        for unit in units:
+            more = unit(t, u_r, v_r, r)
+            X, Y, N = X + more[0], Y + more[1], N + more[2]
+        return X, Y, N
+
+    return loads
+
+
+def _azimuth(aboard, k, y, water, helm):
+    """Load of one azimuth over time and velocity, as `azimuth.azimuth_loads` without its losses."""
+    n, azimuth = aboard.rpm[k] / 60.0, aboard.azimuth[k]
+    u, v = velocity_at(helm.x, y, water[0], water[1], aboard.ship.r)
+    thrust_now, _ = propeller_loads(cos(azimuth) * u + sin(azimuth) * v, n, propeller=helm.propeller)
+    beyond = n - bollard_speed(thrust_now, propeller=helm.propeller)  # faster than at bollard, for the way that she has
+    turn, D = wrap(aboard.azimuth_cmd[k] - azimuth), helm.diameter
+    side_factor = -helm.side_force_coefficient * helm.propeller.water_density * D * D
+
+    def load(t, u_r, v_r, r):
+        thrust = _towards(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
+        angle = azimuth + clip(turn, -t * helm.azimuth_rate, t * helm.azimuth_rate)
+        wash = D * abs(bollard_speed(thrust, propeller=helm.propeller) + beyond)
+        s, c = sin(angle), cos(angle)
+        u, v = velocity_at(helm.x, y, u_r, v_r, r)
+        u_s = c * v - s * u
+        side = side_factor * (hypot(u, v) + wash) * u_s
+        return load_at(helm.x, y, thrust * c - side * s, thrust * s + side * c)
+
+    return load
+
+
+def _towards(now, told, most):
+    return now + clip(told - now, -most, most)
+
+
+def predict(
+    aboard: Aboard,
+    current: tuple[Arithmetic, Arithmetic] = (0.0, 0.0),
+    left: Load = (0.0, 0.0, 0.0),
+    *,
+    hull: HullParameters,
+    wind: WindParameters,
+    helm: HelmParameters,
+) -> tuple[Motion, ...]:
+    """Motion of the ship ahead by her equations of motion.
+
+    Parameters
+    ----------
+    aboard : Aboard
+        Her state now; wind and commands, which are held.
+    current : tuple of two floats or (...) arrays
+        Velocity of the water north and east, as estimated; paper III has none. [m/s]
+    left : tuple of three, like current
+        Load in body axes that nothing else explains, as estimated; paper III has none. [N, N, N.m]
+    hull, wind, helm : HullParameters, WindParameters, HelmParameters
+        The ship as she knows herself.
+
+    Returns
+    -------
+    tuple of `LONGEST` Motion
+        One a second.
+
+    Notes
+    -----
+    Midpoint rule with steps of one second, thrusters at the middle of each.
+    """
+    ship = aboard.ship
+    air = _air(aboard)
+    x, y, psi, _, _, r = ship
+    u_r, v_r = through_water(psi, ship.u, ship.v, *current)
+    thrusters, found = thruster_loads(aboard, (u_r, v_r), helm=helm), []
+    for second in range(LONGEST):
+
+        def rates(u_r, v_r, r, t=second + 0.5, heading=psi + 0.5 * r):
+            u_c, v_c = to_body(heading, *current)
+            blown = wind_loads(*apparent_wind(heading, u_r + u_c, v_r + v_c, *air), wind=wind)
+            X, Y, N = (sum(parts) for parts in zip(thrusters(t, u_r, v_r, r), blown, left, strict=True))
+            return accelerations(u_r, v_r, r, X, Y, N, hull=hull)
+
+        x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, 1.0, *current)
+        psi = wrap(psi)
+        u_c, v_c = to_body(psi, *current)
+        found.append(Motion(x, y, psi, u_r + u_c, v_r + v_c, r))
+    return tuple(found)
+
+
+def _air(aboard):
+    """Velocity of the air over ground, north and east, as `known.air_velocity`."""
+    ship, speed = aboard.ship, aboard.wind_speed
+    return to_ned(ship.psi, ship.u - speed * cos(aboard.wind_from), ship.v - speed * sin(aboard.wind_from))
