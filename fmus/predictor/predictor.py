@@ -28,7 +28,7 @@ class Predictor(MotionPredictor):
     longest_step = Parameter(2.0, "s", "longest step of the integration", minimum=0.01)
 
     def begin(self, known):
-        return surroundings.unknown(known, parameters=self.assumed)
+        return surroundings.unknown(known, hull=self.hull, parameters=self.assumed)
 
     def follow(self, state, known, since):
         models = {"hull": self.hull, "wind": self.wind, "ship": self.ship}

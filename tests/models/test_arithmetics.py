@@ -249,7 +249,7 @@ def of_known(*row):
 
 def of_surroundings(*row):
     start = of_known(*row)
-    return surroundings.unknown(start, parameters=ASSUMED), start
+    return surroundings.unknown(start, hull=AROUND["hull"], parameters=ASSUMED), start
 
 
 def of_outage(*row):
@@ -268,7 +268,9 @@ def of_reckoning(*row):
 
 def of_prediction(*row):
     start = of_known(*row)
-    return start, surroundings.Surroundings(-6.0, 3.0, 0.2, -0.1, 2e2, 5e2 + 0.0 * start.ship.u, 1e3, ())
+    return start, surroundings.Surroundings(
+        -6.0, 3.0, 0.2, -0.1, 2e2, 5e2 + 0.0 * start.ship.u, 1e3, (), (1e2, 2e2, 3e3)
+    )
 
 
 def of_fixes(*row):
@@ -592,7 +594,7 @@ CASES = [
     Case(motion_filter.start, SHIP, lambda *row: (of_outage(*row),), dict(design=RECKONING)),
     Case(motion_filter.step, SHIP, of_reckoning, dict(h=1.0, design=RECKONING)),
     Case(outage.radius, [(0.0, 0.01), (25.0, 0.2), (90.0, 0.1)], constants=dict(region=REGION)),
-    Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(parameters=ASSUMED)),
+    Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(hull=AROUND["hull"], parameters=ASSUMED)),
     Case(surroundings.step, SHIP, of_surroundings, dict(h=1.0, **AROUND)),
     Case(dead_reckoning.predict, SHIP, of_prediction, AHEAD),
     Case(

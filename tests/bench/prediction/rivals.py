@@ -53,7 +53,8 @@ class WithoutCurrent(fmu_class("predictor")):
 
     def predict(self, state, known):
         force = to_ned(known.ship.psi, *known.bias[:2])
-        return super().predict(state._replace(**dict(zip(HELD, (0.0, 0.0, *force, known.bias[2]), strict=True))), known)
+        held = dict(zip(HELD, (0.0, 0.0, *force, known.bias[2]), strict=True))
+        return super().predict(state._replace(**held, thrust_error=NONE), known)
 
 
 HELD = ("current_north", "current_east", "force_north", "force_east", "moment")

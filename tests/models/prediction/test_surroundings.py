@@ -44,7 +44,7 @@ def held_then_adrift(current, force, psi=0.4, held=300, adrift=600, assumed=ASSU
     """Surroundings and knowledge of a ship that is held at rest, and then set free, second by second."""
     ship = Motion(0.0, 0.0, psi, 0.0, 0.0, 0.0)
     known = known_of(ship, current, force)
-    state = unknown(known, parameters=assumed)
+    state = unknown(known, hull=HULL, parameters=assumed)
     for second in range(held + adrift):
         if second >= held:
             ship = vessel.step(ship, *to_body(ship.psi, *force), 0.0, *current, 1.0, hull=HULL)
@@ -59,7 +59,7 @@ def test_load_of_a_ship_at_rest_is_explained_whole():
     X, Y, N = hull_loads(*vessel.through_water(known.ship.psi, 0.0, 0.0, *current), 0.0, hull=HULL)
     force_X, force_Y = to_body(known.ship.psi, state.force_north, state.force_east)
     assert (X + force_X, Y + force_Y) == pytest.approx(known.bias[:2], abs=300.0)
-    assert N + state.moment == pytest.approx(known.bias[2])
+    assert N + state.moment == pytest.approx(known.bias[2], abs=300.0 * ASSUMED.force_lever * HULL.length)
 
 
 @pytest.mark.parametrize("current", [(0.0, 0.4), (0.3, -0.2), (-0.4, 0.0)])
@@ -102,35 +102,79 @@ def test_estimate_turns_with_the_compass():
 def test_update_is_the_kalman_filters_in_matrices():
     """One sample against the filter written with matrices, at the slopes of central differences."""
     current = (0.3, -0.2)
-    known = known_of(Motion(0.0, 0.0, 0.4, 0.1, -0.2, 0.01), current, (400.0, -700.0))
-    start = unknown(known, parameters=ASSUMED)
+    thrusters = 2e3, -3e3, 4e4
+    known = known_of(Motion(0.0, 0.0, 0.4, 0.1, -0.2, 0.01), current, (400.0, -700.0), thrusters)
+    start = unknown(known, hull=HULL, parameters=ASSUMED)
     start = start._replace(current_north=0.1, current_east=0.05, force_north=300.0, force_east=-50.0)
+    start = start._replace(moment=700.0, thrust_error=(100.0, -300.0, 2e3))
     found = step(start, known)
 
     motion, c, sn = known.ship, math.cos(0.4), math.sin(0.4)
     to_ship = np.array([[c, sn], [-sn, c]])
 
-    def load(water, force):
-        """Force in body axes, of the velocity of the water in body axes and of the force in north and east."""
-        return np.array(hull_loads(motion.u - water[0], motion.v - water[1], motion.r, hull=HULL)[:2]) + to_ship @ force
+    def load(water, force, moment, error):
+        """Load in body axes, of the velocity of the water in body axes and of the force in north and east."""
+        water_load = hull_loads(motion.u - water[0], motion.v - water[1], motion.r, hull=HULL)
+        return np.array(water_load) + np.array([*(to_ship @ force), moment]) + error
 
-    keep = math.exp(-1.0 / ASSUMED.force_time)
-    transition = np.diag([1.0, 1.0, keep, keep])
-    drift, force = ASSUMED.current_drift, ASSUMED.force_std**2 * (1.0 - keep**2)
-    mean = transition @ np.array(start[2:6])
-    P = transition @ np.array(start.covariance) @ transition + np.diag([drift, drift, force, force])
+    keep, held = math.exp(-1.0 / ASSUMED.force_time), math.exp(-1.0 / ASSUMED.thrust_error_time)
+    lever, arm = 0.1 * HULL.length, 0.42 * HULL.length
+    transition = np.diag([1.0, 1.0, keep, keep, keep, held, held, held])
+    force = ASSUMED.force_std**2 * (1.0 - keep**2) * np.array([1.0, 1.0, lever**2])
+    thrust = 2e3**2 + 3e3**2 + (4e4 / arm) ** 2
+    error = (1.0 - held**2) * 0.3**2 * thrust * np.array([1.0, 1.0, arm**2])
+    mean = transition @ np.array([*start[2:7], *start.thrust_error])
+    grown = np.diag([*(ASSUMED.current_drift,) * 2, *force, *error])
+    P = transition @ np.array(start.covariance) @ transition + grown
     span, water = np.sqrt(P[0, 0]), to_ship @ mean[:2]
-    slopes = [(load(water + d, mean[2:]) - load(water - d, mean[2:])) / (2.0 * span) for d in span * np.eye(2)]
-    H = np.column_stack([np.column_stack(slopes) @ to_ship, to_ship])
-    z = known.bias[0] - DP_SHIP.damping_surge * motion.u, known.bias[1] - DP_SHIP.damping_sway * motion.v
-    gain = P @ H.T @ np.linalg.inv(H @ P @ H.T + ASSUMED.load_noise * np.eye(2))
-    np.testing.assert_allclose(found[2:6], mean + gain @ (z - load(water, mean[2:])), rtol=1e-9)
-    np.testing.assert_allclose(found.covariance, P - gain @ H @ P, rtol=1e-9, atol=1e-6)
+    rest = mean[2:4], mean[4], mean[5:]
+    slopes = [(load(water + d, *rest) - load(water - d, *rest)) / (2.0 * span) for d in span * np.eye(2)]
+    turned = np.vstack([to_ship, np.zeros((1, 2))])
+    H = np.column_stack([np.column_stack(slopes) @ to_ship, turned, [0.0, 0.0, 1.0], np.eye(3)])
+    damping = DP_SHIP.damping_surge * motion.u, DP_SHIP.damping_sway * motion.v, DP_SHIP.damping_yaw * motion.r
+    noise = ASSUMED.load_noise * np.diag([1.0, 1.0, lever**2])
+    gain = P @ H.T @ np.linalg.inv(H @ P @ H.T + noise)
+    innovation = np.array(known.bias) - damping - load(water, *rest)
+    np.testing.assert_allclose([*found[2:7], *found.thrust_error], mean + gain @ innovation, rtol=1e-9)
+    np.testing.assert_allclose(found.covariance, P - gain @ H @ P, rtol=1e-7, atol=1e-4)
+
+
+def of_thrusters(error, seconds=300, lost=0):
+    """Surroundings of a ship held at rest whose thrusters give more than they are told, and what she knows.
+
+    The error is what her observer's bias balances; of the last seconds, thrust is lost and the bias is still the same.
+    """
+    told = 3e3, -4e3, 6e4
+    known = Known(Motion(0.0, 0.0, 0.4, 0.0, 0.0, 0.0), error, told, 0.0, 0.0)
+    state = unknown(known, hull=HULL, parameters=ASSUMED)
+    for second in range(seconds + lost):
+        known = known._replace(thrusters=told if second < seconds else (0.0, 0.0, 0.0))
+        state = step(state, known)
+    return state, known
+
+
+def test_errors_of_thrust_are_gone_with_the_thrust():
+    """A moment that thrusters give by mistake does not turn a ship that has lost them."""
+    error = 0.0, 0.0, 2e4
+    state, known = of_thrusters(error)
+    assert state.thrust_error[2] > 0.7 * error[2]
+    with_thrust, without = ahead(known, state), ahead(known._replace(thrusters=(0.0, 0.0, 0.0)), state)
+    none = ahead(known, state._replace(thrust_error=(0.0, 0.0, 0.0)))
+    assert abs(with_thrust.psi - none.psi) > 0.1
+    held = ahead(known._replace(thrusters=(0.0, 0.0, 0.0)), state._replace(moment=error[2], thrust_error=(0.0,) * 3))
+    assert abs(without.psi - 0.4) < 0.3 * abs(held.psi - 0.4)
+
+
+def test_without_thrust_the_bias_is_the_ships_surroundings():
+    state, _ = of_thrusters((0.0, 0.0, 0.0), seconds=0)
+    assert state.thrust_error == (0.0, 0.0, 0.0)
+    *_, (state, _) = held_then_adrift((0.3, -0.2), (400.0, -700.0))
+    assert state.thrust_error == (0.0, 0.0, 0.0)
 
 
 def test_wind_is_averaged():
     known = known_of(Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0), (0.0, 0.0))
-    state = unknown(known, parameters=ASSUMED)
+    state = unknown(known, hull=HULL, parameters=ASSUMED)
     blow = known._replace(wind_speed=8.0, wind_from=0.0)
     for _ in range(round(ASSUMED.wind_time)):
         state = step(state, blow)

@@ -5,12 +5,15 @@ from math import ceil
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.maths import where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.known import Known
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations, through_water
+
+_NO_LOAD = 1.0  # N and N.m, below which no thruster is told to give anything
 
 
 def predict(
@@ -30,7 +33,8 @@ def predict(
         State now, and load of the thrusters, which is held in body axes; floats, (...) arrays or tensors.
     surroundings : Surroundings
         Wind, current and remaining force, held earth-fixed, and remaining moment; the load of the wind follows heading
-        and speed of the ship, that of the current her velocity through the water.
+        and speed of the ship, that of the current her velocity through the water. The error of thrust is held while
+        thrusters are told to give anything.
     horizons : tuple of float, increasing
         How far ahead. [s]
     longest_step : float
@@ -54,15 +58,22 @@ def predict(
     Equations of motion as `ship.vessel`; integration as `core.integrate.midpoint_motion`.
     """
     ship, current = known.ship, (surroundings.current_north, surroundings.current_east)
-    motion = *ship, *through_water(ship.psi, ship.u, ship.v, *current)
+    motion, thrusters = (*ship, *through_water(ship.psi, ship.u, ship.v, *current)), _delivered(known, surroundings)
     predictions, before = [], 0.0
     for horizon in horizons:
         steps = ceil((horizon - before) / longest_step)
         for _ in range(steps):
-            motion = _advance(motion, known.thrusters, surroundings, (horizon - before) / steps, hull=hull, wind=wind)
+            motion = _advance(motion, thrusters, surroundings, (horizon - before) / steps, hull=hull, wind=wind)
         predictions.append(Motion(*motion[:6]))
         before = horizon
     return tuple(predictions)
+
+
+def _delivered(known, surroundings):
+    """What thrusters give: what they are told and their error, or nothing."""
+    acting = abs(known.thrusters[0]) + abs(known.thrusters[1]) + abs(known.thrusters[2]) > _NO_LOAD
+    pairs = zip(known.thrusters, surroundings.thrust_error, strict=True)
+    return [told + where(acting, error, 0.0 * error) for told, error in pairs]
 
 
 def _advance(motion, thrusters, around, h, *, hull, wind):

@@ -99,7 +99,7 @@ def begin(known: Known, *, trained: Trained, hull: HullParameters, parameters: S
     Hybrid
         The state.
     """
-    kinetic = surroundings.unknown(known, parameters=parameters)
+    kinetic = surroundings.unknown(known, hull=hull, parameters=parameters)
     return Hybrid(kinetic, own_record.begin(known, learned=trained.learned, hull=hull))
 
 

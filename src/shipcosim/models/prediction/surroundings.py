@@ -2,7 +2,8 @@
 
 The bias load of the DP observer is one load at one state. Held while the ship drifts, it would push her for ever;
 but what pushes her most is the water's motion, and she comes to move with the water. So the bias is taken apart, into a
-current that loads the hull, and a force: only as she moves does she learn which is which.
+current that loads the hull, and a force: only as she moves does she learn which is which. And into what thrusters give
+beside what they are told: that is gone as soon as they are, while the observer's bias still holds it.
 """
 
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import NamedTuple
 from shipcosim.models.control.observer import DpShip
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.maths import Arithmetic, exp, maximum, sqrt
+from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.known import Known, air_velocity
@@ -18,6 +20,8 @@ from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import through_water
 
 _LEAST = 0.05  # m/s, least half of the span over which slopes are taken
+_STATES = 8  # current, force: north and east each; moment; errors of thrust: X, Y, N
+_ARM = 0.42  # of the length, bow and stern thrusters from midships: assumed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +41,23 @@ class SurroundingsParameters:
     load_noise: float = required(
         "N2.s", "intensity of the white noise of the load that the observer leaves to explain", minimum=1.0
     )
+    force_lever: float = quantity(
+        0.1, "1", "lever of the remaining force and of the noise, over the length", "assumed", minimum=1e-3
+    )
+    thrust_error: float = quantity(
+        0.3,
+        "1",
+        "standard deviation of what thrusters give beside the allocated load, over its size",
+        "assumed; 0.25 to 0.4 alike on worlds 300-311",
+        minimum=0.0,
+    )
+    thrust_error_time: float = quantity(
+        30.0,
+        "s",
+        "time for which the bias holds an error of thrust",
+        "assumed: that of the observer; 25 to 40 s alike on worlds 300-311",
+        minimum=1.0,
+    )
     wind_time: float = quantity(30.0, "s", "time constant of the mean of the wind", "assumed: gusts pass", minimum=1e-3)
 
 
@@ -51,8 +72,10 @@ class Surroundings(NamedTuple):
         Velocity of the water. [m/s]
     force_north, force_east, moment : like wind_north
         Load that neither explains: wave drift, errors of the models. [N, N, N.m]
-    covariance : tuple of four tuples of four, like wind_north
-        Of current north, current east, force north, force east. [products of m/s and N]
+    covariance : tuple of eight tuples of eight, like wind_north
+        Of current north, current east, force north, force east, moment, thrust error. [products of their units]
+    thrust_error : tuple of three, like wind_north
+        What thrusters give beside the allocated load, in body axes, as the bias has it. [N, N, N.m]
     """
 
     wind_north: Arithmetic
@@ -63,32 +86,35 @@ class Surroundings(NamedTuple):
     force_east: Arithmetic
     moment: Arithmetic
     covariance: tuple
+    thrust_error: Load = (0.0, 0.0, 0.0)
 
 
-def unknown(known: Known, *, parameters: SurroundingsParameters) -> Surroundings:
+def unknown(known: Known, *, hull: HullParameters, parameters: SurroundingsParameters) -> Surroundings:
     """Surroundings at the start: the wind as measured, the rest unknown.
 
     Parameters
     ----------
     known : Known
         Floats, (...) arrays or tensors.
+    hull : HullParameters
+        Whose length gives the lever of the remaining force.
     parameters : SurroundingsParameters
         What is assumed.
 
     Returns
     -------
     Surroundings
-        With the current, the force and the moment 0.
+        With the current, the force, the moment and the thrust error 0.
 
     References
     ----------
     Definition.
     """
     zero = 0.0 * known.wind_speed
-    current, force = parameters.current_std * parameters.current_std, parameters.force_std * parameters.force_std
-    variances = (current, current, force, force)
-    covariance = tuple(tuple(zero + variances[i] * (i == j) for j in range(4)) for i in range(4))
-    return Surroundings(*air_velocity(known), zero, zero, zero, zero, zero, covariance)
+    variances = (*(parameters.current_std * parameters.current_std,) * 2, *_of_force(hull, parameters), 0.0, 0.0, 0.0)
+    indices = range(_STATES)
+    covariance = tuple(tuple(zero + variances[i] * (i == j) for j in indices) for i in indices)
+    return Surroundings(*air_velocity(known), zero, zero, zero, zero, zero, covariance, (zero, zero, zero))
 
 
 def step(
@@ -127,17 +153,20 @@ def step(
 
     Notes
     -----
-    A Kalman filter of four states, current V_c (a random walk) and force f (first-order Gauss-Markov), both north and
-    east. The observer of the DP controller has explained the motion by the bias b and its damping -D ν; here the same
-    load is that of the hull in the water, and f:
+    A Kalman filter of eight states: current V_c (a random walk), force f north and east, moment n, and what thrusters
+    give beside the allocated load, e in body axes (first-order Gauss-Markov; the standard deviation of e is in
+    proportion to the allocated load). The observer of the DP controller has explained the motion by the bias b and its
+    damping -D ν; here the same load is that of the hull in the water, and the others:
 
-        b - D ν = τ_hull(ν - R(ψ)ᵀ V_c) + R(ψ)ᵀ f + noise, forward and to starboard.
+        b - D ν = τ_hull(ν - R(ψ)ᵀ V_c) + R(ψ)ᵀ f + (0, 0, n) + e + noise.
+
+    The bias follows with the time of the observer, and e with the same time: when thrust is lost nothing new is added,
+    and what the bias still holds of it fades. `dead_reckoning` leaves it out then.
 
     Hull loads are quadratic and have no slope at rest. So their slopes over the velocity through the water are taken
-    between one standard deviation of the current below and above it, as in a central-difference filter. The moment is
-    what remains of that of the bias. While the measured wind is not believed, its mean is held, and its load taken off
-    the bias, which then has it. Left out: what the added mass does in turns beside its part in the hull's loads,
-    some A22 r u_r.
+    between one standard deviation of the current below and above it, as in a central-difference filter. While the
+    measured wind is not believed, its mean is held, and its load taken off the bias, which then has it. Left out: what
+    the added mass does in turns beside its part in the hull's loads, some A22 r u_r.
 
     References
     ----------
@@ -146,16 +175,20 @@ def step(
     air = _averaged(surroundings, known, h, parameters)
     wind_load = wind_loads(*apparent_wind(*known.ship[2:5], *air), wind=wind)
     left = _left_to_explain(known, wind_load, ship)
-    mean, covariance = _elapsed(surroundings, h, parameters)
+    mean, covariance = _elapsed(surroundings, known.thrusters, h, hull, parameters)
     spread = maximum(sqrt(0.5 * (covariance[0][0] + covariance[1][1])), _LEAST)
-    rows = _slopes(known, mean, spread, hull)
-    missed = _missed(known, left, mean, hull)[:2]
-    predicted, noise = mean, parameters.load_noise / h
-    for innovation, row in zip(missed, rows, strict=True):
+    rows, missed = _slopes(known, mean, spread, hull), _missed(known, left, mean, hull)
+    noise, lever, predicted = parameters.load_noise / h, parameters.force_lever * hull.length, mean
+    for innovation, row, unit in zip(missed, rows, (1.0, 1.0, lever * lever), strict=True):
         explained = sum(slope * (now - before) for slope, now, before in zip(row, mean, predicted, strict=True))
-        mean, covariance = _corrected(mean, covariance, row, innovation - explained, noise)
-    moment = _missed(known, left, mean, hull)[2]
-    return Surroundings(*air, *mean, moment=moment, covariance=covariance)
+        mean, covariance = _corrected(mean, covariance, row, innovation - explained, unit * noise)
+    return Surroundings(*air, *mean[:5], covariance=covariance, thrust_error=tuple(mean[5:]))
+
+
+def _of_force(hull, parameters):
+    """Variances of remaining force, north and east, and moment."""
+    force, lever = parameters.force_std * parameters.force_std, parameters.force_lever * hull.length
+    return force, force, lever * lever * force
 
 
 def _left_to_explain(known, wind_load, ship):
@@ -166,34 +199,41 @@ def _left_to_explain(known, wind_load, ship):
 
 
 def _missed(known, left, mean, hull):
-    """What current and force do not explain of a load."""
-    motion = known.ship
+    """What current, force, moment and errors of thrust do not explain of a load."""
+    motion, error = known.ship, mean[5:]
     X, Y, N = hull_loads(*through_water(*motion[2:5], *mean[:2]), motion.r, hull=hull)
-    force_X, force_Y = to_body(motion.psi, *mean[2:])
-    return left[0] - X - force_X, left[1] - Y - force_Y, left[2] - N
+    force_X, force_Y = to_body(motion.psi, *mean[2:4])
+    return left[0] - X - force_X - error[0], left[1] - Y - force_Y - error[1], left[2] - N - mean[4] - error[2]
 
 
 def _slopes(known, mean, span, hull):
-    """Slopes of the load forward, and of the load to starboard, over current and force, north and east each."""
+    """Slopes of the loads forward, to starboard and in yaw over all states."""
     psi, r = known.ship.psi, known.ship.r
     u_r, v_r = through_water(*known.ship[2:5], *mean[:2])
     over_u = zip(hull_loads(u_r + span, v_r, r, hull=hull), hull_loads(u_r - span, v_r, r, hull=hull), strict=True)
     over_v = zip(hull_loads(u_r, v_r + span, r, hull=hull), hull_loads(u_r, v_r - span, r, hull=hull), strict=True)
-    X_u, Y_u, _ = [(below - above) / (2.0 * span) for above, below in over_u]  # a current takes from u_r
-    X_v, Y_v, _ = [(below - above) / (2.0 * span) for above, below in over_v]
+    X_u, Y_u, N_u = [(below - above) / (2.0 * span) for above, below in over_u]  # a current takes from u_r
+    X_v, Y_v, N_v = [(below - above) / (2.0 * span) for above, below in over_v]
     one = 1.0 + 0.0 * psi
-    return (*to_ned(psi, X_u, X_v), *to_ned(psi, one, 0.0)), (*to_ned(psi, Y_u, Y_v), *to_ned(psi, 0.0, one))
+    return (
+        (*to_ned(psi, X_u, X_v), *to_ned(psi, one, 0.0), 0.0, 1.0, 0.0, 0.0),
+        (*to_ned(psi, Y_u, Y_v), *to_ned(psi, 0.0, one), 0.0, 0.0, 1.0, 0.0),
+        (*to_ned(psi, N_u, N_v), 0.0, 0.0, 1.0, 0.0, 0.0, 1.0),
+    )
 
 
-def _elapsed(surroundings, h, parameters):
-    """Mean and covariance of current and force a sample later, before the measurement."""
-    p, keep = parameters, exp(-h / parameters.force_time)
-    kept = (1.0, 1.0, keep, keep)
-    force = p.force_std * p.force_std * (1.0 - keep * keep)
-    grown = (h * p.current_drift, h * p.current_drift, force, force)
-    mean = [factor * value for factor, value in zip(kept, surroundings[2:6], strict=True)]
-    P = surroundings.covariance
-    covariance = tuple(tuple(kept[i] * kept[j] * P[i][j] + grown[i] * (i == j) for j in range(4)) for i in range(4))
+def _elapsed(surroundings, thrusters, h, hull, parameters):
+    """Mean and covariance of all states a sample later, before the measurement."""
+    p, (X, Y, N), arm = parameters, thrusters, _ARM * hull.length
+    keep, held, turning = exp(-h / p.force_time), exp(-h / p.thrust_error_time), N / arm
+    kept = (1.0, 1.0, keep, keep, keep, held, held, held)
+    force = [(1.0 - keep * keep) * variance for variance in _of_force(hull, p)]
+    error = (1.0 - held * held) * p.thrust_error * p.thrust_error * (X * X + Y * Y + turning * turning)
+    grown = (h * p.current_drift, h * p.current_drift, *force, error, error, arm * arm * error)
+    before = (*surroundings[2:7], *surroundings.thrust_error)
+    mean = [factor * value for factor, value in zip(kept, before, strict=True)]
+    P, indices = surroundings.covariance, range(_STATES)
+    covariance = tuple(tuple(kept[i] * kept[j] * P[i][j] + grown[i] * (i == j) for j in indices) for i in indices)
     return mean, covariance
 
 
