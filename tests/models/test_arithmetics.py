@@ -663,7 +663,7 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered |= {neural.taken, neural.kept_shares, neural.completed, neural.power}
     # vectors and records: test_own_record compares them
     covered |= {own_record.begin, own_record.step, own_record.predict, own_record.thrust_told, own_record.delivered}
-    covered |= {own_record.residual_load}
+    covered |= {own_record.residual_load, own_record.member}
     covered |= {drive.drive_step}  # by the steps of both thrusters
     covered |= {propeller.loads_at}  # by propeller_loads
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -42,7 +42,7 @@ def measure(name: str, record: Record, starts=STARTS) -> dict[str, np.ndarray]:
     -------
     dict of str to array
         `errors` (starts, horizons, 3): north, east, heading. [m, m, rad] `regions` (starts, horizons, 2): radius and
-        half-width. [m, rad] `learned` (starts,). [1] `seconds` (starts,): time of a step. [s]
+        half-width. [m, rad] `learned` (starts,). [1] `seconds` (starts,): processor time of a step. [s]
     """
     fmu, lost = PREDICTORS[name](), int(np.flatnonzero(record.time == record.lost_at)[0])
     found = {"errors": [], "regions": [], "learned": [], "seconds": []}
@@ -50,10 +50,10 @@ def measure(name: str, record: Record, starts=STARTS) -> dict[str, np.ndarray]:
     fmu.start()
     for row in range(1, lost + max(starts) + 1):
         _give(fmu, record.known[row])
-        before = perf_counter()
+        before = process_time()
         fmu.step(float(record.time[row]), 1.0)
         if row - lost in starts:
-            found["seconds"].append(perf_counter() - before)
+            found["seconds"].append(process_time() - before)
             found["errors"].append(_errors(fmu, record.truth, row))
             ends = [f"{end:g}" for end in HORIZONS]
             found["regions"].append(

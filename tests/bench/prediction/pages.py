@@ -147,8 +147,9 @@ def steps(measures: Measures) -> str:
     for name, found in measures.items():
         seconds = 1e3 * np.concatenate([one["seconds"] for one in found[1.0]])
         rows.append((name, f"{np.median(seconds):.2f}", f"{np.quantile(seconds, 0.99):.2f}"))
-    return "## Time of one prediction\n\nOne step of the predictor, 60 s ahead, on one core.\n\n" + _table(
-        ("predictor", "median [ms]", "99 % [ms]"), rows
+    return (
+        "## Time of one prediction\n\nProcessor time of one step of the predictor, 60 s ahead, on one core.\n\n"
+        + _table(("predictor", "median [ms]", "99 % [ms]"), rows)
     )
 
 

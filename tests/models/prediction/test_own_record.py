@@ -170,6 +170,18 @@ def test_a_usual_drift_is_predicted_with_what_is_learned():
     assert math.dist(found[-1][:2], alone[-1][:2]) > 0.01
 
 
+def test_members_one_by_one_in_floats_predict_what_they_predict_together():
+    samples = list(held_then_adrift())
+    state, known = hybrid(samples), samples[-1]
+    options = {"horizons": HORIZONS, "steps": drift_off.STEPS, **MODEL}
+    together = own_record.predict(state.own, known, learned=TRAINED.learned, **options)
+    for index in range(len(TRAINED.learned.mean)):
+        record, learned = own_record.member(state.own, TRAINED.learned, index)
+        alone = own_record.predict(record, known, learned=learned, **options)
+        assert all(type(value) is float for value in alone[-1])
+        np.testing.assert_allclose(np.array(alone), np.array(together)[..., index], rtol=1e-12, atol=1e-12)
+
+
 @pytest.mark.parametrize("far", ["speed", "wind", "turning", "disbelieved"])
 def test_far_from_what_was_learned_it_is_the_kinetic_predictor(far):
     samples = list(held_then_adrift())

@@ -173,11 +173,25 @@ def predict(
     alone = dead_reckoning.predict(
         known, state.kinetic, horizons=horizons, longest_step=longest_step, hull=hull, wind=wind
     )
-    members = own_record.predict(
-        state.own, known, horizons=horizons, steps=STEPS, learned=trained.learned, hull=hull, wind=wind
+    members = _ahead(
+        state.own, known, trained.learned, {"horizons": horizons, "steps": STEPS, "hull": hull, "wind": wind}
     )
     share = trust(measures(state.own, known, members[-1], trained.learned), trained.limits) * known.wind_believed
     return tuple(blended(a, mean(b), share) for a, b in zip(alone, members, strict=True)), share
+
+
+def _ahead(own, known, learned, options):
+    """Predictions of all members; one after another in floats where there is one ship, which is quicker."""
+    if own.mean.ndim > 2:
+        return own_record.predict(own, known, learned=learned, **options)
+    found = []
+    try:
+        for index in range(len(own.mean)):
+            record, believed = own_record.member(own, learned, index)
+            found.append(own_record.predict(record, known, learned=believed, **options))
+    except (ValueError, IndexError, OverflowError):  # what is no number stops floats; in arrays it goes on as NaN
+        return own_record.predict(own, known, learned=learned, **options)
+    return [Motion(*np.array(motions).T) for motions in zip(*found, strict=True)]
 
 
 def mean(members: Motion) -> Motion:
