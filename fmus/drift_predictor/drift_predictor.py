@@ -1,5 +1,7 @@
 """FMU that predicts the drift of a ship, with what was learned over many ships and of her own record."""
 
+import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 from shipcosim.angles import wrap
@@ -29,10 +31,17 @@ class DriftPredictor(MotionPredictor):
     longest_step = Parameter(2.0, "s", "longest step of the integration without what is learned", minimum=0.01)
     variant = Parameter("ours", "1", "what predicts: the name of a file of weights, ours or paper-iv", origin="choice")
 
+    own_regions = Parameter(
+        True, "1", "regions are those calibrated for the variant, and not those of the parameters", origin="choice"
+    )
+
     def begin(self, known):
         files = {file.stem: file for file in WEIGHTS.glob("*.npz")}
         if self.variant not in files:
             raise ValueError(f"variant '{self.variant}': there is none. There are {', '.join(sorted(files))}.")
+        if self.own_regions:
+            widths = tomllib.loads((WEIGHTS / "regions.toml").read_text(encoding="utf-8"))
+            self.regions = replace(self.regions, **widths[self.variant])
         arrays = read_arrays(files[self.variant])
         if self.variant == "paper-iv":
             if self.prediction_period != paper_iv.PERIOD:

@@ -97,11 +97,12 @@ def errors(measures: Measures, first: int) -> str:
 
 
 def regions(measures: Measures) -> str:
-    """How many truths the 90 % regions have."""
+    """How many truths the 90 % regions have; at other distances than 1 of the first 20 starts."""
     rows = []
     for name, found in measures.items():
-        for first in FIRST:
-            share, low, high, size = _coverage(found[1.0], first)
+        cases = [(1.0, first) for first in FIRST] + [(one, max(FIRST)) for one in sorted(found) if one != 1.0]
+        for distance, first in cases:
+            share, low, high, size = _coverage(found[distance], first)
             if not np.isfinite(share).all():
                 continue
             for a, what in enumerate(("places", "headings")):
@@ -111,10 +112,10 @@ def regions(measures: Measures) -> str:
                     f"{factor * size[k, a]:.2f} {unit}"
                     for k in range(len(HORIZONS))
                 ]
-                rows.append((name, f"first {first}", what, *cells))
+                rows.append((name, f"{distance:g}", f"first {first}", what, *cells))
     if not rows:
         return "## Regions\n\nNo predictor has calibrated regions.\n"
-    head = ("predictor", "starts", "of", *(f"{horizon:.0f} s" for horizon in HORIZONS))
+    head = ("predictor", "distance", "starts", "of", *(f"{horizon:.0f} s" for horizon in HORIZONS))
     return "## Regions of 90 %\n\nShare of truths within, and mean half-width.\n\n" + _table(head, rows)
 
 
@@ -128,16 +129,16 @@ def distances(measures: Measures) -> str:
             for distance in known:
                 position = by_world(found[distance], first)[:, -1]
                 kinetic = by_world(measures["kinetic"][distance], first)[:, -1]
-                change = (
-                    "" if name == "kinetic" else f" ({100 * (position[:, 3].mean() / kinetic[:, 3].mean() - 1):+.0f} %)"
-                )
-                cells.append(f"{position[:, 3].mean():.2f} m{change}, {position[:, 2].mean():.1f} deg")
+                change = [100 * (position[:, k].mean() / kinetic[:, k].mean() - 1) for k in (3, 2)]
+                said = "" if name == "kinetic" else f" ({change[0]:+.0f}, {change[1]:+.0f} %)"
+                cells.append(f"{position[:, 3].mean():.2f} m, {position[:, 2].mean():.1f} deg{said}")
             rows.append((name, f"first {first}", *cells))
     text = (
         "Errors 60 s ahead of position and heading, by the worlds' distance: 0 where truth and model are alike but for "
-        "weather and sensors.\n"
+        "weather and sensors; in brackets against the kinetic predictor, in position and heading.\n"
     )
-    head = ("predictor", "starts", *(f"distance {distance:g}" for distance in known))
+    worlds = next(iter(measures.values()))
+    head = ("predictor", "starts", *(f"distance {distance:g}, {len(worlds[distance])} worlds" for distance in known))
     return "## How far truth and model are apart\n\n" + text + "\n" + _table(head, rows)
 
 

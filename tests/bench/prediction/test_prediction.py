@@ -75,7 +75,7 @@ def test_the_page_says_what_is_met_and_what_is_missed():
     assert "north -60 %, east -60 %, yaw -60 % | **missed** |" in text.partition("first 20")[0]
     assert "-50 % in north, east and yaw | north -60 %, east -60 %, yaw -60 % | met |" in text
     assert "| ours: 90 % regions have 85 to 95 % | 100 to 100 % | **missed** |" in text
-    assert "distance 0 | distance 1" in text and "No predictor" not in text
+    assert "distance 0, 3 worlds | distance 1, 3 worlds" in text and "No predictor" not in text
 
 
 def test_measures_are_kept_and_not_redone(tmp_path, monkeypatch):

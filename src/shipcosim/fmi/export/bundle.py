@@ -15,7 +15,7 @@ SHIPCOSIM = Path(__file__).resolve().parents[2]
 ROOT = b'"""What this FMU needs of shipcosim."""\n'
 CARRIED_BY_HOST = {"numpy"} | set(sys.stdlib_module_names)
 WEIGHTS = "weights"
-"""Folder beside a script with trained weights as .npz files, which come along."""
+"""Folder beside a script with trained weights as .npz files, and what is calibrated as .toml, which come along."""
 
 
 @dataclass
@@ -125,7 +125,8 @@ def entry_module(bundled: Bundle, cls: str) -> bytes:
 
 def _weights(folder: Path) -> dict[str, bytes]:
     """Files of trained weights beside a script, by their path."""
-    return {f"{WEIGHTS}/{file.name}": file.read_bytes() for file in sorted((folder / WEIGHTS).glob("*.npz"))}
+    files = [file for kind in ("npz", "toml") for file in (folder / WEIGHTS).glob(f"*.{kind}")]
+    return {f"{WEIGHTS}/{file.name}": file.read_bytes() for file in sorted(files)}
 
 
 def _collect(script: Path) -> dict[str, Module]:

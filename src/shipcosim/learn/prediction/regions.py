@@ -4,7 +4,7 @@ A predictor is an FMU. It is run alone over the records of worlds, with regions 
 factors by which it widens regions. The errors over those factors are the scores, whose quantile is the width.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
 
@@ -48,7 +48,13 @@ class Scores:
     factors: np.ndarray
 
 
-def scores(record: Record, fmu: str = "predictor", *, by_truth: bool = False) -> Scores:
+def scores(
+    record: Record,
+    fmu: str = "predictor",
+    *,
+    by_truth: bool = False,
+    settings: Mapping[str, float | str | bool] | None = None,
+) -> Scores:
     """Run a predictor over a record, and score what it says from the loss of thrust on.
 
     Parameters
@@ -59,13 +65,15 @@ def scores(record: Record, fmu: str = "predictor", *, by_truth: bool = False) ->
         Name of a predictor's FMU, which gets the numbers of the system's predictor.
     by_truth : bool
         Errors against the truth, for tests. Regions are calibrated against what the ship knows of herself afterwards.
+    settings : mapping of str, optional
+        Parameters of the FMU that differ from those of the system's predictor: its variant, for one.
 
     Returns
     -------
     Scores
         One row a second.
     """
-    table = _predictions(record, fmu)
+    table = _predictions(record, fmu, settings or {})
     made = np.rint(np.asarray(table[f"{fmu}.predicted_at"])).astype(int)
     kept = np.flatnonzero((made > record.lost_at) & (np.diff(made, prepend=-1) > 0))
     made, reached = made[kept], record.truth if by_truth else record.known
@@ -151,13 +159,14 @@ def _quantile(found: Iterable[Scores], kind: str, horizon: int, level: float, *,
     return float(values[min(len(values), ceil(level * len(values))) - 1])
 
 
-def _predictions(record: Record, fmu: str):
+def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | bool]):
     """Table of a predictor's outputs over a record, one row a second."""
     nominal = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
     system = read_system(library.find("fmu", fmu))
     known = system.components[fmu].fmu.variables
     values = {name: value for name, value in nominal.components["predictor"].start.items() if name in known}
-    system = with_values(system, {f"{fmu}.{name}": value for name, value in (values | UNCALIBRATED).items()})
+    values |= {**UNCALIBRATED, **settings}
+    system = with_values(system, {f"{fmu}.{name}": value for name, value in values.items()})
     columns = [(name, record.known[:, i], known[name].unit or "1", name) for i, name in enumerate(KNOWN)]
     scenario = Scenario(system=fmu, stop_time=float(record.time[-1]), step_size=1.0)
     return simulate(system, scenario, RunOptions(inputs=make_table(record.time, columns)))

@@ -379,6 +379,10 @@ def member(record: Record, learned: Learned, index: int) -> tuple[Record, Learne
     -------
     tuple of Record and Learned
         Of this member.
+
+    References
+    ----------
+    Definition.
     """
 
     def own(values):

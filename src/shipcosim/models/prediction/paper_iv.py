@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.core.kinematics import to_ned
-from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.known import Known, air_velocity
 from shipcosim.models.ship.hull import HullParameters
@@ -103,8 +104,8 @@ def outputs(ensemble: Ensemble, inputs: np.ndarray) -> np.ndarray:
 
 
 def model_acceleration(
-    psi: float, nu: tuple, air: tuple, thrusters: tuple, *, hull: HullParameters, wind: WindParameters
-) -> tuple[float, float, float]:
+    psi: Arithmetic, nu: tuple, air: tuple, thrusters: tuple, *, hull: HullParameters, wind: WindParameters
+) -> Load:
     """Acceleration over ground by the equations of motion, without a current.
 
     Parameters
