@@ -37,6 +37,7 @@ COMPONENTS = {
     "PowerParameters": "allocator",
     "SurroundingsParameters": "predictor",
     "HelmParameters": "docking_predictor",
+    "ObserverAhead": "predictor",
 }
 """Class of parameters: a component that has them."""
 
@@ -93,6 +94,7 @@ COMPONENT_OF = {
     "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
+    "dp_predictor": "predictor",
     "drift_predictor": "predictor",
 }
 """FMU: the component of the DP ship that it is."""

@@ -21,6 +21,9 @@ from shipcosim.cosim import simulate
 from shipcosim.fmi.export.description import table_of_variables
 from shipcosim.library import build_stale
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.control.pid import ControlParameters
+from shipcosim.models.control.reference import ReferenceParameters
+from shipcosim.models.prediction.controlled import ObserverAhead
 from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table, read_table, write_table
 from shipcosim.ships import read_ship
@@ -44,6 +47,7 @@ COMPONENTS = {
     "neural_allocator": "allocator",
     "thruster_monitor": "monitor",
     "predictor": "predictor",
+    "dp_predictor": "predictor",
     "drift_predictor": "predictor",
 }
 """FMU: the component of gunnerus_dp whose inputs it gets."""
@@ -59,7 +63,13 @@ ELSEWHERE = {
     "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
 }
 """FMU that she has not: a ship and her component that it is."""
-OTHERS = {"optimal_allocator": [AllocationParameters], "neural_allocator": [AllocationParameters]}
+LOOP = [ReferenceParameters, ControlParameters, AllocationParameters, ObserverAhead]
+OTHERS = {
+    "optimal_allocator": [AllocationParameters],
+    "neural_allocator": [AllocationParameters],
+    "predictor": LOOP,
+    "drift_predictor": LOOP,
+}
 """FMU that can take a component's place: what that component has of the ship and this one does not need."""
 PARAMETERS = {
     "azimuth_thruster": {"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0},

@@ -21,6 +21,9 @@ class Reference(Fmu):
     x_d_ddot = Output("m/s2", "desired acceleration north")
     y_d_ddot = Output("m/s2", "desired acceleration east")
     r_d_dot = Output("rad/s2", "desired yaw acceleration")
+    x_goal = Output("m", "north position that the reference goes to")
+    y_goal = Output("m", "east position that the reference goes to")
+    psi_goal = Output("rad", "heading that the reference goes to, clockwise from north")
 
     model = Parameters(ReferenceParameters)
     x_start = Parameter(0.0, "m", "north position that the reference starts from, at rest")
@@ -38,3 +41,4 @@ class Reference(Fmu):
         self.x_d, self.y_d, self.psi_d = state.x, state.y, wrap(state.psi)
         self.x_d_dot, self.y_d_dot, self.r_d = state.x_dot, state.y_dot, state.r
         self.x_d_ddot, self.y_d_ddot, self.r_d_dot = state.x_ddot, state.y_ddot, state.r_dot
+        self.x_goal, self.y_goal, self.psi_goal = self.x_set, self.y_set, self.psi_set

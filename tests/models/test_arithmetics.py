@@ -47,7 +47,16 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
-from shipcosim.models.prediction import dead_reckoning, known, motion_filter, outage, own_record, regions, surroundings
+from shipcosim.models.prediction import (
+    controlled,
+    dead_reckoning,
+    known,
+    motion_filter,
+    outage,
+    own_record,
+    regions,
+    surroundings,
+)
 from shipcosim.models.propulsion import (
     azimuth,
     drive,
@@ -152,6 +161,14 @@ LAYER = extreme_learning.Network(
     most=(50.0,) * 6,
 )
 PLAIN = parameters(filtered_pid.FilteredPidParameters, "osv")
+AHEAD_LOOP = controlled.Loop(
+    parameters(reference.ReferenceParameters),
+    DP_SHIP,
+    parameters(control.ControlParameters),
+    parameters(allocation.AllocationParameters),
+    allocation.design(parameters(allocation.AllocationParameters)),
+    parameters(controlled.ObserverAhead),
+)
 ASSUMED = parameters(surroundings.SurroundingsParameters)
 RECKONING = motion_filter.Design(
     **dict(bow=2e-7, stern=1e-7, ahead=4e-5, astern=5e-5, surge_time=40.0, sway_time=30.0, wind_surge_1=-1e-5),
@@ -271,6 +288,14 @@ def of_prediction(*row):
     return start, surroundings.Surroundings(
         -6.0, 3.0, 0.2, -0.1, 2e2, 5e2 + 0.0 * start.ship.u, 1e3, (), (1e2, 2e2, 3e3)
     )
+
+
+def of_loop(*row):
+    """On the way to a place, with the wind half believed."""
+    start, around = of_prediction(*row)
+    wanted = control.Desired(*(0.9 * value for value in row[:3]), 0.1, 0.0, 0.01, -1e-3, 0.0, 1e-4)
+    goal = row[0] + 5.0, row[1], row[2] + 0.5
+    return start._replace(desired=wanted, goal=goal, wave_frequency=1.0 + 0.1 * row[3]), around
 
 
 def of_fixes(*row):
@@ -597,6 +622,20 @@ CASES = [
     Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(hull=AROUND["hull"], parameters=ASSUMED)),
     Case(surroundings.step, SHIP, of_surroundings, dict(h=1.0, **AROUND)),
     Case(dead_reckoning.predict, SHIP, of_prediction, AHEAD),
+    Case(
+        dead_reckoning.advance,
+        SHIP,
+        lambda *row: ((*row, row[3] - 0.1, row[4] + 0.2), (1e3, 2e3, -3e4), of_prediction(*row)[1]),
+        dict(h=1.5, hull=LONG, wind=AHEAD["wind"]),
+    ),
+    Case(controlled.predict, SHIP, of_loop, dict(loop=AHEAD_LOOP, **AHEAD)),
+    Case(observer.pace, [(0.5,), (1.0,), (3.0,)], constants=dict(full_frequency=1.1)),
+    Case(
+        reference.resumed,
+        [(1.0, -2.0, 0.4, 0.1, 0.0, 0.01, -1e-3, 0.0, 1e-4)],
+        lambda *row: (row,),
+        dict(parameters=parameters(reference.ReferenceParameters)),
+    ),
     Case(
         vessel.carried,
         [(*ship, 0.3, -0.1) for ship in SHIP],

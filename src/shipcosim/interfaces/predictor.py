@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models.control.pid import Desired
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.prediction.known import Known
@@ -11,6 +12,7 @@ from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 
 HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
 NO_LOAD = 1.0  # N and N.m, below which no thruster is told to give anything
+NO_GOAL = 1e9  # m, where no reference model goes: nobody says where she goes to
 
 
 class Prediction(NamedTuple):
@@ -33,6 +35,11 @@ class Prediction(NamedTuple):
     position_regions: tuple[float, ...]
     heading_regions: tuple[float, ...]
     learned: float = 0.0
+
+
+def thrust_is_lost(known: Known) -> bool:
+    """Whether no thruster is told to give anything."""
+    return all(abs(load) < NO_LOAD for load in known.thrusters)
 
 
 class MotionPredictor(Fmu):
@@ -66,6 +73,19 @@ class MotionPredictor(Fmu):
     wind_speed_meas = Input("m/s", "measured apparent wind speed at the mast")
     wind_from_meas = Input("rad", "measured direction of the apparent wind at the mast, clockwise from the bow")
     wind_rejected = Input("1", "the anemometer is lost or not believed: the bias has the wind's load", start=False)
+    x_d = Input("m", "desired north position")
+    y_d = Input("m", "desired east position")
+    psi_d = Input("rad", "desired heading, clockwise from north")
+    x_d_dot = Input("m/s", "desired velocity north")
+    y_d_dot = Input("m/s", "desired velocity east")
+    r_d = Input("rad/s", "desired yaw rate")
+    x_d_ddot = Input("m/s2", "desired acceleration north")
+    y_d_ddot = Input("m/s2", "desired acceleration east")
+    r_d_dot = Input("rad/s2", "desired yaw acceleration")
+    wave_frequency_hat = Input("rad/s", "frequency that the controller's wave filter has adapted to", start=1.0)
+    x_goal = Input("m", "north position that the reference goes to; as it starts: nobody says", start=NO_GOAL)
+    y_goal = Input("m", "east position that the reference goes to")
+    psi_goal = Input("rad", "heading that the reference goes to, clockwise from north")
 
     predicted_at = Output("s", "time at which the prediction was made, from which its seconds count")
     x_10 = Output("m", "north position in 10 s")
@@ -109,7 +129,7 @@ class MotionPredictor(Fmu):
         while self.awaited and self.awaited[0][0] <= t + 1e-6:
             foreseen = self.awaited.pop(0)[1]
             self.errors = own_errors(self.errors, known.ship, foreseen, since, regions=self.regions)
-        without = all(abs(load) < NO_LOAD for load in known.thrusters)
+        without = thrust_is_lost(known)
         self.lost_for = max(self.lost_for, 0.0) + since if without else -1.0
 
     def begin(self, known: Known) -> Any:
@@ -126,13 +146,19 @@ class MotionPredictor(Fmu):
 
     def _known(self):
         ship = Motion(self.x_hat, self.y_hat, self.psi_hat, self.u_hat, self.v_hat, self.r_hat)
-        return Known(
+        known = Known(
             ship,
             (self.tau_X_bias, self.tau_Y_bias, self.tau_N_bias),
             (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated),
             *wind_from_mast(self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast),
             1.0 - self.wind_rejected,
         )
+        if self.x_goal == NO_GOAL:
+            return known
+        place, rates = (self.x_d, self.y_d, self.psi_d), (self.x_d_dot, self.y_d_dot, self.r_d)
+        desired = Desired(*place, *rates, self.x_d_ddot, self.y_d_ddot, self.r_d_dot)
+        goal = self.x_goal, self.y_goal, self.psi_goal
+        return known._replace(desired=desired, goal=goal, wave_frequency=self.wave_frequency_hat)
 
     def _show(self, known, t):
         self.predicted_at = t

@@ -21,7 +21,7 @@ def recorded(seed: int, distance: float, folder: Path = FOLDER) -> Record:
     path = folder / f"record-{seed}-{distance:g}.npz"
     if not path.exists():
         record = sail(draw(seed, distance))
-        _save(path, seed=seed, lost_at=record.lost_at, time=record.time, known=record.known, truth=record.truth)
+        save(path, seed=seed, lost_at=record.lost_at, time=record.time, known=record.known, truth=record.truth)
     with np.load(path) as kept:
         return Record(int(kept["seed"]), float(kept["lost_at"]), kept["time"], kept["known"], kept["truth"])
 
@@ -30,7 +30,7 @@ def measured(name: str, seed: int, distance: float, folder: Path = FOLDER) -> di
     """Measures of a predictor in a world, as `measure` gives them."""
     path = folder / f"{name.replace(' ', '-')}-{seed}-{distance:g}.npz"
     if not path.exists():
-        _save(path, **measure(name, recorded(seed, distance, folder)))
+        save(path, **measure(name, recorded(seed, distance, folder)))
     with np.load(path) as kept:
         return dict(kept)
 
@@ -46,15 +46,15 @@ def measure(name: str, record: Record, starts=STARTS) -> dict[str, np.ndarray]:
     """
     fmu, lost = PREDICTORS[name](), int(np.flatnonzero(record.time == record.lost_at)[0])
     found = {"errors": [], "regions": [], "learned": [], "seconds": []}
-    _give(fmu, record.known[0])
+    give(fmu, KNOWN, record.known[0])
     fmu.start()
     for row in range(1, lost + max(starts) + 1):
-        _give(fmu, record.known[row])
+        give(fmu, KNOWN, record.known[row])
         before = process_time()
         fmu.step(float(record.time[row]), 1.0)
         if row - lost in starts:
             found["seconds"].append(process_time() - before)
-            found["errors"].append(_errors(fmu, record.truth, row))
+            found["errors"].append(errors(fmu, record.truth, row))
             ends = [f"{end:g}" for end in HORIZONS]
             found["regions"].append(
                 [[getattr(fmu, f"{what}_region_{end}") for what in ("position", "heading")] for end in ends]
@@ -63,12 +63,14 @@ def measure(name: str, record: Record, starts=STARTS) -> dict[str, np.ndarray]:
     return {key: np.array(values, float) for key, values in found.items()}
 
 
-def _give(fmu, row):
-    for name, value in zip(KNOWN, row, strict=True):
+def give(fmu, names, row):
+    """Inputs of a predictor by name."""
+    for name, value in zip(names, row, strict=True):
         setattr(fmu, name, bool(value) if name == "wind_rejected" else float(value))
 
 
-def _errors(fmu, truth, row):
+def errors(fmu, truth, row):
+    """Errors by horizon of what was predicted at a row: north, east, heading. [m, m, rad]"""
     off = []
     for end in HORIZONS:
         x, y, psi = truth[row + round(end), :3]
@@ -77,7 +79,7 @@ def _errors(fmu, truth, row):
     return off
 
 
-def _save(path, **arrays):
+def save(path, **arrays):
     """Write a file that is there as a whole or not at all, also where two processes write it."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(f".{os.getpid()}.npz")

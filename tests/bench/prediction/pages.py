@@ -74,7 +74,7 @@ def reached(measures: Measures) -> str:
         rows.append(("paper IV's scheme, first 5 starts, 60 s: the thesis has -67, -45, -51 %", said, ""))
     if not rows:
         return ""
-    return "## What is to be reached\n\n" + _table(("to reach, against the kinetic predictor", "measured", ""), rows)
+    return "## What is to be reached\n\n" + table(("to reach, against the kinetic predictor", "measured", ""), rows)
 
 
 def errors(measures: Measures, first: int) -> str:
@@ -92,7 +92,7 @@ def errors(measures: Measures, first: int) -> str:
             )
             rows.append((name, *cells, *against))
         head = (f"{horizon:.0f} s ahead", "north [m]", "east [m]", "yaw [deg]", "position [m]")
-        parts.append(_table((*head, "position against kinetic", "N / E / yaw [%]"), rows))
+        parts.append(table((*head, "position against kinetic", "N / E / yaw [%]"), rows))
     return "\n".join(parts)
 
 
@@ -116,7 +116,7 @@ def regions(measures: Measures) -> str:
     if not rows:
         return "## Regions\n\nNo predictor has calibrated regions.\n"
     head = ("predictor", "distance", "starts", "of", *(f"{horizon:.0f} s" for horizon in HORIZONS))
-    return "## Regions of 90 %\n\nShare of truths within, and mean half-width.\n\n" + _table(head, rows)
+    return "## Regions of 90 %\n\nShare of truths within, and mean half-width.\n\n" + table(head, rows)
 
 
 def distances(measures: Measures) -> str:
@@ -139,7 +139,7 @@ def distances(measures: Measures) -> str:
     )
     worlds = next(iter(measures.values()))
     head = ("predictor", "starts", *(f"distance {distance:g}, {len(worlds[distance])} worlds" for distance in known))
-    return "## How far truth and model are apart\n\n" + text + "\n" + _table(head, rows)
+    return "## How far truth and model are apart\n\n" + text + "\n" + table(head, rows)
 
 
 def steps(measures: Measures) -> str:
@@ -150,7 +150,7 @@ def steps(measures: Measures) -> str:
         rows.append((name, f"{np.median(seconds):.2f}", f"{np.quantile(seconds, 0.99):.2f}"))
     return (
         "## Time of one prediction\n\nProcessor time of one step of the predictor, 60 s ahead, on one core.\n\n"
-        + _table(("predictor", "median [ms]", "99 % [ms]"), rows)
+        + table(("predictor", "median [ms]", "99 % [ms]"), rows)
     )
 
 
@@ -171,6 +171,7 @@ def _met(is_met):
     return "met" if is_met else "**missed**"
 
 
-def _table(head, rows):
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table in Markdown."""
     lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *(f"| {' | '.join(row)} |" for row in rows)]
     return "\n".join(lines) + "\n"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from ships import parameters
 
-from shipcosim.models.control.reference import ReferenceParameters, at_rest, critically_damped, step
+from shipcosim.models.control.reference import ReferenceParameters, at_rest, critically_damped, resumed, step
 
 PARAMETERS = parameters(ReferenceParameters)
 W = PARAMETERS.position_frequency
@@ -64,3 +64,14 @@ def test_limited_speed_is_kept_on_the_straight_line_to_the_setpoint():
 def test_limit_that_is_never_reached_changes_nothing_once_the_setpoint_is_there():
     wide = replace(PARAMETERS, speed_max=1e6, yaw_rate_max=1e6)
     assert run((20.0, 5.0, 1.0), 50.0, 0.5, wide)[-1] == pytest.approx(run((20.0, 5.0, 1.0), 50.0, 0.5)[-1])
+
+
+@pytest.mark.parametrize("speed_max", [0.0, 0.2])
+def test_reference_goes_on_from_its_motion_as_if_never_interrupted(speed_max):
+    """Exactly without a limit of speed; behind one, from where it has come up to that speed."""
+    parameters = replace(PARAMETERS, speed_max=speed_max)
+    states = run((60.0, -20.0, 0.5), 250.0, 0.5, parameters)
+    again = resumed(states[300][:9], parameters=parameters)
+    for state in states[301:]:
+        again = step(again, (60.0, -20.0, 0.5), 0.5, parameters=parameters)
+        assert again[:3] == pytest.approx(state[:3], abs=0.1 if speed_max else 1e-9)

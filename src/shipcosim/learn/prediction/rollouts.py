@@ -72,9 +72,9 @@ def tensors(record: Any) -> Any:
 
 
 def mapped(function: Any, record: Any) -> Any:
-    """Nested tuples with a function of each array in them."""
+    """Nested tuples with a function of each array in them; what is not known stays so."""
     if not isinstance(record, tuple):
-        return function(record)
+        return None if record is None else function(record)
     parts = [mapped(function, part) for part in record]
     return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
 
@@ -83,7 +83,7 @@ def stacked(records: Sequence[Any], library: Any) -> Any:
     """Nested tuples of one form as one, their arrays stacked along a new first axis."""
     first = records[0]
     if not isinstance(first, tuple):
-        return library.stack(list(records))
+        return None if first is None else library.stack(list(records))
     parts = [stacked([record[k] for record in records], library) for k in range(len(first))]
     return type(first)(*parts) if hasattr(first, "_fields") else tuple(parts)
 

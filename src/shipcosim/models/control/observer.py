@@ -278,6 +278,28 @@ def step(
     )
 
 
+def pace(wave_frequency: Arithmetic, full_frequency: float) -> Arithmetic:
+    """How quick observer and law are: in long waves they slow down with the sea.
+
+    Parameters
+    ----------
+    wave_frequency : float or (...) array or tensor
+        Middle frequency of the wave motion. [rad/s]
+    full_frequency : float
+        Wave frequency below which they slow down. [rad/s]
+
+    Returns
+    -------
+    like wave_frequency
+        1 in short waves. [1]
+
+    References
+    ----------
+    Definition.
+    """
+    return minimum(1.0, wave_frequency / full_frequency)
+
+
 def _acceleration(e, load, *, ship, inverse_mass):
     """Acceleration of the low-frequency ship in body axes."""
     c, s = cos(e.psi), sin(e.psi)
@@ -387,4 +409,4 @@ def _wave_frequency(e, swings, parameters):
 
 def _paced(frequency, power, parameters):
     """Wave frequency, power, and the pace of observer and law."""
-    return frequency, power, minimum(1.0, frequency / parameters.full_frequency)
+    return frequency, power, pace(frequency, parameters.full_frequency)

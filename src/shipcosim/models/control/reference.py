@@ -3,6 +3,7 @@
 Each axis is a critically damped filter of third order, integrated exactly, behind a limit of the setpoint's speed.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -73,6 +74,35 @@ def at_rest(x: Arithmetic, y: Arithmetic, psi: Arithmetic) -> ReferenceState:
     """
     zero = 0.0 * x
     return ReferenceState(x, y, psi, zero, zero, zero, zero, zero, zero, x, y, psi)
+
+
+def resumed(motion: Sequence[Arithmetic], *, parameters: ReferenceParameters) -> ReferenceState:
+    """State of a reference of which only the motion is known, as it is passed on to a controller.
+
+    Parameters
+    ----------
+    motion : sequence of nine floats, (...) arrays or tensors
+        The first nine fields of `ReferenceState`. [m, m, rad, m/s, m/s, rad/s, m/s2, m/s2, rad/s2]
+    parameters : ReferenceParameters
+        Natural frequencies.
+
+    Returns
+    -------
+    ReferenceState
+        The state.
+
+    Notes
+    -----
+    The input of the filter is taken to move on evenly: it is ahead by 3/w of the rate and 3/w² of the second
+    derivative. Only behind a limit of speed does it matter; without one the next step takes the setpoint.
+
+    References
+    ----------
+    (d/dt + w)³ e = 0 without its third derivative.
+    """
+    of_position, of_heading = parameters.position_frequency, parameters.heading_frequency
+    axes = zip(motion[:3], motion[3:6], motion[6:], (of_position, of_position, of_heading), strict=True)
+    return ReferenceState(*motion, *(x + 3.0 / w * (rate + second / w) for x, rate, second, w in axes))
 
 
 def step(

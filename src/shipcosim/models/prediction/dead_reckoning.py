@@ -6,7 +6,7 @@ from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import where
-from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.known import Known
 from shipcosim.models.prediction.surroundings import Surroundings
@@ -63,7 +63,7 @@ def predict(
     for horizon in horizons:
         steps = ceil((horizon - before) / longest_step)
         for _ in range(steps):
-            motion = _advance(motion, thrusters, surroundings, (horizon - before) / steps, hull=hull, wind=wind)
+            motion = advance(motion, thrusters, surroundings, (horizon - before) / steps, hull=hull, wind=wind)
         predictions.append(Motion(*motion[:6]))
         before = horizon
     return tuple(predictions)
@@ -72,14 +72,36 @@ def predict(
 def _delivered(known, surroundings):
     """What thrusters give: what they are told and their error, or nothing."""
     acting = abs(known.thrusters[0]) + abs(known.thrusters[1]) + abs(known.thrusters[2]) > _NO_LOAD
-    pairs = zip(known.thrusters, surroundings.thrust_error, strict=True)
-    return [told + where(acting, error, 0.0 * error) for told, error in pairs]
+    X, Y, N = [where(acting, error, 0.0 * error) for error in surroundings.thrust_error]
+    return known.thrusters[0] + X, known.thrusters[1] + Y, known.thrusters[2] + N
 
 
-def _advance(motion, thrusters, around, h, *, hull, wind):
+def advance(
+    motion: tuple, thrusters: Load, around: Surroundings, h: float, *, hull: HullParameters, wind: WindParameters
+) -> tuple:
     """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`.
 
-    `motion` is x, y, psi, u, v, r and the velocity through the water, u_r and v_r.
+    Parameters
+    ----------
+    motion : tuple of eight floats, (...) arrays or tensors
+        x, y, psi, u, v, r, and the velocity through the water, u_r and v_r. [m, m, rad, m/s, m/s, rad/s, m/s, m/s]
+    thrusters : tuple of three, like them
+        Load of the thrusters in body axes. [N, N, N.m]
+    around : Surroundings
+        As in `predict`.
+    h : float
+        Step. [s]
+    hull, wind : HullParameters, WindParameters
+        The ship.
+
+    Returns
+    -------
+    tuple of eight
+        As `motion`, with the heading wrapped.
+
+    References
+    ----------
+    As `predict`.
     """
     x, y, psi, u, v, r, u_r, v_r = motion
     current, middle = (around.current_north, around.current_east), psi + 0.5 * h * r

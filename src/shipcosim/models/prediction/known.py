@@ -6,6 +6,7 @@ motion to come from both. Dead reckoning has its state in `surroundings`, and `p
 
 from typing import NamedTuple
 
+from shipcosim.models.control.pid import Desired
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import Arithmetic, cos, sin
 from shipcosim.models.core.motion import Load, Motion
@@ -28,6 +29,12 @@ class Known(NamedTuple):
         [m/s, rad]
     wind_believed : like wind_speed
         1 where the DP controller believes that wind, 0 where it does not: then its load is part of the bias. [1]
+    desired : Desired, optional
+        Motion that the DP controller is asked for now; nothing where nobody says it.
+    goal : tuple of three, like wind_speed, optional
+        Where its reference model goes to: position and heading. [m, m, rad]
+    wave_frequency : like wind_speed, optional
+        Of the motion in waves, as the DP controller estimates it. [rad/s]
     """
 
     ship: Motion
@@ -36,6 +43,9 @@ class Known(NamedTuple):
     wind_speed: Arithmetic
     wind_from: Arithmetic
     wind_believed: Arithmetic = 1.0
+    desired: Desired | None = None
+    goal: tuple[Arithmetic, Arithmetic, Arithmetic] | None = None
+    wave_frequency: Arithmetic | None = None
 
 
 def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:

@@ -1,0 +1,175 @@
+"""Motion to come while DP acts: dead reckoning with reference model, control law and limits of thrust in the loop.
+
+Dead reckoning holds the thrust of this moment. A controller holds the ship instead, or brings her to where she is told
+to go: so it is run along the horizon, by the functions that it runs on itself.
+"""
+
+from dataclasses import dataclass
+from math import ceil
+from typing import NamedTuple
+
+from shipcosim.models.allocation import pseudo_inverse
+from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.allocation.units import Allocated
+from shipcosim.models.control import observer, pid, reference
+from shipcosim.models.control.observer import DpShip, Estimate
+from shipcosim.models.control.pid import ControlParameters, ControlState
+from shipcosim.models.control.reference import ReferenceParameters, ReferenceState
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.maths import exp
+from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.parameters import quantity, required
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.prediction.dead_reckoning import advance
+from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.surroundings import Surroundings
+from shipcosim.models.ship.hull import HullParameters, hull_loads
+from shipcosim.models.ship.vessel import through_water
+
+NOTHING = 1e-3
+"""Thrust below which a unit gives nothing: it is missing. [N]"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObserverAhead:
+    """What is left of the observer along the horizon."""
+
+    full_frequency: float = required("rad/s", "wave frequency below which the control law slows down", minimum=0.1)
+    bias_time: float = quantity(
+        30.0, "s", "time in which the observer's bias follows its load", "chosen by seeds 300-311", minimum=0.1
+    )
+
+
+class Loop(NamedTuple):
+    """The DP loop as the ship knows it.
+
+    Parameters
+    ----------
+    reference : ReferenceParameters
+        Of the reference model.
+    ship : DpShip
+        The ship in observer and control law.
+    law : ControlParameters
+        Of the control law.
+    units : AllocationParameters
+        Thrusters with their limits.
+    design : Design
+        Made of the same units by `pseudo_inverse.design`.
+    observer : ObserverAhead
+        What is left of it.
+    """
+
+    reference: ReferenceParameters
+    ship: DpShip
+    law: ControlParameters
+    units: AllocationParameters
+    design: pseudo_inverse.Design
+    observer: ObserverAhead
+
+
+class _Now(NamedTuple):
+    """The loop at one time: `motion` as `advance` has it, `bias` north, east and N, `before` the load a step ago."""
+
+    motion: tuple
+    desired: ReferenceState
+    control: ControlState
+    allocated: Allocated
+    bias: Load
+    before: Load
+
+
+def predict(
+    known: Known,
+    surroundings: Surroundings,
+    *,
+    horizons: tuple[float, ...],
+    longest_step: float,
+    hull: HullParameters,
+    wind: WindParameters,
+    loop: Loop,
+) -> tuple[Motion, ...]:
+    """Motion of the ship ahead in time, with her controller.
+
+    Parameters
+    ----------
+    known : Known
+        State now, desired motion, where it goes to, and the sea; floats, (...) arrays or tensors.
+    surroundings : Surroundings
+        Held, as in dead reckoning.
+    horizons : tuple of float, increasing
+        How far ahead. [s]
+    longest_step : float
+        Longest step; each stretch up to a horizon is divided into equal steps. [s]
+    hull, wind : HullParameters, WindParameters
+        The ship.
+    loop : Loop
+        Her DP.
+
+    Returns
+    -------
+    tuple of Motion
+        One per horizon.
+
+    Notes
+    -----
+    The estimate is taken to be right, but for the bias, which follows its load in `bias_time`. A unit
+    that gives nothing now is missing. The load over a step is that of its middle, on the line through the last two.
+    """
+    now, before, predictions = _start(known, surroundings, wind, loop), 0.0, []
+    available = tuple(abs(thrust) > NOTHING for thrust in now.allocated.thrusts)
+    for horizon in horizons:
+        steps = ceil((horizon - before) / longest_step)
+        for _ in range(steps):
+            now = _later(now, known, surroundings, available, (horizon - before) / steps, hull, wind, loop)
+        predictions.append(Motion(*now.motion[:6]))
+        before = horizon
+    return tuple(predictions)
+
+
+def _start(known, around, wind, loop):
+    """The loop now. The load of the thrusters says their thrusts, and what was requested last."""
+    ship, units = known.ship, loop.units
+    fed = [known.wind_believed * one for one in wind_loads(known.wind_speed, known.wind_from, wind=wind)]
+    rest = pseudo_inverse.at_rest(known.thrusters, parameters=units)
+    all_of_them = {"available": (True, True, True), "parameters": units, "design": loop.design}
+    return _Now(
+        (*ship, *through_water(ship.psi, ship.u, ship.v, around.current_north, around.current_east)),
+        reference.resumed(known.desired, parameters=loop.reference),
+        ControlState(*fed, *known.thrusters),
+        pseudo_inverse.step(rest, known.thrusters, h=1e9, **all_of_them),
+        (*to_ned(ship.psi, *known.bias[:2]), known.bias[2]),
+        known.thrusters,
+    )
+
+
+def _later(now, known, around, available, h, hull, wind, loop):
+    """The loop a step later: the ship with the load of the middle of the step, then reference, law and allocator."""
+    given = now.allocated.tau_X, now.allocated.tau_Y, now.allocated.tau_N
+    middle = tuple(
+        new + 0.5 * (new - old) + error for new, old, error in zip(given, now.before, around.thrust_error, strict=True)
+    )
+    motion = advance(now.motion, middle, around, h, hull=hull, wind=wind)
+    desired = reference.step(now.desired, known.goal, h, parameters=loop.reference)
+    psi, u, v = motion[2:5]
+    load = wind_loads(*apparent_wind(psi, u, v, around.wind_north, around.wind_east), wind=wind)
+    bias = _bias(now, motion, known, around, load, h, hull, loop)
+    fed = tuple(known.wind_believed * one for one in load)
+    pace = observer.pace(known.wave_frequency, loop.observer.full_frequency)
+    estimate = Estimate(*motion[:6], *bias, pace=pace)
+    control = pid.step(now.control, estimate, desired, fed, h, ship=loop.ship, parameters=loop.law)
+    allocated = pseudo_inverse.step(now.allocated, control[3:], available, h, parameters=loop.units, design=loop.design)
+    return _Now(motion, desired, control, allocated, bias, given)
+
+
+def _bias(now, motion, known, around, wind_load, h, hull, loop):
+    """The observer's bias a step later: towards the load that known thrust and wind leave, as in `surroundings`."""
+    _, _, psi, u, v, r, u_r, v_r = motion
+    X, Y, N = hull_loads(u_r, v_r, r, hull=hull)
+    force_X, force_Y = to_body(psi, around.force_north, around.force_east)
+    lost, ship, share = 1.0 - known.wind_believed, loop.ship, 1.0 - exp(-h / loop.observer.bias_time)
+    error_X, error_Y, error_N = around.thrust_error
+    X = X + force_X + error_X + lost * wind_load[0] + ship.damping_surge * u
+    Y = Y + force_Y + error_Y + lost * wind_load[1] + ship.damping_sway * v
+    N = N + around.moment + error_N + lost * wind_load[2] + ship.damping_yaw * r
+    left = (*to_ned(psi, X, Y), N)
+    return tuple(old + share * (new - old) for old, new in zip(now.bias, left, strict=True))
