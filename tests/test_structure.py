@@ -16,6 +16,7 @@ NAMES_A_SHIP = {
     "cli/options.py",
     "cli/start/files.py",
     "cli/start/listing.py",
+    "learn/docking/dockings.py",
     "learn/prediction/worlds.py",
 }
 """Files that name Gunnerus: where a user's default is chosen."""

@@ -61,6 +61,7 @@ ELSEWHERE = {
     "neural_units_allocator": ("four-azimuths", "allocator"),
     "paper_v_allocator": ("thesis-28m9", "allocator"),
     "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
+    "helmsman": ("gunnerus-28m9", "helmsman"),
 }
 """FMU that she has not: a ship and her component that it is."""
 LOOP = [ReferenceParameters, ControlParameters, AllocationParameters, ObserverAhead]
@@ -104,6 +105,11 @@ PARAMETERS = {
         **{"memory_yaw": 0.1, "memory_time": 5.0},
     },
     "neural_units_allocator": {f"diameter_{number}": 1.9 for number in range(1, 5)},
+    "harbour": {
+        **{"wind_shelter": 0.6, "land_towards": 1.0, "tide_shelter": 0.5, "channel": 0.3},
+        **{"river_speed": 0.5, "river_to": 2.0, "river_x": 50.0, "river_y": -30.0},
+    },
+    "helmsman": {"waypoints": "-600 -80; -200 -15; 0 -15", "berth_heading": 0.2, "look_interval": 3.0},
     "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
 }
 """FMU: its parameters in its reference result that are neither the ship's nor as by default."""

@@ -44,7 +44,7 @@ from shipcosim.models.control import (
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.environment import current, gusts, sinusoids, wave_loads, wave_motion, waves
+from shipcosim.models.environment import current, gusts, harbour, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import (
@@ -81,6 +81,7 @@ TUNNEL = parameters(tunnel.TunnelParameters)
 TANKER = parameters(hull.HullParameters, "kvlcc2", "vessel")
 STERN = parameters(rudder.PropellerRudderParameters, "kvlcc2")
 MAPPED = mapped.MapParameters(x=-0.4, y=0.3, thrust_table="-1 -28; 0 0; 1 55", speed_loss=0.1, time_constant=0.5)
+BERTH = dict(harbour=harbour.HarbourParameters(wind_shelter=0.5, tide_shelter=0.6, channel=0.4, river_speed=0.5))
 LAYOUT = fixed_angles.FixedAngleParameters(
     **{"x_1": -20.0, "y_1": -3.0, "thrust_min_1": -6e4, "thrust_max_1": 9e4, "thrust_rate_1": 1e6},
     **{"x_2": -20.0, "y_2": 3.0, "thrust_min_2": -6e4, "thrust_max_2": 9e4, "thrust_rate_2": 1e6},
@@ -649,6 +650,10 @@ CASES = [
         current.varying_current,
         [(t, *ends) for t in (-5.0, 30.0, 99.0) for ends in ((0.3, 0.0, -0.3, 0.1), (0.0, 0.0, 0.2, -0.2))],
         constants=dict(time_start=0.0, time_end=60.0),
+    ),
+    *(
+        Case(function, [(0.0, 0.0, -5.0, 3.0), (200.0, -80.0, 0.0, 0.4), (-40.0, 900.0, 0.1, 0.0)], constants=BERTH)
+        for function in (harbour.local_wind, harbour.local_current)
     ),
     *(Case(function, SHIP, constants=ERRORS) for function in (instruments.readings, instruments.true_motion)),
     Case(azimuth.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),

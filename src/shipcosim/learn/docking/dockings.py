@@ -1,0 +1,297 @@
+"""Dockings: a seed gives weather, the manner of a helmsman and a harbour; co-simulation gives the record.
+
+The ship is always the same one, as a ship that learns from her own data is, and she is not what her model says: numbers
+within their tolerances, another form, and a load that is new each time. The predictor is not told of any of it.
+"""
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import pi
+
+import numpy as np
+
+from shipcosim.cosim import simulate, system_of
+from shipcosim.learn.docking.harbours import FAMILIAR, UNSEEN, Harbour, harbour
+from shipcosim.learn.docking.records import KNOWN, TRUTH, Record
+from shipcosim.models.core.tables import text
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import System
+
+SYSTEM, PARAMETERS, PREDICTOR = "gunnerus_docking", "gunnerus-28m9", "docking_predictor"
+TRUE = {"vessel": "rough_vessel"}
+TRAINING, CALIBRATION, CHOICES = range(1, 69), range(200, 230), range(300, 320)
+"""Seeds of dockings at familiar harbours: to train on, to calibrate regions on, and to choose by."""
+HELD_OUT, HELD_OUT_UNSEEN = range(8300, 8320), range(8320, 8340)
+"""Seeds of dockings that nobody looks at before the end, at familiar and at unseen harbours."""
+SAMPLES, STEP, STOP = 1000, 0.2, 1500.0
+"""Length of a record; step and latest end of the co-simulation. [1, s, s]"""
+STRIPS, WIND, POWER, DAMPING, MEMORY, LOADING, NOISE = 0.30, 0.15, 0.15, 0.4, 0.25, 0.03, 0.2
+"""Most at distance 1: of the drag factor at five places along the hull, of the wind load factors at eight directions,
+of powers of speed from 2, of linear damping over the quadratic one at `SPEEDS`, of the added mass that remembers, of
+the mass that a docking has more or less, of the errors of sensors. [1]"""
+SPEEDS = (1.0, 0.3, 0.02)  # m/s, m/s, rad/s
+CROSS_FLOW, SPEED_LOSS, ANGLE_LOSS = 0.27, 0.1, 0.1
+"""At distance 1: cross-flow drag that stands for half of the quadratic damping in sway, loss of the tunnel's thrust
+under way, loss of azimuths athwartships. [1, s2/m2, 1]"""
+_NOISY = ("position_noise_std", "position_drift_std", "velocity_noise_std", "heading_noise_std", "heading_drift_std")
+
+
+@dataclass(frozen=True)
+class Docking:
+    """One docking: who, where, in what weather.
+
+    Parameters
+    ----------
+    seed : int
+        From which it was drawn. [1]
+    harbour : int
+        Number of the harbour. [1]
+    set : dict
+        Start values that differ from those of the system.
+    """
+
+    seed: int
+    harbour: int
+    set: dict
+
+
+def draw(seed: int, distance: float = 1.0) -> Docking:
+    """Draw a docking.
+
+    Parameters
+    ----------
+    seed : int
+        Of `HELD_OUT_UNSEEN` at an unseen harbour, others at a familiar one; those of training call at each. [1]
+    distance : float
+        How far truth and nominal model are apart: 0 alike, 1 the tolerances, 2 outside of them. [1]
+
+    Returns
+    -------
+    Docking
+        To be sailed.
+    """
+    rng = np.random.default_rng([26, 3, 2, seed])
+    port = harbour(_number(seed, rng))
+    manner, length = _manner(rng, seed)
+    values = _weather(rng, port, seed) | manner
+    first, *others = port.waypoints(manner["helmsman.stand_off"], length)
+    values |= {
+        "helmsman.waypoints": text([first, *others]),
+        "helmsman.berth_heading": port.berth_heading,
+        "helmsman.berth_side": port.berth_side,
+        "vessel.x_start": first[0],
+        "vessel.y_start": first[1],
+        "vessel.psi_start": float(np.arctan2(others[0][1] - first[1], others[0][0] - first[0])),
+        "vessel.u_start": manner["helmsman.transit_speed"],
+        "vessel.mass_scale": 1.0 + distance * LOADING * rng.uniform(-1.0, 1.0),
+    }
+    return Docking(seed, port.number, values | true_ship(distance))
+
+
+def scenario(docking: Docking, *, step_size: float = STEP) -> Scenario:
+    """The scenario of a docking, for `shipcosim.cosim.simulate`.
+
+    Parameters
+    ----------
+    docking : Docking
+        As drawn.
+    step_size : float
+        Of the co-simulation. [s]
+
+    Returns
+    -------
+    Scenario
+        With the FMU `rough_vessel` in the vessel's place.
+    """
+    return Scenario(
+        description=f"Docking {docking.seed} at harbour {docking.harbour}",
+        system=SYSTEM,
+        parameters=[PARAMETERS],
+        components=TRUE,
+        stop_time=STOP,
+        step_size=step_size,
+        output_interval=1.0,
+        set=docking.set,
+    )
+
+
+def sail(docking: Docking, *, step_size: float = STEP) -> Record:
+    """Co-simulate a docking.
+
+    Parameters
+    ----------
+    docking : Docking
+        As drawn.
+    step_size : float
+        Of the co-simulation. [s]
+
+    Returns
+    -------
+    Record
+        The last 1000 s before she lies at the berth.
+
+    Raises
+    ------
+    RuntimeError
+        She is not there after `STOP`, or too early.
+    """
+    table = simulate(_without_predictor(), scenario(docking, step_size=step_size))
+    moored = np.flatnonzero(np.asarray(table["helmsman.stage"]) == 3)
+    if not len(moored) or moored[0] < SAMPLES:
+        raise RuntimeError(f"docking {docking.seed}: lies at the berth too early or never: after {moored[:1]} s")
+    last = slice(moored[0] + 1 - SAMPLES, moored[0] + 1)
+    known = {name: np.asarray(table[signal], float)[last] for name, signal in KNOWN.items()}
+    truth = {name: np.asarray(table[f"vessel.{name}"], float)[last] for name in TRUTH}
+    return Record(docking.seed, docking.harbour, np.arange(float(SAMPLES)), known, truth)
+
+
+def sail_all(
+    dockings: Iterable[Docking], *, processes: int = 2, progress: Callable[[int, int], None] | None = None
+) -> list[Record]:
+    """Co-simulate several dockings, in their order.
+
+    Parameters
+    ----------
+    dockings : iterable of Docking
+        As drawn.
+    processes : int
+        How many sail at a time. [1]
+    progress : callable, optional
+        Is told how many are done, and of how many.
+
+    Returns
+    -------
+    list of Record
+        One a docking.
+    """
+    dockings, records = list(dockings), []
+    with ProcessPoolExecutor(processes) as pool:
+        for record in pool.map(sail, dockings):
+            records.append(record)
+            if progress:
+                progress(len(records), len(dockings))
+    return records
+
+
+def true_ship(distance: float = 1.0) -> dict[str, float | str]:
+    """What the ship differs by from her model; the same at every docking.
+
+    Parameters
+    ----------
+    distance : float
+        How far truth and nominal model are apart. [1]
+
+    Returns
+    -------
+    dict of str to float or str
+        Start values, by component and variable.
+    """
+    rng = np.random.default_rng([26, 3, 1])
+    values = {name: value + distance * off * rng.standard_normal() for name, value, off in _tolerated()}
+    values["vessel.A62"] = values["vessel.A26"]
+    along = 1.0 + distance * STRIPS * rng.uniform(-1.0, 1.0, 5)
+    around = 1.0 + distance * WIND * rng.uniform(-1.0, 1.0, (8, 3))
+    powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
+    memory = distance * MEMORY * rng.uniform(0.0, 1.0, 3)
+    quadratic = [values[f"vessel.{name}"] for name in ("X_uu", "Y_modvv", "N_modrr")]
+    damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
+    half = 0.5 * distance
+    return values | {
+        "vessel.cross_flow_drag": CROSS_FLOW * distance,
+        "vessel.Y_modvv": (1.0 - half) * quadratic[1],
+        "vessel.N_modrr": (1.0 - half) * quadratic[2],
+        "vessel.strip_factors": text(zip(np.linspace(-1.0, 1.0, 5), along, strict=True)),
+        "vessel.drag_power": float(powers[0]),
+        "vessel.cross_flow_power": float(powers[1]),
+        "vessel.wind_factors": text(np.column_stack([np.arange(0.0, 361.0, 45.0), np.vstack([around, around[:1]])])),
+        **dict(zip(("vessel.X_u", "vessel.Y_v", "vessel.N_r"), damping.tolist(), strict=True)),
+        **dict(zip(("vessel.memory_surge", "vessel.memory_sway", "vessel.memory_yaw"), memory.tolist(), strict=True)),
+        "tunnel.speed_loss": SPEED_LOSS * distance,
+        "port.angle_loss": ANGLE_LOSS * distance,
+        "starboard.angle_loss": ANGLE_LOSS * distance,
+    }
+
+
+@lru_cache(maxsize=1)
+def _without_predictor() -> System:
+    """The system without the predictor, which acts on nothing."""
+    system = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], components=TRUE, stop_time=1.0, step_size=STEP))
+    components = {name: one for name, one in system.components.items() if name != PREDICTOR}
+    connections = tuple(one for one in system.connections if one.target[0] != PREDICTOR)
+    return replace(system, components=components, connections=connections)
+
+
+@lru_cache(maxsize=1)
+def _tolerated() -> tuple[tuple[str, float, float], ...]:
+    """Name, value and tolerance of each number of ship and thrusters that has one."""
+    system = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
+    found = []
+    for name in ("vessel", "port", "starboard", "tunnel"):
+        component = system.components[name]
+        found += [
+            (f"{name}.{variable}", float(component.start[variable]), tolerance)
+            for variable, tolerance in sorted(component.tolerances.items())
+        ]
+    return tuple(found)
+
+
+def _number(seed, rng):
+    """Number of the harbour: the home port most often."""
+    if seed in HELD_OUT_UNSEEN:
+        return UNSEEN[seed % len(UNSEEN)]
+    often = 1.0 / np.array(FAMILIAR)
+    drawn = int(rng.choice(FAMILIAR, p=often / often.sum()))
+    return seed if seed in FAMILIAR else drawn
+
+
+def _manner(rng, seed):
+    """How this helmsman does it, and the length of the way, which takes some 1100 s. [as the fields say, m]"""
+    closing, place_time = rng.uniform(35.0, 70.0), rng.uniform(45.0, 80.0)
+    fast, slow = rng.uniform(4.0, 5.6), min(closing / place_time * rng.uniform(0.9, 1.4), 1.5)
+    slowing, look, reaction = rng.uniform(500.0, 1300.0), rng.uniform(2.0, 6.0), rng.uniform(0.7, 2.0)
+    yaw_time = 4.0 + look + reaction
+    manner = {
+        "transit_speed": fast,
+        "closing_speed": slow,
+        "sideways_speed": rng.uniform(0.15, 0.35),
+        "slowing_distance": slowing,
+        "closing_distance": closing,
+        "stand_off": rng.uniform(8.0, 22.0),
+        "speed_time": rng.uniform(18.0, 32.0),
+        "place_time": place_time,
+        "heading_time": yaw_time * rng.uniform(2.0, 3.0),
+        "yaw_time": yaw_time,
+        "yaw_rate": rng.uniform(0.012, 0.03),
+        "wind_feel": rng.uniform(0.3, 1.0),
+        "look_interval": look,
+        "reaction_time": reaction,
+        "lever_step": rng.uniform(0.03, 0.08),
+        "angle_step": rng.uniform(0.025, 0.06),
+        "lurch": rng.uniform(0.0, 0.25),
+        "seed": seed,
+    }
+    length = closing + slowing + fast * max(800.0 - 2.0 * slowing / (fast + slow), 60.0)
+    return {f"helmsman.{name}": value for name, value in manner.items()}, length
+
+
+def _weather(rng, port: Harbour, seed):
+    """Wind, tide, river and sea, and the errors of the sensors of this day."""
+    wind_from = rng.uniform(-pi, pi)
+    tide = port.tide * rng.uniform(-1.0, 1.0)
+    values = {
+        "environment.wind_speed": rng.uniform(0.0, 10.0),
+        "environment.wind_from": wind_from,
+        "environment.current_speed": abs(tide),
+        "environment.current_to": port.courses[0] + (pi if tide < 0.0 else 0.0) + rng.normal(0.0, 0.2),
+        "environment.significant_wave_height": rng.uniform(0.0, 0.2),
+        "environment.peak_period": rng.uniform(2.5, 4.0),
+        "environment.waves_from": wind_from,
+        "environment.gust_scale": rng.uniform(0.7, 1.3),
+        "environment.seed": seed,
+        "sensors.seed": 20000 + seed,
+    }
+    values |= {f"harbour.{name}": value for name, value in port.land.items()}
+    values["harbour.river_speed"] *= rng.uniform(0.5, 1.5)
+    return values
