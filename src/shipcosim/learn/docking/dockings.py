@@ -293,5 +293,5 @@ def _weather(rng, port: Harbour, seed):
         "sensors.seed": 20000 + seed,
     }
     values |= {f"harbour.{name}": value for name, value in port.land.items()}
-    values["harbour.river_speed"] *= rng.uniform(0.5, 1.5)
+    values["harbour.river_speed"] *= rng.uniform(0.5, 1.4)
     return values

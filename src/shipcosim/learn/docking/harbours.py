@@ -106,7 +106,7 @@ def harbour(number: int) -> Harbour:
 
 def _river(rng, number, heading, side):
     """Every third harbour lies in the outlet of a river, which flows past the berth or across the way to it."""
-    speed = rng.uniform(0.3, 0.7) if number % 3 == 1 else 0.0
+    speed = rng.uniform(0.2, 0.45) if number % 3 == 1 else 0.0
     to = heading + rng.choice((0.0, pi)) - side * rng.uniform(0.0, 0.8)  # along the quay and off it
     mouth, beside = rng.uniform(50.0, 250.0), rng.uniform(-40.0, 80.0)
     off = heading - side * 0.5 * pi
