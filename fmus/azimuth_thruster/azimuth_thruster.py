@@ -2,6 +2,7 @@
 
 from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
+from shipcosim.models.core.maths import where
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
 from shipcosim.models.propulsion.drive import at_rest, powers
 from shipcosim.models.propulsion.failures import PLENTY, Failures
@@ -60,7 +61,7 @@ class AzimuthThruster(Fmu):
             command, water = (self.thrust_cmd, self.azimuth_cmd), (self.u_r, self.v_r, self.r)
             self.state = azimuth_step(self.state, *command, *water, self._failures(), h, unit=self.unit)
         reported = self.state.reported  # the propeller's thrust; of a reversed shaft speed with the wrong sign
-        self._write(-reported if self.rpm_reversed and not self.replay else reported)
+        self._write(reported if self.replay else where(self.rpm_reversed, -reported, reported))
 
     def _replayed(self):
         water = self.u_r, self.v_r, self.r
@@ -68,7 +69,7 @@ class AzimuthThruster(Fmu):
 
     def _failures(self):
         return Failures(
-            self.failed or self.stop,
+            self.failed | self.stop,
             self.full_thrust,
             self.rpm_frozen,
             self.azimuth_frozen,
@@ -87,5 +88,5 @@ class AzimuthThruster(Fmu):
         self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
         self.power, self.brake_power = powers(state, self.unit)
         self.thrust_feedback = state.reported
-        self.azimuth_feedback = -state.azimuth if self.azimuth_reversed else state.azimuth
-        self.saturated, self.available = state.saturated, not (self.failed or self.stop)
+        self.azimuth_feedback = where(self.azimuth_reversed, -state.azimuth, state.azimuth)
+        self.saturated, self.available = state.saturated, not (self.failed | self.stop)

@@ -5,6 +5,7 @@ from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models.control import observer, voting
 from shipcosim.models.control import pid as control
 from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.core.maths import number
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.mast import MastParameters
@@ -96,11 +97,11 @@ class DpController(Fmu):
 
     def step(self, t, h):
         due = samples_due(t, self.noise.sample_period)
-        while self.taken < due:
-            self._sample(self.taken * self.noise.sample_period)
-            self.taken += 1
+        self.repeat(lambda: self.taken < due, self._sample)
 
-    def _sample(self, t):
+    def _sample(self):
+        t = self.taken * self.noise.sample_period
+        self.taken += 1
         allocated = (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated)
         period = self.noise.sample_period
         fixes = self._fixes() if self.position_time_meas > self.voting.position_time else self.voting.positions.fixes
@@ -135,20 +136,20 @@ class DpController(Fmu):
 
     def _fixes(self):
         return (
-            Fix(self.x_1_meas, self.y_1_meas, self.u_1_meas, self.v_1_meas, float(self.position_1_valid)),
-            Fix(self.x_2_meas, self.y_2_meas, self.u_2_meas, self.v_2_meas, float(self.position_2_valid)),
-            Fix(self.x_3_meas, self.y_3_meas, self.u_3_meas, self.v_3_meas, float(self.position_3_valid)),
+            Fix(self.x_1_meas, self.y_1_meas, self.u_1_meas, self.v_1_meas, number(self.position_1_valid)),
+            Fix(self.x_2_meas, self.y_2_meas, self.u_2_meas, self.v_2_meas, number(self.position_2_valid)),
+            Fix(self.x_3_meas, self.y_3_meas, self.u_3_meas, self.v_3_meas, number(self.position_3_valid)),
         )
 
     def _telegrams(self, fixes):
         return Telegrams(
             fixes,
             (
-                Heading(self.psi_1_meas, float(self.compass_1_valid)),
-                Heading(self.psi_2_meas, float(self.compass_2_valid)),
+                Heading(self.psi_1_meas, number(self.compass_1_valid)),
+                Heading(self.psi_2_meas, number(self.compass_2_valid)),
             ),
             self.r_meas,
-            Wind(self.wind_speed_meas, self.wind_from_meas, float(self.wind_valid)),
+            Wind(self.wind_speed_meas, self.wind_from_meas, number(self.wind_valid)),
             self.position_time_meas,
             self.heading_time_meas,
             self.wind_time_meas,

@@ -5,8 +5,6 @@ from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.ship import sensors
 from shipcosim.models.ship.mast import MastParameters
 
-HEALTHY = sensors.SensorFailures().positions
-
 
 class Sensors(Fmu):
     """Three position references, two compasses, a rate gyro and an anemometer: sampled, late, noisy, and failing."""
@@ -92,10 +90,8 @@ class Sensors(Fmu):
         self._show(sensors.start(self.start_time, self._truth(), failures, parameters=self.model, mast=self.mast))
 
     def step(self, t, h):
-        taken, due = self.state.taken, samples_due(t, self.model.period)
-        if taken < due:
-            position_due = taken % self.model.clocks[0][0] == 0 or due - taken > 1
-            failures = self._failures(self._references() if position_due else HEALTHY)
+        if self.state.taken < samples_due(t, self.model.period):
+            failures = self._failures(self._references())
             self._show(sensors.step(t, self.state, self._truth(), failures, parameters=self.model, mast=self.mast))
 
     def _truth(self):

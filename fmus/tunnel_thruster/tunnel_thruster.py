@@ -55,7 +55,7 @@ class TunnelThruster(Fmu):
 
     def _failures(self):
         return Failures(
-            self.failed or self.stop,
+            self.failed | self.stop,
             self.full_thrust,
             self.rpm_frozen,
             rpm_reversed=self.rpm_reversed,
@@ -70,4 +70,4 @@ class TunnelThruster(Fmu):
         self.rpm, self.torque = 60.0 * state.n, state.torque
         self.power, self.brake_power = powers(state, self.tunnel)
         self.thrust_feedback = state.reported
-        self.saturated, self.available = state.saturated, not (self.failed or self.stop)
+        self.saturated, self.available = state.saturated, not (self.failed | self.stop)

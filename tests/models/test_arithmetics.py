@@ -42,7 +42,7 @@ from shipcosim.models.control import (
     wave_filter,
 )
 from shipcosim.models.control import pid as control
-from shipcosim.models.core import integrate, interpolation, kinematics, maths
+from shipcosim.models.core import integrate, interpolation, kept, kinematics, maths
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, harbour, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
@@ -367,6 +367,8 @@ CASES = [
     Case(maths.clip, [(0.3, -1.0, 0.2), (0.1, -1.0, 0.2), (-3.0, -1.0, 0.2)]),
     Case(maths.where, [(True, 0.3, 0.7), (False, 0.3, 0.7)]),
     Case(interpolation.interp, [(-2.0,), (-1.0,), (0.3,), (0.5,), (5.0,)], constants=dict(xs=XS, ys=YS)),
+    Case(maths.number, ANGLES),
+    Case(maths.row_of, [(0.3, 1.0), (-0.2, 2.0)], arrange=lambda x, y: ((x, y), 1)),
     Case(maths.sincos, ANGLES),
     Case(interpolation.interp_even, [(-1.0,), (0.3,), (1.0,)], constants=dict(table=EVEN)),
     Case(interpolation.interp_columns, [(-2.0,), (0.3,), (5.0,)], arrange=lambda x: (x, XS, YS, XS)),
@@ -701,6 +703,7 @@ def test_gradients_are_finite_even_at_rest(case):
 
 def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
+    covered |= {maths.is_single, maths.repeat, maths.times, kept.kept}  # know no arithmetic
     covered |= {maths.library_of}  # tells the arithmetics apart
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
     covered |= {neural.features, neural.network, neural.propose, neural.effects}  # vectors: test_neural compares them

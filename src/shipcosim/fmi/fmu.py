@@ -70,6 +70,26 @@ class Fmu(Fmi2Slave):
         """
         _drop_groups(self)
 
+    def repeat(self, going: Callable[[], Any], turn: Callable[[], None]) -> None:
+        """Take turns, which change attributes, while a condition on attributes holds: a while loop.
+
+        A step that says its loops so can be written as compiled code.
+
+        Parameters
+        ----------
+        going : callable
+            ``going()`` says whether there is another turn.
+        turn : callable
+            ``turn()`` takes it.
+        """
+        condition = going()
+        if (maths := getattr(condition, "maths", None)) is not None:
+            maths.repeat_of(self, going, turn)
+            return
+        while condition:
+            turn()
+            condition = going()
+
     def step(self, t: float, h: float) -> None:
         """Advance from `t` to `t + h`: read inputs, write outputs.
 

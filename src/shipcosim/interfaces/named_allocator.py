@@ -9,6 +9,7 @@ from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.interfaces.geometry import check_geometry
 from shipcosim.models.allocation.power import PowerParameters, granted_power, thrust_shares
 from shipcosim.models.allocation.units import slack, thruster_power, used_shares
+from shipcosim.models.core.maths import where
 from shipcosim.models.propulsion.failures import PLENTY
 
 
@@ -90,9 +91,9 @@ class NamedAllocator(Fmu):
         tau = (self.tau_X_cmd, self.tau_Y_cmd, self.tau_N_cmd)
         shares, live = self._powered()
         available = (
-            self.port_available and live[0],
-            self.starboard_available and live[1],
-            self.tunnel_available and live[2],
+            self.port_available & live[0],
+            self.starboard_available & live[1],
+            self.tunnel_available & live[2],
         )
         start = perf_counter() if self.measure_solve_time else 0.0
         state = self.law.step(self.state, tau, available, h, parameters=self.model, design=self.design, shares=shares)
@@ -123,10 +124,8 @@ class NamedAllocator(Fmu):
         taken = zip((self.port_power, self.starboard_power, self.tunnel_power), self.power.buses, strict=True)
         self.bus_a_load = self.bus_b_load = 0.0
         for power, bus in taken:
-            if bus < 0.5:
-                self.bus_a_load += power
-            else:
-                self.bus_b_load += power
+            self.bus_a_load += where(bus < 0.5, power, 0.0)
+            self.bus_b_load += where(bus < 0.5, 0.0, power)
         return shares, [power > 0.0 for power in granted]
 
     def _show(self, state):

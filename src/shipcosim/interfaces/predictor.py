@@ -1,9 +1,11 @@
 """Interface of the predictors of the motion to come, from what a ship knows."""
 
+from math import ceil, inf
 from typing import Any, NamedTuple
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.control.pid import Desired
+from shipcosim.models.core.maths import maximum, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.prediction.known import Known
@@ -39,7 +41,8 @@ class Prediction(NamedTuple):
 
 def thrust_is_lost(known: Known) -> bool:
     """Whether no thruster is told to give anything."""
-    return all(abs(load) < NO_LOAD for load in known.thrusters)
+    X, Y, N = (abs(load) < NO_LOAD for load in known.thrusters)
+    return X & Y & N
 
 
 class MotionPredictor(Fmu):
@@ -112,7 +115,8 @@ class MotionPredictor(Fmu):
     def start(self) -> None:
         self.made = samples_due(self.start_time, self.prediction_period)
         known = self._known()
-        self.state, self.errors, self.lost_for, self.awaited = self.begin(known), (0.0, 0.0), -1.0, []
+        self.state, self.errors, self.lost_for = self.begin(known), (0.0, 0.0), -1.0
+        self.awaited = ((inf, known.ship),) * (ceil(FORESIGHT / self.prediction_period) + 1)
         self._show(known, self.start_time)
 
     def step(self, t: float, h: float) -> None:
@@ -126,11 +130,14 @@ class MotionPredictor(Fmu):
 
     def _judge_itself(self, known, since, t):
         """Compare what was foreseen for now with what is known now, and count the time without thrust."""
-        while self.awaited and self.awaited[0][0] <= t + 1e-6:
-            foreseen = self.awaited.pop(0)[1]
-            self.errors = own_errors(self.errors, known.ship, foreseen, since, regions=self.regions)
-        without = thrust_is_lost(known)
-        self.lost_for = max(self.lost_for, 0.0) + since if without else -1.0
+        awaited = []
+        for at, foreseen in self.awaited:
+            has_come = at <= t + 1e-6
+            errors = own_errors(self.errors, known.ship, foreseen, since, regions=self.regions)
+            self.errors = where(has_come, errors[0], self.errors[0]), where(has_come, errors[1], self.errors[1])
+            awaited.append((where(has_come, inf, at), foreseen))
+        self.awaited = tuple(awaited)
+        self.lost_for = where(thrust_is_lost(known), maximum(self.lost_for, 0.0) + since, -1.0)
 
     def begin(self, known: Known) -> Any:
         """State at the start."""
@@ -163,7 +170,7 @@ class MotionPredictor(Fmu):
     def _show(self, known, t):
         self.predicted_at = t
         motions, positions, headings, self.learned = self.predict(self.state, known)
-        self.awaited.append((t + FORESIGHT, motions[0]))
+        self.awaited = (*self.awaited[1:], (t + FORESIGHT, motions[0]))
         wider, wider_heading = widening(self.errors, self.lost_for, regions=self.regions)
         positions, headings = [wider * one for one in positions], [wider_heading * one for one in headings]
         self.x_10, self.y_10, self.psi_10 = motions[0][:3]

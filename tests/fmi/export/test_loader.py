@@ -23,7 +23,7 @@ def test_the_loader_was_compiled_from_the_sources_that_stand_here(platform):
 @pytest.mark.parametrize("platform", SUFFIXES)
 def test_compiled_again_it_has_the_same_bytes(platform, tmp_path, needs):
     if importlib.util.find_spec("ziglang") is None:
-        needs("ziglang", 'Install it: pip install -e ".[loader]".')
+        needs("ziglang", 'Install it: pip install -e ".[native]".')
     assert compile_loader(platform, tmp_path).read_bytes() == loader_for(platform).read_bytes(), REMEDY
 
 

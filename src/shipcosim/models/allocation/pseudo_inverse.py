@@ -201,7 +201,7 @@ def _within_limits(tau, available, limits, *, design):
         given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = a != given[0], b != given[1], c != given[2]
-        if not (_anywhere(over[0]) or _anywhere(over[1]) or _anywhere(over[2])):
+        if not _anywhere(over[0] | over[1] | over[2]):
             break
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
@@ -241,7 +241,9 @@ def _choose(index, rows):
 
 def _anywhere(condition):
     """Whether a condition holds for any element."""
-    return condition if isinstance(condition, bool) else bool(condition.any())
+    return (
+        condition if isinstance(condition, bool) else bool(condition.any() if hasattr(condition, "any") else condition)
+    )
 
 
 def _float(value):

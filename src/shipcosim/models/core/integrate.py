@@ -37,7 +37,7 @@ def substeps(h: float, longest: float) -> int:
     >>> substeps(0.05, 0.05), substeps(0.1, 0.03)
     (1, 4)
     """
-    return max(1, ceil(h / longest - _EXACT))
+    return max(1, int(ceil(h / longest - _EXACT)))
 
 
 def euler(state: Sequence, rates: Sequence, h: float) -> tuple:

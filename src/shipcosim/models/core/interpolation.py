@@ -39,8 +39,8 @@ def interp(x: Arithmetic, xs: Sequence[float], ys: Sequence[float]) -> Arithmeti
         i = bisect_right(xs, x) - 1
         return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
     library = library_of(x)
-    if library is np:
-        return np.interp(x, xs, ys)
+    if hasattr(library, "interp"):
+        return library.interp(x, xs, ys)
     return _interp_tensor(library, x, xs, ys)
 
 
@@ -137,7 +137,9 @@ def interp_even(x: Arithmetic, table: EvenTable) -> list:
         return [value + share * change for value, change in table.rows[below]]
     below = floor(position)
     library, share = library_of(x), position - below
-    if library is np:
+    if hasattr(library, "row_of"):
+        rows = library.row_of(table.array, below)
+    elif library is np:
         rows = np.take(table.array, below.astype(int), axis=0)
     else:
         rows = library.as_tensor(table.array, dtype=x.dtype, device=x.device)[below.detach().long()]

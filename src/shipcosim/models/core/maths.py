@@ -10,6 +10,7 @@ Definitions of elementary functions.
 
 import math
 import sys
+from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
@@ -35,8 +36,13 @@ def library_of(*values: Arithmetic) -> ModuleType:
     Returns
     -------
     module
-        numpy or torch.
+        numpy or torch; of values that bring functions of their own, as `maths`, those.
     """
+    for value in values:
+        if isinstance(value, np.ndarray) and value.dtype == object and value.size:
+            value = value.flat[0]
+        if (own := getattr(value, "maths", None)) is not None:
+            return own
     torch = sys.modules.get("torch")
     if torch is not None and any(isinstance(value, torch.Tensor) for value in values):
         return torch
@@ -195,8 +201,8 @@ def hypot(x: Arithmetic, y: Arithmetic) -> Arithmetic:
     """
     if isinstance(y, float) and isinstance(x, float):
         return math.sqrt(x * x + y * y)
-    square = x * x + y * y
-    return np.sqrt(square) if library_of(x, y) is np else (square + _TINY).sqrt()
+    square, library = x * x + y * y, library_of(x, y)
+    return (square + _TINY).sqrt() if _is_torch(library) else library.sqrt(square)
 
 
 def where(condition: Any, a: Arithmetic, b: Arithmetic) -> Arithmetic:
@@ -221,7 +227,8 @@ def where(condition: Any, a: Arithmetic, b: Arithmetic) -> Arithmetic:
     library = library_of(condition, a, b)
     if library is np:
         return np.where(condition, a, b)
-    return library.where(library.as_tensor(condition), *_tensors(library, a, b))
+    condition = library.as_tensor(condition) if _is_torch(library) else condition
+    return library.where(condition, *_tensors(library, a, b))
 
 
 def minimum(a: Arithmetic, b: Arithmetic) -> Arithmetic:
@@ -281,12 +288,135 @@ def clip(x: Arithmetic, low: Arithmetic, high: Arithmetic) -> Arithmetic:
     return minimum(maximum(x, low), high)
 
 
+def number(x: Arithmetic) -> Arithmetic:
+    """A truth value or a whole number as a float.
+
+    Parameters
+    ----------
+    x : bool, int or float, or (...) array or tensor of them
+        Value. [any unit]
+
+    Returns
+    -------
+    float or (...) array or tensor
+        The same value. [the unit of x]
+    """
+    if isinstance(x, (bool, int, float)):
+        return float(x)
+    own = getattr(x, "maths", None)
+    return x * 1.0 if own is None else own.number(x)
+
+
+def is_single(x: Any) -> bool:
+    """Whether a value is one number, and no array or tensor of them.
+
+    Parameters
+    ----------
+    x : int or float, or (...) array or tensor
+        Value. [any unit]
+
+    Returns
+    -------
+    bool
+        Whether it is one number. [1]
+    """
+    return isinstance(x, (float, int)) or hasattr(x, "maths")
+
+
+def repeat(going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) -> Any:
+    """The state after as many turns as a condition on it holds for.
+
+    Parameters
+    ----------
+    going : callable
+        ``going(state)`` says whether there is another turn. [1]
+    turn : callable
+        ``turn(state)`` gives the state after it, of the same make. [as state]
+    state : any
+        Numbers, tuples, arrays of them. [any units]
+
+    Returns
+    -------
+    like state
+        The state for which the condition does not hold. [as state]
+
+    Examples
+    --------
+    >>> repeat(lambda n: n < 10, lambda n: 2 * n, 3)
+    12
+    """
+    condition = going(state)
+    if (own := getattr(condition, "maths", None)) is not None:
+        return own.repeat(going, turn, state)
+    while condition:
+        state = turn(state)
+        condition = going(state)
+    return state
+
+
+def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
+    """The state after a number of turns.
+
+    Parameters
+    ----------
+    count : int
+        How many. [1]
+    turn : callable
+        ``turn(state)`` gives the state after it, of the same make. [as state]
+    state : any
+        Numbers, tuples of them. [any units]
+
+    Returns
+    -------
+    like state
+        The state after the last turn. [as state]
+
+    Examples
+    --------
+    >>> times(3, lambda n: 2 * n, 5)
+    40
+    """
+    first = state
+    while isinstance(first, tuple):
+        first = first[0]
+    if (own := getattr(first, "maths", None)) is not None:
+        return own.repeat(lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state))[1]
+    for _ in range(count):
+        state = turn(state)
+    return state
+
+
+def row_of(table: Any, index: Any) -> Any:
+    """Row of a table, or element of a sequence, by its number.
+
+    Parameters
+    ----------
+    table : (n, ...) array, or sequence of n
+        The table. [any units]
+    index : int or (m,) array of int
+        Number of the row, not negative. [1]
+
+    Returns
+    -------
+    like table[0]
+        The row; several rows for an array of numbers. [the units of table]
+    """
+    own = getattr(index, "maths", None)
+    return table[index] if own is None else own.row_of(table, index)
+
+
 def _many(x):
     """Whether x is an array of so many elements that computing them costs more than a few calls of NumPy."""
     return isinstance(x, np.ndarray) and x.size >= _FEW
 
 
+def _is_torch(library):
+    return library is sys.modules.get("torch")
+
+
 def _tensors(torch, *values):
     """All values as tensors of the kind of the first tensor among them, of double precision where there is none."""
+    if not _is_torch(torch):
+        return values
     like = next((value for value in values if isinstance(value, torch.Tensor)), torch.zeros((), dtype=torch.float64))
     return [torch.as_tensor(value, dtype=like.dtype, device=like.device) for value in values]

@@ -12,7 +12,8 @@ from zlib import crc32
 
 import numpy as np
 
-from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.kept import kept
+from shipcosim.models.core.maths import Arithmetic, row_of
 
 _BLOCK = 256
 _TOLERANCE = 1e-6  # of a period: the time of a master that adds up its steps falls short by 5e-10 s in 1100 s
@@ -114,14 +115,14 @@ def normals(purpose: str, seed: int | np.ndarray, k: int, width: int) -> Sequenc
         A seed is negative.
     """
     if isinstance(seed, int):
-        return _block(purpose, seed, k // _BLOCK, width)[k % _BLOCK]
+        return row_of(_block(purpose, seed, k // _BLOCK, width), k % _BLOCK).tolist()
     return _blocks(purpose, tuple(np.ravel(seed).tolist()), k // _BLOCK, width)[k % _BLOCK]
 
 
-@lru_cache(maxsize=64)
+@kept(64)
 def _block(purpose, seed, block, width):
     """256 rows of `width` numbers: one block of one seed."""
-    return generator(purpose, seed, block).standard_normal((_BLOCK, width)).tolist()
+    return generator(purpose, seed, block).standard_normal((_BLOCK, width))
 
 
 @lru_cache(maxsize=2)

@@ -9,7 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from shipcosim.models.core.maths import Arithmetic, cos, maximum, pi, sqrt
+from shipcosim.models.core.kept import kept
+from shipcosim.models.core.maths import Arithmetic, cos, is_single, maximum, pi, sqrt
 from shipcosim.models.core.sampling import generator
 from shipcosim.models.environment.sinusoids import column, per_seed, tensors_if_any, total
 
@@ -104,7 +105,7 @@ def gust_std(mean_speed: Arithmetic) -> Arithmetic:
 
 def _amplitudes(mean_speed):
     """Amplitudes of the components; of floats and arrays computed once while the mean does not change."""
-    if isinstance(mean_speed, float):
+    if is_single(mean_speed):
         return _float_amplitudes(mean_speed)
     if isinstance(mean_speed, np.ndarray):
         return _array_amplitudes(mean_speed.astype(float).tobytes(), mean_speed.shape)
@@ -118,7 +119,7 @@ def _any_amplitudes(mean_speed):
     return speed / 10.0 * sqrt(2.0 * _shape(middles, speed) * widths)
 
 
-_float_amplitudes = lru_cache(maxsize=64)(_any_amplitudes)
+_float_amplitudes = kept(64)(_any_amplitudes)
 
 
 @lru_cache(maxsize=4)

@@ -45,7 +45,7 @@ def total(a: Arithmetic, b: Arithmetic) -> Arithmetic:
         The sum; a float where both factors are (n,) arrays. [unit of a times unit of b]
     """
     if isinstance(a, np.ndarray):
-        return float(a.dot(b)) if a.ndim == b.ndim == 1 else np.einsum("...n,...n->...", a, b)
+        return a.dot(b).item() if a.ndim == b.ndim == 1 else np.einsum("...n,...n->...", a, b)
     return (a * b).sum(-1)
 
 
@@ -64,7 +64,7 @@ def tensors_if_any(arrays: tuple, *values: Arithmetic) -> tuple:
     tuple of arrays or tensors
         The same numbers. [the units of arrays]
     """
-    if library_of(*values) is np:
+    if not hasattr(library_of(*values), "Tensor"):
         return arrays
     tensor = next(value for value in values if hasattr(value, "new_tensor"))
     return tuple(tensor.new_tensor(array) for array in arrays)

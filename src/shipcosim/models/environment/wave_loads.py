@@ -11,7 +11,8 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.interpolation import interp
-from shipcosim.models.core.maths import Arithmetic, floor, library_of, minimum, pi, sincos, where
+from shipcosim.models.core.kept import kept
+from shipcosim.models.core.maths import Arithmetic, floor, library_of, minimum, pi, row_of, sincos, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.tables import parse
 from shipcosim.models.environment.sinusoids import column, total
@@ -170,7 +171,7 @@ def mean_drift(psi: Arithmetic, waves: Waves, table: DriftTable) -> Load:
 
 def _weighted_drift(weights, psi, waves, table):
     """X, Y, N = sum a_i D_i weights_i at this heading of the ship."""
-    grid = _cached_grid(waves, table) if isinstance(waves.omega, np.ndarray) else _grid(waves, table)
+    grid = _kept_grid(waves, table) if isinstance(waves.omega, np.ndarray) else _grid(waves, table)
     position = interp(wrap(waves.direction - psi), table.heading, _counted(len(table.heading)))
     below = minimum(floor(position), len(table.heading) - 2.0)
     row, share = _whole(below), position - below
@@ -196,7 +197,7 @@ def _grid(waves, table):
     return stack([stack([amplitude * interp(waves.omega, table.omega, D) for D in XYN], -2) for XYN in table.loads], 0)
 
 
-_cached_grid = lru_cache(maxsize=8)(_grid)
+_kept_grid = kept(8)(_grid)
 
 
 @lru_cache(maxsize=8)
@@ -208,7 +209,7 @@ def _counted(number):
 def _row(grid, row):
     """Row of a grid, which may differ from variation to variation."""
     if grid.ndim == 3 or isinstance(row, int):
-        return grid[row]
+        return row_of(grid, row)
     return grid[row, np.arange(grid.shape[1])]
 
 
@@ -216,4 +217,4 @@ def _whole(x):
     """A whole number as index."""
     if isinstance(x, float):
         return int(x)
-    return x.astype(int) if isinstance(x, np.ndarray) else x.long()
+    return x.astype(int) if hasattr(x, "astype") else x.long()

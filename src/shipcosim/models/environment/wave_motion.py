@@ -1,10 +1,9 @@
 """First-order wave motion of a ship, superposed on the low-frequency motion."""
 
-from functools import lru_cache
-
 import numpy as np
 
-from shipcosim.models.core.maths import Arithmetic, exp, sin, sincos, where
+from shipcosim.models.core.kept import kept
+from shipcosim.models.core.maths import Arithmetic, exp, is_single, sin, sincos, where
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.sinusoids import column, total
 from shipcosim.models.environment.wave_loads import DriftTable, drift_at
@@ -137,8 +136,8 @@ def _hull_in(waves, length, breadth, draught):
 
     They depend on hull and sea alone, so they are computed once for both.
     """
-    if isinstance(waves.omega, np.ndarray) and isinstance(length, float):
-        return _cached_hull(waves, length, breadth, draught)
+    if isinstance(waves.omega, np.ndarray) and is_single(length):
+        return _kept_hull(waves, length, breadth, draught)
     return _hull(waves, length, breadth, draught)
 
 
@@ -150,7 +149,7 @@ def _hull(waves, length, breadth, draught):
     return half_length, half_breadth, amplitude / (half_length * half_breadth), amplitude / half_length**2
 
 
-_cached_hull = lru_cache(maxsize=8)(_hull)
+_kept_hull = kept(8)(_hull)
 
 
 def _not_zero(x):

@@ -19,7 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.models.core.maths import Arithmetic, cos, library_of, pi, sincos
+from shipcosim.models.core.kept import kept
+from shipcosim.models.core.maths import Arithmetic, cos, is_single, library_of, pi, sincos
 from shipcosim.models.core.sampling import generator
 from shipcosim.models.environment.sinusoids import column, tensors_if_any, total
 
@@ -134,7 +135,7 @@ def components(
     0.5
     """
     arguments: Any = (height, period, wave_from, peak_enhancement, seed)
-    if all(isinstance(argument, (float, int)) for argument in arguments):
+    if all(map(is_single, arguments)):
         return _scalar_components(*arguments)
     return _components(*arguments)
 
@@ -211,7 +212,7 @@ def waves_like(waves: Waves, *values: Arithmetic) -> Waves:
     ----------
     Definition.
     """
-    if not isinstance(waves.omega, np.ndarray) or library_of(*values) is np:
+    if not isinstance(waves.omega, np.ndarray) or not hasattr(library_of(*values), "Tensor"):
         return waves
     arrays = (waves.amplitude, waves.omega, waves.wavenumber, waves.phase, np.asarray(waves.direction))
     return Waves(*tensors_if_any(arrays, *values))
@@ -230,7 +231,7 @@ def _components(height, period, wave_from, peak_enhancement, seed):
     return Waves(amplitude, omega, omega**2 / GRAVITY, phase, wave_from + pi)
 
 
-@lru_cache(maxsize=32)
+@kept(32)
 def _scalar_components(height, period, wave_from, peak_enhancement, seed):
     if height == 0.0:
         none = np.zeros(COMPONENTS)

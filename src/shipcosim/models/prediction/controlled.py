@@ -16,7 +16,7 @@ from shipcosim.models.control.observer import DpShip, Estimate
 from shipcosim.models.control.pid import ControlParameters, ControlState
 from shipcosim.models.control.reference import ReferenceParameters, ReferenceState
 from shipcosim.models.core.kinematics import to_body, to_ned
-from shipcosim.models.core.maths import exp
+from shipcosim.models.core.maths import exp, times
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
@@ -114,13 +114,18 @@ def predict(
     -----
     The estimate is taken to be right, but for the bias, which follows its load in `bias_time`. A unit
     that gives nothing now is missing. The load over a step is that of its middle, on the line through the last two.
+
+    References
+    ----------
+    Equations of motion as `dead_reckoning.predict`; reference, control law and allocation as the functions of those
+    modules. Running the controller ahead: Skulstad, Data-based modelling of ships, NTNU 2021, research question 5.
     """
     now, before, predictions = _start(known, surroundings, wind, loop), 0.0, []
     available = tuple(abs(thrust) > NOTHING for thrust in now.allocated.thrusts)
     for horizon in horizons:
-        steps = ceil((horizon - before) / longest_step)
-        for _ in range(steps):
-            now = _later(now, known, surroundings, available, (horizon - before) / steps, hull, wind, loop)
+        steps = int(ceil((horizon - before) / longest_step))
+        h = (horizon - before) / steps
+        now = times(steps, lambda now, h=h: _later(now, known, surroundings, available, h, hull, wind, loop), now)
         predictions.append(Motion(*now.motion[:6]))
         before = horizon
     return tuple(predictions)

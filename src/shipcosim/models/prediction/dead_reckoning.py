@@ -5,7 +5,7 @@ from math import ceil
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import where
+from shipcosim.models.core.maths import times, where
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.known import Known
@@ -61,9 +61,9 @@ def predict(
     motion, thrusters = (*ship, *through_water(ship.psi, ship.u, ship.v, *current)), _delivered(known, surroundings)
     predictions, before = [], 0.0
     for horizon in horizons:
-        steps = ceil((horizon - before) / longest_step)
-        for _ in range(steps):
-            motion = advance(motion, thrusters, surroundings, (horizon - before) / steps, hull=hull, wind=wind)
+        steps = int(ceil((horizon - before) / longest_step))
+        h = (horizon - before) / steps
+        motion = times(steps, lambda now, h=h: advance(now, thrusters, surroundings, h, hull=hull, wind=wind), motion)
         predictions.append(Motion(*motion[:6]))
         before = horizon
     return tuple(predictions)
@@ -97,7 +97,7 @@ def advance(
     Returns
     -------
     tuple of eight
-        As `motion`, with the heading wrapped.
+        As `motion`, with the heading wrapped. [as motion]
 
     References
     ----------

@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, atan2, exp, hypot, sqrt, where
+from shipcosim.models.core.maths import Arithmetic, atan2, exp, hypot, maximum, minimum, repeat, row_of, sqrt, where
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.core.sampling import normals, samples_due
 from shipcosim.models.ship.mast import MastParameters, wind_at_mast
@@ -181,9 +181,10 @@ class Channel(NamedTuple):
     Parameters
     ----------
     wander : tuple
-        Gauss-Markov errors, or latest samples of the wind's components from ahead and from starboard. [m, rad, m/s]
+        Gauss-Markov errors, or latest samples of the wind's components from ahead and from starboard, zeros before them
+        until there are as many as the mean is of. [m, rad, m/s]
     drift : tuple
-        Drifts by failure so far. [m, rad]
+        Drifts by failure so far, or the number of samples of the wind. [m, rad, 1]
     history : tuple
         Latest samples, of all like sensors each, the newest last: as many as latency and period ask for. [m, m/s, rad]
     """
@@ -247,7 +248,7 @@ def start(
     compasses = Channel(wander, (0.0,) * 2, (headings,))
     compasses = compasses._replace(history=(_headings(compasses, numbers[1], truth, failures, p),) * _length(clocks[1]))
     air = _air(truth, mast)
-    wind = Channel((air,), (), (Wind(*air, 1.0),))
+    wind = Channel((*((0.0, 0.0),) * (_spans(p) - 1), air), (1.0,), (Wind(*air, 1.0),))
     wind = wind._replace(history=(_wind(wind, numbers[2], failures, p),) * _length(clocks[2]))
     return SensorState(k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, p))
 
@@ -284,9 +285,9 @@ def step(
         State after the ticks.
     """
     due = samples_due(t, parameters.period)
-    while state.taken < due:
-        state = _ticked(state, truth, failures, parameters, mast)
-    return state
+    return repeat(
+        lambda state: state.taken < due, lambda state: _ticked(state, truth, failures, parameters, mast), state
+    )
 
 
 def _ticked(state, truth, failures, p, mast):
@@ -300,11 +301,16 @@ def _ticked(state, truth, failures, p, mast):
     numbers, rates = _numbers(p, k, 1), [failure.rate for failure in failures.compasses]
     headings = _moved(headings, numbers, p.heading_wander, rates, p.period)
     headings = _noted(headings, _headings(headings, numbers, truth, failures, p))
-    spans = max(1, round(p.wind_average_time / p.period))
-    wind = Channel((*wind.wander, _air(truth, mast))[-spans:], (), wind.history)
+    count = minimum(wind.drift[0] + 1.0, float(len(wind.wander)))
+    wind = Channel((*wind.wander[1:], _air(truth, mast)), (count,), wind.history)
     if k % p.clocks[2][0] == 0:
         wind = _noted(wind, _wind(wind, _numbers(p, k, 2), failures, p))
     return SensorState(k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, p))
+
+
+def _spans(p):
+    """Samples of the wind in its mean."""
+    return max(1, round(p.wind_average_time / p.period))
 
 
 def _length(clock):
@@ -370,7 +376,7 @@ def _headings(channel, numbers, truth, failures, p):
 def _wind(channel, numbers, failures, p):
     """Sample of the anemometer: the mean of what it had."""
     failure, last = failures.wind, channel.history[-1]
-    ahead, starboard = (sum(component) / len(channel.wander) for component in zip(*channel.wander, strict=True))
+    ahead, starboard = (sum(component) / channel.drift[0] for component in zip(*channel.wander, strict=True))
     fresh = (
         hypot(ahead, starboard) * (1.0 + p.wind_speed_noise * numbers[0]) * failure.scale,
         wrap(atan2(starboard, ahead) + p.wind_from_noise_std * numbers[1] + failure.offset),
@@ -407,5 +413,5 @@ def _telegrams(k, positions, headings, wind, p):
 def _given_out(k, channel, clock, period):
     """Sample of a channel that is given out at tick k, and its time."""
     every, delay = clock
-    sample = max(0, (k - delay) // every)
-    return channel.history[sample - k // every - 1], sample * every * period
+    sample = maximum(0, (k - delay) // every)
+    return row_of(channel.history, sample - k // every - 1), sample * every * period
