@@ -7,7 +7,7 @@ in what the package ships. `entries` lists them, `fmus` gives the folders of bui
 from shipcosim.library.building import build_stale, built_fmus, fmus
 from shipcosim.library.finding import SYSTEMS, check_is_system, find, find_any, find_parameters, scenarios
 from shipcosim.library.names import KINDS, Entry, entries, fmu_sources, line_of, named, names
-from shipcosim.library.places import project_of, roots, shipped
+from shipcosim.library.places import cache, project_of, roots, shipped
 
 __all__ = [
     "KINDS",
@@ -15,6 +15,7 @@ __all__ = [
     "Entry",
     "build_stale",
     "built_fmus",
+    "cache",
     "check_is_system",
     "entries",
     "find",

@@ -21,7 +21,7 @@ def test_the_filter_was_compiled_from_the_sources_that_stand_here(platform):
 @pytest.mark.parametrize("platform", TARGETS)
 def test_compiled_again_it_has_the_same_bytes(platform, tmp_path, needs):
     if importlib.util.find_spec("ziglang") is None:
-        needs("ziglang", 'Install it: pip install -e ".[loader]".')
+        needs("ziglang", 'Install it: pip install -e ".[native]".')
     assert compile_filter(platform, tmp_path).read_bytes() == kalman.library_for(platform).read_bytes(), REMEDY
 
 

@@ -1,4 +1,4 @@
-"""Compiles the filter: ``pip install -e .[loader]``, then ``python -m shipcosim.diagnose.inference.kalman.compile``.
+"""Compiles the filter: ``pip install -e .[native]``, then ``python -m shipcosim.diagnose.inference.kalman.compile``.
 
 That compiler brings the headers of every platform, so the bytes do not depend on the machine.
 """

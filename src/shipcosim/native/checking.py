@@ -1,0 +1,96 @@
+"""Compiled steps against the same steps in Python, from the same numbers."""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+from typing import Any
+
+import numpy as np
+
+from shipcosim.native.leaves import text_of
+from shipcosim.native.source import DONE
+from shipcosim.native.symbols import Untraceable
+from shipcosim.native.trace import STANDS, shape_of
+
+STEPS = 20
+"""Steps that are compared."""
+
+LARGEST = 1e-9
+"""Difference of a number, over its size or 1, from which on compiled code is refused; rounding is 1000 times less."""
+
+
+def refuse_other_results(compiled: Any, time: float, step_size: float) -> None:
+    """Take steps with random inputs in Python and in compiled code.
+
+    Parameters
+    ----------
+    compiled : CompiledStep
+        Its memory has the numbers at the start again afterwards.
+    time, step_size : float
+        Of the first step. [s, s]
+
+    Raises
+    ------
+    Untraceable
+        A number differs; with its name, the step and both values.
+    """
+    random, before = np.random.default_rng(1), compiled.memory.copy()
+    function = ctypes.CFUNCTYPE(ctypes.c_int, *[ctypes.c_void_p] * 4)(compiled.function.value)
+    call = ctypes.cast(compiled.call, ctypes.c_void_p)
+    python = _copy(compiled.fmu)
+    try:
+        for number in range(STEPS):
+            _give_inputs(python, compiled, random)
+            compiled.memory[:-2] = shape_of(python).flat.numbers
+            compiled.memory[-2:] = time + number * step_size, step_size
+            pointers = (array.ctypes.data for array in (compiled.memory, compiled.kept))
+            status = function(*pointers, call, None)
+            try:
+                python.step(time + number * step_size, step_size)
+            except Exception:
+                if status == DONE:
+                    raise Untraceable(f"in step {number} Python fails and compiled code does not") from None
+                python = _copy(compiled.fmu)
+                continue
+            if status == DONE:
+                _compare(compiled, shape_of(python), number)
+    finally:
+        compiled.memory[:] = before
+        compiled.kept[:] = np.nan
+
+
+def _copy(fmu):
+    """The same component once more."""
+    made = object.__new__(type(fmu))
+    for name in STANDS:
+        setattr(made, name, copy.copy(getattr(fmu, name)))
+    vars(made).update(copy.deepcopy(vars(fmu)))
+    return made
+
+
+def _give_inputs(fmu, compiled, random):
+    """Inputs near those at the start; flags are mostly as they are."""
+    for variable in fmu.variables:
+        if variable.causality != "input":
+            continue
+        value = getattr(compiled.fmu, variable.name)
+        if variable.type == "Real":
+            low = -np.inf if variable.minimum is None else variable.minimum
+            high = np.inf if variable.maximum is None else variable.maximum
+            drawn = value + 0.1 * random.standard_normal() * max(abs(value), 1.0)
+            setattr(fmu, variable.name, float(min(max(drawn, low), high)))
+        elif variable.type == "Boolean":
+            setattr(fmu, variable.name, bool(value) ^ bool(random.random() < 0.1))
+
+
+def _compare(compiled, shape, number):
+    expected = np.array(shape.flat.numbers, dtype=float)
+    if len(expected) != len(compiled.memory) - 2:
+        raise Untraceable(f"in step {number} its state has another shape than compiled code gives it")
+    with np.errstate(invalid="ignore"):
+        off = np.abs(compiled.memory[:-2] - expected) > LARGEST * np.maximum(np.abs(expected), 1.0)
+    if off.any():
+        place = int(np.argmax(off))
+        name, found = text_of(shape.flat.leaves[place].path), compiled.memory[place]
+        raise Untraceable(f"in step {number} compiled code gives {name} = {found:.9g}, Python {expected[place]:.9g}")

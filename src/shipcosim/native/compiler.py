@@ -1,0 +1,78 @@
+"""Compiled code by the hash of its source: made once, kept in the cache of the package."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import importlib.util
+import os
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.library import cache
+
+OPTIONS = ("-shared", "-O1", "-g0", "-s", "-fPIC", "-std=c11", "-fvisibility=hidden")
+EXACT = "-ffp-contract=off"  # no fused operations: what Python computes, to the last bit
+SUFFIX = ".dll" if sys.platform == "win32" else ".dylib" if sys.platform == "darwin" else ".so"
+
+
+def is_installed() -> bool:
+    """Whether there is a compiler."""
+    return importlib.util.find_spec("ziglang") is not None
+
+
+def check_installed() -> None:
+    """Raise where there is no compiler.
+
+    Raises
+    ------
+    ShipcosimError
+        With what to install.
+    """
+    if not is_installed():
+        found = "It compiles the models, and there is no compiler."
+        raise ShipcosimError(Problem("engine 'native'", found, "Install it: pip install 'shipcosim[native]'."))
+
+
+def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
+    """Libraries of C sources, compiled where they are not in the cache yet.
+
+    Parameters
+    ----------
+    sources : iterable of str
+        C texts.
+
+    Raises
+    ------
+    ShipcosimError
+        There is no compiler, it fails, or the cache cannot be written.
+    """
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return [ctypes.CDLL(str(path)) for path in pool.map(_compiled, sources)]
+
+
+def _compiled(source: str) -> Path:
+    key = repr((source, OPTIONS, EXACT, sysconfig.get_platform()))
+    path = cache() / "native" / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}{SUFFIX}"
+    if path.is_file():
+        return path
+    check_installed()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+            text, made = Path(folder, "step.c"), Path(folder, path.name)
+            text.write_text(source, encoding="utf-8")
+            command = [sys.executable, "-m", "ziglang", "cc", *OPTIONS, EXACT, str(text), "-o", str(made), "-lm"]
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            if done.returncode:
+                raise ShipcosimError(Problem("compiler", f"fails: {done.stderr.strip()[:1000]}"))
+            os.replace(made, path)
+    except OSError as error:
+        raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
+    return path

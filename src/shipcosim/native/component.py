@@ -1,0 +1,160 @@
+"""A component whose steps are compiled: its memory of numbers, and the Python object that they belong to."""
+
+from __future__ import annotations
+
+import ctypes
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from shipcosim.native.checking import refuse_other_results
+from shipcosim.native.compiler import libraries
+from shipcosim.native.kept_records import Record, keep_record, kept_record, key_of, record_of
+from shipcosim.native.leaves import Flat, attributes_like, made_like
+from shipcosim.native.recording import typed
+from shipcosim.native.source import source_of
+from shipcosim.native.symbols import Untraceable
+from shipcosim.native.trace import Shape, shape_of, trace
+
+CALL = ctypes.CFUNCTYPE(
+    ctypes.c_int, ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double)
+)
+
+
+class CompiledStep:
+    """The compiled step of one component.
+
+    Parameters
+    ----------
+    fmu : Fmu
+        The Python object, after its start. Its numbers are those of the memory after `give_back`.
+    shape : Shape
+        What is a number in it.
+    record : Record
+        What belongs to the code.
+    library : CDLL
+        The compiled code.
+
+    Attributes
+    ----------
+    memory : (n + 2,) array
+        All numbers, time and step size.
+    kept : (m,) array
+        Results of functions that stay in Python, each behind the arguments that it belongs to.
+    function : c_void_p
+        The code.
+    call : ctypes function
+        Computes what stays in Python.
+    places : dict of str to int
+        Where the variables lie in the memory.
+    """
+
+    def __init__(self, fmu: Any, shape: Shape, record: Record, library: ctypes.CDLL):
+        self.fmu, self._shape, self._record, self._library = fmu, shape, record, library
+        self.function = ctypes.cast(library.step, ctypes.c_void_p)
+        self.memory = np.zeros(len(shape.flat.leaves) + 2)
+        self.memory[:-2] = shape.flat.numbers
+        self.kept = np.full(max(1, sum(len(call.changing) + call.size for call in record.calls)), np.nan)
+        self.call = CALL(self._called)
+        self._examples = [Flat(call.arguments) for call in record.calls]
+        self.places = {leaf.path[0]: place for place, leaf in enumerate(shape.flat.leaves) if len(leaf.path) == 1}
+
+    def take(self) -> None:
+        """Take the numbers of the Python object. Raises Untraceable where it has another shape now."""
+        shape = shape_of(self.fmu)
+        if not shape.flat.same_shape(self._shape.flat):
+            raise Untraceable(f"its state changes its shape: {self._shape.flat.difference(shape.flat)}")
+        self.memory[:-2] = shape.flat.numbers
+
+    def give_back(self) -> None:
+        """Give the numbers to the Python object."""
+        values, shape = vars(self.fmu), self._shape
+        numbers = [
+            typed(number, leaf.kind) for number, leaf in zip(self.memory.tolist(), shape.flat.leaves, strict=False)
+        ]
+        made = attributes_like(values, numbers, shape.constant, shape.unchanging)
+        fixed = shape.constant | shape.unchanging
+        values.update({name: value for name, value in made.items() if name not in fixed})
+
+    def _called(self, _, number, arguments, kept):
+        """Compute a function that stays in Python; its errors come up again when Python takes the step."""
+        call = self._record.calls[number]
+        try:
+            numbers, leaves = list(self._examples[number].numbers), self._examples[number].leaves
+            for place, changing in enumerate(call.changing):
+                numbers[changing] = typed(arguments[place], leaves[changing].kind)
+            result = call.function(*made_like(call.arguments, iter(numbers)))
+            found = result.ravel() if isinstance(result, np.ndarray) else Flat(result).numbers
+            np.ctypeslib.as_array(kept, (call.size,))[:] = found
+        except Exception:
+            return 1
+        return 0
+
+
+def compiled_steps(fmus: Sequence[Any], time: float, step_size: float) -> list[CompiledStep | Untraceable]:
+    """Compiled steps of components, or why there are none.
+
+    Parameters
+    ----------
+    fmus : sequence of Fmu
+        After their start.
+    time, step_size : float
+        Of the first step. [s, s]
+
+    Raises
+    ------
+    ShipcosimError
+        The compiler is missing or fails, or the cache cannot be written.
+    """
+    found = [_recorded(fmu, time, step_size) for fmu in fmus]
+    made = iter(libraries(one.record.source for one in found if isinstance(one, _Recorded)))
+    return [_checked(one, next(made), time, step_size) if isinstance(one, _Recorded) else one for one in found]
+
+
+class _Recorded(NamedTuple):
+    """A component with its record, which is new where it has a key."""
+
+    fmu: Any
+    shape: Shape
+    record: Record
+    key: str
+
+
+def _recorded(fmu, time, step_size) -> _Recorded | Untraceable:
+    """What a component records as, from the cache where it is there."""
+    try:
+        shape = shape_of(fmu)
+        numbers, key = [*shape.flat.numbers, time, step_size], key_of(fmu, shape)
+        if (record := kept_record(key, numbers)) is not None:
+            return _Recorded(fmu, shape, record, "")
+        step = trace(fmu, shape, time, step_size)
+        return _Recorded(fmu, shape, record_of(step, source_of(step), numbers), key)
+    except Untraceable as reason:
+        return Untraceable(f"{_line_of(reason)}{reason}")
+    except Exception as error:  # whatever a model says to a symbol in place of a number
+        return Untraceable(f"{_line_of(error)}{type(error).__name__}: {error}")
+
+
+def _checked(recorded: _Recorded, library, time, step_size) -> CompiledStep | Untraceable:
+    """The compiled step; what is new is compared with Python before it is kept."""
+    compiled = CompiledStep(recorded.fmu, recorded.shape, recorded.record, library)
+    if recorded.key:
+        try:
+            refuse_other_results(compiled, time, step_size)
+        except Untraceable as reason:
+            return reason
+        keep_record(recorded.key, recorded.record)
+    return compiled
+
+
+def _line_of(error: BaseException) -> str:
+    """The line of the component's own code that an error comes from, as text; empty where it is none of its lines."""
+    frames = [
+        frame
+        for frame in traceback.extract_tb(error.__traceback__)
+        if "/models/" in frame.filename.replace("\\", "/") or "_code" in frame.filename
+    ]
+    return f"{Path(frames[-1].filename).name}, line {frames[-1].lineno}: " if frames else ""

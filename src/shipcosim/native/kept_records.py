@@ -1,0 +1,140 @@
+"""Recorded steps in the cache: what a component records as follows from its code and its shape, seldom from numbers."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import shipcosim
+from shipcosim.library import cache
+from shipcosim.native.leaves import Flat
+from shipcosim.native.trace import Shape, Step
+
+
+class KeptCall(NamedTuple):
+    """A function that stays in Python.
+
+    Parameters
+    ----------
+    module, name : str
+        Where it is found.
+    arguments : tuple
+        An example of its arguments.
+    changing : list of int
+        Which of the numbers in them change.
+    size : int
+        How many numbers it gives.
+    """
+
+    module: str
+    name: str
+    arguments: tuple
+    changing: list[int]
+    size: int
+
+    @property
+    def function(self) -> Callable:
+        """The function itself, without what remembers its results."""
+        found = getattr(sys.modules[self.module], self.name)
+        return getattr(found, "__wrapped__", found)
+
+
+@dataclass(frozen=True)
+class Record:
+    """What belongs to a compiled step.
+
+    Parameters
+    ----------
+    source : str
+        Its C text.
+    calls : list of KeptCall
+        Functions that stay in Python.
+    guards : dict of int to float
+        Places in the memory on whose numbers the code relies, and those numbers.
+    """
+
+    source: str
+    calls: list[KeptCall]
+    guards: dict[int, float]
+
+
+def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
+    """What belongs to a step that was recorded from some numbers."""
+    calls = [
+        KeptCall(
+            call.function.__module__,
+            call.function.__name__,
+            call.arguments,
+            call.changing,
+            len(Flat(call.result).numbers),
+        )
+        for call in step.recording.calls
+    ]
+    return Record(source, calls, {place: _rounded(numbers[place]) for place in sorted(_guarded(step))})
+
+
+def key_of(fmu: Any, shape: Shape) -> str:
+    """Key of a component's code and shape. The module of an FMU has a name unique to its content."""
+    flat = shape.flat
+    parts = type(fmu).__module__, type(fmu).__qualname__, shipcosim.__version__, flat.structure, flat.leaves, _OWN_CODE
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+
+
+def kept_record(key: str, numbers: Sequence[float]) -> Record | None:
+    """The record in the cache that fits some numbers."""
+    try:
+        records = pickle.loads(_path(key).read_bytes())
+    except (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError):
+        return None
+    fitting = (
+        record for record in records if all(_rounded(numbers[place]) == value for place, value in record.guards.items())
+    )
+    return next(fitting, None)
+
+
+def keep_record(key: str, record: Record) -> None:
+    """Put a record beside those that there are. A cache that cannot be written keeps nothing."""
+    path = _path(key)
+    try:
+        records = pickle.loads(path.read_bytes()) if path.is_file() else []
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=path.parent)
+        with os.fdopen(handle, "wb") as file:
+            file.write(pickle.dumps([record, *records][:MOST]))
+        os.replace(temporary, path)
+    except (OSError, EOFError, pickle.PicklingError, pickle.UnpicklingError, AttributeError, ImportError):
+        return
+
+
+MOST = 8
+"""Records that are kept of one shape."""
+
+
+def _guarded(step: Step) -> set[int]:
+    """Places in the memory from which the whole numbers follow that the code relies on."""
+    sources = (source for symbol in step.recording.relied_on for source in symbol.sources())
+    return {source.operands[0] for source in sources if source.op == "load"}
+
+
+def _rounded(number):
+    return float(f"{number:.9g}")
+
+
+def _path(key) -> Path:
+    return cache() / "native" / f"{key}.record"
+
+
+def _own_code() -> str:
+    """Hash of this package: what writes the C text."""
+    texts = [path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))]
+    return hashlib.sha256(b"\0".join(texts)).hexdigest()
+
+
+_OWN_CODE = _own_code()

@@ -1,0 +1,167 @@
+"""Plain objects as rows of numbers, and back: what is a number in them, and what belongs to their structure."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Iterator, Set
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from shipcosim.native.symbols import Symbol, Untraceable, kind_of
+
+STRUCTURE = (str, bytes, type(None), type)
+WHOLE = (bool, int, np.integer, np.bool_)
+FRACTIONAL = (float, np.floating)
+
+
+class Leaf(NamedTuple):
+    """A number in an object.
+
+    Parameters
+    ----------
+    path : tuple
+        Where it lies: keys, indices, names of attributes.
+    kind : str
+        As of a `Symbol`.
+    """
+
+    path: tuple
+    kind: str
+
+
+class Flat:
+    """An object, taken apart.
+
+    Parameters
+    ----------
+    value : any
+        Numbers, texts, None; arrays, tuples, lists, dicts and dataclasses of them.
+    constant : set of str
+        Keys of the outermost dict whose values belong to the structure, whatever they are.
+    unchanging : set of str
+        Keys of the outermost dict in whose values whole numbers belong to the structure: counts, choices.
+
+    Attributes
+    ----------
+    numbers : list
+        All numbers, or symbols.
+    leaves : list of Leaf
+        Where they lie.
+    structure : list of (path, description)
+        All else.
+    """
+
+    def __init__(self, value: Any, constant: Set[str] = frozenset(), unchanging: Set[str] = frozenset()):
+        self.numbers: list[Any] = []
+        self.leaves: list[Leaf] = []
+        self.structure: list[tuple[tuple, Any]] = []
+        if constant or unchanging:
+            for name, part in value.items():
+                if name in constant:
+                    self.structure.append(((name,), part))
+                else:
+                    self._add((name,), part, name in unchanging)
+        else:
+            self._add((), value, False)
+
+    def same_shape(self, other: Flat) -> bool:
+        """Whether two objects differ in their numbers alone."""
+        places = [leaf.path for leaf in self.leaves], [leaf.path for leaf in other.leaves]
+        return places[0] == places[1] and self.structure == other.structure
+
+    def difference(self, other: Flat) -> str:
+        """The first place where their structures differ, as text."""
+        for (path, one), (other_path, another) in zip(self.structure, other.structure, strict=False):
+            if path != other_path or one != another:
+                return f"{text_of(path)} was {str(one)[:40]}, then {text_of(other_path)} was {another}"
+        ours, theirs = ({leaf.path for leaf in flat.leaves} for flat in (self, other))
+        return ", ".join(text_of(path) for path in sorted(ours ^ theirs, key=str)[:3]) + " is not always there"
+
+    def _add(self, path, value, fixed):
+        value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
+        if isinstance(value, (Symbol, *FRACTIONAL)) or (isinstance(value, WHOLE) and not fixed):
+            self._number(path, value)
+        elif isinstance(value, WHOLE) or isinstance(value, STRUCTURE):
+            self.structure.append((path, value))
+        elif isinstance(value, np.ndarray) and value.dtype.kind in "fibO":
+            self.structure.append((path, value.shape))
+            elements = value.ravel().tolist()
+            self.numbers += elements
+            self.leaves += [Leaf((*path, index), kind_of(element)) for index, element in enumerate(elements)]
+        else:
+            self.structure.append((path, type(value).__qualname__))
+            for key, part in _parts(path, value):
+                self._add((*path, key), part, fixed)
+
+    def _number(self, path, value):
+        self.numbers.append(value)
+        self.leaves.append(Leaf(path, kind_of(value)))
+
+
+def made_like(value: Any, numbers: Iterator[Any]) -> Any:
+    """An object like another one, of other numbers.
+
+    Parameters
+    ----------
+    value : any
+        Whose structure is taken.
+    numbers : iterator
+        The numbers, in the order of `Flat`.
+    """
+    if isinstance(value, (Symbol, *FRACTIONAL, *WHOLE)):
+        return next(numbers)
+    if isinstance(value, STRUCTURE):
+        return value
+    if isinstance(value, np.ndarray):
+        found = [next(numbers) for _ in range(value.size)]
+        kind = (
+            object if any(isinstance(one, Symbol) for one in found) else float if value.dtype == object else value.dtype
+        )
+        return np.array(found, dtype=kind).reshape(value.shape)
+    if isinstance(value, (tuple, list)):
+        made = [made_like(part, numbers) for part in value]
+        return type(value)(*made) if hasattr(value, "_fields") else type(value)(made)
+    if isinstance(value, dict):
+        return {key: made_like(part, numbers) for key, part in value.items()}
+    made = object.__new__(type(value))
+    made.__dict__.update({key: made_like(part, numbers) for key, part in vars(value).items()})
+    return made
+
+
+def attributes_like(
+    values: dict[str, Any], numbers: Iterable[Any], constant: Set[str], unchanging: Set[str]
+) -> dict[str, Any]:
+    """Attributes of a component like others, of other numbers; see `Flat`."""
+    rest = iter(numbers)
+    return {
+        name: value
+        if name in constant
+        else _keeping_whole(value, rest)
+        if name in unchanging
+        else made_like(value, rest)
+        for name, value in values.items()
+    }
+
+
+def text_of(path: tuple) -> str:
+    """A path as one reads it."""
+    return ".".join(map(str, path))
+
+
+def _keeping_whole(value, numbers):
+    """`made_like`, in which whole numbers stay."""
+    flat = Flat(value)
+    return made_like(value, iter([next(numbers) if kind_of(one) == "d" else one for one in flat.numbers]))
+
+
+def _parts(path, value) -> Iterator[tuple[Any, Any]]:
+    """Parts of an object by key or index."""
+    if isinstance(value, (tuple, list)):
+        yield from enumerate(value)
+    elif isinstance(value, dict):
+        yield from value.items()
+    elif dataclasses.is_dataclass(value):
+        yield from ((name, part) for name, part in vars(value).items() if name != "maths")
+    else:
+        raise Untraceable(f"it keeps a {type(value).__name__} in {text_of(path)}")

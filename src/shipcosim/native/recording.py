@@ -1,0 +1,377 @@
+"""What a step of a component computes, recorded as a tree of values."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import operator
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from shipcosim.native.leaves import Flat, made_like
+from shipcosim.native.purity import anything
+from shipcosim.native.symbols import Maths, Symbol, Untraceable
+
+MOST_PATHS = 200
+"""Ways through one step beyond which a component is no longer recorded."""
+
+
+MOST_VALUES = 150_000
+"""Values in one step beyond which a component is no longer recorded: the compiler would take minutes."""
+
+
+class Call(NamedTuple):
+    """A function whose result is kept while its arguments stay.
+
+    Parameters
+    ----------
+    function : callable
+        Called in Python.
+    arguments : tuple
+        Of the example.
+    changing : list of int
+        Which of the numbers in the arguments change; the others are always those of the example.
+    result : any
+        Of the example.
+    """
+
+    function: Callable
+    arguments: tuple
+    changing: list[int]
+    result: Any
+
+
+@dataclass(eq=False)
+class Block:
+    """Values that are computed one after the other, and what comes next: two blocks, or the end.
+
+    Attributes
+    ----------
+    number : int
+        Of the block.
+    lineage : frozenset of int
+        Numbers of the blocks whose values are known in this one.
+    values : list of Symbol
+        In the order in which they are computed.
+    known : dict
+        The same by operation and operands: what is computed twice is one value.
+    condition : Symbol or None
+        Decides between `yes` and `no`.
+    result : Any
+        What the model gave at the end of this way; None where the block forks.
+    """
+
+    number: int = field(default_factory=itertools.count().__next__)
+    values: list[Symbol] = field(default_factory=list)
+    known: dict = field(default_factory=dict)
+    parent: Block | None = None
+    condition: Symbol | None = None
+    yes: Block | None = None
+    no: Block | None = None
+    result: Any = None
+
+    def __post_init__(self):
+        before = frozenset() if self.parent is None else self.parent.lineage
+        self.lineage: frozenset[int] = before | {self.number}
+
+
+@dataclass(eq=False)
+class Loop:
+    """A body that is repeated while a condition holds.
+
+    Attributes
+    ----------
+    start : list
+        Numbers and symbols that the carried values begin with.
+    carried : list of Symbol
+        The values as the body and the condition see them.
+    going, body : Block
+        What computes the condition, and the values after one more turn: lists, at the ends of their ways.
+    """
+
+    start: list
+    carried: list[Symbol]
+    going: Block
+    body: Block
+
+
+class Recording:
+    """All values that a function computes, as a tree of blocks.
+
+    Parameters
+    ----------
+    example : (n,) sequence of float
+        Memory, time and step size of an example, which decides where a model asks for a whole number.
+
+    Attributes
+    ----------
+    root : Block
+        Where every way begins.
+    tables : list of (n,) array
+        Constant numbers that are looked up by an index.
+    calls : list of Call
+        Functions that stay in Python.
+    loops : list of Loop
+        What is repeated.
+    relied_on : list of Symbol
+        Values that must be what they are in the example.
+    """
+
+    def __init__(self, example: Sequence[float]):
+        self.memory = example
+        self.tables: list[np.ndarray] = []
+        self.calls: list[Call] = []
+        self.loops: list[Loop] = []
+        self.relied_on: list[Symbol] = []
+        self.count = 0
+        self._table_numbers: dict = {}
+        self._call_numbers: dict = {}
+        self._asked: Counter[str] = Counter()
+        self._starts: dict[int, list] = {}
+        self._examples: dict[int, Any] = {}
+        self.root = self.block = Block()
+        self._answers: dict[int, bool] = {}
+        self._prefix: tuple[bool, ...] = ()
+        self._taken: list[bool] = []
+        self._due: list[tuple[bool, ...]] = []
+
+    def record(self, function: Callable[[], Any], parent: Block | None = None) -> Block:
+        """Run a function once for each way through it; its results stay at the ends of the ways.
+
+        A way on which the function raises an error ends with the error as its result.
+
+        Raises
+        ------
+        Untraceable
+        """
+        before = self.block, self._answers, self._prefix, self._taken, self._due
+        root, self._due = Block(parent=parent), [()]
+        ways = 0
+        while self._due:
+            self._prefix, self._taken = self._due.pop(), []
+            self.block, self._answers = root, dict(before[1])
+            ways += 1
+            if ways > MOST_PATHS:
+                (where, _), *_ = self._asked.most_common(1)
+                raise Untraceable(f"it has more than {MOST_PATHS} ways through a step, most of them by {where}")
+            try:
+                result = function()
+            except (Untraceable, AssertionError, MemoryError, RecursionError):
+                raise
+            except (ArithmeticError, ValueError) as error:
+                result = error
+            if isinstance(result, Flat):
+                for number in result.numbers:
+                    self.refuse_left_behind(number)
+            self.block.result = result
+        self.block, self._answers, self._prefix, self._taken, self._due = before
+        return root
+
+    def repeat(self, going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) -> Any:
+        """The state after as many turns as a condition on it holds for."""
+        flat, parent = Flat(state), self.block
+        kinds = [leaf.kind for leaf in flat.leaves]
+        while True:
+            number = len(self.loops)
+            self._starts[number] = flat.numbers
+            carried = [self.fresh("carried", kind, number, place) for place, kind in enumerate(kinds)]
+            state_then = made_like(state, iter(carried))
+            condition = self.record(lambda state=state_then: going(state), parent)
+            body = self.record(lambda state=state_then: Flat(turn(state)), parent)
+            for end in ends(body):
+                if isinstance(end.result, Flat) and not end.result.same_shape(flat):
+                    raise Untraceable(f"in a loop the state changes its shape: {flat.difference(end.result)}")
+            after = [end.result.leaves for end in ends(body) if isinstance(end.result, Flat)]
+            wider = ["d" if any(way[i].kind == "d" for way in after) else kind for i, kind in enumerate(kinds)]
+            if wider == kinds:
+                break
+            kinds = wider
+        self.loops.append(Loop(flat.numbers, carried, condition, body))
+        self.fresh("loop", "d", number)
+        return made_like(state, iter([self.fresh("after", kind, number, place) for place, kind in enumerate(kinds)]))
+
+    def decide(self, condition: Symbol) -> bool:
+        """The answer to a question of Python's on this way."""
+        if condition.number in self._answers:
+            return self._answers[condition.number]
+        frame = sys._getframe(2)
+        file = frame.f_code.co_filename.replace("\\", "/").rpartition("/")[2]
+        self._asked[f"line {frame.f_lineno} of {file}"] += 1
+        number = len(self._taken)
+        answer = self._prefix[number] if number < len(self._prefix) else True
+        if number >= len(self._prefix):
+            self._due.append((*self._taken, False))
+        self._taken.append(answer)
+        self._answers[condition.number] = answer
+        block = self.block
+        if block.condition is None:
+            block.condition, block.yes, block.no = condition, Block(parent=block), Block(parent=block)
+        following = block.yes if answer else block.no
+        assert block.condition is condition and following is not None
+        self.block = following
+        return answer
+
+    def value(self, op: str, kind: str, *operands: Any) -> Symbol:
+        """The value of an operation, that computed before where there is one on this way."""
+        key = op, *(id(o) if isinstance(o, Symbol) else (type(o), repr(o)) for o in operands)
+        block: Block | None = self.block
+        while block is not None:
+            if key in block.known:
+                return block.known[key]
+            block = block.parent
+        self.block.known[key] = symbol = self.fresh(op, kind, *operands)
+        return symbol
+
+    def fresh(self, op: str, kind: str, *operands: Any) -> Symbol:
+        """A new value."""
+        if self.count >= MOST_VALUES:
+            raise Untraceable(f"it computes more than {MOST_VALUES} values in a step")
+        for operand in operands:
+            self.refuse_left_behind(operand)
+        symbol = Symbol(self, self.count, op, kind, operands, self.block.number)
+        self.count += 1
+        self.block.values.append(symbol)
+        return symbol
+
+    def kept(self, function: Callable, arguments: tuple) -> Any:
+        """What a function gives that is called again only where its arguments have changed."""
+        given = Flat(arguments)
+        key = function, *(id(one) if isinstance(one, Symbol) else one for one in given.numbers)
+        if key not in self._call_numbers:
+            numbers = (
+                typed(self.example(one), leaf.kind) for one, leaf in zip(given.numbers, given.leaves, strict=True)
+            )
+            example = made_like(arguments, numbers)
+            self._call_numbers[key] = len(self.calls)
+            changing = [place for place, one in enumerate(given.numbers) if isinstance(one, Symbol)]
+            with anything(), np.errstate(all="ignore"):
+                self.calls.append(Call(function, example, changing, function(*example)))
+        number = self._call_numbers[key]
+        result = self.calls[number].result
+        self.value("call", "d", number, *(one for one in given.numbers if isinstance(one, Symbol)))
+        flat = Flat(result)
+        kept = [self.value("kept", leaf.kind, number, place) for place, leaf in enumerate(flat.leaves)]
+        return marked(made_like(result, iter(kept)))
+
+    def refuse_left_behind(self, value: Any) -> None:
+        """Raise Untraceable for a value of another way or of the inside of a loop, which Python kept elsewhere."""
+        if isinstance(value, Symbol) and value.block not in self.block.lineage:
+            raise Untraceable("it keeps a value of a loop or of another way in a variable of its own")
+
+    def guarded(self, symbol: Symbol) -> int:
+        """The whole number that a value is in the example; compiled code gives up where it is another one."""
+        if any(one.op in ("carried", "after") for one in symbol.sources()):
+            raise Untraceable("it asks for a whole number that follows from a loop")
+        found = int(self.example(symbol))
+        self.value("guard", "d", symbol, found)
+        self.relied_on.append(symbol)
+        return found
+
+    def table(self, numbers: np.ndarray) -> int:
+        """Number of a constant table."""
+        numbers = np.ascontiguousarray(numbers, dtype=float).ravel()
+        number = self._table_numbers.setdefault(numbers.tobytes(), len(self.tables))
+        if number == len(self.tables):
+            self.tables.append(numbers)
+        return number
+
+    def example(self, value: Any) -> Any:
+        """What a value is in the example.
+
+        Raises
+        ------
+        Untraceable
+            It depends on what a loop has computed.
+        """
+        if not isinstance(value, Symbol):
+            return value
+        if value.number not in self._examples:
+            self._examples[value.number] = self._computed(value)
+        return self._examples[value.number]
+
+    def _computed(self, value):
+        op, operands = value.op, value.operands
+        if op == "load":
+            return typed(self.memory[operands[0]], value.kind)
+        if op == "kept":
+            return Flat(self.calls[operands[0]].result).numbers[operands[1]]
+        if op in ("carried", "after"):  # as at the start of the loop
+            return self.example(self._starts[operands[0]][operands[1]])
+        if op == "row":
+            index, table, width, column = operands
+            return float(self.tables[table][self.example(index) * width + column])
+        if op == "load_row":
+            index, (place,), width, column = operands
+            return float(self.memory[place + self.example(index) * width + column])
+        if op == "interp":
+            x, first, second, _ = operands
+            return float(np.interp(self.example(x), self.tables[first], self.tables[second]))
+        if op not in EXAMPLES:
+            raise Untraceable(f"it asks for a whole number that follows from '{op}'")
+        return EXAMPLES[op](*(self.example(one) for one in operands))
+
+
+def ends(block: Block) -> Iterator[Block]:
+    """The ends of all ways from a block."""
+    if block.condition is None:
+        yield block
+    else:
+        for following in (block.yes, block.no):
+            assert following is not None
+            yield from ends(following)
+
+
+def typed(number: Any, kind: str) -> float | int | bool:
+    """A number as one of Python, of the kind of a symbol."""
+    return float(number) if kind == "d" else bool(number) if kind == "b" else int(number)
+
+
+def marked(value: Any) -> Any:
+    """An object that holds symbols, known as such to functions that remember by the identity of their arguments."""
+    for part in value if isinstance(value, tuple) else (value,):
+        if hasattr(part, "__dict__"):
+            part.__dict__["maths"] = Maths
+    return value
+
+
+EXAMPLES: dict[str, Callable] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "//": operator.floordiv,
+    "%": operator.mod,
+    "**": operator.pow,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+    "&": operator.and_,
+    "|": operator.or_,
+    "^": operator.xor,
+    "neg": operator.neg,
+    "not": operator.not_,
+    "abs": abs,
+    "floor": math.floor,
+    "ceil": math.ceil,
+    "round": round,
+    "sin": math.sin,
+    "cos": math.cos,
+    "tan": math.tan,
+    "exp": math.exp,
+    "log": math.log,
+    "sqrt": math.sqrt,
+    "tanh": math.tanh,
+    "atan2": math.atan2,
+    "number": float,
+    "whole": int,
+    "where": lambda condition, a, b: a if condition else b,
+}
+"""Operations in Python."""

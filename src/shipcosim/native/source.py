@@ -1,0 +1,301 @@
+"""C of a recorded step: one function that changes a memory of doubles in place."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from shipcosim.native.leaves import Flat
+from shipcosim.native.recording import Block, Loop, Recording
+from shipcosim.native.symbols import Symbol, kind_of
+from shipcosim.native.trace import Step
+
+DONE, GIVEN_UP = 0, 1
+"""What the function returns: the step is done; nothing has changed, Python must do it."""
+
+HEAD = """\
+#include <math.h>
+
+#ifdef _WIN32
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#endif
+
+typedef int (*Call)(void *host, int number, const double *arguments, double *kept);
+
+static inline double remainder_of(double a, double b) {
+    double m = fmod(a, b);
+    if (m != 0.0) return ((b < 0.0) != (m < 0.0)) ? m + b : m;
+    return copysign(0.0, b);
+}
+
+static inline double floor_division(double a, double b) {
+    double m = fmod(a, b), d = (a - m) / b, whole;
+    if (m != 0.0 && ((b < 0.0) != (m < 0.0))) d -= 1.0;
+    if (d == 0.0) return copysign(0.0, a / b);
+    whole = floor(d);
+    return d - whole > 0.5 ? whole + 1.0 : whole;
+}
+
+static inline double rounded(double x, double scale) { return rint(x * scale) / scale; }
+
+static double interpolated(double x, const double *xs, const double *ys, int n) {
+    int low = 0, high = n - 1;
+    if (x <= xs[0]) return ys[0];
+    if (x >= xs[n - 1]) return ys[n - 1];
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (x < xs[middle]) high = middle; else low = middle;
+    }
+    return ys[low] + (ys[low + 1] - ys[low]) * (x - xs[low]) / (xs[low + 1] - xs[low]);
+}
+"""
+
+UNARY = {
+    "neg": "-{}",
+    "not": "!{}",
+    "abs": "fabs({})",
+    "number": "(double){}",
+    "whole": "trunc({})",
+} | {name: f"{name}({{}})" for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "floor", "ceil")}
+BINARY = {op: f"{{}} {op} {{}}" for op in ("+", "-", "*", "/", "<", "<=", ">", ">=", "==", "!=", "&", "|", "^")} | {
+    "**": "pow({}, {})",
+    "%": "remainder_of({}, {})",
+    "//": "floor_division({}, {})",
+    "atan2": "atan2({}, {})",
+}
+
+
+def source_of(step: Step) -> str:
+    """C text with the function ``step`` of a component.
+
+    Its arguments are the memory, as `Step` lays it out; the results of functions that stay in Python, one behind the
+    other, each behind the arguments that it belongs to; the function that calls them, and the host it belongs to.
+    """
+    return _Writer(step).text()
+
+
+def kept_sizes(recording: Recording) -> list[tuple[int, int]]:
+    """Numbers of arguments and results of each function that stays in Python."""
+    return [(len(call.changing), len(Flat(call.result).numbers)) for call in recording.calls]
+
+
+class _Writer:
+    """Writes the blocks of a recording."""
+
+    def __init__(self, step: Step):
+        self.step, self.recording = step, step.recording
+        self.sizes = kept_sizes(step.recording)
+        firsts = np.cumsum([0, *(a + b for a, b in self.sizes)]).tolist()
+        self.arguments = firsts[:-1]
+        self.results = [first + size[0] for first, size in zip(firsts, self.sizes, strict=False)]
+        self.used = _used(step)
+        self.after = {
+            symbol.operands
+            for block in _all_blocks(step.root, step.recording)
+            for symbol in block.values
+            if symbol.op == "after" and symbol.number in self.used
+        }
+        self.lines: list[str] = []
+
+    def text(self) -> str:
+        tables = [
+            f"static const double table_{number}[] = {{{', '.join(map(_literal, table.tolist()))}}};"
+            for number, table in enumerate(self.recording.tables)
+        ]
+        self._block(self.step.root, 1, self._finish)
+        parameters = "double *restrict m, double *restrict k, Call call, void *host"
+        body = "\n".join(self.lines)
+        unused = "    (void)m; (void)k; (void)call; (void)host;"
+        return "\n".join([HEAD, *tables, "", f"EXPORT int step({parameters}) {{", unused, body, "}", ""])
+
+    def _put(self, depth, line):
+        self.lines.append("    " * depth + line)
+
+    def _block(self, block: Block, depth: int, finish):
+        for symbol in block.values:
+            if symbol.number in self.used:
+                self._value(symbol, depth)
+        if block.condition is None:
+            finish(block.result, depth)
+            return
+        self._put(depth, f"if ({_name(block.condition)}) {{")
+        self._block(_of(block.yes), depth + 1, finish)
+        self._put(depth, "} else {")
+        self._block(_of(block.no), depth + 1, finish)
+        self._put(depth, "}")
+
+    def _finish(self, result, depth):
+        if not isinstance(result, list):
+            self._put(depth, f"return {GIVEN_UP};")
+            return
+        checked = [_operand(number) for place, number in result if place in self.step.outputs]
+        if checked:
+            self._put(depth, f"if (!isfinite({' + '.join(checked)})) return {GIVEN_UP};")
+        for place, number in result:
+            self._put(depth, f"m[{place}] = {_operand(number)};")
+        self._put(depth, f"return {DONE};")
+
+    def _value(self, symbol: Symbol, depth):
+        op, operands = symbol.op, symbol.operands
+        if op == "guard":
+            self._put(depth, f"if ({_operand(operands[0])} != {_operand(operands[1])}) return {GIVEN_UP};")
+        elif op == "call":
+            self._call(operands, depth)
+        elif op == "loop":
+            self._loop(self.recording.loops[operands[0]], operands[0], depth)
+        elif op != "carried":
+            self._put(depth, f"const {_type(symbol)} {_name(symbol)} = {self._expression(symbol)};")
+
+    def _expression(self, symbol) -> str:
+        op, operands = symbol.op, symbol.operands
+        if op == "load":
+            return f"m[{operands[0]}]"
+        if op == "kept":
+            return f"k[{self.results[operands[0]] + operands[1]}]"
+        if op == "after":
+            return f"c{operands[0]}_{operands[1]}"
+        if op == "row":
+            index, table, width, column = operands
+            return f"table_{table}[(long){_operand(index)} * {width} + {column}]"
+        if op in ("load_row", "kept_row"):
+            index, (*call, place), width, column = operands
+            base = f"m[{place}" if op == "load_row" else f"k[{self.results[call[0]] + place}"
+            return f"{base} + (long){_operand(index)} * {width} + {column}]"
+        if op == "interp":
+            x, first, second, n = operands
+            return f"interpolated({_operand(x)}, table_{first}, table_{second}, {n})"
+        if op == "where":
+            condition, a, b = map(_operand, operands)
+            return f"{condition} ? {a} : {b}"
+        if op == "round":
+            return f"rounded({_operand(operands[0])}, 1e{operands[1]})"
+        return (UNARY if len(operands) == 1 else BINARY)[op].format(*map(_operand, operands))
+
+    def _call(self, operands, depth):
+        number, *arguments = operands
+        first = self.arguments[number]
+        same = " || ".join(f"k[{first + i}] != {_operand(a)}" for i, a in enumerate(arguments)) or "0"
+        self._put(depth, f"if ({same}) {{")
+        for i, a in enumerate(arguments):
+            self._put(depth + 1, f"k[{first + i}] = {_operand(a)};")
+        where = f"k + {first}, k + {self.results[number]}"
+        again = f"k[{first}] = NAN; " if arguments else ""
+        self._put(depth + 1, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
+        self._put(depth, "}")
+
+    def _loop(self, loop: Loop, number, depth):
+        needed = [
+            place
+            for place, symbol in enumerate(loop.carried)
+            if symbol.number in self.used or (number, place) in self.after
+        ]
+        for place in needed:
+            symbol, start = loop.carried[place], loop.start[place]
+            self._put(depth, f"{_type(symbol)} c{number}_{place} = {_operand(start)};")
+        self._put(depth, "for (;;) {")
+        for place, symbol in enumerate(loop.carried):
+            if symbol.number in self.used:
+                self._put(depth + 1, f"const {_type(symbol)} {_name(symbol)} = c{number}_{place};")
+        self._put(depth + 1, "int going;")
+        self._block(loop.going, depth + 1, self._decide)
+        self._put(depth + 1, "if (!going) break;")
+
+        def turn(result, inner):
+            if isinstance(result, Exception):
+                self._put(inner, f"return {GIVEN_UP};")
+                return
+            for place in needed:
+                after = result.numbers[place]
+                if after is not loop.carried[place]:
+                    self._put(inner, f"c{number}_{place} = {_operand(after)};")
+
+        self._block(loop.body, depth + 1, turn)
+        self._put(depth, "}")
+
+    def _decide(self, result, depth):
+        if isinstance(result, Exception):
+            self._put(depth, f"return {GIVEN_UP};")
+        else:
+            self._put(depth, f"going = {_operand(result)};")
+
+
+def _of(block: Block | None) -> Block:
+    assert block is not None
+    return block
+
+
+def _name(symbol):
+    return f"v{symbol.number}"
+
+
+def _type(symbol):
+    return "int" if symbol.kind == "b" else "double"
+
+
+def _operand(value: Any) -> str:
+    return _name(value) if isinstance(value, Symbol) else _literal(value)
+
+
+def _literal(value) -> str:
+    if kind_of(value) == "b":
+        return str(int(value))
+    if not np.isfinite(value):
+        return "NAN" if np.isnan(value) else "INFINITY" if value > 0.0 else "-INFINITY"
+    text = repr(float(value))
+    return f"({text})" if text.startswith("-") else text
+
+
+def _used(step: Step) -> set[int]:
+    """Numbers of the values that something depends on."""
+    used: set[int] = set()
+    due: list[Any] = []
+
+    def note(block: Block):
+        due.extend(symbol for symbol in block.values if symbol.op in ("guard",))
+        if block.condition is not None:
+            due.append(block.condition)
+            note(_of(block.yes))
+            note(_of(block.no))
+            return
+        result = block.result
+        if isinstance(result, list):
+            due.extend(number for _, number in result)
+        elif hasattr(result, "numbers"):
+            due.extend(result.numbers)
+        else:
+            due.append(result)
+
+    note(step.root)
+    made: dict[tuple, list[Symbol]] = {}
+    for block in _all_blocks(step.root, step.recording):
+        for symbol in block.values:
+            if symbol.op in ("call", "loop"):
+                made.setdefault((symbol.op, symbol.operands[0]), []).append(symbol)
+    while due:
+        value = due.pop()
+        if not isinstance(value, Symbol) or value.number in used:
+            continue
+        used.add(value.number)
+        due.extend(value.operands)
+        if value.op in ("kept", "kept_row"):
+            value_call = value.operands[0] if value.op == "kept" else value.operands[1][0]
+            due.extend(made["call", value_call])
+        elif value.op in ("after", "loop"):
+            due.extend(made["loop", value.operands[0]])
+            loop = step.recording.loops[value.operands[0]]
+            due.extend(loop.start)
+            note(loop.going)
+            note(loop.body)
+    return used
+
+
+def _all_blocks(root: Block, recording: Recording):
+    roots = [root, *(block for loop in recording.loops for block in (loop.going, loop.body))]
+    while roots:
+        block = roots.pop()
+        yield block
+        if block.condition is not None:
+            roots += [_of(block.yes), _of(block.no)]

@@ -1,0 +1,370 @@
+"""Numbers that record what is computed with them: a model runs on them in place of floats, and what it did is kept.
+
+A `Symbol` is one value in a `Recording`. Arithmetic with it adds a value to the recording. Where Python asks whether a
+symbol is true, the recording forks: the model runs once for either answer.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from shipcosim.native.recording import Recording
+
+
+class Untraceable(Exception):
+    """What a component does cannot be written as compiled code; the text says what it was."""
+
+
+def _binary(op, kind=None):
+    def forward(self, other):
+        if isinstance(other, np.ndarray):
+            return NotImplemented
+        return self.combined(op, self, other, kind)
+
+    def backward(self, other):
+        return self.combined(op, other, self, kind)
+
+    return forward, backward
+
+
+class Symbol:
+    """One value of a recording.
+
+    Attributes
+    ----------
+    number : int
+        In its recording.
+    op : str
+        What computes it.
+    kind : str
+        "d" a float, "i" a whole number, "b" a truth value.
+    operands : tuple
+        Symbols and numbers.
+    block : int
+        Number of the block that computes it.
+    """
+
+    __slots__ = ("recording", "number", "op", "kind", "operands", "block")
+
+    def __init__(self, recording: Recording, number: int, op: str, kind: str, operands: tuple, block: int):
+        self.recording, self.number, self.op, self.kind, self.operands = recording, number, op, kind, operands
+        self.block = block
+
+    @property
+    def maths(self) -> type[Maths]:
+        """The elementary functions of symbols, which models find by this name."""
+        return Maths
+
+    def combined(self, op: str, a: Any, b: Any, kind: str | None = None) -> Symbol:
+        """The value of an operation of two operands."""
+        if not isinstance(a, NUMBERS) or not isinstance(b, NUMBERS):
+            raise Untraceable(f"it computes with a {type(b if isinstance(a, NUMBERS) else a).__name__}")
+        a, b = plain(a), plain(b)
+        if kind is None:
+            kind = "i" if op not in ("/", "**") and kind_of(a) != "d" and kind_of(b) != "d" else "d"
+        return self.recording.value(op, kind, a, b)
+
+    def sources(self) -> Iterator[Symbol]:
+        """This value and all that it is computed from."""
+        due: list[Any] = [self]
+        seen: set[int] = set()
+        while due:
+            value = due.pop()
+            if isinstance(value, Symbol) and value.number not in seen:
+                seen.add(value.number)
+                yield value
+                due.extend(value.operands)
+
+    def function(self, op: str, kind: str = "d") -> Symbol:
+        """The value of a function of this value."""
+        return self.recording.value(op, kind, self)
+
+    __add__, __radd__ = _binary("+")
+    __sub__, __rsub__ = _binary("-")
+    __mul__, __rmul__ = _binary("*")
+    __truediv__, __rtruediv__ = _binary("/")
+    __floordiv__, __rfloordiv__ = _binary("//")
+    __mod__, __rmod__ = _binary("%")
+    __pow__, __rpow__ = _binary("**")
+    __lt__, _ = _binary("<", "b")
+    __le__, _ = _binary("<=", "b")
+    __gt__, _ = _binary(">", "b")
+    __ge__, _ = _binary(">=", "b")
+    __eq__, _ = _binary("==", "b")  # pyright: ignore[reportAssignmentType]
+    __ne__, _ = _binary("!=", "b")  # pyright: ignore[reportAssignmentType]
+    __and__, __rand__ = _binary("&", "b")
+    __or__, __ror__ = _binary("|", "b")
+    __xor__, __rxor__ = _binary("^", "b")
+
+    __hash__ = None  # pyright: ignore[reportAssignmentType]  # what is remembered by its arguments knows no symbols
+
+    def __neg__(self):
+        return self.function("neg", "d" if self.kind == "d" else "i")
+
+    def __pos__(self):
+        return self
+
+    def __abs__(self):
+        return self.function("abs", "d" if self.kind == "d" else "i")
+
+    def __invert__(self):
+        return self.function("not", "b")
+
+    def __floor__(self):
+        return self.function("floor", "i")
+
+    def __ceil__(self):
+        return self.function("ceil", "i")
+
+    def __round__(self, digits: int | None = None):
+        return self.recording.value("round", "i" if digits is None else "d", self, digits or 0)
+
+    def __bool__(self):
+        return self.recording.decide(self)
+
+    def __float__(self):
+        raise Untraceable("it asks for a value as a float: use number(...) of models.core.maths")
+
+    def __index__(self):
+        return self.recording.guarded(self)
+
+    __int__ = __index__
+
+    def __getitem__(self, key):
+        return np.array(self, dtype=object)[key]
+
+    def item(self) -> Symbol:
+        """Itself, as the number in an array of none dimensions."""
+        return self
+
+    def __iter__(self):
+        raise Untraceable("it goes through a single value as if it were several")
+
+    def __repr__(self):
+        return f"v{self.number}"
+
+    # what NumPy's functions call on the elements of an array of objects
+
+    def sin(self):
+        return self.function("sin")
+
+    def cos(self):
+        return self.function("cos")
+
+    def tan(self):
+        return self.function("tan")
+
+    def exp(self):
+        return self.function("exp")
+
+    def log(self):
+        return self.function("log")
+
+    def sqrt(self):
+        return self.function("sqrt")
+
+    def tanh(self):
+        return self.function("tanh")
+
+    def floor(self):
+        return self.function("floor")
+
+    def arctan2(self, other: Any) -> Symbol:
+        return self.combined("atan2", self, other, "d")
+
+    def astype(self, kind: type) -> Symbol:
+        """As whole number or float."""
+        return Maths.number(self) if kind is float else Maths.whole(self)
+
+
+NUMBERS = (Symbol, int, float, np.number, np.bool_)
+
+
+def plain(value: Any) -> Any:
+    """A number of NumPy as one of Python."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def kind_of(value: Any) -> str:
+    """Kind of a number, as `Symbol.kind`."""
+    if isinstance(value, Symbol):
+        return value.kind
+    return "b" if isinstance(value, (bool, np.bool_)) else "i" if isinstance(value, (int, np.integer)) else "d"
+
+
+def first_symbol(*values: Any) -> Symbol | None:
+    """The first symbol among values and the elements of arrays."""
+    for value in values:
+        if isinstance(value, Symbol):
+            return value
+        if isinstance(value, np.ndarray) and value.dtype == object:
+            for element in value.flat:
+                if isinstance(element, Symbol):
+                    return element
+        inside = value if isinstance(value, (tuple, list)) else ()
+        inside = (
+            value.values() if isinstance(value, dict) else vars(value).values() if hasattr(value, "maths") else inside
+        )
+        if (found := first_symbol(*inside)) is not None:
+            return found
+    return None
+
+
+def _elementwise(function: Callable) -> Callable:
+    """A function of numbers, of arrays too."""
+
+    def call(*values):
+        if any(isinstance(value, np.ndarray) for value in values):
+            return np.frompyfunc(function, len(values), 1)(*values)
+        return function(*values)
+
+    return staticmethod(call)
+
+
+def _of_one(op: str, of_float: Callable, kind: str = "d") -> Callable:
+    return _elementwise(lambda x: x.function(op, kind) if isinstance(x, Symbol) else of_float(x))
+
+
+def _where(condition, a, b):
+    symbol = first_symbol(condition, a, b)
+    if symbol is None or not isinstance(condition, Symbol):
+        return a if condition else b
+    if a is b:
+        return a
+    a, b = plain(a), plain(b)
+    kinds = {kind_of(a), kind_of(b)}
+    return symbol.recording.value("where", kinds.pop() if len(kinds) == 1 else "d", condition, a, b)
+
+
+def _atan2(y, x):
+    symbol = first_symbol(y, x)
+    return np.arctan2(y, x) if symbol is None else symbol.combined("atan2", y, x, "d")
+
+
+class Maths:
+    """Elementary functions of symbols, and of arrays of them; those of `models.core.maths` go on to these."""
+
+    sin = _of_one("sin", np.sin)
+    cos = _of_one("cos", np.cos)
+    tan = _of_one("tan", np.tan)
+    exp = _of_one("exp", np.exp)
+    log = _of_one("log", np.log)
+    sqrt = _of_one("sqrt", np.sqrt)
+    tanh = _of_one("tanh", np.tanh)
+    floor = _of_one("floor", np.floor)
+    number = _of_one("number", float)
+    whole = _of_one("whole", int, "i")
+    atan2 = _elementwise(_atan2)
+    where = _elementwise(_where)
+
+    @staticmethod
+    def kept(function: Callable, arguments: tuple) -> Any:
+        """See `Recording.kept`."""
+        symbol = first_symbol(*arguments)
+        return function(*arguments) if symbol is None else symbol.recording.kept(function, arguments)
+
+    @staticmethod
+    def repeat(going: Callable, turn: Callable, state: Any) -> Any:
+        """See `Recording.repeat`."""
+        symbol = first_symbol(state)
+        assert symbol is not None
+        return symbol.recording.repeat(going, turn, state)
+
+    @staticmethod
+    def repeat_of(fmu: Any, going: Callable, turn: Callable) -> None:
+        """Loop over the attributes of a component; see `Recording.repeat`."""
+        fixed = {variable.name for variable in fmu.variables if variable.causality == "parameter"}
+        fixed |= {group.name for group in fmu.groups}
+        values = vars(fmu)
+
+        def with_state(function, state):
+            values.update(state)
+            return function()
+
+        before, changed = dict(values), set()
+
+        def noticed():
+            with_state(turn, before)
+            changed.update(name for name, value in values.items() if value is not before.get(name, before))
+
+        condition = with_state(going, before)
+        condition.recording.record(noticed, condition.recording.block)
+        names = sorted(changed - fixed)
+
+        def turned(state):
+            with_state(turn, {**before, **state})
+            return {name: values[name] for name in names}
+
+        start = {name: before[name] for name in names}
+        after = condition.recording.repeat(lambda state: with_state(going, state), turned, start)
+        values.update({**before, **after})
+
+    stack = staticmethod(np.stack)
+    concatenate = staticmethod(np.concatenate)
+
+    @staticmethod
+    def minimum(a: Any, b: Any) -> Any:
+        """The smaller of two values."""
+        return Maths.where(operator.lt(a, b), a, b)
+
+    @staticmethod
+    def maximum(a: Any, b: Any) -> Any:
+        """The larger of two values."""
+        return Maths.where(operator.gt(a, b), a, b)
+
+    @staticmethod
+    def interp(x: Any, xs: Sequence[float], ys: Sequence[float]) -> Any:
+        """Linear interpolation, as `models.core.interpolation.interp` of a float."""
+        if isinstance(x, np.ndarray):
+            return np.array([Maths.interp(element, xs, ys) for element in x.flat], dtype=object).reshape(x.shape)
+        if first_symbol(xs, ys) is not None:
+            raise Untraceable("it interpolates in a table that changes")
+        recording = x.recording
+        first, second = recording.table(np.asarray(xs)), recording.table(np.asarray(ys))
+        return recording.value("interp", "d", x, first, second, len(xs))
+
+    @staticmethod
+    def row_of(table: Any, index: Symbol) -> Any:
+        """Row of a table, or element of a sequence, whose number is a symbol."""
+        recording = index.recording
+        if isinstance(table, np.ndarray) and table.dtype != object:
+            flat, width = recording.table(table), int(np.prod(table.shape[1:], dtype=int))
+            found = [recording.value("row", "d", index, flat, width, column) for column in range(width)]
+            return np.array(found, dtype=object).reshape(table.shape[1:]) if table.ndim > 1 else found[0]
+        if (place := _consecutive(table)) is not None:
+            op, first, shape = place
+            width = int(np.prod(shape[1:], dtype=int))
+            found = [recording.value(op, "d", index, first, width, column) for column in range(width)]
+            return np.array(found, dtype=object).reshape(shape[1:]) if len(shape) > 1 else found[0]
+        chosen = table[-1]
+        for number in range(len(table) - 2, -1, -1):
+            chosen = _chosen((index == number) | (index == number - len(table)), table[number], chosen)
+        return chosen
+
+
+def _consecutive(table):
+    """Operation, first operand and shape of an array whose elements lie one behind the other in a memory."""
+    if not isinstance(table, np.ndarray):
+        return None
+    elements = table.ravel().tolist()
+    first = elements[0]
+    if not isinstance(first, Symbol) or first.op not in ("load", "kept"):
+        return None
+    *before, place = first.operands
+    for number, element in enumerate(elements):
+        if not isinstance(element, Symbol) or (element.op, element.operands) != (first.op, (*before, place + number)):
+            return None
+    return f"{first.op}_row", first.operands, table.shape
+
+
+def _chosen(condition, a, b):
+    """One of two values of the same make."""
+    if isinstance(a, tuple):
+        parts = [_chosen(condition, one, other) for one, other in zip(a, b, strict=True)]
+        return type(a)._make(parts) if hasattr(a, "_make") else tuple(parts)  # pyright: ignore
+    return Maths.where(condition, a, b)

@@ -1,0 +1,149 @@
+"""One step of a component as a recording: which numbers it keeps, and what it makes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from shipcosim.native.leaves import Flat, attributes_like, text_of
+from shipcosim.native.purity import only_arithmetic
+from shipcosim.native.recording import Block, Recording, ends
+from shipcosim.native.symbols import Symbol, Untraceable, kind_of
+
+STANDS = "messages", "_in_binary", "_initialised", "_initialising", "_stale", "_time", "instance_name", "start_time"
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """What is a number in a component.
+
+    Parameters
+    ----------
+    flat : Flat
+        Its attributes, taken apart.
+    constant, unchanging : frozenset of str
+        Attributes that are part of the structure; dataclasses of parameters, whose whole numbers are.
+    """
+
+    flat: Flat
+    constant: frozenset[str]
+    unchanging: frozenset[str]
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """What one step of a component does to its memory: its numbers, time at the start of the step, and its length.
+
+    Parameters
+    ----------
+    recording : Recording
+        The values.
+    root : Block
+        Where they begin; each way ends with the (place, value) pairs that change, or an error.
+    outputs : frozenset of int
+        Places of the real outputs, which must be finite.
+    """
+
+    recording: Recording
+    root: Block
+    outputs: frozenset[int]
+
+
+def shape_of(fmu: Any) -> Shape:
+    """What is a number in a component after its start.
+
+    Raises
+    ------
+    Untraceable
+        It keeps what is no plain data.
+    """
+    constant = frozenset(
+        variable.name
+        for variable in fmu.variables
+        if variable.type == "String" or (variable.causality == "parameter" and variable.type != "Real")
+    )
+    for group in fmu.groups:
+        _remember(getattr(fmu, group.name))
+    unchanging = frozenset(group.name for group in fmu.groups)
+    return Shape(Flat(vars(fmu), constant, unchanging), constant, unchanging)
+
+
+def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
+    """Record one step of a component.
+
+    Parameters
+    ----------
+    fmu : Fmu
+        An instance after its start; it stays as it is.
+    shape : Shape
+        What is a number in it.
+    time, step_size : float
+        Of the example step. [s, s]
+
+    Raises
+    ------
+    Untraceable
+        With what in the component cannot be recorded.
+    """
+    before, constant, unchanging = shape.flat, shape.constant, shape.unchanging
+    values, n = dict(vars(fmu)), len(before.leaves)
+    recording = Recording([*before.numbers, time, step_size])
+
+    def run():
+        loads = [recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)]
+        clone = object.__new__(type(fmu))
+        for name in STANDS:
+            setattr(clone, name, getattr(fmu, name))
+        clone.messages = []
+        vars(clone).update(attributes_like(values, loads, constant, unchanging))
+        time, step_size = recording.value("load", "d", n), recording.value("load", "d", n + 1)
+        with only_arithmetic(type(fmu).__module__.partition(".")[0]):
+            clone.step(time, step_size)
+        if clone.messages:
+            raise ValueError("it writes to the log")
+        return _changes(before, loads, _mutable(vars(clone), values, unchanging), constant, unchanging)
+
+    root = recording.record(run)
+    _check_kinds(before, root)
+    names = {(v.name,) for v in fmu.variables if v.causality == "output" and v.type == "Real"}
+    outputs = frozenset(place for place, leaf in enumerate(before.leaves) if leaf.path in names)
+    return Step(recording, root, outputs)
+
+
+def _remember(parameters):
+    """Let a dataclass compute all that it remembers, so that it belongs to the memory."""
+    for cls in type(parameters).__mro__:
+        for name, item in vars(cls).items():
+            if isinstance(item, cached_property):
+                getattr(parameters, name)
+
+
+def _mutable(after, before, unchanging):
+    """The attributes after a step; parameters are those of before, whatever they may have remembered meanwhile."""
+    return {name: before[name] if name in unchanging else value for name, value in after.items()}
+
+
+def _changes(before: Flat, loads: list[Symbol], values: Mapping[str, Any], constant, unchanging):
+    after = Flat(values, constant, unchanging)
+    if not after.same_shape(before):
+        raise Untraceable(f"its state changes its shape: {before.difference(after)}")
+    for number in after.numbers:
+        loads[0].recording.refuse_left_behind(number)
+    pairs = zip(before.leaves, loads, after.numbers, strict=True)
+    return [
+        (place, number)
+        for place, (leaf, load, number) in enumerate(pairs)
+        if number is not load and leaf.path[0] not in unchanging
+    ]
+
+
+def _check_kinds(before, root):
+    """A whole number that becomes a fraction would be cut off."""
+    for end in ends(root):
+        for place, number in end.result if isinstance(end.result, list) else ():
+            if before.leaves[place].kind != "d" and kind_of(number) == "d":
+                raise Untraceable(
+                    f"{text_of(before.leaves[place].path)} is a whole number before a step and none after"
+                )
