@@ -28,8 +28,9 @@ class RunOptions:
     Parameters
     ----------
     engine : str
-        What runs the FMUs: ``"fmpy"`` (our own co-simulation master), ``"libcosim"`` or ``"ecos"``. The last two know
-        neither `start_time` nor `until`, `resume`, `store` and `isolate`.
+        What runs the FMUs: ``"fmpy"`` (our own co-simulation master), ``"native"`` (the same, with models and loop
+        compiled), ``"libcosim"`` or ``"ecos"``. The last two know neither `start_time` nor `until`, `resume`, `store`
+        and `isolate`.
     inputs : Dataset, optional
         Feeds inputs of the system, by their names. A variable's attribute ``interpolation`` says what it does between
         its rows: ``"held"``, the default, or ``"linear"``, angles the shorter way round. The table's attribute

@@ -86,7 +86,9 @@ Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder o
 Engine = Annotated[
     str,
     typer.Option(
-        "--engine", help="What runs the FMUs: fmpy (ours), libcosim or ecos.", autocompletion=words_of(*ENGINES)
+        "--engine",
+        help="What runs the FMUs: fmpy (ours), native (ours, with the models compiled), libcosim or ecos.",
+        autocompletion=words_of(*ENGINES),
     ),
 ]
 Force = Annotated[

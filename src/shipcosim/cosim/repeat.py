@@ -60,7 +60,8 @@ def repeat(
     about = {key: facts[key] for key in ("description", "stop_time", "step_size", "output_interval")}
     scenario = Scenario.model_validate(_plain(about) | {"events": json.loads(facts["events"])})
     start_time, until = float(facts["start_time"]), facts.get("until")
-    options = RunOptions(inputs=inputs, order=facts["order"], start_time=start_time, until=until)
+    engine, order = str(facts["engine"]), str(facts["order"])
+    options = RunOptions(engine=engine, inputs=inputs, order=order, start_time=start_time, until=until)
     again = run(with_values(system, starts, "repeat"), scenario, options)
     return again.assign_attrs(scenario=facts["scenario"])
 

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cosim.engines.registry import ENGINES, OWN_OPTIONS
+from shipcosim.cosim.engines.registry import ENGINES, OWN, OWN_OPTIONS
 from shipcosim.cosim.systems import system_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
@@ -57,8 +57,8 @@ def simulate(
         raise ShipcosimError(errors)
     odd = [str(remark) for remark in odd_values(scenario, system)]
     scenario = with_numbers(scenario, units_of(system))
-    if options.engine != "fmpy" and (unknown := options.changed(OWN_OPTIONS)):
+    if options.engine not in OWN and (unknown := options.changed(OWN_OPTIONS)):
         found = f"It does not know {', '.join(unknown)}."
-        raise ShipcosimError(Problem(f"engine '{options.engine}'", found, "The engine 'fmpy' does."))
+        raise ShipcosimError(Problem(f"engine '{options.engine}'", found, "The engines 'fmpy' and 'native' do."))
     table = ENGINES[options.engine](system, scenario, options)
     return table.assign_attrs(remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))]))

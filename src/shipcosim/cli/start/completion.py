@@ -6,7 +6,7 @@ from shipcosim import library
 
 Names = list[tuple[str, str]]
 LISTED = ("scenarios", "systems", "ships", "fmus", "examples", "causes", "engines")
-ENGINES = ("fmpy", "libcosim", "ecos")
+ENGINES = ("fmpy", "native", "libcosim", "ecos")
 
 
 def names_of(*kinds: str) -> Callable[[str], Names]:

@@ -61,7 +61,8 @@ def _engines() -> list[Row]:
 
     missing = engines_missing()
     said = {name: f"{problem.found} {problem.remedy}" for name, problem in missing.items()}
-    return [(name, said.get(name, "our own" if name == "fmpy" else "installed")) for name in ENGINES]
+    said |= {"fmpy": "our own", "native": "our own, with the models compiled"}
+    return [(name, said.get(name, "installed")) for name in ENGINES]
 
 
 def _table(heading: str, rows: Iterable[Row]) -> str:

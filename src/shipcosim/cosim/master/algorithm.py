@@ -9,6 +9,7 @@ import numpy as np
 
 from shipcosim.cosim.master.component import ComponentInstance
 from shipcosim.cosim.master.connections import ParameterConnection, StringConnection
+from shipcosim.cosim.master.recorder import Recorders
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.slave import SlaveError
@@ -132,7 +133,7 @@ class Master:
         grid: TimeGrid,
         actions: Mapping[int, Sequence[Callable[[], None]]],
         external: Sequence[tuple[np.ndarray, np.ndarray]],
-        record: Callable[[], None],
+        recorders: Recorders,
         progress: Callable[[int, int], None] | None = None,
     ) -> None:
         """Step to the end, recording rows.
@@ -145,8 +146,8 @@ class Master:
             What events do before the step of this number.
         external : sequence of ((m,) array, (n + 1, m) array)
             External values of an exchange, and what they are at each step of the grid.
-        record : callable
-            Called when the values are those of the next row.
+        recorders : Recorders
+            Keep a row of the values where one is due.
         progress : callable, optional
             Called with (steps done, steps in all) some ten times a second.
 
@@ -160,7 +161,7 @@ class Master:
             if k in actions:
                 self._act(actions[k])
             if k % steps_per_row == 0:
-                record()
+                recorders.record()
             self._check_interrupt()
             if progress is not None and perf_counter() >= report_at:
                 progress(k - first, last - first)
@@ -171,7 +172,7 @@ class Master:
             self._transfer(k + 1)
             self._check_finite(clock[k + 1])
         if last % steps_per_row == 0:
-            record()
+            recorders.record()
         if progress is not None:
             progress(last - first, last - first)
 
@@ -195,13 +196,13 @@ class Master:
                 if sequential and (k + 1) % multiple == 0:
                     component.read()
             except SlaveError as error:
-                raise _failed_step(component, clock[k], error) from error
+                raise failed_step(component, clock[k], error) from error
         for component in () if sequential else self._components:
             try:
                 if (k + 1) % component.multiple == 0:
                     component.read()
             except SlaveError as error:
-                raise _failed_step(component, clock[k + 1 - component.multiple], error) from error
+                raise failed_step(component, clock[k + 1 - component.multiple], error) from error
 
     def _transfer(self, count):
         for exchange in self._all_exchanges:
@@ -220,7 +221,8 @@ class Master:
         raise Failure(Problem(self._names["Real"][0][row], found, "Every value has to be a finite number."))
 
 
-def _failed_step(component, time, error):
+def failed_step(component: ComponentInstance, time: float, error: SlaveError) -> Failure:
+    """What a component says of its step from a time on. [s]"""
     return Failure(Problem(component.name, f"failed in the step from t = {time:.9g} s. {error}"))
 
 

@@ -48,12 +48,16 @@ class ComponentInstance:
     fixed_step : float, optional
         What it is told as its step, for an FMU that can take no other: the difference of two times is not always the
         same number. [s]
+    input_rows, output_rows : dict of str to Rows
+        First row and variables of its inputs and outputs, by kind.
     """
 
     name: str
     slave: Slave
     multiple: int
     fixed_step: float | None = None
+    input_rows: dict[str, Rows] = field(default_factory=dict)
+    output_rows: dict[str, Rows] = field(default_factory=dict)
     _set_reals: Callable[[], int] | None = None
     _discrete: list[DiscreteSetter] = field(default_factory=list)
     _gets: list[tuple[str, Callable[[], int]]] = field(default_factory=list)
@@ -79,6 +83,7 @@ class ComponentInstance:
         outputs, inputs : Rows
             First row and variables of this component.
         """
+        self.output_rows[kind], self.input_rows[kind] = outputs, inputs
         (first, variables), (first_input, inputs_set) = outputs, inputs
         if variables:
             buffer = exchange.sources[first : first + len(variables)]

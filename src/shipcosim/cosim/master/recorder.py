@@ -1,11 +1,34 @@
 """What a run keeps: rows of all outputs and external values, in arrays made before the first step."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np
 
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.errors import ShipcosimError
+
+
+class Recorders:
+    """Recorders of all exchanges, which keep their rows together.
+
+    Attributes
+    ----------
+    by_kind : dict of str to Recorder
+        Of each exchange.
+    n_rows : int
+        Rows so far.
+    """
+
+    def __init__(self, by_kind: dict[str, Recorder]):
+        self.by_kind, self.n_rows = by_kind, 0
+
+    def record(self) -> None:
+        """Keep the present values as the next row."""
+        for recorder in self.by_kind.values():
+            recorder.record(self.n_rows)
+        self.n_rows += 1
 
 
 class Recorder:
@@ -20,6 +43,13 @@ class Recorder:
     external, inputs : sequence of int
         Rows of the exchange's external values and inputs that are recorded beside all outputs.
 
+    Attributes
+    ----------
+    external, inputs : (n,) arrays of int
+        Rows of the sources and of the inputs that are recorded beside all outputs.
+    rows : (n_rows, signals) array
+        Outputs, external values, inputs.
+
     Raises
     ------
     ShipcosimError
@@ -29,12 +59,12 @@ class Recorder:
     def __init__(self, exchange: Exchange, n_rows: int, external: Sequence[int] = (), inputs: Sequence[int] = ()):
         self._exchange = exchange
         self._n_outputs = len(exchange.outputs)
-        self._external = np.array(external, dtype=int) + self._n_outputs
-        self._inputs = np.array(inputs, dtype=int)
-        self._first_input = self._n_outputs + len(self._external)
-        shape = n_rows, self._first_input + len(self._inputs)
+        self.external = np.array(external, dtype=int) + self._n_outputs
+        self.inputs = np.array(inputs, dtype=int)
+        self._first_input = self._n_outputs + len(self.external)
+        shape = n_rows, self._first_input + len(self.inputs)
         try:
-            self._rows = np.empty(shape, dtype=exchange.sources.dtype)
+            self.rows = np.empty(shape, dtype=exchange.sources.dtype)
         except MemoryError:
             size = np.prod(shape, dtype=float) * exchange.sources.itemsize / 1e9
             raise ShipcosimError(
@@ -44,13 +74,13 @@ class Recorder:
 
     def record(self, row: int) -> None:
         """Keep the present values as a row."""
-        values, sources = self._rows[row], self._exchange.modified_sources
+        values, sources = self.rows[row], self._exchange.modified_sources
         values[: self._n_outputs] = sources[: self._n_outputs]
-        if len(self._external):
-            values[self._n_outputs : self._first_input] = sources[self._external]
-        if len(self._inputs):
-            values[self._first_input :] = self._exchange.inputs[self._inputs]
+        if len(self.external):
+            values[self._n_outputs : self._first_input] = sources[self.external]
+        if len(self.inputs):
+            values[self._first_input :] = self._exchange.inputs[self.inputs]
 
     def columns(self, n_rows: int) -> list[np.ndarray]:
         """The first rows, (n_rows,) an array for each signal: outputs, external values, inputs."""
-        return list(np.ascontiguousarray(self._rows[:n_rows].T))
+        return list(np.ascontiguousarray(self.rows[:n_rows].T))

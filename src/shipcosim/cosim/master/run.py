@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from shipcosim.cosim.master.algorithm import Failure, Master
+from shipcosim.cosim.master.compiled import CompiledMaster
 from shipcosim.cosim.master.events import event_actions, external_values
 from shipcosim.cosim.master.groups import couple, exchanged_at_steps, groups_of, inner_connections
 from shipcosim.cosim.master.inputs import digest, input_values
@@ -21,7 +22,7 @@ from shipcosim.cosim.master.instantiate import (
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.order import ORDERS, stepping_order
 from shipcosim.cosim.master.plan import make_plan
-from shipcosim.cosim.master.recorder import Recorder
+from shipcosim.cosim.master.recorder import Recorder, Recorders
 from shipcosim.cosim.master.restore import check_fit, check_storable, restore_snapshot, take_snapshot
 from shipcosim.cosim.master.result import Column, attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.snapshot import Snapshot, opened, writer
@@ -98,7 +99,7 @@ class Simulation:
     def __init__(
         self, system: System, scenario: Scenario, grid: TimeGrid, options: RunOptions, resume: Snapshot | None = None
     ):
-        order, inputs = options.order, options.inputs
+        order, inputs, self._engine = options.order, options.inputs, options.engine
         if order not in ORDERS:
             raise ShipcosimError(f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}")
         self._scenario, self._grid, self._order, self._inputs, self._resume = scenario, grid, order, inputs, resume
@@ -108,13 +109,15 @@ class Simulation:
         self._exchanges = make_exchanges(self._plan)
         self._external = self._external_over_time(fed)
         self._components: Components = {}
-        self._n_rows = 0
         self._together: list[set[str]] = []
         self._remarks: list[str] = []
-        self._recorders = {
-            kind: Recorder(exchange, len(grid.row_times), *recorded_rows(self._plan, kind))
-            for kind, exchange in self._exchanges.items()
-        }
+        self._master: Master | None = None
+        self._recorders = Recorders(
+            {
+                kind: Recorder(exchange, len(grid.row_times), *recorded_rows(self._plan, kind))
+                for kind, exchange in self._exchanges.items()
+            }
+        )
 
     def run(
         self,
@@ -148,13 +151,13 @@ class Simulation:
             couple(plan, self._components, stepping_order(plan, self._order), inner)
             self._together = groups_of(inner)
             strings = make_string_connections(plan, self._components)
-            master = self._master(strings, check_interrupt)
+            self._master = master = self._new_master(strings, check_interrupt)
             master.initialise(grid.start_time, grid.stop_time)
             if self._resume is not None:
                 restore_snapshot(self._resume, plan, exchanges, strings, self._components)
                 master.resume(grid.first)
             actions = event_actions(self._scenario, plan, exchanges, grid)
-            master.run(grid, actions, self._external, self._record, progress)
+            master.run(grid, actions, self._external, self._recorders, progress)
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=False)) from failure
         except KeyboardInterrupt:
@@ -177,17 +180,18 @@ class Simulation:
     @property
     def row_times(self) -> np.ndarray:
         """Times of the rows so far. [s]"""
-        return self._grid.row_times[: self._n_rows]
+        return self._grid.row_times[: self._recorders.n_rows]
 
     def columns(self) -> list[Column]:
         """Columns of the table of the rows so far."""
-        recorded = {kind: recorder.columns(self._n_rows) for kind, recorder in self._recorders.items()}
-        return columns_of(self._plan, self._n_rows, recorded)
+        n = self._recorders.n_rows
+        recorded = {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
+        return columns_of(self._plan, n, recorded)
 
     def attributes(self, complete: bool) -> dict[str, object]:
         """What is known about the run. `complete` is 1 or 0 among them, since NetCDF knows no truth values."""
         known = attributes_of(self._plan.system, self._scenario)
-        known |= {"start_time": self._grid.start_time, "engine": "fmpy", "order": self._order}
+        known |= {"start_time": self._grid.start_time, "engine": self._engine, "order": self._order}
         if self._inputs is not None:
             known["inputs_sha256"] = digest(self._inputs)
         if self._grid.run_times[-1] < self._grid.times[-1]:
@@ -196,7 +200,8 @@ class Simulation:
             known["continued_from"] = self._resume.time
         if self._together:
             known["integrated_together"] = "; ".join(", ".join(sorted(group)) for group in self._together)
-        remarks = [*self._remarks] + [
+        in_python = self._master.reasons if isinstance(self._master, CompiledMaster) else {}
+        remarks = [*self._remarks, *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items())] + [
             text for component in self._components.values() for text in component.slave.remarks()
         ]
         return known | {"complete": int(complete), "remarks": json.dumps(list(dict.fromkeys(remarks)))}
@@ -215,13 +220,8 @@ class Simulation:
                 changing.append((exchange.external, values))
         return changing
 
-    def _record(self):
-        for recorder in self._recorders.values():
-            recorder.record(self._n_rows)
-        self._n_rows += 1
-
-    def _master(self, strings, check_interrupt):
-        return Master(
+    def _new_master(self, strings, check_interrupt):
+        return (CompiledMaster if self._engine == "native" else Master)(
             [self._components[name] for name in stepping_order(self._plan, self._order)],
             self._exchanges,
             strings,

@@ -134,6 +134,10 @@ class Exchange:
         What connections bring: values of the inputs before overrides and biases, and behind them the terms of sums.
     inputs : (number of connections,) array
         Values that the components get.
+    numbered : tuple
+        (row, connection) of all that bring one value, (row, slice of terms) of the sums, and the number of rows.
+    type_changes : sequence of (row of external, Exchange, source)
+        As given.
     version : int
         Grows whenever an input changes; not counted for Real, where every step changes some.
     """
@@ -149,13 +153,13 @@ class Exchange:
         self.sources = np.concatenate([np.zeros(n_outputs, dtype=dtype), external])
         self.outputs, self.external = self.sources[:n_outputs], self.sources[n_outputs:]
         self.modified_sources = self.sources.copy()
-        single, self._sums, n = _numbered(connections)
+        self.numbered = single, self._sums, n = _numbered(connections)
         self.transferred = np.zeros(n, dtype=dtype)
         self.inputs = np.zeros(len(connections), dtype=dtype)
         self._unmodified_inputs = self.transferred[: len(connections)]
         self.output_modifiers, self.input_modifiers = Modifiers(), Modifiers()
         self.version, self._counts_versions = 0, dtype.kind != "f"
-        self._type_changes = type_changes
+        self.type_changes = type_changes
         periods = sorted({connection.period for _, connection in single})
         self._groups = [_ConnectionGroup(single, period, n) for period in periods]
         self._may_rest = self._counts_versions and periods in ([], [1])
@@ -166,7 +170,7 @@ class Exchange:
 
         Values of types other than Real change seldom: where none has since the last time, nothing is to be done.
         """
-        for row, exchange, source in self._type_changes:
+        for row, exchange, source in self.type_changes:
             self.external[row] = exchange.modified_sources[source]
         if self._may_rest and self._passed_on == self._state():
             return

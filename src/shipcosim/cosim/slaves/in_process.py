@@ -44,13 +44,13 @@ class DirectCalls:
     """
 
     def __init__(self, target: Any, log: Callable[[int, str], None]):
-        self._target, self._log = target, log
+        self.target, self._log = target, log
 
     def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
         """See `Slave.setter`."""
         if kind == "Real":
             return self._reals_setter(_references(variables), buffer)
-        method, references = getattr(self._target, f"set_{kind.lower()}"), _references(variables)
+        method, references = getattr(self.target, f"set_{kind.lower()}"), _references(variables)
 
         def set_all():
             values = buffer.tolist()
@@ -64,33 +64,33 @@ class DirectCalls:
 
     def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
         """See `Slave.getter`."""
-        get_values = self._target.prepared_getter(kind, _references(variables))
+        get_values = self.target.prepared_getter(kind, _references(variables))
         pack = _packer(buffer, "d" if kind == "Real" else "i")
 
         def get_all():
             try:
                 pack(*get_values())
             except Exception as error:
-                return self._failed(self._target.failure(error))
+                return self._failed(self.target.failure(error))
             return OK
 
         return get_all
 
     def _reals_setter(self, references, buffer):
-        set_values, values_of = self._target.real_setter(references), buffer.tolist
+        set_values, values_of = self.target.real_setter(references), buffer.tolist
 
         def set_all():
             try:
                 set_values(values_of())
             except Exception as error:
-                return self._failed(self._target.failure(error))
+                return self._failed(self.target.failure(error))
             return OK
 
         return set_all
 
     def stepper(self) -> Callable[[float, float], int]:
         """See `Slave.stepper`."""
-        target, advance = self._target, self._target.advance
+        target, advance = self.target, self.target.advance
 
         def step(time, step_size):
             try:
@@ -104,9 +104,9 @@ class DirectCalls:
         return step
 
     def _pass_on_messages(self):
-        for message in self._target.messages:
+        for message in self.target.messages:
             self._log(message.status, message.msg.replace("%%", "%"))
-        self._target.messages.clear()
+        self.target.messages.clear()
 
     def _failed(self, error):
         self._log(FATAL, str(error))

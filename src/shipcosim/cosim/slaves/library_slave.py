@@ -185,6 +185,7 @@ class LibrarySlave(Slave):
         """Prepare direct calls where the instance is a Python object of our own shell."""
         target = python_object_of(self._folder, self.name) if self._is_python else None
         self._direct = None if target is None else DirectCalls(target, self._note)
+        self.python_object = target
 
     def _as_bytes(self, function, position, buffer):
         return cast(buffer, self._function(function).argtypes[position])

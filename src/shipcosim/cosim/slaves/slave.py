@@ -33,9 +33,12 @@ class Slave:
     ----------
     name : str
         Name of the component.
+    python_object : Fmu or None
+        The object behind the instance, where it is one of our own shell in this process.
     """
 
     name: str
+    python_object: Any = None
 
     @property
     def messages(self) -> list[tuple[int, str]]:

@@ -1,0 +1,328 @@
+"""The loop over the steps in compiled code, over the arrays of the exchanges and the memories of the components."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping, Sequence
+from importlib.resources import files
+from time import perf_counter
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from shipcosim.cosim.master.algorithm import BETWEEN_REPORTS, Master, failed_step
+from shipcosim.cosim.master.component import ComponentInstance
+from shipcosim.cosim.master.recorder import Recorders
+from shipcosim.cosim.master.signals import Exchange
+from shipcosim.cosim.master.time_grid import TimeGrid
+from shipcosim.cosim.slaves.slave import SlaveError
+from shipcosim.native import CompiledStep, Untraceable, compiled_steps, is_installed, libraries
+from shipcosim.native.component import CALL
+
+DONE, FAILED, NOT_FINITE = range(3)
+HOST = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int, ctypes.c_int64)
+INT, P = ctypes.c_int64, ctypes.c_void_p
+
+
+class _Exchange(ctypes.Structure):
+    _fields_ = [
+        ("is_real", ctypes.c_int),
+        *((name, INT) for name in ("n_sources", "n_outputs", "n_inputs", "n_transferred")),
+        *((name, P) for name in ("sources", "modified", "transferred", "inputs")),
+        ("n_connections", INT),
+        *((name, P) for name in ("source", "target", "period", "factor", "offset", "mapped", "mapping_first")),
+        *((name, P) for name in ("mapping_from", "mapping_to")),
+        ("n_sums", INT),
+        *((name, P) for name in ("sum_row", "sum_first", "sum_end")),
+        ("n_changes", INT),
+        *((name, P) for name in ("change_row", "change_exchange", "change_source")),
+        *((name, INT) for name in ("n_output_modifiers", "n_input_modifiers")),
+        *((name, P) for name in ("output_row", "input_row")),
+        *((name, P) for name in ("output_scale", "output_shift", "input_scale", "input_shift")),
+        *((name, P) for name in ("external", "rows")),
+        *((name, INT) for name in ("n_columns", "n_external_columns", "n_input_columns")),
+        *((name, P) for name in ("external_columns", "input_columns")),
+        ("version", INT),
+    ]
+
+
+class _Component(ctypes.Structure):
+    _fields_ = [
+        *((name, P) for name in ("step", "memory", "kept")),
+        ("call", CALL),
+        *((name, INT) for name in ("n_memory", "multiple")),
+        ("fixed_step", ctypes.c_double),
+        *((name, INT) for name in ("n_inputs", "n_outputs")),
+        *((name, P) for name in ("input_place", "input_exchange", "input_row")),
+        *((name, P) for name in ("output_place", "output_exchange", "output_row")),
+    ]
+
+
+class _System(ctypes.Structure):
+    _fields_ = [
+        *((name, INT) for name in ("n_exchanges", "n_components")),
+        *((name, P) for name in ("exchanges", "components", "clock")),
+        *((name, INT) for name in ("first", "steps_per_row", "n_rows")),
+        ("host", HOST),
+        *((name, INT) for name in ("real", "stop")),
+    ]
+
+
+class CompiledMaster(Master):
+    """The master, with the loop over the steps in compiled code, for the components that can be compiled.
+
+    The others are stepped by Python, and so are steps of a compiled component that its code gives up: what goes wrong
+    is then said as ever.
+
+    Attributes
+    ----------
+    reasons : dict of str to str
+        Components that Python steps, and why.
+    """
+
+    reasons: Mapping[str, str] = MappingProxyType({})
+
+    def run(
+        self,
+        grid: TimeGrid,
+        actions: Mapping[int, Sequence[Callable[[], None]]],
+        external: Sequence[tuple[np.ndarray, np.ndarray]],
+        recorders: Recorders,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> None:
+        """See `Master.run`."""
+        if why := self._not_compiled():
+            self.reasons = {"all components": why}
+            super().run(grid, actions, external, recorders, progress)
+            return
+        loop = _Loop(self, grid, external, recorders)
+        k, first, last, steps, report_at = grid.first, grid.first, grid.last, 16, perf_counter()
+        due = sorted(step for step in actions if step > first)
+        try:
+            while k < last:
+                if k in actions:
+                    self._act(actions[k])
+                    loop.take_modifiers()
+                try:
+                    self._check_interrupt()
+                    if progress is not None and perf_counter() >= report_at:
+                        progress(k - first, last - first)
+                        report_at = perf_counter() + BETWEEN_REPORTS
+                except KeyboardInterrupt:
+                    if k % grid.steps_per_row == 0:
+                        recorders.record()
+                    raise
+                while due and due[0] <= k:
+                    due.pop(0)
+                end, began = min(k + steps, due[0] if due else last, last), perf_counter()
+                k = loop.run(k, end)
+                steps = 2 * steps if perf_counter() - began < 0.5 * BETWEEN_REPORTS else max(1, steps // 2)
+        finally:
+            loop.give_back()
+            self.reasons = loop.reasons
+        if last % grid.steps_per_row == 0:
+            recorders.record()
+        if progress is not None:
+            progress(last - first, last - first)
+
+    def _not_compiled(self) -> str:
+        """Why nothing of this system is compiled; empty where something can be."""
+        if not is_installed():
+            return "there is no compiler, install it: pip install 'shipcosim[native]'"
+        if self._sequential:
+            return "the components step one after the other, in the order gauss-seidel"
+        if self._string_connections:
+            return "texts are exchanged"
+        return "whole numbers of 64 bits are exchanged" if "Long" in self._exchanges else ""
+
+
+class _Loop:
+    """The arrays of a run as the compiled loop sees them."""
+
+    def __init__(self, master: CompiledMaster, grid: TimeGrid, external, recorders: Recorders):
+        self._master, self._clock, self._recorders = master, np.ascontiguousarray(grid.times, dtype=float), recorders
+        self._components, self._exchanges = master._components, list(master._exchanges.items())
+        self._kept: list[Any] = []  # arrays that the structures point to
+        self._library = libraries([files("shipcosim.native").joinpath("loop.c").read_text(encoding="utf-8")])[0]
+        self._steps = self._compiled(grid)
+        self._error: BaseException | None = None
+        over_time = {id(target): values for target, values in external}
+        self._c_exchanges = (_Exchange * len(self._exchanges))(
+            *(self._exchange(kind, exchange, over_time) for kind, exchange in self._exchanges)
+        )
+        self._c_components = (_Component * len(self._components))(*map(self._component, self._components))
+        kinds = [kind for kind, _ in self._exchanges]
+        self._host = HOST(self._stepped_by_python)
+        self._system = _System(
+            len(self._exchanges),
+            len(self._components),
+            ctypes.cast(self._c_exchanges, P),
+            ctypes.cast(self._c_components, P),
+            self._pointer(self._clock),
+            grid.first,
+            grid.steps_per_row,
+            0,
+            self._host,
+            kinds.index("Real") if "Real" in kinds else -1,
+            0,
+        )
+        self.take_modifiers()
+
+    def run(self, k: int, end: int) -> int:
+        """Steps k to end; the step that comes next. Raises Failure."""
+        reached = INT(k)
+        self._system.n_rows = self._recorders.n_rows
+        status = self._library.run(ctypes.byref(self._system), INT(k), INT(end), ctypes.byref(reached))
+        self._recorders.n_rows = self._system.n_rows
+        if status == FAILED:
+            assert self._error is not None
+            raise self._error
+        if status == NOT_FINITE:
+            self._master._check_finite(float(self._clock[reached.value]))
+        return reached.value
+
+    def give_back(self) -> None:
+        """Give the numbers of the compiled components to their Python objects."""
+        for step in self._steps.values():
+            step.give_back()
+
+    def take_modifiers(self) -> None:
+        """Take overrides and biases as they are now."""
+        for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
+            for name, modifiers in (("output", exchange.output_modifiers), ("input", exchange.input_modifiers)):
+                active = modifiers.active
+                setattr(structure, f"n_{name}_modifiers", len(active))
+                setattr(structure, f"{name}_row", self._pointer(np.array(list(active), dtype=np.int64)))
+                for column, part in enumerate(("scale", "shift")):
+                    values = np.array([modifier[column] for modifier in active.values()], dtype=float)
+                    setattr(structure, f"{name}_{part}", self._pointer(values))
+            structure.version = exchange.version
+
+    @property
+    def reasons(self) -> dict[str, str]:
+        """Why components are not compiled."""
+        return {name: str(reason) for name, reason in self._reasons.items()}
+
+    def _compiled(self, grid) -> dict[str, CompiledStep]:
+        objects = {component.name: component.slave.python_object for component in self._components}
+        ours = {name: fmu for name, fmu in objects.items() if fmu is not None}
+        step_size = float(grid.times[grid.first + 1] - grid.times[grid.first])
+        found = dict(
+            zip(ours, compiled_steps(list(ours.values()), float(grid.times[grid.first]), step_size), strict=True)
+        )
+        self._reasons: dict[str, object] = {name: "its code is not ours" for name in objects if name not in ours}
+        self._reasons |= {name: step for name, step in found.items() if isinstance(step, Untraceable)}
+        return {name: step for name, step in found.items() if isinstance(step, CompiledStep)}
+
+    def _exchange(self, kind: str, exchange: Exchange, over_time) -> _Exchange:
+        single, sums, _ = exchange.numbered
+        due = sorted(single, key=lambda pair: pair[1].period)
+        mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
+        firsts = np.cumsum([0, *(len(mapping) for mapping in mappings)])
+        numbers = iter(range(len(mappings)))
+        recorder = self._recorders.by_kind[kind]
+        kinds = [id(other) for _, other in self._exchanges]
+        external = over_time.get(id(exchange.external))
+        return _Exchange(
+            int(kind == "Real"),
+            len(exchange.sources),
+            len(exchange.outputs),
+            len(exchange.inputs),
+            len(exchange.transferred),
+            *map(self._pointer, (exchange.sources, exchange.modified_sources, exchange.transferred, exchange.inputs)),
+            len(due),
+            self._whole(connection.source for _, connection in due),
+            self._whole(row for row, _ in due),
+            self._whole(connection.period for _, connection in due),
+            self._real(connection.factor for _, connection in due),
+            self._real(connection.offset for _, connection in due),
+            self._whole(-1 if connection.mapping is None else next(numbers) for _, connection in due),
+            self._whole(firsts),
+            self._real(key for mapping in mappings for key in mapping),
+            self._real(value for mapping in mappings for value in mapping.values()),
+            len(sums),
+            self._whole(row for row, _ in sums),
+            self._whole(terms.start for _, terms in sums),
+            self._whole(terms.stop for _, terms in sums),
+            len(exchange.type_changes),
+            self._whole(row for row, _, _ in exchange.type_changes),
+            self._whole(kinds.index(id(other)) for _, other, _ in exchange.type_changes),
+            self._whole(source for _, _, source in exchange.type_changes),
+            external=None if external is None else self._pointer(np.ascontiguousarray(external)),
+            rows=self._pointer(recorder.rows),
+            n_columns=recorder.rows.shape[1],
+            n_external_columns=len(recorder.external),
+            n_input_columns=len(recorder.inputs),
+            external_columns=self._whole(recorder.external),
+            input_columns=self._whole(recorder.inputs),
+            version=exchange.version,
+        )
+
+    def _component(self, component: ComponentInstance) -> _Component:
+        made = _Component(None, multiple=component.multiple, fixed_step=component.fixed_step or 0.0)
+        step = self._steps.get(component.name)
+        if step is None:
+            return made
+        kinds = {kind: number for number, (kind, _) in enumerate(self._exchanges)}
+        made.step, made.call, made.n_memory = step.function, step.call, len(step.memory) - 2
+        made.memory, made.kept = self._pointer(step.memory), self._pointer(step.kept)
+        for name, rows in (("input", component.input_rows), ("output", component.output_rows)):
+            found = [
+                (step.places[variable.name], kinds[kind], first + number)
+                for kind, (first, variables) in rows.items()
+                for number, variable in enumerate(variables)
+            ]
+            setattr(made, f"n_{name}s", len(found))
+            for column, part in enumerate(("place", "exchange", "row")):
+                setattr(made, f"{name}_{part}", self._whole(row[column] for row in found))
+        return made
+
+    def _stepped_by_python(self, number: int, k: int) -> int:
+        """Take a step that is not compiled, or read its outputs (-1 less the number); 1 where it fails."""
+        reading, number = number < 0, -1 - number if number < 0 else number
+        component = self._components[number]
+        try:
+            for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
+                exchange.version = structure.version
+            if reading:
+                component.read()
+            else:
+                self._take_step(component, k)
+            self._master._check_interrupt()
+        except KeyboardInterrupt:
+            self._system.stop = 1
+        except SlaveError as error:
+            began = k + 1 - component.multiple if reading else k
+            self._error = failed_step(component, float(self._clock[began]), error)
+            return 1
+        except BaseException as error:
+            self._error = error
+            return 1
+        return 0
+
+    def _take_step(self, component, k):
+        compiled = self._steps.get(component.name)
+        if compiled is not None:
+            compiled.give_back()
+        component.write()
+        time = float(self._clock[k])
+        component.step(time, float(self._clock[k + component.multiple]) - time)
+        if compiled is None:
+            return
+        try:
+            compiled.take()
+        except Untraceable as reason:
+            self._reasons[component.name] = reason
+            del self._steps[component.name]
+            self._c_components[self._components.index(component)].step = None
+
+    def _pointer(self, array):
+        self._kept.append(array)
+        return array.ctypes.data_as(P)
+
+    def _whole(self, numbers):
+        return self._pointer(np.array(list(numbers), dtype=np.int64))
+
+    def _real(self, numbers):
+        return self._pointer(np.array(list(numbers), dtype=float))
