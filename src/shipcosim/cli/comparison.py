@@ -18,7 +18,7 @@ from shipcosim import library
 from shipcosim.cli.console import WIDTH
 from shipcosim.cosim.compare import OURS, Comparison, Difference, Signal
 from shipcosim.cosim.engines.as_read import readers
-from shipcosim.cosim.engines.registry import OTHERS, engines_missing
+from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System, osp_file, pack
@@ -29,7 +29,7 @@ def not_compared() -> list[str]:
     """What a comparison will not do, known before anything runs: engines that are not installed."""
     missing = engines_missing()
     said = [f"{name} is not compared: {problem}" for name, problem in missing.items()]
-    if len(missing) == len(OTHERS):
+    if len(missing) == len(ENGINES) - len(OWN):
         said.append("No other engine is installed: what follows is the step-size error of ours alone.")
     return said
 

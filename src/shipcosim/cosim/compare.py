@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 
 from shipcosim.cosim.differences import TOLERANCE, Difference, difference, differs, explained, listed
-from shipcosim.cosim.engines.registry import OTHERS, engines_missing
+from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.cosim.master.run import RunError
 from shipcosim.cosim.simulate import simulate
 from shipcosim.errors import ShipcosimError
@@ -118,7 +118,7 @@ def compare(
         If our own engine cannot run it.
     """
     left_out = {name: str(problem) for name, problem in engines_missing().items()}
-    names = [name for name in readers or OTHERS if name not in left_out and name != OURS]
+    names = [name for name in readers or ENGINES if name not in left_out and name not in OWN]
     runs = _Runs(system, options or RunOptions(), len(names) + 3)
     scenario = scenario.model_copy(update={"output_interval": None})
     ours, tables = runs.run(OURS, scenario), {}

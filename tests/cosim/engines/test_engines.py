@@ -17,7 +17,7 @@ from shipcosim.scenario import read_scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system
 
-OTHERS = [name for name in ENGINES if name != "fmpy"]
+OTHERS = [name for name in ENGINES if name not in ("fmpy", "native")]
 EXACT = {"libcosim": 0.0, "ecos": 1e-12}
 """Largest differences in a short run: ecos adds up its time."""
 

@@ -4,14 +4,11 @@ from shipcosim.cosim.engines import ecos, libcosim
 from shipcosim.cosim.master.run import run
 from shipcosim.errors import Problem, ShipcosimError
 
-OWN = {"fmpy": run, "native": run}
-"""Our own master: in Python, and with models and loop compiled."""
-
-OTHERS = {"libcosim": libcosim.run, "ecos": ecos.run}
-"""Masters of others."""
-
-ENGINES = OWN | OTHERS
+ENGINES = {"fmpy": run, "native": run, "libcosim": libcosim.run, "ecos": ecos.run}
 """Functions from a checked system, a scenario and `RunOptions` to a table."""
+
+OWN = ("fmpy", "native")
+"""Engines that are our own master: in Python, and with models and loop compiled."""
 
 OWN_OPTIONS = ("start_time", "until", "resume", "store", "isolate")
 """Options that only our own master knows."""
