@@ -106,6 +106,7 @@ ELSEWHERE = {
     "thruster_interaction": ("four-azimuths", "interaction"),
     "neural_units_allocator": ("four-azimuths", "allocator"),
     "docking_predictor": ("gunnerus-28m9", "docking_predictor"),
+    "helmsman": ("gunnerus-28m9", "helmsman"),
 }
 """FMU that the DP ship has not: a ship and her component that it is."""
 

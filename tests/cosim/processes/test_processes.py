@@ -406,7 +406,7 @@ def is_running(pid):
 
 
 def test_other_engines_refuse_it(system, make_scenario):
-    with pytest.raises(ShipcosimError, match="does not know isolate. The engine 'fmpy' does."):
+    with pytest.raises(ShipcosimError, match="does not know isolate. The engines 'fmpy' and 'native' do."):
         simulate(system(""), make_scenario(1.0, 0.1), RunOptions(engine="libcosim", isolate=True))
 
 

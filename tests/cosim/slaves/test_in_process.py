@@ -69,14 +69,14 @@ def test_components_of_one_fmu_have_an_object_each(make_system):
     system = make_system({name: "gain" for name in ("a", "b")})
     with Instances() as instances:
         slaves = [instances.instance_of(component) for component in system.components.values()]
-        targets = [slave._direct._target for slave in slaves]
+        targets = [slave.python_object for slave in slaves]
         assert [target.instance_name for target in targets] == ["a", "b"]
         again = instances.instance_of(system.components["a"])
         again.enter_initialisation(0.0, 1.0)
         variable = system.components["a"].fmu.variables["factor"]
         buffer = np.array([7.0])
         again.check("SetReal", again._exchange("Set", "Real", [variable], buffer)())
-        assert again._direct._target.factor == 7.0
+        assert again.python_object.factor == 7.0
 
 
 def test_other_python_fmus_go_through_their_binary(pythonfmu_system):
