@@ -414,7 +414,7 @@ def _is_torch(library):
     return library is sys.modules.get("torch")
 
 
-def _tensors(torch, *values):
+def _tensors(torch: Any, *values: Any) -> list[Any] | tuple[Any, ...]:
     """All values as tensors of the kind of the first tensor among them, of double precision where there is none."""
     if not _is_torch(torch):
         return values
