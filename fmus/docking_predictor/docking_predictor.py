@@ -1,13 +1,19 @@
 """FMU that predicts where a ship that is steered by hand will be, as she comes into a harbour."""
 
+from pathlib import Path
+
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.networks import read_arrays
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment.wind_loads import WindParameters
-from shipcosim.models.prediction import helm
+from shipcosim.models.prediction import docking, helm
+from shipcosim.models.prediction.docking_laws import VARIANTS, Model, law_of
+from shipcosim.models.prediction.regions import RegionParameters, own_errors
 from shipcosim.models.ship.hull import HullParameters
-from shipcosim.models.ship.mast import MastParameters, wind_from_mast
+from shipcosim.models.ship.mast import MastParameters
 
+WEIGHTS = Path(__file__).with_name("weights")
 HORIZONS = (10, 20, 30)  # s, as the outputs are named
 
 
@@ -55,38 +61,44 @@ class DockingPredictor(Fmu):
     hull = Parameters(HullParameters)
     wind = Parameters(WindParameters)
     helm = Parameters(helm.HelmParameters)
-    variant = Parameter("kinetic", "1", "what predicts: kinetic, the equations of motion alone", origin="choice")
+    variant = Parameter("ours", "1", "what predicts: kinetic, paper-iii or ours", origin="choice")
 
     def start(self):
-        if self.variant != "kinetic":
-            raise ValueError(f"variant '{self.variant}': there is none. There is kinetic.")
-        self.made, self.latest = samples_due(self.start_time, 1.0), ()
+        if self.variant not in VARIANTS:
+            raise ValueError(f"variant '{self.variant}': there is none. There are {', '.join(VARIANTS)}.")
+        file = "paper-iii" if self.variant == "paper-iii" else "ours"
+        self.law = law_of(self.variant, read_arrays(WEIGHTS / f"{file}.npz"))
+        self.model = Model(self.hull, self.wind, self.helm)
+        self.made, self.state = samples_due(self.start_time, 1.0), self.law.begin(self._aboard(), self.model)
+        self.errors, self.awaited = (0.0, 0.0), []
         self._predict(self.start_time)
 
     def step(self, t, h):
         due = samples_due(t, 1.0)
         if self.made < due:
             self.made = due
+            self.state = self.law.follow(self.state, self._aboard(), self.model)
             self._predict(t)
 
     def _aboard(self):
-        ship = Motion(self.x_meas, self.y_meas, self.psi_meas, self.u_meas, self.v_meas, self.r_meas)
-        return helm.Aboard(
-            ship,
-            *wind_from_mast(self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast),
-            (self.port_thrust_cmd, self.starboard_thrust_cmd, self.tunnel_thrust_cmd),
-            (self.port_azimuth_cmd, self.starboard_azimuth_cmd),
-            (self.port_rpm, self.starboard_rpm, self.tunnel_rpm),
-            (self.port_azimuth, self.starboard_azimuth),
-        )
+        known = {name: getattr(self, name) for name in helm.KNOWN}
+        return helm.aboard_of(known, self.mast)
 
     def _predict(self, t):
-        aboard = self._aboard()
-        self.latest = helm.remembered(self.latest, aboard.ship)
-        aboard = aboard._replace(ship=helm.smoothed(self.latest, aboard.ship))
-        motions = helm.predict(aboard, hull=self.hull, wind=self.wind, helm=self.helm)
+        places, self.learned, self.state = self.law.predict(self.state, self.model)
         self.predicted_at = t
-        ten, twenty, thirty = (motions[horizon - 1] for horizon in HORIZONS)
-        self.x_10, self.y_10, self.psi_10 = ten[:3]
-        self.x_20, self.y_20, self.psi_20 = twenty[:3]
-        self.x_30, self.y_30, self.psi_30 = thirty[:3]
+        ten, twenty, thirty = (tuple(map(float, places[horizon - 1])) for horizon in HORIZONS)
+        self.x_10, self.y_10, self.psi_10 = ten
+        self.x_20, self.y_20, self.psi_20 = twenty
+        self.x_30, self.y_30, self.psi_30 = thirty
+        self._judge_itself(helm.moved_on(self.state.aboard.ship, self.helm.position_age), ten)
+
+    def _judge_itself(self, ship, ten):
+        """Regions, by how far she came from where she was foreseen ten seconds ago."""
+        self.awaited.append(ten)
+        if len(self.awaited) > HORIZONS[0]:
+            foreseen = Motion._make((*self.awaited.pop(0), 0.0, 0.0, 0.0))
+            self.errors = own_errors(self.errors, ship, foreseen, 1.0, regions=RegionParameters())
+        positions, headings = docking.regions(self.law.widths, self.errors)
+        self.position_region_10, self.position_region_20, self.position_region_30 = positions
+        self.heading_region_10, self.heading_region_20, self.heading_region_30 = headings

@@ -62,7 +62,7 @@ for _function in (export.fmu, export.osp):
     exporting.command(epilog=EXIT_CODES)(guarded(_function))
 for _function in (new.fmu, new.scenario, new_ship.ship, new.system):
     making.command(epilog=EXIT_CODES)(guarded(_function))
-for _function in (train.allocator, train.drift, train.dead_reckoning):
+for _function in (train.allocator, train.drift, train.dead_reckoning, train.docking):
     training.command(epilog=EXIT_CODES)(guarded(_function))
 app.add_typer(exporting, name="export")
 app.add_typer(making, name="new")

@@ -5,7 +5,17 @@ The only door to torch, which comes with `pip install "shipcosim[learn]"`. What 
 in `kinds`.
 """
 
-from shipcosim.learn.kinds import ALLOCATORS, COMPONENTS, DEAD_RECKONING, DRIFT, Kind, train
+from shipcosim.learn.kinds import ALLOCATORS, COMPONENTS, DEAD_RECKONING, DOCKING, DRIFT, Kind, train
 from shipcosim.learn.results import Trained, write_trained
 
-__all__ = ["ALLOCATORS", "COMPONENTS", "DEAD_RECKONING", "DRIFT", "Kind", "Trained", "train", "write_trained"]
+__all__ = [
+    "ALLOCATORS",
+    "COMPONENTS",
+    "DEAD_RECKONING",
+    "DOCKING",
+    "DRIFT",
+    "Kind",
+    "Trained",
+    "train",
+    "write_trained",
+]

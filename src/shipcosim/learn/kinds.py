@@ -7,6 +7,7 @@ from pathlib import Path
 
 from shipcosim.learn import neural, paper_i, paper_v
 from shipcosim.learn.dead_reckoning import recipes as dead_reckoning
+from shipcosim.learn.docking import training as docking
 from shipcosim.learn.prediction import training as drift
 from shipcosim.learn.results import Trained, write_trained
 from shipcosim.learn.training import Progress
@@ -57,10 +58,20 @@ DRIFT: Mapping[str, Kind] = {
 
 DEAD_RECKONING: Mapping[str, Kind] = {name: Kind(*one) for name, one in dead_reckoning.KINDS.items()}
 """Dead reckoning by the name that `shipcosim train dead-reckoning --kind NAME` takes; the first is the default."""
+
+DOCKING: Mapping[str, Kind] = {
+    "ours": Kind(docking.OURS.description, lambda progress: docking.train(docking.learn_ours, docking.OURS, progress)),
+    "paper-iii": Kind(
+        docking.PAPER_III.description,
+        lambda progress: docking.train(docking.learn_paper_iii, docking.PAPER_III, progress),
+    ),
+}
+"""Predictors of dockings by the name that `shipcosim train docking --kind NAME` takes; the first is the default."""
 COMPONENTS: Mapping[str, Mapping[str, Kind]] = {
     "allocator": ALLOCATORS,
     "drift": DRIFT,
     "dead-reckoning": DEAD_RECKONING,
+    "docking": DOCKING,
 }
 """What `shipcosim train` takes."""
 

@@ -11,11 +11,14 @@ class Recurrent(torch.nn.Module):
     ----------
     inputs, width, layers, outputs : int
         Inputs, units of each LSTM layer, number of LSTM layers, outputs. [1]
+    dropout : float
+        Share of the last LSTM layer's outputs that is left out in training. [1]
     """
 
-    def __init__(self, inputs: int, width: int, layers: int, outputs: int):
+    def __init__(self, inputs: int, width: int, layers: int, outputs: int, dropout: float = 0.0):
         super().__init__()
         self.lstm = torch.nn.LSTM(inputs, width, layers, batch_first=True)
+        self.dropout = torch.nn.Dropout(dropout) if dropout > 0.0 else torch.nn.Identity()
         self.dense = torch.nn.Linear(width, outputs)
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
@@ -31,7 +34,7 @@ class Recurrent(torch.nn.Module):
         (sequences, samples, outputs) tensor
             Outputs. [1]
         """
-        return self.dense(self.lstm(x)[0])
+        return self.dense(self.dropout(self.lstm(x)[0]))
 
 
 def arrays_of(network: Recurrent, name: str) -> dict[str, np.ndarray]:

@@ -80,6 +80,25 @@ def dead_reckoning(
         typer.echo(shown_path(file))
 
 
+def docking(
+    kind: Annotated[str, typer.Option("--kind", metavar="NAME", help="ours or paper-iii.")] = "ours",
+    out: Out = None,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Train a predictor of dockings by hand, from simulated dockings, with fixed seeds.
+
+    Simulates the dockings first, two at a time. Leaves NAME.npz, the weights, and the training report NAME.json and
+    NAME.md. Needs torch: pip install "shipcosim[learn]".
+
+    Example: shipcosim train docking --kind ours
+    """
+    from shipcosim.cli.console import shown_path
+
+    for file in _train("docking", kind, out):
+        typer.echo(shown_path(file))
+
+
 def _train(component: str, kind: str, out: Path | None) -> list[Path]:
     """Train a component, write weights and report: the files. Nothing is written where something is wrong."""
     from shipcosim.cli.results import check_targets

@@ -150,7 +150,7 @@ def sail(docking: Docking, *, step_size: float = STEP) -> Record:
 def sail_all(
     dockings: Iterable[Docking], *, processes: int = 2, progress: Callable[[int, int], None] | None = None
 ) -> list[Record]:
-    """Co-simulate several dockings, in their order.
+    """Co-simulate several dockings, in their order; those that `sail` refuses are left out.
 
     Parameters
     ----------
@@ -164,15 +164,22 @@ def sail_all(
     Returns
     -------
     list of Record
-        One a docking.
+        One a docking that ends in time.
     """
     dockings, records = list(dockings), []
     with ProcessPoolExecutor(processes) as pool:
-        for record in pool.map(sail, dockings):
-            records.append(record)
+        for done, record in enumerate(pool.map(_sailed, dockings), 1):
+            records += [record] if record else []
             if progress:
-                progress(len(records), len(dockings))
+                progress(done, len(dockings))
     return records
+
+
+def _sailed(docking: Docking) -> Record | None:
+    try:
+        return sail(docking)
+    except RuntimeError:
+        return None
 
 
 def true_ship(distance: float = 1.0) -> dict[str, float | str]:

@@ -6,7 +6,7 @@ Skulstad, Data-based modelling of ships for motion prediction and control alloca
 Approach to Motion Prediction for Ship Docking", Sec. III-B. Current and waves are left out there, and wind is held.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -20,6 +20,7 @@ from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, propeller_loads
 from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 from shipcosim.models.ship.vessel import accelerations, through_water
 
 SMOOTHING = 3
@@ -56,6 +57,13 @@ class HelmParameters:
     tunnel_x: float = required("m", "position of the tunnel thruster forward")
     tunnel_thrust_coefficient: float = required("N/rpm2", "thrust of the tunnel over squared motor speed", minimum=1e-9)
     tunnel_thrust_rate: float = required("N/s", "largest rate of the tunnel's thrust command", minimum=0.0)
+    position_age: float = quantity(
+        0.0,
+        "s",
+        "age of a measured position, by which our law moves it on; paper III does not",
+        "neutral",
+        minimum=0.0,
+    )
 
     @cached_property
     def propeller(self):
@@ -91,6 +99,61 @@ class Aboard(NamedTuple):
     azimuth_cmd: tuple[Arithmetic, Arithmetic]
     rpm: tuple[Arithmetic, Arithmetic, Arithmetic]
     azimuth: tuple[Arithmetic, Arithmetic]
+
+
+KNOWN = (
+    *("x_meas", "y_meas", "psi_meas", "u_meas", "v_meas", "r_meas", "wind_speed_meas", "wind_from_meas"),
+    *("port_thrust_cmd", "port_azimuth_cmd", "port_rpm", "port_azimuth"),
+    *("starboard_thrust_cmd", "starboard_azimuth_cmd", "starboard_rpm", "starboard_azimuth"),
+    *("tunnel_thrust_cmd", "tunnel_rpm"),
+)
+"""Inputs of a predictor of dockings, by name."""
+
+
+def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
+    """What is known aboard, from the inputs of a predictor.
+
+    Parameters
+    ----------
+    known : mapping of str to float or (...) array
+        By the names of `KNOWN`. [m, rad, m/s, N, rpm]
+    mast : MastParameters
+        Where the anemometer stands.
+
+    Returns
+    -------
+    Aboard
+        [as its fields]
+    """
+    ship = Motion(*(known[name] for name in KNOWN[:6]))
+    wind = wind_from_mast(known["wind_speed_meas"], known["wind_from_meas"], ship.u, ship.v, ship.r, mast=mast)
+    return Aboard(
+        ship,
+        *wind,
+        (known["port_thrust_cmd"], known["starboard_thrust_cmd"], known["tunnel_thrust_cmd"]),
+        (known["port_azimuth_cmd"], known["starboard_azimuth_cmd"]),
+        (known["port_rpm"], known["starboard_rpm"], known["tunnel_rpm"]),
+        (known["port_azimuth"], known["starboard_azimuth"]),
+    )
+
+
+def moved_on(ship: Motion, age: float) -> Motion:
+    """The ship with her measured place moved on by its age, with the velocity of now.
+
+    Parameters
+    ----------
+    ship : Motion
+        As measured.
+    age : float
+        Of the place. [s]
+
+    Returns
+    -------
+    Motion
+        [as its fields]
+    """
+    north, east = to_ned(ship.psi, ship.u, ship.v)
+    return ship._replace(x=ship.x + age * north, y=ship.y + age * east)
 
 
 Start = tuple[tuple[Arithmetic, Arithmetic, Arithmetic, Arithmetic], ...]
@@ -138,7 +201,7 @@ def smoothed(latest: Start, ship: Motion) -> Motion:
 
 def thruster_loads(
     aboard: Aboard, water: tuple[Arithmetic, Arithmetic], *, helm: HelmParameters
-) -> Callable[[float, Arithmetic, Arithmetic, Arithmetic], Load]:
+) -> Callable[[float], Callable[[Arithmetic, Arithmetic, Arithmetic], Load]]:
     """Load of the thrusters over time and the ship's velocity through the water, while their commands stay put.
 
     Thrust and direction run from what shaft speed and direction give now to what is commanded, at their largest rates.
@@ -156,18 +219,21 @@ def thruster_loads(
     Returns
     -------
     callable
-        ``loads(t, u_r, v_r, r)`` gives the load after t seconds. [N, N, N.m]
+        ``loads(t)(u_r, v_r, r)`` gives the load after t seconds. [N, N, N.m]
     """
     tunnel_now = helm.tunnel_thrust_coefficient * aboard.rpm[2] * abs(aboard.rpm[2])
     units = [_azimuth(aboard, k, y, water, helm) for k, y in enumerate((helm.y, -helm.y))]
 
-    def loads(t, u_r, v_r, r):
+    def loads(t):
         tunnel = _towards(tunnel_now, aboard.thrust_cmd[2], t * helm.tunnel_thrust_rate)
-        X, Y, N = 0.0, tunnel, helm.tunnel_x * tunnel
-        for unit in units:
-            more = unit(t, u_r, v_r, r)
-            X, Y, N = X + more[0], Y + more[1], N + more[2]
-        return X, Y, N
+        port, starboard = (unit(t) for unit in units)
+
+        def at(u_r, v_r, r):
+            X_p, Y_p, N_p = port(u_r, v_r, r)
+            X_s, Y_s, N_s = starboard(u_r, v_r, r)
+            return X_p + X_s, Y_p + Y_s + tunnel, N_p + N_s + helm.tunnel_x * tunnel
+
+        return at
 
     return loads
 
@@ -181,15 +247,19 @@ def _azimuth(aboard, k, y, water, helm):
     turn, D = wrap(aboard.azimuth_cmd[k] - azimuth), helm.diameter
     side_factor = -helm.side_force_coefficient * helm.propeller.water_density * D * D
 
-    def load(t, u_r, v_r, r):
+    def load(t):
         thrust = _towards(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
         angle = azimuth + clip(turn, -t * helm.azimuth_rate, t * helm.azimuth_rate)
         wash = D * abs(bollard_speed(thrust, propeller=helm.propeller) + beyond)
         s, c = sin(angle), cos(angle)
-        u, v = velocity_at(helm.x, y, u_r, v_r, r)
-        u_s = c * v - s * u
-        side = side_factor * (hypot(u, v) + wash) * u_s
-        return load_at(helm.x, y, thrust * c - side * s, thrust * s + side * c)
+
+        def at(u_r, v_r, r):
+            u, v = velocity_at(helm.x, y, u_r, v_r, r)
+            u_s = c * v - s * u
+            side = side_factor * (hypot(u, v) + wash) * u_s
+            return load_at(helm.x, y, thrust * c - side * s, thrust * s + side * c)
+
+        return at
 
     return load
 
@@ -206,6 +276,7 @@ def predict(
     hull: HullParameters,
     wind: WindParameters,
     helm: HelmParameters,
+    seconds: int = LONGEST,
 ) -> tuple[Motion, ...]:
     """Motion of the ship ahead by her equations of motion.
 
@@ -219,10 +290,12 @@ def predict(
         Load in body axes that nothing else explains, as estimated; paper III has none. [N, N, N.m]
     hull, wind, helm : HullParameters, WindParameters, HelmParameters
         The ship as she knows herself.
+    seconds : int
+        How far ahead. [s]
 
     Returns
     -------
-    tuple of `LONGEST` Motion
+    tuple of Motion
         One a second.
 
     Notes
@@ -233,20 +306,27 @@ def predict(
     air = _air(aboard)
     x, y, psi, _, _, r = ship
     u_r, v_r = through_water(psi, ship.u, ship.v, *current)
-    thrusters, found = thruster_loads(aboard, (u_r, v_r), helm=helm), []
-    for second in range(LONGEST):
-
-        def rates(u_r, v_r, r, t=second + 0.5, heading=psi + 0.5 * r):
-            u_c, v_c = to_body(heading, *current)
-            blown = wind_loads(*apparent_wind(heading, u_r + u_c, v_r + v_c, *air), wind=wind)
-            X, Y, N = (sum(parts) for parts in zip(thrusters(t, u_r, v_r, r), blown, left, strict=True))
-            return accelerations(u_r, v_r, r, X, Y, N, hull=hull)
-
+    loads, found = thruster_loads(aboard, (u_r, v_r), helm=helm), []
+    for second in range(seconds):
+        rates = _rates(loads(second + 0.5), psi + 0.5 * r, current, air, left, hull, wind)
         x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, 1.0, *current)
         psi = wrap(psi)
         u_c, v_c = to_body(psi, *current)
         found.append(Motion(x, y, psi, u_r + u_c, v_r + v_c, r))
     return tuple(found)
+
+
+def _rates(thrusters, heading, current, air, left, hull, wind):
+    """Rates of the velocity through the water at a heading, as `vessel.accelerations`."""
+    u_c, v_c = to_body(heading, *current)
+
+    def rates(u_r, v_r, r):
+        blown = wind_loads(*apparent_wind(heading, u_r + u_c, v_r + v_c, *air), wind=wind)
+        X, Y, N = thrusters(u_r, v_r, r)
+        tau = X + blown[0] + left[0], Y + blown[1] + left[1], N + blown[2] + left[2]
+        return accelerations(u_r, v_r, r, *tau, hull=hull)
+
+    return rates
 
 
 def _air(aboard):

@@ -1,0 +1,100 @@
+"""Ensembles of recurrent networks, trained over whole dockings; each keeps the weights of its best epoch."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import torch
+
+from shipcosim.learn.networks import Recurrent
+from shipcosim.learn.training import Progress
+
+Loss = Callable[[torch.Tensor, torch.Tensor], torch.Tensor]
+"""From outputs and targets, (m, n, ...), to a mean."""
+
+
+def fit(
+    found: tuple[torch.Tensor, torch.Tensor],
+    choice: tuple[torch.Tensor, torch.Tensor],
+    loss: Loss,
+    outputs: int,
+    recipe: Any,
+    progress: Progress,
+) -> tuple[list[Recurrent], list[dict[str, float]]]:
+    """Train an ensemble; call `repeatable` around it.
+
+    Parameters
+    ----------
+    found, choice : tuples of two tensors
+        Inputs (m, n, inputs) and targets of dockings, to train on and to choose the epoch by.
+    loss : callable
+        What is minimised.
+    outputs : int
+        Of a network.
+    recipe : Recipe
+        With members, width, layers, dropout, epochs, batch, learning_rate, decay and noise.
+    progress : callable
+        Is told how many steps are done, and of how many.
+
+    Returns
+    -------
+    list of Recurrent, and list of dict
+        Networks; losses by member and epoch.
+    """
+    networks, history = [], []
+    for member in range(recipe.members):
+
+        def tell(done, total, member=member):
+            progress(member * total + done, recipe.members * total)
+
+        network = Recurrent(found[0].shape[-1], recipe.width, recipe.layers, outputs, recipe.dropout)
+        losses = _fit_one(network, found, choice, loss, recipe, tell)
+        history += [{"member": member + 1.0, "epoch": k + 1.0, **one} for k, one in enumerate(losses)]
+        networks.append(network)
+    return networks, history
+
+
+def _fit_one(network, found, choice, loss, recipe, progress):
+    """Losses of each epoch; the network is left with the weights of the best one."""
+    x, y = found
+    batches = len(x) // recipe.batch
+    steps = recipe.epochs * batches
+    optimiser = torch.optim.AdamW(network.parameters(), recipe.learning_rate, weight_decay=recipe.decay)
+    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
+    best, kept, history = np.inf, network.state_dict(), []
+    for epoch in range(recipe.epochs):
+        total = 0.0
+        for number, rows in enumerate(torch.randperm(len(x)).split(recipe.batch)[:batches]):
+            network.train()
+            given = network(x[rows] + recipe.noise * torch.randn(x[rows].shape))
+            total += _descend(network, optimiser, loss(given, y[rows]))
+            schedule.step()
+            progress(epoch * batches + number + 1, steps)
+        left = left_over(network, choice, loss)
+        history.append({"training": total / batches, "choices": left})
+        if left < best:
+            best, kept = left, {name: value.clone() for name, value in network.state_dict().items()}
+    network.load_state_dict(kept)
+    network.eval()
+    return history
+
+
+def _descend(network, optimiser, loss):
+    """One step of the optimiser; the loss before it."""
+    optimiser.zero_grad()
+    loss.backward()
+    torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
+    optimiser.step()
+    return float(loss.detach())
+
+
+def left_over(network: Recurrent, choice: tuple[torch.Tensor, torch.Tensor], loss: Loss) -> float:
+    """Loss on dockings that a network was not trained on."""
+    network.eval()
+    with torch.no_grad():
+        return float(loss(network(choice[0]), choice[1]))
+
+
+def tensor(array: np.ndarray) -> torch.Tensor:
+    """In single precision."""
+    return torch.tensor(array, dtype=torch.float32)

@@ -1,0 +1,123 @@
+"""Records of dockings replayed by a docking predictor, all starts of all dockings at once in arrays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.learn.docking.records import Record
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction import docking, helm
+from shipcosim.models.prediction.docking import Own
+from shipcosim.models.prediction.helm import LONGEST, Aboard, HelmParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters
+
+
+@dataclass(frozen=True)
+class ShipModel:
+    """The ship as a predictor knows her: what its FMU has as parameters."""
+
+    hull: HullParameters
+    wind: WindParameters
+    helm: HelmParameters
+    mast: MastParameters
+
+
+@dataclass(frozen=True)
+class Replay:
+    """What a predictor makes of m dockings of n seconds, before anything learned.
+
+    Parameters
+    ----------
+    harbours : (m,) array
+        Of the dockings. [1]
+    aboard : Aboard
+        What is known, in (m, n) arrays.
+    start : Motion
+        With heading and velocity averaged over three seconds, in (m, n) arrays.
+    own : Own
+        The predictor's own record, in (m, n) arrays.
+    kinetic, ours : tuples of `LONGEST` Motion
+        By the equations of motion from `start`, and from `own`; (m, n) arrays.
+    later : dict of str to (`LONGEST` + 1, m, n) array
+        x, y, psi as measured in so many seconds and moved on by the age of positions, to learn from; no numbers where
+        the record ends before. [m, m, rad]
+    truth : dict like later
+        The same as it was, to score by.
+    """
+
+    harbours: np.ndarray
+    aboard: Aboard
+    start: Motion
+    own: Own
+    kinetic: tuple[Motion, ...]
+    ours: tuple[Motion, ...]
+    later: dict[str, np.ndarray]
+    truth: dict[str, np.ndarray]
+
+
+def replay(records: Sequence[Record], model: ShipModel) -> Replay:
+    """Replay records.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of one length.
+    model : ShipModel
+        The ship as the predictor knows her.
+
+    Returns
+    -------
+    Replay
+    """
+    known = {name: np.stack([record.known[name] for record in records]) for name in helm.KNOWN}
+    aboard = helm.aboard_of(known, model.mast)
+    place = helm.moved_on(aboard.ship, model.helm.position_age)
+    start, own = _followed(aboard, model)
+    laws = {"hull": model.hull, "wind": model.wind, "helm": model.helm}
+    return Replay(
+        np.array([record.harbour for record in records]),
+        aboard,
+        start,
+        own,
+        helm.predict(aboard._replace(ship=start), **laws),
+        helm.predict(aboard._replace(ship=own.ship), left=own.load, **laws),
+        {name: ahead(getattr(place, name)) for name in ("x", "y", "psi")},
+        {name: ahead(np.stack([record.truth[name] for record in records])) for name in ("x", "y", "psi")},
+    )
+
+
+def at_second(aboard: Aboard, k: int) -> Aboard:
+    """What is known at second k, from (m, n) arrays."""
+    ship, wind_speed, wind_from, *rest = aboard
+    parts = (tuple(one[:, k] for one in group) for group in rest)
+    return Aboard(Motion(*(one[:, k] for one in ship)), wind_speed[:, k], wind_from[:, k], *parts)
+
+
+def _followed(aboard, model):
+    """Averages and record at every second."""
+    now = at_second(aboard, 0)
+    latest: helm.Start = ()
+    own, starts, owns = docking.begin(now, model.helm.position_age), [], []
+    for k in range(aboard.wind_speed.shape[1]):
+        before, now = now, at_second(aboard, k)
+        if k:
+            own = docking.follow(own, before, now, hull=model.hull, wind=model.wind, helm_=model.helm)
+        latest = helm.remembered(latest, now.ship)
+        starts.append(helm.smoothed(latest, now.ship))
+        owns.append((*own.ship, *own.load))
+    records = [np.stack(values, axis=1) for values in zip(*owns, strict=True)]
+    start = Motion(*(np.stack(values, axis=1) for values in zip(*starts, strict=True)))
+    X, Y, N = records[6:]
+    return start, Own(Motion(*records[:6]), (X, Y, N))
+
+
+def ahead(values: np.ndarray) -> np.ndarray:
+    """Values in 0 to `LONGEST` seconds from each second, (`LONGEST` + 1, m, n) array from (m, n); else no numbers."""
+    m, n = values.shape
+    found = np.full((LONGEST + 1, m, n), np.nan)
+    for horizon in range(LONGEST + 1):
+        found[horizon, :, : n - horizon] = values[:, horizon:]
+    return found

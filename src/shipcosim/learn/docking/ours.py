@@ -1,0 +1,167 @@
+"""Our docking predictor's ensemble: trained on the distances by which the equations of motion miss, in metres."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from shipcosim.angles import wrap
+from shipcosim.learn.docking import fitting
+from shipcosim.learn.docking.fitting import tensor
+from shipcosim.learn.docking.inputs import Replay
+from shipcosim.learn.networks import arrays_of
+from shipcosim.learn.training import Progress, repeatable
+from shipcosim.models.core.kinematics import to_body
+from shipcosim.models.prediction import docking
+from shipcosim.models.prediction.docking import CUT
+from shipcosim.models.prediction.helm import LONGEST
+from shipcosim.models.ship.hull import HullParameters
+
+HEADING = 10.0
+"""What a radian of heading counts in the loss. [m/rad]"""
+METRES, RADIANS = 5.0, 0.2
+"""Scales of the outputs."""
+MIRROR_SIGNS = np.array(
+    [1, -1, 1, 1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, -1, -1, 1, -1]
+    + [1, -1, 1, -1, -1, 1, -1, 1, -1, -1, -1, -1]
+)  # fmt: skip
+MIRROR_ORDER = np.r_[0:18, 23:28, 18:23, 28:30]
+"""Features of the ship seen in a mirror along her centreline: signs, and whose places they take."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How the ensemble is trained.
+
+    Parameters
+    ----------
+    description : str
+        One line for users.
+    seed : int
+        Of weights and order.
+    members, width, layers : int
+        Networks; units of an LSTM layer, layers.
+    dropout : float
+        As `Recurrent`. [1]
+    epochs, batch : int
+        Epochs at most; dockings in a step of the optimiser.
+    learning_rate, decay : float
+        Of Adam at the start, it falls as a cosine; weight decay. [1]
+    noise : float
+        Standard deviation of what is added to standardised features in training. [1]
+    """
+
+    description: str = "Our docking predictor: equations of motion with a load of their own record, and an ensemble"
+    seed: int = 1
+    members: int = 3
+    width: int = 48
+    layers: int = 1
+    dropout: float = 0.0
+    epochs: int = 40
+    batch: int = 8
+    learning_rate: float = 4e-3
+    decay: float = 1e-4
+    noise: float = 0.1
+
+
+def features(replay: Replay, hull: HullParameters) -> np.ndarray:
+    """Inputs of the ensemble, (m, n, 30) array."""
+    return docking.features(replay.aboard, replay.own, replay.ours[-1], hull)
+
+
+def targets(replay: Replay) -> np.ndarray:
+    """By how much the equations of motion miss: (m, n, 3, `LONGEST`) array, forward, to starboard [m], heading [rad].
+
+    No numbers where the record ends before.
+    """
+    ahead = np.stack([np.stack(motion[:3]) for motion in replay.ours])
+    true = np.stack([replay.later[name][1:] for name in ("x", "y", "psi")], axis=1)
+    north, east, turn = np.moveaxis(true - ahead, 1, 0)
+    found = np.stack([*to_body(replay.own.ship.psi, north, east), wrap(turn)])
+    return np.moveaxis(found, (0, 1), (2, 3))
+
+
+def basis() -> torch.Tensor:
+    """Polynomials of the corrections over the seconds."""
+    share = np.arange(1, LONGEST + 1) / LONGEST
+    return torch.tensor(np.stack([share**power for power in docking.POWERS]), dtype=torch.float32)
+
+
+def distance(given: torch.Tensor, target: torch.Tensor, polynomials: torch.Tensor) -> torch.Tensor:
+    """Mean distance that is left, and mean heading with its weight. [m]
+
+    Parameters
+    ----------
+    given : (m, n, 3 k) tensor
+        Outputs with their scale.
+    target : (m, n, 3, LONGEST) tensor
+        As `targets`.
+    polynomials : (k, LONGEST) tensor
+        As `basis`.
+    """
+    left = target - given.unflatten(-1, (3, len(docking.POWERS))) @ polynomials
+    there = torch.isfinite(left).all(dim=2)
+    left = torch.nan_to_num(left)
+    place = torch.sqrt(left[:, :, 0] ** 2 + left[:, :, 1] ** 2 + 1e-2)
+    return ((place + HEADING * abs(left[:, :, 2])) * there).sum() / there.sum()
+
+
+def scale() -> np.ndarray:
+    """Scale of the outputs."""
+    k = len(docking.POWERS)
+    return np.repeat([METRES, METRES, RADIANS], k) * np.tile([0.2] + [1.0] * (k - 1), 3)
+
+
+def fit(
+    found: tuple[np.ndarray, np.ndarray], choice: tuple[np.ndarray, np.ndarray], recipe: Recipe, progress: Progress
+) -> tuple[dict[str, np.ndarray], list[dict[str, float]]]:
+    """Train the ensemble, also on every docking as in a mirror.
+
+    Parameters
+    ----------
+    found, choice : tuples of two arrays
+        Features and targets, to train on and to choose the epoch by.
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how many steps are done, and of how many.
+
+    Returns
+    -------
+    dict of str to array, and list of dict
+        As `docking.trained_of` takes them; losses by member and epoch.
+    """
+    mean, std = standard(found[0])
+    x, held = (tensor(np.clip((one[0] - mean) / std, -CUT, CUT)) for one in (found, choice))
+    y, sizes, polynomials = tensor(found[1]), tensor(scale()), basis()
+    x = torch.cat((x, (x * tensor(MIRROR_SIGNS))[..., torch.tensor(MIRROR_ORDER)]))
+    y = torch.cat((y, y * tensor(np.array([1.0, -1.0, -1.0])).reshape(1, 1, 3, 1)))
+
+    def loss(given, target):
+        return distance(sizes * given, target, polynomials)
+
+    with repeatable(recipe.seed):
+        networks, epochs = fitting.fit((x, y), (held, tensor(choice[1])), loss, len(sizes), recipe, progress)
+    arrays = {"mean": mean, "std": std, "scale": scale()}
+    for number, network in enumerate(networks, 1):
+        arrays |= arrays_of(network, f"member{number}")
+    limits = np.append(abs((found[0] - mean) / std).reshape(-1, len(mean)).max(axis=0), np.inf)
+    trained = docking.trained_of(arrays | {"limits": limits})
+    spread = docking.spread(given_by(trained, found[0]))
+    return arrays | {"limits": np.append(limits[:-1], max(float(spread.max()), 1e-6))}, epochs
+
+
+def standard(found: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and standard deviation of features, alike for both sides of the ship."""
+    both = np.concatenate((found, (found * MIRROR_SIGNS)[..., MIRROR_ORDER]))
+    return both.mean(axis=(0, 1)), both.std(axis=(0, 1)) + 1e-9
+
+
+def given_by(trained: docking.Trained, found: np.ndarray) -> np.ndarray:
+    """Outputs of the members over (m, n) features, each docking from an empty memory: (members, m, n, 3 k) array."""
+    memory, rows = docking.empty(trained, found.shape[:1]), []
+    inputs = docking.standardised(found, trained)
+    for k in range(found.shape[1]):
+        given, memory = docking.outputs(inputs[:, k], memory, trained)
+        rows.append(given)
+    return np.stack(rows, axis=2)

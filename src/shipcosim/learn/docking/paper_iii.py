@@ -1,0 +1,142 @@
+"""The networks of paper III: an ensemble of three LSTMs with dropout for the errors of the kinetic model over 30 s.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper III.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+
+from shipcosim.learn.docking import fitting
+from shipcosim.learn.docking.fitting import tensor
+from shipcosim.learn.docking.inputs import Replay
+from shipcosim.learn.networks import arrays_of
+from shipcosim.learn.training import Progress, repeatable
+from shipcosim.models.prediction import paper_iii
+
+RATES, LAYERS, LEAST_NODES = (1e-4, 1e-1), (1, 2), 10
+"""What the paper searches in: learning rate, LSTM layers, nodes of a layer, from 10 to 500."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How the ensemble is trained; members of 3, and what is searched in are the paper's.
+
+    Parameters
+    ----------
+    description : str
+        One line for users.
+    seed : int
+        Of search, weights and order.
+    trials, trial_epochs, most_nodes : int
+        Of the search: sets of numbers drawn, epochs of each, and most nodes.
+    members, width, layers : int
+        Networks; units of an LSTM layer and layers, as the search leaves them.
+    dropout : float
+        As `Recurrent`. [1]
+    epochs, batch : int
+        Epochs at most; dockings in a step of the optimiser.
+    learning_rate, decay, noise : float
+        Of Adam at the start, as the search leaves it; weight decay; noise added to inputs. [1]
+    """
+
+    description: str = "The docking predictor of paper III: three LSTMs add the errors of the kinetic model"
+    seed: int = 3
+    trials: int = 10
+    trial_epochs: int = 5
+    most_nodes: int = 500
+    members: int = 3
+    width: int = 0
+    layers: int = 1
+    dropout: float = 0.2
+    epochs: int = 25
+    batch: int = 4
+    learning_rate: float = 0.0
+    decay: float = 0.0
+    noise: float = 0.0
+
+
+def inputs_of(replay: Replay) -> np.ndarray:
+    """Inputs of the networks, (m, n, 15) array."""
+    return paper_iii.inputs(replay.aboard)
+
+
+def targets(replay: Replay) -> np.ndarray:
+    """Errors of the kinetic model: (m, n, 60) array, north in 1 to 30 s, then east. [m]"""
+    found = [
+        replay.later[name][1:] - np.stack([motion[k] for motion in replay.kinetic]) for k, name in enumerate(("x", "y"))
+    ]
+    return np.moveaxis(np.concatenate(found), 0, -1)
+
+
+def squares(given: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
+    """Mean square over what is known."""
+    there = torch.isfinite(target)
+    return ((given - torch.nan_to_num(target)) ** 2 * there).sum() / there.sum()
+
+
+def draws(recipe: Recipe) -> list[Recipe]:
+    """Sets of numbers that the search tries: uniform in the logarithms of learning rate and nodes."""
+    rng = np.random.default_rng(recipe.seed)
+    found = []
+    for _ in range(recipe.trials):
+        bounds = RATES, (LEAST_NODES, recipe.most_nodes)
+        rate, nodes = (float(np.exp(rng.uniform(*np.log(one)))) for one in bounds)
+        layers = int(rng.integers(LAYERS[0], LAYERS[1] + 1))
+        found.append(replace(recipe, learning_rate=float(f"{rate:.2g}"), width=round(nodes), layers=layers))
+    return found
+
+
+def fit(
+    found: tuple[np.ndarray, np.ndarray], choice: tuple[np.ndarray, np.ndarray], recipe: Recipe, progress: Progress
+) -> tuple[dict[str, np.ndarray], list[dict[str, float]], list[tuple[Recipe, float]]]:
+    """Search and train the ensemble.
+
+    Parameters
+    ----------
+    found, choice : tuples of two arrays
+        Inputs and targets, to train on and to choose by.
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how far it is, and of how much.
+
+    Returns
+    -------
+    dict of str to array, list of dict, list of tuples
+        As `paper_iii.ensemble_of` takes them; losses by member and epoch; what was tried, with its loss.
+    """
+    mean, std = found[0].mean(axis=(0, 1)), found[0].std(axis=(0, 1)) + 1e-9
+    target_mean, target_std = np.nanmean(found[1], axis=(0, 1)), np.nanstd(found[1], axis=(0, 1))
+    trained, held = ((tensor((x - mean) / std), tensor((y - target_mean) / target_std)) for x, y in (found, choice))
+    outputs, tried = len(target_mean), []
+    with repeatable(recipe.seed):
+        for number, one in enumerate(draws(recipe)):
+            short = replace(one, members=1, epochs=recipe.trial_epochs)
+            _, epochs = fitting.fit(trained, held, squares, outputs, short, lambda done, total: None)
+            tried.append((one, min(epoch["choices"] for epoch in epochs)))
+            progress(number + 1, 2 * recipe.trials)
+        best = min(tried, key=lambda pair: pair[1])[0]
+
+        def tell(done, total):
+            progress(total + done, 2 * total)
+
+        networks, epochs = fitting.fit(trained, held, squares, outputs, best, tell)
+    arrays = {"mean": mean, "std": std, "target_mean": target_mean, "target_std": target_std}
+    for number, network in enumerate(networks, 1):
+        arrays |= arrays_of(network, f"member{number}")
+    return arrays, epochs, tried
+
+
+def expected(arrays: Mapping[str, np.ndarray], found: np.ndarray) -> np.ndarray:
+    """Errors that the ensemble expects over (m, n) inputs, each docking from an empty memory: (m, n, 60) array. [m]"""
+    ensemble = paper_iii.ensemble_of(arrays)
+    memory, rows = paper_iii.empty(ensemble, found.shape[:1]), []
+    for k in range(found.shape[1]):
+        given, memory = paper_iii.errors(found[:, k], memory, ensemble)
+        rows.append(given)
+    return np.stack(rows, axis=1)

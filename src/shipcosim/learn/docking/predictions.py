@@ -1,0 +1,70 @@
+"""What the predictors of dockings say over replayed records, as their FMU does one start after the other."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.learn.docking import ours, paper_iii
+from shipcosim.learn.docking.inputs import Replay
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.prediction import docking
+from shipcosim.models.prediction import paper_iii as networks_iii
+from shipcosim.models.prediction.regions import FORESIGHT, RegionParameters, own_errors
+from shipcosim.models.ship.hull import HullParameters
+
+Places = Sequence[tuple]
+"""North, east and heading in 1 to 30 s, each an (m, n) array. [m, m, rad]"""
+
+
+class Predicted(NamedTuple):
+    """Predictions from every second.
+
+    Parameters
+    ----------
+    places : Places
+        Where she is foreseen.
+    share : (m, n) array
+        Of what is learned. [1]
+    """
+
+    places: Places
+    share: np.ndarray
+
+
+def kinetic(replay: Replay) -> Predicted:
+    """By the equations of motion alone."""
+    return Predicted([motion[:3] for motion in replay.kinetic], np.zeros_like(replay.start.x))
+
+
+def by_paper_iii(replay: Replay, arrays: Mapping[str, np.ndarray]) -> Predicted:
+    """By the networks of paper III."""
+    expected = paper_iii.expected(arrays, paper_iii.inputs_of(replay))
+    return Predicted(networks_iii.corrected(replay.kinetic, expected), np.ones_like(replay.start.x))
+
+
+def by_ours(replay: Replay, arrays: Mapping[str, np.ndarray], hull: HullParameters) -> Predicted:
+    """By our hybrid."""
+    trained, found = docking.trained_of(arrays), ours.features(replay, hull)
+    given = ours.given_by(trained, found)
+    share = docking.share_of(found, given, trained)
+    learned = docking.corrected(replay.own.ship, replay.ours, given)
+    return Predicted(docking.blended(replay.kinetic, learned, share), share)
+
+
+def own_record(places: Places, replay: Replay) -> tuple[np.ndarray, np.ndarray]:
+    """Mean errors of predictions 10 s ahead as known aboard at every second: two (m, n) arrays. [m, rad]"""
+    ahead, ship = (
+        round(FORESIGHT),
+        Motion._make((*(replay.later[name][0] for name in ("x", "y", "psi")), *replay.start[3:])),
+    )
+    errors = np.zeros_like(ship.x[:, 0]), np.zeros_like(ship.x[:, 0])
+    rows = []
+    for k in range(ship.x.shape[1]):
+        if k >= ahead:
+            foreseen = Motion._make((*(one[:, k - ahead] for one in places[ahead - 1]), 0.0, 0.0, 0.0))
+            now = Motion(*(one[:, k] for one in ship))
+            errors = own_errors(errors, now, foreseen, 1.0, regions=RegionParameters())
+        rows.append(errors)
+    position, heading = (np.stack(values, axis=1) for values in zip(*rows, strict=True))
+    return position, heading

@@ -1,0 +1,144 @@
+"""What `shipcosim train docking` does: dockings sailed, what is learned from them, weights and report."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from shipcosim.cosim import system_of
+from shipcosim.learn.datasets import digest
+from shipcosim.learn.docking import dockings, ours, paper_iii, predictions, regions
+from shipcosim.learn.docking.inputs import ShipModel, replay
+from shipcosim.learn.docking.records import Record
+from shipcosim.learn.results import Trained
+from shipcosim.learn.training import Progress
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction.helm import HelmParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.mast import MastParameters
+
+OURS, PAPER_III = ours.Recipe(), paper_iii.Recipe()
+COMPONENT = "docking_predictor"
+"""Of the system, whose parameters the predictor has."""
+SETS = {"training": dockings.TRAINING, "choices": dockings.CHOICES[:12], "calibration": dockings.CALIBRATION[:16]}
+"""Seeds of the dockings by what they are for: of choices and calibration as many as sail in the time that there is."""
+SAILING = 0.7
+"""Share of the progress that sailing is. [1]"""
+NOTES = (
+    "Targets are what the ship measured later; no true place, current, wind or helmsman is used. Scores in the"
+    " benchmark are by the truth.",
+    "An epoch is kept by the dockings of the choices, and regions are calibrated on dockings of their own.",
+)
+
+
+def ship() -> ShipModel:
+    """The ship as the predictor of the docking system knows her."""
+    values = system_of(dockings.scenario(dockings.draw(1))).components[COMPONENT].start
+
+    def given(kind: Any) -> Any:
+        return kind(**{one.name: values[one.name] for one in fields(kind)})
+
+    return ShipModel(given(HullParameters), given(WindParameters), given(HelmParameters), given(MastParameters))
+
+
+def sail(progress: Progress) -> dict[str, list[Record]]:
+    """Records of all dockings to learn from, by what they are for."""
+    seeds = [seed for some in SETS.values() for seed in some]
+    records = {record.seed: record for record in dockings.sail_all(map(dockings.draw, seeds), progress=progress)}
+    return {name: [records[seed] for seed in some if seed in records] for name, some in SETS.items()}
+
+
+def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Trained:
+    """Train a predictor from scratch: sail the dockings, and learn from their records.
+
+    Parameters
+    ----------
+    learn : callable
+        `learn_ours` or `learn_paper_iii`.
+    recipe : Recipe
+        How; that of `learn`.
+    progress : callable
+        Is told how far it is.
+
+    Returns
+    -------
+    Trained
+        Weights and report.
+    """
+
+    def part(before: float, share: float) -> Progress:
+        return lambda done, total: progress(round(1000 * (before + share * done / total)), 1000)
+
+    return learn(sail(part(0.0, SAILING)), ship(), recipe, part(SAILING, 1.0 - SAILING))
+
+
+def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.Recipe, progress: Progress) -> Trained:
+    """Our predictor, learned from records.
+
+    Parameters
+    ----------
+    records : dict of str to list of Record
+        By `SETS`.
+    model : ShipModel
+        The ship as she knows herself.
+    recipe : Recipe
+        How.
+    progress : callable
+        Is told how far it is.
+
+    Returns
+    -------
+    Trained
+        Weights, regions of this predictor and of the kinetic one, and report.
+    """
+    replayed = {name: replay(some, model) for name, some in records.items()}
+    pairs = {name: (ours.features(one, model.hull), ours.targets(one)) for name, one in replayed.items()}
+    arrays, epochs = ours.fit(pairs["training"], pairs["choices"], recipe, progress)
+    calibration = replayed["calibration"]
+    predicted = predictions.by_ours(calibration, arrays, model.hull)
+    arrays["widths"] = regions.calibrated(predicted, calibration)
+    arrays["kinetic_widths"] = regions.calibrated(predictions.kinetic(calibration), calibration)
+    names = ("members", "width", "layers", "epochs", "batch", "learning_rate", "decay", "noise")
+    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "AdamW, cosine schedule"}
+    data = about(records, pairs["training"][0])
+    return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
+
+
+def learn_paper_iii(
+    records: dict[str, list[Record]], model: ShipModel, recipe: paper_iii.Recipe, progress: Progress
+) -> Trained:
+    """The networks of paper III, learned from records.
+
+    Parameters
+    ----------
+    records, model, recipe, progress
+        As `learn_ours`.
+
+    Returns
+    -------
+    Trained
+        Weights, regions and report.
+    """
+    replayed = {name: replay(some, model) for name, some in records.items()}
+    pairs = {name: (paper_iii.inputs_of(one), paper_iii.targets(one)) for name, one in replayed.items()}
+    arrays, epochs, tried = paper_iii.fit(pairs["training"], pairs["choices"], recipe, progress)
+    calibration = replayed["calibration"]
+    predicted = predictions.by_paper_iii(calibration, arrays)
+    arrays["widths"] = regions.calibrated(predicted, calibration)
+    names = ("members", "dropout", "epochs", "batch", "trial_epochs")
+    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "Adam, cosine schedule"}
+    for one, loss in tried:
+        settings[f"tried: {one.layers} layers of {one.width}, learning rate {one.learning_rate:g}"] = round(loss, 4)
+    data = about(records, pairs["training"][0])
+    return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
+
+
+def about(records: dict[str, list[Record]], inputs: np.ndarray) -> dict[str, Any]:
+    """What a report says of the data."""
+    found = {name: _seeds([record.seed for record in some]) for name, some in records.items()}
+    return found | {"SHA-256 of the inputs to train on, rounded": digest(np.round(inputs, 3) + 0.0)}
+
+
+def _seeds(seeds: Sequence[int]) -> str:
+    return f"{len(seeds)} that end in time, of seeds {min(seeds)} to {max(seeds)}, learn/docking/dockings"

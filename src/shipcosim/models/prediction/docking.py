@@ -1,0 +1,388 @@
+"""Our docking predictor: equations of motion with a load from the own record, and an ensemble that corrects them.
+
+What the ensemble sees and gives is in the ship's own axes, so that a harbour turned by any angle is the same to it.
+Where its inputs leave the range of the training, or its members disagree more than there, the prediction goes over to
+the equations of motion alone, and beyond that is exactly that of paper III's kinetic model.
+
+References
+----------
+Definition. Ensembles and their spread as a sign of what was not learned: Lakshminarayanan et al., Simple and
+scalable predictive uncertainty estimation using deep ensembles, NeurIPS, 2017.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.angles import wrap
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.maths import Arithmetic, cos, hypot, sin, where
+from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.networks import Memory, Network, empty_memory, evaluate, network_of
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction import helm
+from shipcosim.models.prediction.drift_off import trust
+from shipcosim.models.prediction.helm import LONGEST, Aboard, HelmParameters
+from shipcosim.models.prediction.regions import RegionParameters, widening
+from shipcosim.models.ship.hull import HullParameters
+
+PLACE_GAIN, VELOCITY_GAIN, LOAD_GAIN = 0.2, 0.3, 0.03
+"""Shares of what was missed a second later that go into place and heading, velocity, and load. [1] Chosen on training
+dockings."""
+POWERS = (0, 1, 2, 3)
+"""Powers of time whose sum over 30 s a correction is. [1]"""
+CUT = 5.0
+"""Standard deviations at which standardised features are cut. [1]"""
+NEAR = 20.0
+"""Distance from the quay below which inputs grow with the distance, above with its logarithm. [m]"""
+
+
+class Own(NamedTuple):
+    """What the predictor has of its own record.
+
+    Parameters
+    ----------
+    ship : Motion
+        The ship as estimated.
+    load : tuple of three floats or (...) arrays
+        In body axes, that thrusters, measured wind and hull in still water do not explain: current, waves, errors of
+        the model. [N, N, N.m]
+    """
+
+    ship: Motion
+    load: Load
+
+
+class Trained(NamedTuple):
+    """What training gives.
+
+    Parameters
+    ----------
+    networks : tuple of Network
+        Members of the ensemble.
+    mean, std : (n,) arrays
+        By which `features` are standardised. [their units]
+    scale : (3 k,) array
+        Of the outputs: for each of `POWERS` forward and to starboard [m], then for each the heading [rad].
+    limits : (n + 1,) array
+        Largest standardised features in training, and spread of the members in 30 s. [1, m]
+    """
+
+    networks: tuple[Network, ...]
+    mean: np.ndarray
+    std: np.ndarray
+    scale: np.ndarray
+    limits: np.ndarray
+
+
+def trained_of(arrays: Mapping[str, np.ndarray]) -> Trained:
+    """What training gives, from its arrays.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+        ``member1.lstm.1.weights`` and so on, and the other fields of `Trained`. [their units]
+
+    Returns
+    -------
+    Trained
+        [as in arrays]
+    """
+    members = sum(name.startswith("member") and name.endswith("dense.bias") for name in arrays)
+    networks = tuple(network_of(arrays, f"member{number}") for number in range(1, members + 1))
+    return Trained(networks, *(arrays[name] for name in Trained._fields[1:]))
+
+
+def begin(aboard: Aboard, age: float) -> Own:
+    """Record at the start: the ship as measured, no load.
+
+    Parameters
+    ----------
+    aboard : Aboard
+        What is known now.
+    age : float
+        Of the measured place. [s]
+
+    Returns
+    -------
+    Own
+        [as its fields]
+    """
+    zero = 0.0 * aboard.wind_speed
+    return Own(helm.moved_on(aboard.ship, age), (zero, zero, zero))
+
+
+def follow(
+    own: Own, before: Aboard, now: Aboard, *, hull: HullParameters, wind: WindParameters, helm_: HelmParameters
+) -> Own:
+    """Record a second later: an observer of place, velocity and load with constant gains.
+
+    Parameters
+    ----------
+    own : Own
+        A second ago.
+    before, now : Aboard
+        What was known then, and is known now.
+    hull, wind, helm_ : HullParameters, WindParameters, HelmParameters
+        The ship as she knows herself.
+
+    Returns
+    -------
+    Own
+        [as its fields]
+    """
+    (foreseen,) = helm.predict(
+        before._replace(ship=own.ship), left=own.load, hull=hull, wind=wind, helm=helm_, seconds=1
+    )
+    measured = helm.moved_on(now.ship, helm_.position_age)
+    missed = [seen - thought for seen, thought in zip(measured, foreseen, strict=True)]
+    missed[2] = wrap(missed[2])
+    gains = (PLACE_GAIN,) * 3 + (VELOCITY_GAIN,) * 3
+    ship = [thought + gain * one for thought, gain, one in zip(foreseen, gains, missed, strict=True)]
+    ship[2] = wrap(ship[2])
+    i11, i22, _, _, i66 = hull.inverse_mass
+    load = tuple(
+        load + LOAD_GAIN * one / inverse
+        for load, one, inverse in zip(own.load, missed[3:], (i11, i22, i66), strict=True)
+    )
+    return Own(Motion(*ship), load)
+
+
+def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> np.ndarray:
+    """Inputs of the ensemble, all in the ship's axes.
+
+    Parameters
+    ----------
+    aboard : Aboard
+        What is known now; floats or (...) arrays.
+    own : Own
+        The record.
+    ahead : Motion
+        The ship in 30 s by the equations of motion with the load of the record.
+    hull : HullParameters
+        For the sizes of loads.
+
+    Returns
+    -------
+    (..., 30) array
+        Where the quay is now and in 30 s [1], velocities now and then [m/s, rad/s], turn [rad], load [m/s2, rad/s2],
+        wind [m/s], what thrusters are told and give [N, rpm, rad].
+    """
+    ship, (i11, i22, _, _, i66) = own.ship, hull.inverse_mass
+    found = [*quay(ship), *quay(ahead), *ship[3:], *ahead[3:], wrap(np.asarray(ahead.psi - ship.psi))]
+    found += [own.load[0] * i11, own.load[1] * i22, own.load[2] * i66]
+    found += [aboard.wind_speed * cos(aboard.wind_from), aboard.wind_speed * sin(aboard.wind_from)]
+    for k in (0, 1):
+        for size, angle in ((aboard.thrust_cmd[k], aboard.azimuth_cmd[k]), (aboard.rpm[k], aboard.azimuth[k])):
+            found += [size * cos(angle), size * sin(angle)]
+        found += [aboard.azimuth[k]]
+    found += [aboard.thrust_cmd[2], aboard.rpm[2]]
+    return np.stack(np.broadcast_arrays(*found), axis=-1)
+
+
+def quay(ship: Motion) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+    """Where the quay is, seen from the ship: forward, to starboard, and how far, the far compressed.
+
+    Parameters
+    ----------
+    ship : Motion
+        Her place relative to where she is to lie.
+
+    Returns
+    -------
+    tuple of three floats or (...) arrays
+        Logarithm of the distance over `NEAR`, in the direction of the quay and alone. [1]
+    """
+    forward, starboard = to_body(ship.psi, -ship.x, -ship.y)
+    distance = hypot(forward, starboard)
+    size = np.log1p(distance / NEAR)
+    share = size / (distance + 1e-9)
+    return forward * share, starboard * share, size
+
+
+def empty(trained: Trained, shape: tuple[int, ...] = ()) -> tuple[tuple[Memory, ...], ...]:
+    """Memory of the members before the first sample.
+
+    Parameters
+    ----------
+    trained : Trained
+        The ensemble.
+    shape : tuple of int
+        Shape of the features before their last axis. [1]
+
+    Returns
+    -------
+    tuple of tuples of Memory
+        [1]
+    """
+    return tuple(empty_memory(network, shape) for network in trained.networks)
+
+
+def outputs(inputs: np.ndarray, memory: Sequence[tuple[Memory, ...]], trained: Trained) -> tuple[np.ndarray, tuple]:
+    """Outputs of all members for one sample.
+
+    Parameters
+    ----------
+    inputs : (..., n) array
+        Standardised features. [1]
+    memory : sequence of tuples of Memory
+        Of the sample before. [1]
+    trained : Trained
+        The ensemble.
+
+    Returns
+    -------
+    (members, ..., 3 k) array and tuple
+        Outputs with their scale, memory after the sample. [m, m, rad; 1]
+    """
+    pairs = [evaluate(net, inputs, kept) for net, kept in zip(trained.networks, memory, strict=True)]
+    return trained.scale * np.stack([pair[0] for pair in pairs]), tuple(pair[1] for pair in pairs)
+
+
+def standardised(found: np.ndarray, trained: Trained) -> np.ndarray:
+    """Features by their mean and standard deviation in training, cut at `CUT` of these.
+
+    Parameters
+    ----------
+    found : (..., n) array
+        As `features`. [their units]
+    trained : Trained
+        The ensemble.
+
+    Returns
+    -------
+    (..., n) array
+        [1]
+    """
+    return np.clip((found - trained.mean) / trained.std, -CUT, CUT)
+
+
+def corrections(given: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What outputs mean, for each second.
+
+    Parameters
+    ----------
+    given : (..., 3 k) array
+        Outputs with their scale, polynomials over the share of 30 s. [m, m, rad]
+
+    Returns
+    -------
+    tuple of three (..., `LONGEST`) arrays
+        Forward, to starboard, heading. [m, m, rad]
+    """
+    k = len(POWERS)
+    share = np.arange(1, LONGEST + 1) / LONGEST
+    basis = np.stack([share**power for power in POWERS])
+    return given[..., :k] @ basis, given[..., k : 2 * k] @ basis, given[..., 2 * k :] @ basis
+
+
+def spread(given: np.ndarray) -> np.ndarray:
+    """How far apart the members put the ship in 30 s.
+
+    Parameters
+    ----------
+    given : (members, ..., 3 k) array
+        Outputs. [m, m, rad]
+
+    Returns
+    -------
+    (...) array
+        Root of the sum of the variances forward and to starboard. [m]
+    """
+    forward, starboard, _ = corrections(given)
+    return np.hypot(forward[..., -1].std(axis=0), starboard[..., -1].std(axis=0))
+
+
+def share_of(found: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmetic:
+    """Share of what was learned that is used.
+
+    Parameters
+    ----------
+    found : (..., n) array
+        As `features`. [their units]
+    given : (members, ..., 3 k) array
+        Outputs of the members. [m, m, rad]
+    trained : Trained
+        The ensemble.
+
+    Returns
+    -------
+    (...) array
+        1 within the limits of training, 0 far outside. [1]
+    """
+    sizes = abs((found - trained.mean) / trained.std)
+    return trust(
+        np.moveaxis(np.concatenate((sizes, np.asarray(spread(given))[..., None]), axis=-1), -1, 0), trained.limits
+    )
+
+
+def corrected(ship: Motion, motions: Sequence[Motion], given: np.ndarray) -> list[tuple]:
+    """Places and headings with the correction of the ensemble.
+
+    Parameters
+    ----------
+    ship : Motion
+        Now, for the axes of the correction.
+    motions : sequence of `LONGEST` Motion
+        By the equations of motion.
+    given : (members, ..., 3 k) array
+        Outputs of the members. [m, m, rad]
+
+    Returns
+    -------
+    list of tuples of three
+        North, east, heading, one a second. [m, m, rad]
+    """
+    forward, starboard, turn = corrections(given.mean(axis=0))
+    found = []
+    for k, motion in enumerate(motions):
+        north, east = to_ned(ship.psi, forward[..., k], starboard[..., k])
+        found.append((motion.x + north, motion.y + east, wrap(np.asarray(motion.psi + turn[..., k]))))
+    return found
+
+
+def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmetic) -> list[tuple]:
+    """Predictions between the kinetic model's and the learned ones; with a share of 0 exactly the former.
+
+    Parameters
+    ----------
+    kinetic : sequence of `LONGEST` Motion
+        By the kinetic model.
+    learned : sequence of tuples of three
+        As `corrected`. [m, m, rad]
+    share : float or (...) array
+        Of the latter. [1]
+
+    Returns
+    -------
+    list of tuples of three
+        North, east, heading, one a second. [m, m, rad]
+    """
+    found = []
+    for one, other in zip(kinetic, learned, strict=True):
+        away = other[0] - one.x, other[1] - one.y, wrap(np.asarray(other[2] - one.psi))
+        x, y, psi = (where(share > 0.0, a + share * d, a) for a, d in zip(one[:3], away, strict=True))
+        found.append((x, y, where(share > 0.0, wrap(np.asarray(psi)), one.psi)))
+    return found
+
+
+def regions(widths: np.ndarray, errors: tuple[Arithmetic, Arithmetic]) -> tuple[list[Arithmetic], list[Arithmetic]]:
+    """Regions about predictions, widened by the predictor's own record as `regions.widening`.
+
+    Parameters
+    ----------
+    widths : (8,) array
+        Radii at 10, 20 and 30 s [m], half-widths of heading [rad], own errors of place [m] and heading [rad] at which
+        they are 1.4 times as large.
+    errors : tuple of two floats or (...) arrays
+        Mean own errors of predictions 10 s ahead. [m, rad]
+
+    Returns
+    -------
+    tuple of two lists of three, like errors
+        Radii and half-widths. [m, rad]
+    """
+    known = RegionParameters(ordinary_position_error=float(widths[6]), ordinary_heading_error=float(widths[7]))
+    position, heading = widening(errors, 0.0, regions=known)
+    return [position * float(one) for one in widths[:3]], [heading * float(one) for one in widths[3:6]]

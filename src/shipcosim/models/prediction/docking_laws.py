@@ -1,0 +1,184 @@
+"""Predictors of dockings behind one interface: begin, follow each second, predict.
+
+References
+----------
+Definition; the laws are those of `helm`, `paper_iii` and `docking`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.prediction import docking, helm, paper_iii
+from shipcosim.models.prediction.docking import Own, Trained
+from shipcosim.models.prediction.helm import Aboard, HelmParameters, Start
+from shipcosim.models.prediction.paper_iii import Ensemble
+from shipcosim.models.ship.hull import HullParameters
+
+
+class Model(NamedTuple):
+    """The ship as she knows herself.
+
+    Parameters
+    ----------
+    hull, wind, helm : HullParameters, WindParameters, HelmParameters
+        Hull, wind loads and thrusters.
+    """
+
+    hull: HullParameters
+    wind: WindParameters
+    helm: HelmParameters
+
+
+class State(NamedTuple):
+    """What a law carries from second to second.
+
+    Parameters
+    ----------
+    latest : tuple of tuples of four
+        As `helm.remembered` gives them. [rad, m/s, m/s, rad/s]
+    aboard : Aboard
+        What is known now.
+    own : Own or None
+        Our law's record.
+    memory : tuple of tuples of Memory
+        Of networks. [1]
+    """
+
+    latest: Start
+    aboard: Aboard
+    own: Own | None = None
+    memory: tuple = ()
+
+
+@dataclass(frozen=True)
+class Kinetic:
+    """The equations of motion alone.
+
+    Parameters
+    ----------
+    widths : (8,) array
+        As `docking.regions` takes them. [m, rad]
+    """
+
+    widths: np.ndarray
+
+    def begin(self, aboard: Aboard, model: Model) -> State:
+        """State at the start."""
+        return State(helm.remembered((), aboard.ship), aboard)
+
+    def follow(self, state: State, aboard: Aboard, model: Model) -> State:
+        """State a second later."""
+        return state._replace(latest=helm.remembered(state.latest, aboard.ship), aboard=aboard)
+
+    def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
+        """North, east and heading in 1 to 30 s, share of what is learned, and the state after it."""
+        return [motion[:3] for motion in kinetic(state, model)], 0.0, state
+
+
+@dataclass(frozen=True)
+class PaperIii(Kinetic):
+    """The networks of paper III on top.
+
+    Parameters
+    ----------
+    widths : (8,) array
+        As `docking.regions` takes them. [m, rad]
+    ensemble : Ensemble
+        The networks.
+    """
+
+    ensemble: Ensemble
+
+    def begin(self, aboard: Aboard, model: Model) -> State:
+        return super().begin(aboard, model)._replace(memory=paper_iii.empty(self.ensemble))
+
+    def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
+        found = paper_iii.inputs(state.aboard)
+        expected, memory = paper_iii.errors(found, state.memory, self.ensemble)
+        return paper_iii.corrected(kinetic(state, model), expected), 1.0, state._replace(memory=memory)
+
+
+@dataclass(frozen=True)
+class Ours(Kinetic):
+    """Our hybrid.
+
+    Parameters
+    ----------
+    widths : (8,) array
+        As `docking.regions` takes them. [m, rad]
+    trained : Trained
+        The ensemble.
+    """
+
+    trained: Trained
+
+    def begin(self, aboard: Aboard, model: Model) -> State:
+        own = docking.begin(aboard, model.helm.position_age)
+        return super().begin(aboard, model)._replace(own=own, memory=docking.empty(self.trained))
+
+    def follow(self, state: State, aboard: Aboard, model: Model) -> State:
+        laws = {"hull": model.hull, "wind": model.wind, "helm_": model.helm}
+        own = docking.follow(
+            state.own or docking.begin(state.aboard, model.helm.position_age), state.aboard, aboard, **laws
+        )
+        return super().follow(state, aboard, model)._replace(own=own)
+
+    def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
+        own = state.own or docking.begin(state.aboard, model.helm.position_age)
+        motions = helm.predict(state.aboard._replace(ship=own.ship), left=own.load, **model._asdict())
+        found = docking.features(state.aboard, own, motions[-1], model.hull)
+        given, memory = docking.outputs(docking.standardised(found, self.trained), state.memory, self.trained)
+        share = float(docking.share_of(found, given, self.trained))
+        places = docking.corrected(own.ship, motions, given)
+        if share < 1.0:
+            places = docking.blended(kinetic(state, model), places, share)
+        return places, share, state._replace(memory=memory)
+
+
+def kinetic(state: State, model: Model) -> tuple:
+    """Motions by the equations of motion from averages of the start, as paper III has them.
+
+    Parameters
+    ----------
+    state : State
+        Now.
+    model : Model
+        The ship.
+
+    Returns
+    -------
+    tuple of Motion
+        One a second. [m, rad, m/s, rad/s]
+    """
+    start = helm.smoothed(state.latest, state.aboard.ship)
+    return helm.predict(state.aboard._replace(ship=start), **model._asdict())
+
+
+VARIANTS = ("kinetic", "paper-iii", "ours")
+"""Names of the laws."""
+
+
+def law_of(variant: str, arrays: Mapping[str, np.ndarray]) -> Any:
+    """A law from what training left.
+
+    Parameters
+    ----------
+    variant : str
+        One of `VARIANTS`.
+    arrays : mapping of str to array
+        Of ``paper-iii``, else of ``ours``, which has the regions of the kinetic law too. [their units]
+
+    Returns
+    -------
+    Kinetic, PaperIii or Ours
+        [as their fields]
+    """
+    if variant == "kinetic":
+        return Kinetic(arrays["kinetic_widths"])
+    if variant == "paper-iii":
+        return PaperIii(arrays["widths"], paper_iii.ensemble_of(arrays))
+    return Ours(arrays["widths"], docking.trained_of(arrays))

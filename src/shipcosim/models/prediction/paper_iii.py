@@ -1,0 +1,144 @@
+"""The docking predictor of paper III: an ensemble of LSTMs adds the error of the kinetic model over 30 s directly.
+
+References
+----------
+Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper III: "A Hybrid
+Approach to Motion Prediction for Ship Docking", Sec. III-C and Table III.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.models.core.kinematics import to_ned
+from shipcosim.models.core.maths import atan2, hypot, pi
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.networks import Memory, Network, empty_memory, evaluate, network_of
+from shipcosim.models.prediction.helm import LONGEST, Aboard
+
+INPUTS = (
+    *("north", "east", "heading", "surge speed", "sway speed", "heading rate", "wind direction", "wind speed"),
+    *("course", "total speed", "port rpm", "port angle", "starboard rpm", "starboard angle", "tunnel rpm"),
+)
+"""Table III without roll, pitch and heave and their rates, which a ship of three degrees of freedom has not."""
+
+
+class Ensemble(NamedTuple):
+    """What training gives.
+
+    Parameters
+    ----------
+    networks : tuple of Network
+        The members.
+    mean, std : (15,) arrays
+        By which `INPUTS` are standardised. [their units]
+    target_mean, target_std : (2 `LONGEST`,) arrays
+        Of the errors of the kinetic model, north in 1 to 30 s, then east. [m]
+    """
+
+    networks: tuple[Network, ...]
+    mean: np.ndarray
+    std: np.ndarray
+    target_mean: np.ndarray
+    target_std: np.ndarray
+
+
+def ensemble_of(arrays: Mapping[str, np.ndarray]) -> Ensemble:
+    """What training gives, from its arrays.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+        ``member1.lstm.1.weights`` and so on, and the other fields of `Ensemble`. [their units]
+
+    Returns
+    -------
+    Ensemble
+        [as in arrays]
+    """
+    members = sum(name.startswith("member") and name.endswith("dense.bias") for name in arrays)
+    networks = tuple(network_of(arrays, f"member{number}") for number in range(1, members + 1))
+    return Ensemble(networks, *(arrays[name] for name in Ensemble._fields[1:]))
+
+
+def inputs(aboard: Aboard) -> np.ndarray:
+    """What the networks see, by `INPUTS`; angles in [0, 2π), place relative to where she is to lie.
+
+    Parameters
+    ----------
+    aboard : Aboard
+        What is measured now; floats or (...) arrays.
+
+    Returns
+    -------
+    (..., 15) array
+        [m, rad, m/s, rad/s, rpm]
+    """
+    ship, turn = aboard.ship, 2.0 * pi
+    north, east = to_ned(ship.psi, ship.u, ship.v)
+    found = [ship.x, ship.y, ship.psi % turn, ship.u, ship.v, ship.r, aboard.wind_from % turn, aboard.wind_speed]
+    found += [atan2(east, north) % turn, hypot(north, east)]
+    found += [aboard.rpm[0], aboard.azimuth[0], aboard.rpm[1], aboard.azimuth[1], aboard.rpm[2]]
+    return np.stack(np.broadcast_arrays(*found), axis=-1)
+
+
+def empty(ensemble: Ensemble, shape: tuple[int, ...] = ()) -> tuple[tuple[Memory, ...], ...]:
+    """Memory of the members before the first sample.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        The networks.
+    shape : tuple of int
+        Shape of the inputs before their last axis. [1]
+
+    Returns
+    -------
+    tuple of tuples of Memory
+        [1]
+    """
+    return tuple(empty_memory(network, shape) for network in ensemble.networks)
+
+
+def errors(
+    found: np.ndarray, memory: Sequence[tuple[Memory, ...]], ensemble: Ensemble
+) -> tuple[np.ndarray, tuple[tuple[Memory, ...], ...]]:
+    """Errors of the kinetic model as the ensemble expects them: the mean of its members.
+
+    Parameters
+    ----------
+    found : (..., 15) array
+        As `inputs`. [their units]
+    memory : sequence of tuples of Memory
+        Of the sample before. [1]
+    ensemble : Ensemble
+        The networks.
+
+    Returns
+    -------
+    (..., 2 `LONGEST`) array and tuple
+        North in 1 to 30 s, then east; memory after the sample. [m; 1]
+    """
+    x = (found - ensemble.mean) / ensemble.std
+    pairs = [evaluate(net, x, kept) for net, kept in zip(ensemble.networks, memory, strict=True)]
+    mean = sum(pair[0] for pair in pairs) / len(pairs)
+    return ensemble.target_mean + ensemble.target_std * mean, tuple(pair[1] for pair in pairs)
+
+
+def corrected(motions: Sequence[Motion], expected: np.ndarray) -> list[tuple]:
+    """Places with the errors that are expected; headings stay those of the kinetic model.
+
+    Parameters
+    ----------
+    motions : sequence of `LONGEST` Motion
+        By the kinetic model.
+    expected : (..., 2 `LONGEST`) array
+        As `errors`. [m]
+
+    Returns
+    -------
+    list of tuples of three
+        North, east, heading, one a second. [m, m, rad]
+    """
+    return [(one.x + expected[..., k], one.y + expected[..., LONGEST + k], one.psi) for k, one in enumerate(motions)]

@@ -1,0 +1,1 @@
+"""Docking predictors side by side."""
