@@ -181,7 +181,7 @@ def test_arguments(call, gunnerus, arguments, said):
             ["line 2:", "there is no system 'gunerus_dp'", "Did you mean 'gunnerus_dp'?"],
         ),
         ('"gunnerus_dp"', "7", ["line 2:", "It should be a text in quotes."]),
-        ('system      = "gunnerus_dp"', "", ["names no system. There is: blueboat_open, four_azimuths, gunnerus_dp,"]),
+        ('system      = "gunnerus_dp"', "", ["names no system. There is: blueboat_open, four_azimuths,"]),
         ('"gunnerus-33m9"', '"gunnerus-34m"', ["line 3:", "no parameter set 'gunnerus-34m'", "gunnerus-28m9"]),
         ("step_size ", "stop_time ", ["line 5:", "is no TOML: Cannot overwrite a value."]),
         ("within = 5.0\n", 'within = "', ["is no TOML: Unterminated string"]),
