@@ -35,6 +35,7 @@ if TYPE_CHECKING:
         run,
         sea_trials,
         simulate,
+        simulate_many,
         write_ssv,
         write_table,
     )
@@ -68,6 +69,7 @@ __all__ = [
     "run",
     "sea_trials",
     "simulate",
+    "simulate_many",
     "write_report",
     "write_ssv",
     "write_table",

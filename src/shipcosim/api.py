@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Any, Unpack, overload
 from pydantic import ValidationError
 
 from shipcosim import library
+from shipcosim.cosim import Variation, system_of
 from shipcosim.cosim import simulate as _simulate
-from shipcosim.cosim import system_of
+from shipcosim.cosim import simulate_many as _simulate_many
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.calls import with_known_keywords
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
 from shipcosim.results.shown import parts_of
+from shipcosim.results.signals import chosen
 from shipcosim.scenario import Scenario, check_files, check_scenario, check_times, judge, within_run
 from shipcosim.scenario import read_scenario as _read_scenario
 from shipcosim.scenario.model import problems_in
@@ -40,6 +42,7 @@ from shipcosim.staging import staged
 from shipcosim.units import UnitError, seconds
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
     from shipcosim.diagnose.pipeline import Progress
@@ -75,6 +78,7 @@ __all__ = [
     "run",
     "sea_trials",
     "simulate",
+    "simulate_many",
     "write_ssv",
     "write_table",
 ]
@@ -226,6 +230,91 @@ def simulate(
     scenario = _scenario(scenario, system.experiment, keys)
     how = _options({"start_time": start_time, **options})
     return _run(system, scenario, how, out, force, planned=planned)
+
+
+@with_known_keywords
+def simulate_many(
+    system: AnySystem | None = None,
+    scenario: Scenario | str | os.PathLike[str] | None = None,
+    variations: Sequence[Mapping[str, Any]] | pandas.DataFrame | xarray.Dataset = (),
+    *,
+    record: str | Sequence[str] | None = None,
+    reduce: Callable[[xarray.Dataset], Any] | None = None,
+    workers: int | None = None,
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    output_interval: float | str | None = None,
+    set: Mapping[str, object] | None = None,
+    components: Mapping[str, str | os.PathLike[str]] | None = None,
+    events: Iterable[Mapping[str, object]] = (),
+    engine: str = "native",
+    progress: Callable[[int, int], None] | None = None,
+) -> xarray.Dataset:
+    """Run many variations of one run, on all cores.
+
+    Each is the run that `simulate` makes of its values, whatever runs beside it. Models are compiled once; without a
+    compiler Python steps, and the remarks say so.
+
+    Parameters
+    ----------
+    system, scenario, stop_time, step_size, output_interval, set, components, events
+        As of `simulate`: what all variations have in common.
+    variations : list of mappings, DataFrame or Dataset
+        What each has of its own: start values by full name, ``{"environment.seed": 3, "vessel.mass": "550 t"}``.
+        ``"parameters"`` among the names is a list of parameter sets (.ssv), ``"events"`` a list of events beside those
+        of all, ``"stop_time"`` its own end. A missing value (NaN) leaves what all have.
+    record : str or sequence of str, optional
+        Signals, components, connectors or patterns such as ``"*.thrust"``; everything if not given.
+    reduce : callable, optional
+        Gets the table of each run and gives a number, or a mapping of names to numbers and arrays, which is all that
+        is kept of the run.
+    workers : int, optional
+        Runs at a time; one a core if not given.
+    engine : str
+        ``"native"`` or ``"fmpy"``, as in `shipcosim.options.RunOptions`.
+    progress : callable, optional
+        Called with (runs done, runs in all).
+
+    Returns
+    -------
+    Dataset
+        Signals over ``variation`` and ``time``. Coordinates are the start values of each variation, and ``error``: why
+        it failed, empty where it did not. Rows that a run does not reach are NaN.
+
+    Raises
+    ------
+    ShipcosimError
+        If a name does not exist, or no variation runs.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> speeds = [{"port_rpm": 60.0}, {"port_rpm": 80.0}]
+    >>> runs = shipcosim.simulate_many("gunnerus_open", variations=speeds, record="vessel.u", stop_time=1.0)
+    >>> dict(runs.sizes), bool(runs["vessel.u"][1, -1] > runs["vessel.u"][0, -1])
+    ({'variation': 2, 'time': 21}, True)
+    """
+    if engine not in ("native", "fmpy"):
+        found = f"engine = {engine!r}."
+        raise ShipcosimError(Problem("simulate_many()", found, "Variations are run by 'native' or 'fmpy'."))
+    if scenario is not None and not isinstance(scenario, Scenario):
+        scenario = read_scenario(scenario)
+    system = _system(system, scenario, _components(components))
+    start_time = system.experiment.start_time if scenario is None else 0.0
+    times = {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
+    keys = _given(times) | {"set": _mapping("set", set), "events": list(events)}
+    scenario = _scenario(scenario, system.experiment, keys)
+    varied = [_variation(system, scenario, dict(one)) for one in _records(variations)]
+    wanted = [record] if isinstance(record, str) else record
+    return _simulate_many(
+        with_values(system, scenario.set, str(scenario.path or "scenario")),
+        scenario,
+        varied,
+        RunOptions(engine=engine, start_time=start_time, progress=progress),
+        choose=tuple if wanted is None else lambda names: chosen(names, wanted),
+        reduce=reduce,
+        workers=workers,
+    )
 
 
 def read(path: str | os.PathLike[str], *, fmus: Iterable[str | os.PathLike[str]] | None = None) -> SystemStructure:
@@ -774,6 +863,25 @@ def _fitting(parameters: Sequence[str | os.PathLike[str]], system: System) -> tu
         values |= fitting
         remarks += left_out
     return values, remarks
+
+
+def _records(variations) -> list[Mapping[str, Any]]:
+    """Variations as mappings; what is missing in a table is left out."""
+    if hasattr(variations, "to_dataframe"):
+        variations = variations.to_dataframe()
+    if not hasattr(variations, "to_dict"):
+        return [_mapping("variations", one) for one in variations]
+    rows = variations.to_dict("records")
+    return [{str(name): value for name, value in row.items() if value == value} for row in rows]
+
+
+def _variation(system: System, scenario: Scenario, given: dict[str, Any]) -> Variation:
+    """A variation as the engine takes it: parameter sets as values, its own events and end in its scenario."""
+    fitting, _ = _fitting(given.pop("parameters", ()), system)
+    own = _given({"stop_time": given.pop("stop_time", None)}) | {"set": {}, "events": list(given.pop("events", ()))}
+    values = {name: value.item() if hasattr(value, "item") else value for name, value in given.items()}
+    is_plain = not own["events"] and "stop_time" not in own
+    return Variation(fitting | values, scenario if is_plain else _scenario(scenario, system.experiment, own))
 
 
 def _mapping(name, given):

@@ -120,6 +120,38 @@ def test_a_parameter_that_is_a_quantity_needs_no_new_code(monkeypatch):
     assert isinstance(step, Untraceable)  # a choice is part of the code
 
 
+def test_a_whole_number_that_decides_nothing_needs_no_new_code(monkeypatch):
+    class Noisy(Fmu):
+        """Noise of a seed, added up some times."""
+
+        y = Output("1", "out")
+        seed = Parameter(1, "1", "seed")
+        turns = Parameter(2, "1", "how often")
+        doubled = Parameter(0, "1", "whether it is doubled: 1 for yes")
+
+        def start(self):
+            self.y = 0.0
+
+        def step(self, t, h):
+            self.y = sum(normals("noise", self.seed, 0, 3)[n] for n in range(self.turns))
+            if self.doubled == 1:
+                self.y = 2.0 * self.y
+
+    _, step = compiled(Noisy)
+    assert isinstance(step, CompiledStep), step
+    results = {}
+    for values in ({"seed": 7}, {"seed": 7, "turns": 3}, {"seed": 7, "doubled": 1}):
+        python, step = compiled(Noisy, **values)
+        python.step(0.0, 0.1)
+        assert isinstance(step, CompiledStep) and run_in_c(step, 0.0, 0.1) == DONE
+        assert step.memory[step.places["y"]] == python.y
+        results[python.y] = step
+    assert len(results) == 3
+    monkeypatch.setattr("shipcosim.native.component.trace", None)
+    assert isinstance(compiled(Noisy, seed=99)[1], CompiledStep)  # the seed is a number like any other
+    assert isinstance(compiled(Noisy, turns=1)[1], Untraceable)  # how often is part of the code
+
+
 def reason(body, **more):
     """Why a component with this step is not compiled."""
     names = {"x": Input("1", "in"), "y": Output("1", "out"), "start": more.pop("start", lambda self: None)}

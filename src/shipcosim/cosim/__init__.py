@@ -2,6 +2,7 @@
 
 from shipcosim.cosim.engines.registry import ENGINES, engines_missing
 from shipcosim.cosim.export.fmu import export_fmu
+from shipcosim.cosim.many import Variation, simulate_many
 from shipcosim.cosim.master.inputs import interpolated
 from shipcosim.cosim.master.run import Interrupted, RunError
 from shipcosim.cosim.master.snapshot import Snapshot, read_snapshot, write_snapshot
@@ -17,6 +18,7 @@ __all__ = [
     "RunError",
     "RunOptions",
     "Snapshot",
+    "Variation",
     "engines_missing",
     "export_fmu",
     "interpolated",
@@ -24,6 +26,7 @@ __all__ = [
     "repeat",
     "replay",
     "simulate",
+    "simulate_many",
     "system_of",
     "write_snapshot",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
@@ -109,9 +110,14 @@ def compiled_steps(fmus: Sequence[Any], time: float, step_size: float) -> list[C
     ShipcosimError
         The compiler is missing or fails, or the cache cannot be written.
     """
-    found = [_recorded(fmu, time, step_size) for fmu in fmus]
-    made = iter(libraries(one.record.source for one in found if isinstance(one, _Recorded)))
-    return [_checked(one, next(made), time, step_size) if isinstance(one, _Recorded) else one for one in found]
+    with _ONE_AT_A_TIME:
+        found = [_recorded(fmu, time, step_size) for fmu in fmus]
+        made = iter(libraries(one.record.source for one in found if isinstance(one, _Recorded)))
+        return [_checked(one, next(made), time, step_size) if isinstance(one, _Recorded) else one for one in found]
+
+
+_ONE_AT_A_TIME = threading.Lock()
+"""So that runs in several threads record and compile what they share once."""
 
 
 class _Recorded(NamedTuple):

@@ -40,7 +40,7 @@ class Flat:
     constant : set of str
         Keys of the outermost dict whose values belong to the structure, whatever they are.
     unchanging : set of str
-        Keys of the outermost dict in whose values whole numbers belong to the structure: counts, choices.
+        Keys of the outermost dict in whose values flags belong to the structure: choices.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Flat:
 
     def _add(self, path, value, fixed):
         value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
-        if isinstance(value, (Symbol, *FRACTIONAL)) or (isinstance(value, WHOLE) and not fixed):
+        if isinstance(value, (Symbol, *FRACTIONAL, *WHOLE)) and not (fixed and kind_of(value) == "b"):
             self._number(path, value)
         elif isinstance(value, WHOLE) or isinstance(value, STRUCTURE):
             self.structure.append((path, value))
@@ -137,7 +137,7 @@ def attributes_like(
     return {
         name: value
         if name in constant
-        else _keeping_whole(value, rest)
+        else _keeping_flags(value, rest)
         if name in unchanging
         else made_like(value, rest)
         for name, value in values.items()
@@ -149,10 +149,10 @@ def text_of(path: tuple) -> str:
     return ".".join(map(str, path))
 
 
-def _keeping_whole(value, numbers):
-    """`made_like`, in which whole numbers stay."""
+def _keeping_flags(value, numbers):
+    """`made_like`, in which flags stay."""
     flat = Flat(value)
-    return made_like(value, iter([next(numbers) if kind_of(one) == "d" else one for one in flat.numbers]))
+    return made_like(value, iter([one if kind_of(one) == "b" else next(numbers) for one in flat.numbers]))
 
 
 def _parts(path, value) -> Iterator[tuple[Any, Any]]:

@@ -7,7 +7,7 @@ import math
 import operator
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -107,6 +107,8 @@ class Recording:
     ----------
     example : (n,) sequence of float
         Memory, time and step size of an example, which decides where a model asks for a whole number.
+    choices : set of int
+        Places in the memory of whole numbers that decide as in the example what follows from them alone.
 
     Attributes
     ----------
@@ -122,8 +124,8 @@ class Recording:
         Values that must be what they are in the example.
     """
 
-    def __init__(self, example: Sequence[float]):
-        self.memory = example
+    def __init__(self, example: Sequence[float], choices: Set[int] = frozenset()):
+        self.memory, self._choices = example, choices
         self.tables: list[np.ndarray] = []
         self.calls: list[Call] = []
         self.loops: list[Loop] = []
@@ -199,6 +201,8 @@ class Recording:
         """The answer to a question of Python's on this way."""
         if condition.number in self._answers:
             return self._answers[condition.number]
+        if self._is_choice(condition):
+            return bool(self.guarded(condition))
         frame = sys._getframe(2)
         file = frame.f_code.co_filename.replace("\\", "/").rpartition("/")[2]
         self._asked[f"line {frame.f_lineno} of {file}"] += 1
@@ -215,6 +219,16 @@ class Recording:
         assert block.condition is condition and following is not None
         self.block = following
         return answer
+
+    def _is_choice(self, condition):
+        """Whether a condition follows from whole numbers alone that are part of the code."""
+        for one in condition.sources():
+            if one.op == "load":
+                if one.operands[0] not in self._choices:
+                    return False
+            elif one.op not in EXAMPLES:
+                return False
+        return True
 
     def value(self, op: str, kind: str, *operands: Any) -> Symbol:
         """The value of an operation, that computed before where there is one on this way."""

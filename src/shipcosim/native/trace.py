@@ -24,12 +24,15 @@ class Shape:
     flat : Flat
         Its attributes, taken apart.
     constant, unchanging : frozenset of str
-        Attributes that are part of the structure; dataclasses of parameters, whose whole numbers are.
+        Attributes that are part of the structure; dataclasses of parameters, whose flags are.
+    choices : frozenset of int
+        Places of whole numbers among the parameters: where a step asks for one, it belongs to what it is then.
     """
 
     flat: Flat
     constant: frozenset[str]
     unchanging: frozenset[str]
+    choices: frozenset[int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,15 +62,16 @@ def shape_of(fmu: Any) -> Shape:
     Untraceable
         It keeps what is no plain data.
     """
-    constant = frozenset(
-        variable.name
-        for variable in fmu.variables
-        if variable.type == "String" or (variable.causality == "parameter" and variable.type != "Real")
-    )
+    parameters = [variable for variable in fmu.variables if variable.causality == "parameter"]
+    whole = frozenset(variable.name for variable in parameters if variable.type == "Integer")
+    constant = frozenset(variable.name for variable in fmu.variables if variable.type == "String")
+    constant |= {variable.name for variable in parameters if variable.type == "Boolean"}
     for group in fmu.groups:
         _remember(getattr(fmu, group.name))
     unchanging = frozenset(group.name for group in fmu.groups)
-    return Shape(Flat(vars(fmu), constant, unchanging), constant, unchanging)
+    flat = Flat(vars(fmu), constant, unchanging)
+    choices = (n for n, leaf in enumerate(flat.leaves) if leaf.kind == "i" and leaf.path[0] in whole | unchanging)
+    return Shape(flat, constant, unchanging, frozenset(choices))
 
 
 def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
@@ -89,7 +93,7 @@ def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
     """
     before, constant, unchanging = shape.flat, shape.constant, shape.unchanging
     values, n = dict(vars(fmu)), len(before.leaves)
-    recording = Recording([*before.numbers, time, step_size])
+    recording = Recording([*before.numbers, time, step_size], shape.choices)
 
     def run():
         loads = [recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)]

@@ -82,5 +82,5 @@ class Recorder:
             values[self._first_input :] = self._exchange.inputs[self.inputs]
 
     def columns(self, n_rows: int) -> list[np.ndarray]:
-        """The first rows, (n_rows,) an array for each signal: outputs, external values, inputs."""
-        return list(np.ascontiguousarray(self.rows[:n_rows].T))
+        """The first rows, (n_rows,) a view for each signal: outputs, external values, inputs."""
+        return list(self.rows[:n_rows].T)

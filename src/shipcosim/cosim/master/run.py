@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from shipcosim.cosim.master.algorithm import Failure, Master
 from shipcosim.cosim.master.compiled import CompiledMaster
@@ -36,7 +38,6 @@ from shipcosim.series import make_table
 from shipcosim.ssp import System
 
 if TYPE_CHECKING:
-    import numpy as np
     import xarray
 
 
@@ -182,11 +183,13 @@ class Simulation:
         """Times of the rows so far. [s]"""
         return self._grid.row_times[: self._recorders.n_rows]
 
-    def columns(self) -> list[Column]:
-        """Columns of the table of the rows so far."""
+    def columns(self, choose: Callable[[list[str]], Iterable[str]] = tuple) -> list[Column]:
+        """Columns of the table of the rows so far; `choose` says of all names which."""
         n = self._recorders.n_rows
         recorded = {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
-        return columns_of(self._plan, n, recorded)
+        columns = columns_of(self._plan, n, recorded)
+        chosen = frozenset(choose([name for name, *_ in columns]))
+        return [(c[0], np.ascontiguousarray(c[1]), c[2], c[3]) for c in columns if c[0] in chosen]
 
     def attributes(self, complete: bool) -> dict[str, object]:
         """What is known about the run. `complete` is 1 or 0 among them, since NetCDF knows no truth values."""
@@ -200,11 +203,14 @@ class Simulation:
             known["continued_from"] = self._resume.time
         if self._together:
             known["integrated_together"] = "; ".join(", ".join(sorted(group)) for group in self._together)
+        return known | {"complete": int(complete), "remarks": json.dumps(self.remarks())}
+
+    def remarks(self) -> list[str]:
+        """What does not stop the run and should be known, each once."""
         in_python = self._master.reasons if isinstance(self._master, CompiledMaster) else {}
-        remarks = [*self._remarks, *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items())] + [
-            text for component in self._components.values() for text in component.slave.remarks()
-        ]
-        return known | {"complete": int(complete), "remarks": json.dumps(list(dict.fromkeys(remarks)))}
+        remarks = [*self._remarks, *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items())]
+        remarks += [text for component in self._components.values() for text in component.slave.remarks()]
+        return list(dict.fromkeys(remarks))
 
     def table(self, complete: bool) -> xarray.Dataset:
         """Table of the rows so far."""

@@ -11,12 +11,21 @@ from shipcosim.ssp import Component
 
 
 class Instances:
-    """Instances of FMUs by component; leaving a ``with`` statement frees them and removes what was unpacked."""
+    """Instances of FMUs by component; leaving a ``with`` statement frees them and removes what was unpacked.
+
+    Parameters
+    ----------
+    unpacked : UnpackedFmus, optional
+        The FMUs, where others use them too; unpacked for these instances where it is not given.
+    """
+
+    def __init__(self, unpacked: UnpackedFmus | None = None):
+        self._shared = unpacked
 
     def __enter__(self) -> Self:
         self._slaves: dict[str, LibrarySlave] = {}
         self._stack = ExitStack()
-        self._unpacked = self._stack.enter_context(UnpackedFmus())
+        self._unpacked = self._stack.enter_context(UnpackedFmus()) if self._shared is None else self._shared
         return self
 
     def __exit__(self, *_):

@@ -13,7 +13,7 @@ from zlib import crc32
 import numpy as np
 
 from shipcosim.models.core.kept import kept
-from shipcosim.models.core.maths import Arithmetic, row_of
+from shipcosim.models.core.maths import Arithmetic, is_single, row_of
 
 _BLOCK = 256
 _TOLERANCE = 1e-6  # of a period: the time of a master that adds up its steps falls short by 5e-10 s in 1100 s
@@ -114,7 +114,7 @@ def normals(purpose: str, seed: int | np.ndarray, k: int, width: int) -> Sequenc
     ValueError
         A seed is negative.
     """
-    if isinstance(seed, int):
+    if is_single(seed):
         return row_of(_block(purpose, seed, k // _BLOCK, width), k % _BLOCK).tolist()
     return _blocks(purpose, tuple(np.ravel(seed).tolist()), k // _BLOCK, width)[k % _BLOCK]
 

@@ -135,7 +135,7 @@ def _shape(frequency, mean_speed):
     return 320.0 / (1.0 + ratio**n) ** (5.0 / (3.0 * n))
 
 
-@lru_cache(maxsize=64)
+@kept(64)
 def _frequencies_and_phases(seed):
     """Circular frequencies and phases of one seed, (n,) each."""
     random = generator("gusts", seed)

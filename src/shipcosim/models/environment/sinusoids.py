@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from shipcosim.models.core.maths import Arithmetic, library_of
+from shipcosim.models.core.maths import Arithmetic, is_single, library_of
 
 
 def column(x: Arithmetic) -> Arithmetic:
@@ -85,7 +85,7 @@ def per_seed(draw: Callable[[int], tuple], seed: int | np.ndarray) -> tuple:
     tuple of (n,) or (m, n) arrays
         What `draw` gives; one row per seed. [the units of what draw gives]
     """
-    if isinstance(seed, int):
+    if is_single(seed):
         return draw(seed)
     return _stacked(draw, tuple(np.ravel(seed).tolist()), np.shape(seed))
 

@@ -1,0 +1,275 @@
+"""Many variations of one run, in threads: compiled steps need no Python, so that all cores work."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from functools import lru_cache
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim.cosim.master.instantiate import SlaveSource
+from shipcosim.cosim.master.interrupt import delayed_interrupt
+from shipcosim.cosim.master.result import attributes_of
+from shipcosim.cosim.master.run import RunError, Simulation
+from shipcosim.cosim.master.time_grid import time_grid_of
+from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.slave import Slave
+from shipcosim.cosim.slaves.unpacked import UnpackedFmus
+from shipcosim.errors import ShipcosimError
+from shipcosim.options import RunOptions
+from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
+from shipcosim.series import make_table
+from shipcosim.ssp import Component, System, with_values
+
+if TYPE_CHECKING:
+    import xarray
+
+Choose = Callable[[list[str]], Iterable[str]]
+Reduce = Callable[["xarray.Dataset"], Any]
+
+
+@dataclass(frozen=True)
+class Variation:
+    """What one run has of its own.
+
+    Parameters
+    ----------
+    values : mapping of str to value
+        Start values by signal.
+    scenario : Scenario
+        Its events and stop time.
+    """
+
+    values: Mapping[str, Any]
+    scenario: Scenario
+
+
+@dataclass
+class Done:
+    """What is kept of one run.
+
+    Parameters
+    ----------
+    error : str
+        Why it failed; empty where it did not.
+    remarks : list of str
+        What should be known of it.
+    times : (n,) array
+        Of its rows. [s]
+    kept : dict of str to (dimensions, array, attributes)
+        Signals over time, or what they were reduced to.
+    """
+
+    error: str = ""
+    remarks: list[str] = field(default_factory=list)
+    times: np.ndarray = field(default_factory=lambda: np.empty(0))
+    kept: dict[str, tuple[tuple[str, ...], np.ndarray, dict]] = field(default_factory=dict)
+
+
+def simulate_many(
+    system: System,
+    scenario: Scenario,
+    variations: Sequence[Variation],
+    options: RunOptions,
+    *,
+    choose: Choose = tuple,
+    reduce: Reduce | None = None,
+    workers: int | None = None,
+) -> xarray.Dataset:
+    """Run a system through variations of a scenario; see `shipcosim.simulate_many`.
+
+    Parameters
+    ----------
+    system : System
+        With the start values that all runs have.
+    scenario : Scenario
+        Checked against the system; what all runs have in common.
+    variations : sequence of Variation
+        What each has of its own.
+    options : RunOptions
+        Engine, start and progress.
+    choose : callable
+        Says of all signals which are kept.
+    reduce : callable, optional
+        Gets the table of a run, gives a number or a mapping of names to numbers and arrays.
+    workers : int, optional
+        Runs at a time; as many as there are cores where it is not given.
+
+    Returns
+    -------
+    Dataset
+        Dimensions ``variation`` and ``time``.
+
+    Raises
+    ------
+    ShipcosimError
+        If a variation does not fit to the system, or all have failed.
+    """
+    runs = _Runs(system, options, choose, reduce)
+    for variation in {_kind(variation): variation for variation in variations}.values():
+        runs.check(variation)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    done: list[Done] = [Done() for _ in variations]
+    with delayed_interrupt() as runs.check_interrupt, _sources(min(workers or cores, len(variations))) as sources:
+        for n, (number, result) in enumerate(_in_threads(runs.run, variations, sources), start=1):
+            done[number] = result
+            if options.progress is not None:
+                options.progress(n, len(variations))
+    if variations and all(one.error for one in done):
+        raise ShipcosimError(f"All {len(done)} variations fail, the first with: {done[0].error}")
+    known = attributes_of(system, scenario) | {"start_time": options.start_time, "engine": options.engine}
+    remarks = dict.fromkeys(text for one in done for text in one.remarks)
+    return _dataset(variations, done, known | {"remarks": json.dumps(list(remarks))})
+
+
+class _Runs:
+    """What the runs have in common."""
+
+    check_interrupt: Callable[[], None]
+
+    def __init__(self, system: System, options: RunOptions, choose: Choose, reduce: Reduce | None):
+        self._system, self._options, self._reduce = system, options, reduce
+        self._choose = lru_cache(maxsize=64)(lambda names: tuple(choose(list(names))))
+        self._unit_of = units_of(system)
+
+    def check(self, variation: Variation) -> None:
+        """Raise ShipcosimError where names or times of a variation do not fit to the system."""
+        for name in variation.values:
+            self._system.split(name, "variation")
+        found = check_scenario(variation.scenario, self._system)
+        if errors := [problem for problem in found if problem.severity == "error"]:
+            raise ShipcosimError(errors)
+        time_grid_of(variation.scenario, self._options.start_time)
+
+    def run(self, variation: Variation, slaves: SlaveSource) -> Done:
+        """One run; an error of it is part of the result."""
+        simulation, error = None, ""
+        try:
+            system, scenario = self._varied(variation)
+            grid = time_grid_of(scenario, self._options.start_time)
+            simulation = Simulation(system, scenario, grid, self._options)
+            simulation.run(slaves, self.check_interrupt)
+            simulation.terminate()
+        except RunError as failed:
+            error = str(failed)
+        except ShipcosimError as failed:
+            return Done(str(failed))
+        assert simulation is not None
+        return self._kept(simulation, error)
+
+    def _varied(self, variation):
+        system = with_values(self._system, variation.values, "variation")
+        return system, with_numbers(variation.scenario, self._unit_of)
+
+    def _kept(self, simulation, error):
+        columns = simulation.columns(lambda names: self._choose(tuple(names)))
+        done = Done(error, simulation.remarks(), simulation.row_times)
+        if self._reduce is None:
+            done.kept = {
+                name: (("time",), values, {"units": unit, "long_name": text}) for name, values, unit, text in columns
+            }
+        elif not error:
+            found = self._reduce(make_table(simulation.row_times, columns))
+            parts = found if isinstance(found, Mapping) else {"reduced": found}
+            arrays = {str(name): np.asarray(value) for name, value in parts.items()}
+            done.kept = {
+                name: (tuple(f"{name}_{axis}" for axis in range(values.ndim)), values, {})
+                for name, values in arrays.items()
+            }
+        return done
+
+
+class _Source:
+    """Instances of one worker. Loading and resetting FMUs concerns the whole process: one worker at a time does it."""
+
+    def __init__(self, instances: Instances, lock: threading.Lock):
+        self._instances, self._lock = instances, lock
+
+    def instance_of(self, component: Component) -> Slave:
+        """See `SlaveSource`."""
+        with self._lock:
+            return self._instances.instance_of(component)
+
+
+@contextmanager
+def _sources(n: int) -> Iterator[list[_Source]]:
+    """Instances for some workers."""
+    lock = threading.Lock()
+    with UnpackedFmus() as unpacked, ExitStack() as stack:
+        yield [_Source(stack.enter_context(Instances(unpacked)), lock) for _ in range(n)]
+
+
+def _in_threads(
+    run: Callable[[Variation, _Source], Done], variations: Sequence[Variation], sources: Sequence[_Source]
+) -> Iterator[tuple[int, Done]]:
+    """Number and result of each run. The first goes alone: it compiles what the others share."""
+    free: SimpleQueue[_Source] = SimpleQueue()
+    for source in sources:
+        free.put(source)
+
+    def one(number):
+        source = free.get()
+        try:
+            return number, run(variations[number], source)
+        finally:
+            free.put(source)
+
+    numbers = range(len(variations))
+    yield from map(one, numbers[:1] if len(sources) > 1 else numbers)
+    if len(sources) > 1:
+        with ThreadPoolExecutor(len(sources)) as pool:
+            futures = [pool.submit(one, number) for number in numbers[1:]]
+            try:
+                for future in as_completed(futures):
+                    yield future.result()
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+
+
+def _kind(variation):
+    """What the checks of a variation follow from, but for its numbers."""
+    return frozenset(variation.values), repr(variation.scenario.events), variation.scenario.stop_time
+
+
+def _dataset(variations, done, attributes) -> xarray.Dataset:
+    """All runs as one table."""
+    import xarray
+
+    times = max((one.times for one in done), key=len, default=np.empty(0))
+    names = dict.fromkeys(name for one in done for name in one.kept)
+    data = {}
+    for name in names:
+        dimensions, _, about = next(one.kept[name] for one in done if name in one.kept)
+        data[name] = (("variation", *dimensions), _stacked([one.kept.pop(name, None) for one in done]), about)
+    coordinates: dict[str, Any] = {"error": ("variation", np.array([one.error for one in done], dtype=str))}
+    if any(dimensions[1:2] == ("time",) for dimensions, *_ in data.values()):
+        coordinates["time"] = ("time", times, {"units": "s", "long_name": "time"})
+    for name in dict.fromkeys(name for variation in variations for name in variation.values):
+        if name not in data:
+            column = [variation.values.get(name) for variation in variations]
+            mixed = any(value is None or isinstance(value, str) for value in column)
+            coordinates[name] = ("variation", np.array(column, dtype=object if mixed else None))
+    return xarray.Dataset(data, coordinates | {"variation": np.arange(len(done))}, attributes)
+
+
+def _stacked(parts) -> np.ndarray:
+    """(variations, ...) array; NaN where a run has no value, as after its failure."""
+    arrays = [None if part is None else part[1] for part in parts]
+    known = [array for array in arrays if array is not None]
+    shape = max((array.shape for array in known), default=())
+    if len(known) == len(arrays) and all(array.shape == shape for array in known):
+        return np.stack(known)
+    stacked = np.full((len(arrays), *shape), np.nan)
+    for row, array in zip(stacked, arrays, strict=True):
+        if array is not None:
+            row[tuple(slice(n) for n in array.shape)] = array
+    return stacked
