@@ -241,6 +241,7 @@ def test_an_error_of_the_model_leaves_the_memory_and_the_step_to_python():
             self.y = 1.0 / self.x
 
     _, step = compiled(Strict)
+    assert isinstance(step, CompiledStep), step
     assert run_in_c(step, 0.0, 0.1) == DONE
     for wrong in (-1.0, 0.0):  # what Python refuses, and what it divides by
         step.memory[step.places["x"]] = wrong
