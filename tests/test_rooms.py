@@ -19,7 +19,7 @@ MAY_IMPORT = {
     "ssp": {"library", "series", "errors", "units"},
     "scenario": {"library", "series", "errors", "units", "angles"},
     "learn": {"library", "angles", "models", "series", "ssp", "scenario", "cosim"},
-    "native": {"library", "errors"},
+    "native": {"library", "fmi", "errors"},
     "cosim": {"library", "series", "ssp", "scenario", "fmi", "errors", "options", "units", "native"},
     "diagnose": {"library", "errors", "angles", "options", "units", "models", "series", "ssp", "scenario", "cosim"},
     "ships": {"errors", "units", "models", "ssp"},

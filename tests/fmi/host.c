@@ -9,6 +9,7 @@
    step     NAME TIME STEP_SIZE         log NAME 0|1: debug logging; an FMU starts without
    save     NAME FILE                   restore NAME FILE
    free     NAME                        quit (at once, nothing is freed)
+   maps     WORD                        how many libraries of this process have the word in their paths
 */
 
 #include <dlfcn.h>
@@ -181,6 +182,18 @@ static int release(Instance *one)
     return dlclose(one->library);
 }
 
+static void count_maps(const char *word)
+{
+    char line[4096];
+    FILE *file = fopen("/proc/self/maps", "r");
+    int n = 0;
+
+    while (fgets(line, sizeof line, file))
+        n += strstr(line, word) && strstr(line, ".so");
+    fclose(file);
+    printf("maps %d\n", n);
+}
+
 static int obey(const char *command, Instance *one, char **words)
 {
     if (!strcmp(command, "begin"))
@@ -217,6 +230,10 @@ int main(void)
             words[n++] = word;
         if (!n || !strcmp(words[0], "quit"))
             return 0;
+        if (!strcmp(words[0], "maps")) {
+            count_maps(words[1]);
+            continue;
+        }
         if (!strcmp(words[0], "global")) {
             mode = RTLD_NOW | RTLD_GLOBAL;
             continue;

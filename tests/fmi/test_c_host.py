@@ -14,10 +14,17 @@ from fmpy import read_model_description, simulate_fmu
 
 from shipcosim.cosim import export_fmu
 from shipcosim.library import build_stale
+from shipcosim.native.export.packing import build_native_fmu
 from shipcosim.series import read_table
 from shipcosim.ssp import read_system
 
 FMUS = sorted(path.stem for path in Path(__file__).parents[2].glob("fmus/*/*.py") if path.stem == path.parent.name)
+
+NATIVE = (
+    "azimuth_thruster drift_force earth_force fixed_thruster harbour mapped_thruster pid_controller propeller_rudder "
+    "reference thruster_monitor tunnel_thruster varying_current"
+).split()
+"""FMUs that `shipcosim build --native` writes in C."""
 
 
 @pytest.fixture(scope="session")
@@ -86,6 +93,22 @@ def host(program, only_numpy, tmp_path):
     return host
 
 
+@pytest.fixture(scope="session")
+def native(root, tmp_path_factory, needs):
+    """native(name) -> path of the FMU in C, built for the parameters of its reference result."""
+    if importlib.util.find_spec("ziglang") is None:
+        needs("ziglang", 'Install it: pip install -e ".[native]".')
+    folder = tmp_path_factory.mktemp("native")
+
+    def native(name):
+        path = folder / f"{name}.fmu"
+        if not path.is_file():
+            build_native_fmu(root / "fmus" / name, folder, [documents(root).parameters_of(name)])
+        return path
+
+    return native
+
+
 def refusal(lines):
     """What the one FMU of a run said before it gave no instance."""
     log, null = lines
@@ -97,15 +120,20 @@ def refusal(lines):
 # an FMU alone
 
 
+def documents(root):
+    """The module that makes reference results."""
+    script = root / "docs" / "generators" / "write_fmu_documents.py"
+    spec = importlib.util.spec_from_file_location("documents", script)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 class Reference:
     """The reference result of an FMU of the project: commands that drive the FMU through it, row by row."""
 
     def __init__(self, name, fmu, root):
-        script = root / "docs" / "generators" / "write_fmu_documents.py"
-        spec = importlib.util.spec_from_file_location("documents", script)
-        documents = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(documents)
-        self.parameters, self.fmu = documents.parameters_of(name), fmu
+        self.parameters, self.fmu = documents(root).parameters_of(name), fmu
         self.table = read_table(root / "fmus" / name / "reference.csv")
         self.times = self.table["time"].values
         self.inputs, self.outputs = (
@@ -125,6 +153,15 @@ class Reference:
             yield from self.fmu.then("step", self.times[row - 1], self.times[row] - self.times[row - 1])
             yield from self.fmu.get(*self.outputs)
 
+    def check(self, lines):
+        """Refuse other outputs, to 1e-9 of each signal's range."""
+        assert lines[0] == "one instantiated"
+        found = np.array(lines[1:], dtype=float).reshape(len(self.times), len(self.outputs))
+        for column, signal in enumerate(self.outputs):
+            expected = self.table[signal].values.astype(float)
+            tolerance = 1e-9 * max(np.ptp(expected), np.abs(expected).max(), 1e-6)
+            np.testing.assert_allclose(found[:, column], expected, rtol=0.0, atol=tolerance, err_msg=signal)
+
     def _set(self, row):
         given = {name: self.table[name].values[row] for name in self.inputs}
         kinds = {name: float if self.fmu.variables[name].type == "Real" else int for name in given}
@@ -136,13 +173,56 @@ def test_every_fmu_of_the_project_gives_its_reference_result(name, root, loaded,
     """To 1e-9 of each signal's range, as through FMPy."""
     fmu = loaded(build_stale(root) / f"{name}.fmu")
     reference = Reference(name, fmu, root)
-    lines = host(reference.start(), reference.rows(1, len(reference.times)), fmus=[fmu])
-    assert lines[0] == "one instantiated"
-    found = np.array(lines[1:], dtype=float).reshape(len(reference.times), len(reference.outputs))
-    for column, signal in enumerate(reference.outputs):
-        expected = reference.table[signal].values.astype(float)
-        tolerance = 1e-9 * max(np.ptp(expected), np.abs(expected).max(), 1e-6)
-        np.testing.assert_allclose(found[:, column], expected, rtol=0.0, atol=tolerance, err_msg=signal)
+    reference.check(host(reference.start(), reference.rows(1, len(reference.times)), fmus=[fmu]))
+
+
+@pytest.mark.parametrize("name", NATIVE)
+def test_every_native_fmu_gives_the_reference_result_where_there_is_no_python(name, root, loaded, host, native):
+    """No path, no environment, and no library of Python in the process."""
+    fmu = loaded(native(name))
+    reference = Reference(name, fmu, root)
+    rows = reference.start(), reference.rows(1, len(reference.times)), [["maps", "python"]]
+    *lines, found = host(*rows, fmus=[fmu], path="/nowhere", PYTHONHOME="/nowhere")
+    reference.check(lines)
+    assert found == "maps 0"
+
+
+@pytest.mark.parametrize("name", [n if n == "reference" else pytest.param(n, marks=pytest.mark.slow) for n in NATIVE])
+def test_a_state_of_every_native_fmu_goes_on_in_another_process_bit_for_bit(name, root, loaded, host, tmp_path, native):
+    fmu = loaded(native(name))
+    reference, file = Reference(name, fmu, root), tmp_path / "state"
+    half, end = len(reference.times) // 2, len(reference.times)
+    save = fmu.then("save", file)
+    whole = host(reference.start(), reference.rows(1, half), save, reference.rows(half, end), fmus=[fmu])
+    begin = fmu.set(**reference.parameters), fmu.then("begin"), fmu.then("restore", file)
+    rest = host(*begin, reference.rows(half, end), fmus=[fmu])[1:]
+    assert len(rest) == (end - half) * len(reference.outputs) and rest == whole[-len(rest) :]
+
+
+def test_states_of_a_native_fmu_and_of_the_one_in_python_are_told_apart(root, loaded, host, tmp_path, native):
+    ours, python = loaded(native("reference"), "ours"), loaded(build_stale(root) / "reference.fmu", "python")
+    reference = Reference("reference", ours, root)
+    for first, second, words in ((ours, python, "reference_"), (python, ours, "native reference {")):
+        file = tmp_path / f"{words.strip('{ ')}.state"
+        begin = {fmu: (fmu.set(**reference.parameters), fmu.then("begin")) for fmu in (first, second)}
+        host(*begin[first], first.then("save", file), fmus=[first])
+        log = " ".join(host(*begin[second], second.then("restore", file), fmus=[second]))
+        assert "the state cannot be restored: this is a state of '" in log and f"wanted is one of '{words}" in log
+
+
+def test_native_instances_keep_to_themselves(root, loaded, host, native):
+    """Two of one FMU, started together, one after the other, and with other parameters."""
+    one, two = loaded(native("reference"), "one"), loaded(native("reference"), "two")
+
+    def run(fmu, goal):
+        yield from fmu.set(**Reference("reference", fmu, root).parameters | {"x_start": 1.0, "x_set": goal})
+        yield from fmu.then("begin")
+        yield from fmu.steps(30, "x_d", h=1.0)
+
+    turns = [line for pair in zip(run(one, 50.0), run(two, -20.0), strict=True) for line in pair]
+    alone = host(run(one, 50.0), fmus=[one])[1:], host(run(two, -20.0), fmus=[two])[1:]
+    together = host(turns, fmus=[one, two])[2:]
+    assert (together[::2], together[1::2]) == alone and float(together[-1]) < 0.0 < float(together[-2])
 
 
 @pytest.mark.parametrize("name", [n if n == "vessel" else pytest.param(n, marks=pytest.mark.slow) for n in FMUS])

@@ -1,12 +1,15 @@
 """The command `build`: FMUs and packed systems of a project."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
+from typing import Any
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.fmi.export.builder import build_fmu
-from shipcosim.ssp import pack
+from shipcosim.native.export.packing import build_native_fmu
+from shipcosim.native.symbols import Untraceable
+from shipcosim.ssp import pack, read_system
 
 
 def build_named(
@@ -51,6 +54,76 @@ def build_named(
     if problems:
         raise ShipcosimError(problems)
     return built
+
+
+def build_native(
+    project: Path,
+    names: Collection[str],
+    out: Path,
+    targets: Sequence[str],
+    progress: Callable[[int, int], None] | None = None,
+) -> tuple[list[Path], list[Problem]]:
+    """Build FMUs with their models in C, as far as that can be.
+
+    Parameters
+    ----------
+    project : Path
+        With fmus/ and ssp/.
+    names : collection of str
+        Of FMUs; all if empty.
+    out : Path
+        Folder for them.
+    targets : sequence of str
+        Platforms.
+    progress : callable, optional
+        Called with (done, in all).
+
+    Returns
+    -------
+    list of Path
+        What was built.
+    list of Problem
+        What stays in Python, and why.
+
+    Raises
+    ------
+    ShipcosimError
+        With all problems; what has none is built nevertheless.
+    """
+    sources = library.fmu_sources(project)
+    problems = [Problem(n, "There is no such FMU.", suggestion(n, [*sources])) for n in names if n not in sources]
+    jobs = {name: path for name, path in sources.items() if not names or name in names}
+    examples = _parameters_in_systems(project) if jobs else {}
+    built, left = [], []
+    for done, (name, path) in enumerate(jobs.items(), start=1):
+        try:
+            built.append(build_native_fmu(path, out, examples.get(name, ()), targets))
+        except Untraceable as reason:
+            left.append(Problem(name, f"stays in Python: {reason}."))
+            (out / f"{name}.fmu").unlink(missing_ok=True)
+        except ShipcosimError as error:
+            problems += error.problems
+        if progress:
+            progress(done, len(jobs))
+    if problems:
+        raise ShipcosimError(problems)
+    return built, left
+
+
+def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
+    """Sets of parameters that systems give their components, by FMU. A system that cannot be read gives none."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    folders = library.fmus(project)
+    for path in library.names("system", project).values():
+        try:
+            system = read_system(path, fmus=folders)
+        except ShipcosimError:
+            continue
+        for component in system.components.values():
+            kinds = component.fmu.variables
+            given = {name: value for name, value in component.start.items() if kinds[name].causality == "parameter"}
+            found.setdefault(component.fmu.path.stem, []).append(given)
+    return found
 
 
 def _systems(project: Path) -> dict[str, Path]:

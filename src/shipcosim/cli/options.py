@@ -49,6 +49,16 @@ Components = Annotated[
         "repeatable.",
     ),
 ]
+Fmus = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--fmus",
+        metavar="DIR",
+        help="Folder in which FMUs are looked for first, such as build/native; repeatable.",
+        exists=True,
+        file_okay=False,
+    ),
+]
 OspEvents = Annotated[
     Path | None,
     typer.Option("--scenario", metavar="FILE", help="Scenario file of OSP (.json, .yaml): what happens in the run."),

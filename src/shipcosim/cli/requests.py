@@ -26,6 +26,7 @@ def system_of(
     option: str = "",
     strict: bool = False,
     components: Mapping[str, Path] | None = None,
+    first: Iterable[Path] = (),
 ) -> System:
     """The system of a file, folder or name, with our FMUs built where they are missing or out of date.
 
@@ -41,6 +42,8 @@ def system_of(
         Refuse what breaks a standard, also where it can mean one thing only.
     components : mapping of str to Path, optional
         FMUs that components run in place of their own.
+    first : iterable of Path
+        Folders in which FMUs are looked for first.
 
     Raises
     ------
@@ -49,7 +52,7 @@ def system_of(
     """
     is_fmu = not Path(given).exists() and library.named("system", given) is None and library.named("fmu", given)
     path = library.find("fmu" if is_fmu else "system", given, option)
-    return read_system(path, parameters or (), fmus=library.fmus(path), components=components, strict=strict)
+    return read_system(path, parameters or (), fmus=[*first, *library.fmus(path)], components=components, strict=strict)
 
 
 def system_and_scenario(
@@ -60,6 +63,7 @@ def system_and_scenario(
     events: Path | None = None,
     strict: bool = False,
     components: Iterable[str] | None = None,
+    fmus: Sequence[Path] | None = None,
 ) -> tuple[System, Scenario]:
     """System and scenario of an argument that is either.
 
@@ -77,6 +81,8 @@ def system_and_scenario(
         Refuse what breaks a standard, also where it can mean one thing only. Without it this is said.
     components : iterable of str, optional
         FMUs in place of components' own, over those of the scenario; as for `parsed_components`.
+    fmus : sequence of Path, optional
+        Folders in which FMUs are looked for first.
 
     Raises
     ------
@@ -85,13 +91,13 @@ def system_and_scenario(
     """
     swapped = parsed_components(components or ())
     if not is_scenario(given):
-        system = system_of(given, parameters, strict=strict, components=swapped)
+        system = system_of(given, parameters, strict=strict, components=swapped, first=fmus or ())
         print_problems(problem for problem in system.remarks if problem.flaw)
         return system, with_osp_events(experiment_of(system, stop_time, step_size), events)
     scenario = read_scenario(library.find("scenario", given))
     if missing := check_files(scenario):
         raise ShipcosimError(missing)
-    system = cosim.system_of(scenario, parameters=parameters or (), components=swapped, strict=strict)
+    system = cosim.system_of(scenario, parameters=parameters or (), components=swapped, strict=strict, fmus=fmus or ())
     print_problems(problem for problem in system.remarks if problem.flaw)
     times = {"stop_time": stop_time, "step_size": step_size}
     scenario = scenario.model_copy(update={name: time for name, time in times.items() if time is not None})
@@ -280,11 +286,13 @@ def changed_by(
     options: RunOptions,
     resume: Path | None = None,
     components: Iterable[str] | None = None,
+    fmus: Iterable[Path] | None = None,
 ) -> list[str]:
     """What the command line changes of what the files say, for the page: each a text."""
     changed = [f"--set {' = '.join(part.strip() for part in one.split('=', 1))}" for one in settings or ()]
     changed += [f"--parameters {one}" for one in parameters or ()]
     changed += [f"--component {' = '.join(part.strip() for part in one.split('=', 1))}" for one in components or ()]
+    changed += [f"--fmus {one}" for one in fmus or ()]
     changed += [f"--engine {options.engine}"] if options.engine != RunOptions.engine else []
     changed += [f"--until {options.until:g} s"] if options.until is not None else []
     return changed + ([f"--from {resume}"] if resume is not None else [])

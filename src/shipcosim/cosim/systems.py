@@ -19,6 +19,7 @@ def system_of(
     components: Mapping[str, Path] | None = None,
     strict: bool = False,
     build: bool = True,
+    fmus: Iterable[Path] = (),
 ) -> System:
     """Read the system of a scenario.
 
@@ -36,6 +37,8 @@ def system_of(
         Refuse what breaks a standard, also where it can mean one thing only.
     build : bool
         Build FMUs that are missing or out of date, which runs their source.
+    fmus : iterable of Path
+        Folders in which FMUs are looked for first.
 
     Raises
     ------
@@ -54,7 +57,7 @@ def system_of(
         return read_system(
             path,
             [*scenario.parameter_paths, *parameters],
-            fmus=library.fmus(path, build),
+            fmus=[*fmus, *library.fmus(path, build)],
             components=swapped | dict(components or {}),
             strict=strict,
         )

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
-import traceback
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +14,7 @@ from shipcosim.native.compiler import libraries
 from shipcosim.native.kept_records import Record, keep_record, kept_record, key_of, record_of
 from shipcosim.native.leaves import Flat, attributes_like, made_like
 from shipcosim.native.recording import typed
+from shipcosim.native.sayings import line_of
 from shipcosim.native.source import source_of
 from shipcosim.native.symbols import Untraceable
 from shipcosim.native.trace import Shape, shape_of, trace
@@ -139,9 +138,9 @@ def _recorded(fmu, time, step_size) -> _Recorded | Untraceable:
         step = trace(fmu, shape, time, step_size)
         return _Recorded(fmu, shape, record_of(step, source_of(step), numbers), key)
     except Untraceable as reason:
-        return Untraceable(f"{_line_of(reason)}{reason}")
+        return Untraceable(f"{line_of(reason)}{reason}")
     except Exception as error:  # whatever a model says to a symbol in place of a number
-        return Untraceable(f"{_line_of(error)}{type(error).__name__}: {error}")
+        return Untraceable(f"{line_of(error)}{type(error).__name__}: {error}")
 
 
 def _checked(recorded: _Recorded, library, time, step_size) -> CompiledStep | Untraceable:
@@ -154,13 +153,3 @@ def _checked(recorded: _Recorded, library, time, step_size) -> CompiledStep | Un
             return reason
         keep_record(recorded.key, recorded.record)
     return compiled
-
-
-def _line_of(error: BaseException) -> str:
-    """The line of the component's own code that an error comes from, as text; empty where it is none of its lines."""
-    frames = [
-        frame
-        for frame in traceback.extract_tb(error.__traceback__)
-        if "/models/" in frame.filename.replace("\\", "/") or "_code" in frame.filename
-    ]
-    return f"{Path(frames[-1].filename).name}, line {frames[-1].lineno}: " if frames else ""

@@ -13,6 +13,7 @@ from shipcosim.native.symbols import Symbol, Untraceable, kind_of
 STRUCTURE = (str, bytes, type(None), type)
 WHOLE = (bool, int, np.integer, np.bool_)
 FRACTIONAL = (float, np.floating)
+NUMBERS = (*WHOLE, *FRACTIONAL)
 
 
 class Leaf(NamedTuple):
@@ -80,7 +81,7 @@ class Flat:
 
     def _add(self, path, value, fixed):
         value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
-        if isinstance(value, (Symbol, *FRACTIONAL, *WHOLE)) and not (fixed and kind_of(value) == "b"):
+        if isinstance(value, Symbol) or (isinstance(value, NUMBERS) and not (fixed and kind_of(value) == "b")):
             self._number(path, value)
         elif isinstance(value, WHOLE) or isinstance(value, STRUCTURE):
             self.structure.append((path, value))
@@ -152,7 +153,10 @@ def text_of(path: tuple) -> str:
 def _keeping_flags(value, numbers):
     """`made_like`, in which flags stay."""
     flat = Flat(value)
-    return made_like(value, iter([one if kind_of(one) == "b" else next(numbers) for one in flat.numbers]))
+    keeps = [kind_of(one) == "b" and not isinstance(one, Symbol) for one in flat.numbers]
+    return made_like(
+        value, iter([one if keep else next(numbers) for keep, one in zip(keeps, flat.numbers, strict=True)])
+    )
 
 
 def _parts(path, value) -> Iterator[tuple[Any, Any]]:

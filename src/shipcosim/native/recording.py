@@ -122,6 +122,8 @@ class Recording:
         What is repeated.
     relied_on : list of Symbol
         Values that must be what they are in the example.
+    said : dict of int to Symbol
+        Values that were put into texts, by their numbers.
     """
 
     def __init__(self, example: Sequence[float], choices: Set[int] = frozenset()):
@@ -131,6 +133,7 @@ class Recording:
         self.loops: list[Loop] = []
         self.relied_on: list[Symbol] = []
         self.count = 0
+        self.said: dict[int, Symbol] = {}
         self._table_numbers: dict = {}
         self._call_numbers: dict = {}
         self._asked: Counter[str] = Counter()
@@ -165,7 +168,9 @@ class Recording:
                 result = function()
             except (Untraceable, AssertionError, MemoryError, RecursionError):
                 raise
-            except (ArithmeticError, ValueError) as error:
+            except Exception as error:
+                if not isinstance(error, (ArithmeticError, ValueError)) and type(error).__name__ != "FmuError":
+                    raise
                 result = error
             if isinstance(result, Flat):
                 for number in result.numbers:
@@ -383,6 +388,12 @@ EXAMPLES: dict[str, Callable] = {
     "log": math.log,
     "sqrt": math.sqrt,
     "tanh": math.tanh,
+    "asin": math.asin,
+    "acos": math.acos,
+    "atan": math.atan,
+    "sinh": math.sinh,
+    "cosh": math.cosh,
+    "log10": math.log10,
     "atan2": math.atan2,
     "number": float,
     "whole": int,

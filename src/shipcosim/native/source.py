@@ -8,6 +8,7 @@ import numpy as np
 
 from shipcosim.native.leaves import Flat
 from shipcosim.native.recording import Block, Loop, Recording
+from shipcosim.native.sayings import said
 from shipcosim.native.symbols import Symbol, kind_of
 from shipcosim.native.trace import Step
 
@@ -53,13 +54,15 @@ static double interpolated(double x, const double *xs, const double *ys, int n) 
 }
 """
 
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "floor", "ceil")
+FUNCTIONS += ("asin", "acos", "atan", "sinh", "cosh", "log10")
 UNARY = {
     "neg": "-{}",
     "not": "!{}",
     "abs": "fabs({})",
     "number": "(double){}",
     "whole": "trunc({})",
-} | {name: f"{name}({{}})" for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "floor", "ceil")}
+} | {name: f"{name}({{}})" for name in FUNCTIONS}
 BINARY = {op: f"{{}} {op} {{}}" for op in ("+", "-", "*", "/", "<", "<=", ">", ">=", "==", "!=", "&", "|", "^")} | {
     "**": "pow({}, {})",
     "%": "remainder_of({}, {})",
@@ -74,7 +77,7 @@ def source_of(step: Step) -> str:
     Its arguments are the memory, as `Step` lays it out; the results of functions that stay in Python, one behind the
     other, each behind the arguments that it belongs to; the function that calls them, and the host it belongs to.
     """
-    return _Writer(step).text()
+    return Writer(step).text()
 
 
 def kept_sizes(recording: Recording) -> list[tuple[int, int]]:
@@ -82,7 +85,7 @@ def kept_sizes(recording: Recording) -> list[tuple[int, int]]:
     return [(len(call.changing), len(Flat(call.result).numbers)) for call in recording.calls]
 
 
-class _Writer:
+class Writer:
     """Writes the blocks of a recording."""
 
     def __init__(self, step: Step):
@@ -102,7 +105,7 @@ class _Writer:
 
     def text(self) -> str:
         tables = [
-            f"static const double table_{number}[] = {{{', '.join(map(_literal, table.tolist()))}}};"
+            f"static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
             for number, table in enumerate(self.recording.tables)
         ]
         self._block(self.step.root, 1, self._finish)
@@ -129,19 +132,31 @@ class _Writer:
 
     def _finish(self, result, depth):
         if not isinstance(result, list):
-            self._put(depth, f"return {GIVEN_UP};")
+            self._put(depth, self._fail(result))
             return
-        checked = [_operand(number) for place, number in result if place in self.step.outputs]
+        checked = [operand(number) for place, number in result if place in self.step.outputs]
         if checked:
             self._put(depth, f"if (!isfinite({' + '.join(checked)})) return {GIVEN_UP};")
         for place, number in result:
-            self._put(depth, f"m[{place}] = {_operand(number)};")
+            self._put(depth, f"m[{self._place(place)}] = {operand(number)};")
         self._put(depth, f"return {DONE};")
+
+    def _fail(self, error: Exception) -> str:
+        """What to do on a way that ends with an error of Python's."""
+        return f"return {GIVEN_UP};"
+
+    def _other(self, symbol: Symbol, found: Any) -> str:
+        """What to do where a whole number that belongs to the code is another one."""
+        return f"return {GIVEN_UP};"
+
+    def _place(self, place: int) -> int:
+        """Where a number lies in the memory."""
+        return place
 
     def _value(self, symbol: Symbol, depth):
         op, operands = symbol.op, symbol.operands
         if op == "guard":
-            self._put(depth, f"if ({_operand(operands[0])} != {_operand(operands[1])}) return {GIVEN_UP};")
+            self._put(depth, f"if ({operand(operands[0])} != {operand(operands[1])}) {self._other(*operands)}")
         elif op == "call":
             self._call(operands, depth)
         elif op == "loop":
@@ -152,35 +167,35 @@ class _Writer:
     def _expression(self, symbol) -> str:
         op, operands = symbol.op, symbol.operands
         if op == "load":
-            return f"m[{operands[0]}]"
+            return f"m[{self._place(operands[0])}]"
         if op == "kept":
             return f"k[{self.results[operands[0]] + operands[1]}]"
         if op == "after":
             return f"c{operands[0]}_{operands[1]}"
         if op == "row":
             index, table, width, column = operands
-            return f"table_{table}[(long){_operand(index)} * {width} + {column}]"
+            return f"table_{table}[(long){operand(index)} * {width} + {column}]"
         if op in ("load_row", "kept_row"):
             index, (*call, place), width, column = operands
-            base = f"m[{place}" if op == "load_row" else f"k[{self.results[call[0]] + place}"
-            return f"{base} + (long){_operand(index)} * {width} + {column}]"
+            base = f"m[{self._place(place)}" if op == "load_row" else f"k[{self.results[call[0]] + place}"
+            return f"{base} + (long){operand(index)} * {width} + {column}]"
         if op == "interp":
             x, first, second, n = operands
-            return f"interpolated({_operand(x)}, table_{first}, table_{second}, {n})"
+            return f"interpolated({operand(x)}, table_{first}, table_{second}, {n})"
         if op == "where":
-            condition, a, b = map(_operand, operands)
+            condition, a, b = map(operand, operands)
             return f"{condition} ? {a} : {b}"
         if op == "round":
-            return f"rounded({_operand(operands[0])}, 1e{operands[1]})"
-        return (UNARY if len(operands) == 1 else BINARY)[op].format(*map(_operand, operands))
+            return f"rounded({operand(operands[0])}, 1e{operands[1]})"
+        return (UNARY if len(operands) == 1 else BINARY)[op].format(*map(operand, operands))
 
     def _call(self, operands, depth):
         number, *arguments = operands
         first = self.arguments[number]
-        same = " || ".join(f"k[{first + i}] != {_operand(a)}" for i, a in enumerate(arguments)) or "0"
+        same = " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
         self._put(depth, f"if ({same}) {{")
         for i, a in enumerate(arguments):
-            self._put(depth + 1, f"k[{first + i}] = {_operand(a)};")
+            self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
         where = f"k + {first}, k + {self.results[number]}"
         again = f"k[{first}] = NAN; " if arguments else ""
         self._put(depth + 1, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
@@ -194,7 +209,7 @@ class _Writer:
         ]
         for place in needed:
             symbol, start = loop.carried[place], loop.start[place]
-            self._put(depth, f"{_type(symbol)} c{number}_{place} = {_operand(start)};")
+            self._put(depth, f"{_type(symbol)} c{number}_{place} = {operand(start)};")
         self._put(depth, "for (;;) {")
         for place, symbol in enumerate(loop.carried):
             if symbol.number in self.used:
@@ -205,21 +220,21 @@ class _Writer:
 
         def turn(result, inner):
             if isinstance(result, Exception):
-                self._put(inner, f"return {GIVEN_UP};")
+                self._put(inner, self._fail(result))
                 return
             for place in needed:
                 after = result.numbers[place]
                 if after is not loop.carried[place]:
-                    self._put(inner, f"c{number}_{place} = {_operand(after)};")
+                    self._put(inner, f"c{number}_{place} = {operand(after)};")
 
         self._block(loop.body, depth + 1, turn)
         self._put(depth, "}")
 
     def _decide(self, result, depth):
         if isinstance(result, Exception):
-            self._put(depth, f"return {GIVEN_UP};")
+            self._put(depth, self._fail(result))
         else:
-            self._put(depth, f"going = {_operand(result)};")
+            self._put(depth, f"going = {operand(result)};")
 
 
 def _of(block: Block | None) -> Block:
@@ -235,11 +250,13 @@ def _type(symbol):
     return "int" if symbol.kind == "b" else "double"
 
 
-def _operand(value: Any) -> str:
-    return _name(value) if isinstance(value, Symbol) else _literal(value)
+def operand(value: Any) -> str:
+    """A symbol or a number in C."""
+    return _name(value) if isinstance(value, Symbol) else literal(value)
 
 
-def _literal(value) -> str:
+def literal(value: Any) -> str:
+    """A number in C."""
     if kind_of(value) == "b":
         return str(int(value))
     if not np.isfinite(value):
@@ -263,6 +280,8 @@ def _used(step: Step) -> set[int]:
         result = block.result
         if isinstance(result, list):
             due.extend(number for _, number in result)
+        elif isinstance(result, Exception):
+            due.extend(said(result, step.recording))
         elif hasattr(result, "numbers"):
             due.extend(result.numbers)
         else:

@@ -20,6 +20,10 @@ class Untraceable(Exception):
     """What a component does cannot be written as compiled code; the text says what it was."""
 
 
+SAID = "\x01"
+"""Stands before and after a value in a text, which is known only when the code runs."""
+
+
 def _binary(op, kind=None):
     def forward(self, other):
         if isinstance(other, np.ndarray):
@@ -148,6 +152,13 @@ class Symbol:
     def __repr__(self):
         return f"v{self.number}"
 
+    def __format__(self, how: str) -> str:
+        self.recording.said[self.number] = self
+        return f"{SAID}{self.number}:{how}{SAID}"
+
+    def __str__(self):
+        return format(self, "")
+
     # what NumPy's functions call on the elements of an array of objects
 
     def sin(self):
@@ -272,7 +283,8 @@ class Maths:
     def repeat(going: Callable, turn: Callable, state: Any) -> Any:
         """See `Recording.repeat`."""
         symbol = first_symbol(state)
-        assert symbol is not None
+        if symbol is None:
+            raise Untraceable("it repeats what begins with numbers alone")
         return symbol.recording.repeat(going, turn, state)
 
     @staticmethod

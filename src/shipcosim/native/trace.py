@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -67,14 +67,21 @@ def shape_of(fmu: Any) -> Shape:
     constant = frozenset(variable.name for variable in fmu.variables if variable.type == "String")
     constant |= {variable.name for variable in parameters if variable.type == "Boolean"}
     for group in fmu.groups:
-        _remember(getattr(fmu, group.name))
+        remember(getattr(fmu, group.name))
     unchanging = frozenset(group.name for group in fmu.groups)
     flat = Flat(vars(fmu), constant, unchanging)
     choices = (n for n, leaf in enumerate(flat.leaves) if leaf.kind == "i" and leaf.path[0] in whole | unchanging)
     return Shape(flat, constant, unchanging, frozenset(choices))
 
 
-def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
+def trace(
+    fmu: Any,
+    shape: Shape,
+    time: float,
+    step_size: float,
+    numbers: Sequence[float] | None = None,
+    kind: type[Recording] = Recording,
+) -> Step:
     """Record one step of a component.
 
     Parameters
@@ -85,6 +92,10 @@ def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
         What is a number in it.
     time, step_size : float
         Of the example step. [s, s]
+    numbers : sequence of float, optional
+        Those of the example; of the component where they are left out.
+    kind : type of Recording
+        What the values are recorded in.
 
     Raises
     ------
@@ -93,7 +104,7 @@ def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
     """
     before, constant, unchanging = shape.flat, shape.constant, shape.unchanging
     values, n = dict(vars(fmu)), len(before.leaves)
-    recording = Recording([*before.numbers, time, step_size], shape.choices)
+    recording = kind([*(before.numbers if numbers is None else numbers), time, step_size], shape.choices)
 
     def run():
         loads = [recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)]
@@ -107,7 +118,8 @@ def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
             clone.step(time, step_size)
         if clone.messages:
             raise ValueError("it writes to the log")
-        return _changes(before, loads, _mutable(vars(clone), values, unchanging), constant, unchanging)
+        parameters = attributes_like(values, loads, constant, unchanging)
+        return _changes(before, loads, _mutable(vars(clone), parameters, unchanging), constant, unchanging)
 
     root = recording.record(run)
     _check_kinds(before, root)
@@ -116,7 +128,7 @@ def trace(fmu: Any, shape: Shape, time: float, step_size: float) -> Step:
     return Step(recording, root, outputs)
 
 
-def _remember(parameters):
+def remember(parameters):
     """Let a dataclass compute all that it remembers, so that it belongs to the memory."""
     for cls in type(parameters).__mro__:
         for name, item in vars(cls).items():

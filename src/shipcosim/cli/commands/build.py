@@ -16,6 +16,18 @@ def build(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder to build into. [default: build]")
     ] = None,
+    native: Annotated[
+        bool,
+        typer.Option("--native", help="FMUs with their models in C, without Python; into build/native."),
+    ] = False,
+    targets: Annotated[
+        str,
+        typer.Option(
+            "--targets",
+            metavar="LIST",
+            help="With --native: linux, windows, macos, linux-arm, windows-arm, by commas. [default: this one]",
+        ),
+    ] = "",
     debug: Debug = False,
 ) -> None:
     """Build the FMUs in fmus/ and pack each system in ssp/.
@@ -24,12 +36,25 @@ def build(
     """
     from shipcosim import library
     from shipcosim.cli.building import build_named
-    from shipcosim.cli.console import progress_of, shown_path
+    from shipcosim.cli.console import print_problems, progress_of, shown_path
 
     project = library.project_of()
     if project is None:
         remedy = "A project has a folder fmus/ or ssp/: go there, or make one with `shipcosim init DIR`."
         raise ShipcosimError(Problem(str(Path.cwd()), "There is no project here.", remedy))
+    if targets and not native:
+        raise ShipcosimError(Problem("--targets", "FMUs in Python run on Linux and Windows.", "Give --native too."))
+    if native:
+        from shipcosim.cli.building import build_native
+        from shipcosim.native.export.targets import targets_of
+
+        platforms = targets_of(targets)
+        with progress_of("Building") as progress:
+            built, left = build_native(project, names or [], out or project / "build" / "native", platforms, progress)
+        print_problems(left)
+        for path in built:
+            typer.echo(shown_path(path))
+        return
     with progress_of("Building") as progress:
         built = build_named(project, names or [], out or project / "build", progress)
     for path in built:

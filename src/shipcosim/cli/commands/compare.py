@@ -8,6 +8,7 @@ from shipcosim.cli.exits import FAILED
 from shipcosim.cli.options import (
     Components,
     Debug,
+    Fmus,
     OspEvents,
     Parameters,
     ReportAsJson,
@@ -24,6 +25,7 @@ def compare(
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
     components: Components = None,
+    fmus: Fmus = None,
     events: OspEvents = None,
     tolerance: Annotated[
         float, typer.Option("--tolerance", min=0.0, help="Largest difference between engines, of a signal's range.")
@@ -47,7 +49,7 @@ def compare(
     from shipcosim.cosim.compare import compare as compare_engines
     from shipcosim.options import RunOptions
 
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components)
+    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components, fmus)
     for said in not_compared():
         typer.echo(said, err=True)
     how = reading(what, system, scenario, parameters) if as_read else nullcontext({})

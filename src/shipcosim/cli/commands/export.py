@@ -8,6 +8,7 @@ import typer
 from shipcosim.cli.options import (
     Components,
     Debug,
+    Fmus,
     Force,
     OspEvents,
     Parameters,
@@ -65,6 +66,7 @@ def osp(
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
     components: Components = None,
+    fmus: Fmus = None,
     events: OspEvents = None,
     strict: Strict = False,
     force: Force = False,
@@ -81,7 +83,7 @@ def osp(
     from shipcosim.cosim.export.osp import SCENARIO, STRUCTURE, write_osp
     from shipcosim.staging import set_aside
 
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components)
+    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components, fmus)
     set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))])
     print_problems(write_osp(system, scenario, out))
     for path in sorted(out.glob("*")):

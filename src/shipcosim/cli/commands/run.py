@@ -11,6 +11,7 @@ from shipcosim.cli.options import (
     Components,
     Debug,
     Engine,
+    Fmus,
     Force,
     From,
     Isolate,
@@ -45,6 +46,7 @@ def run(
     parameters: Parameters = None,
     settings: Settings = None,
     components: Components = None,
+    fmus: Fmus = None,
     until: Until = None,
     store: Store = None,
     resume: From = None,
@@ -72,8 +74,8 @@ def run(
 
     given = parsed_settings(settings or [])
     options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
-    changed = changed_by(settings, parameters, options, resume, components)
-    reading = _Reading(parameters or [], parsed_components(components or ()), given, strict, changed)
+    changed = changed_by(settings, parameters, options, resume, components, fmus)
+    reading = _Reading(parameters or [], parsed_components(components or ()), given, strict, changed, fmus or [])
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
@@ -86,13 +88,14 @@ def run(
 
 @dataclass(frozen=True)
 class _Reading:
-    """How scenarios and systems are read: with which parameter sets, FMUs and values, and how strictly."""
+    """How scenarios and systems are read: with which parameter sets, FMUs and values, how strictly, and from where."""
 
     parameters: list[Path]
     components: dict[str, Path]
     given: dict[str, object]
     strict: bool
     changed: list[str]
+    fmus: list[Path]
 
 
 def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptions") -> None:
@@ -127,7 +130,7 @@ def _prepared(path: Path, reading: _Reading) -> "tuple[System, Scenario]":
     happening = read_scenario(path)
     if missing := check_files(happening):
         raise ShipcosimError(missing)
-    system = system_of(happening, components=reading.components, strict=reading.strict)
+    system = system_of(happening, components=reading.components, strict=reading.strict, fmus=reading.fmus)
     with_values(system, reading.given, "--set")
     fitting = {}
     for file in reading.parameters:

@@ -50,16 +50,33 @@ def build_fmu(source: Path | str, out: Path | str) -> Path:
     ShipcosimError
         The script is missing, not Python, does not hold exactly one FMU, or the FMU cannot be written.
     """
-    script = _script(Path(source))
-    bundled = bundle(script)
-    with _imported(bundled) as module:
-        cls = _fmu_class(module, script)
+    with fmu_class(source) as (cls, script, bundled):
         files = {f"resources/{path}": data for path, data in bundled.files.items()}
         files[f"resources/{bundled.entry}.py"] = entry_module(bundled, cls.__name__)
         files["resources/slavemodule.txt"] = bundled.entry.encode()
-        files |= _binaries(script.stem) | _documentation(script)
+        files |= _binaries(script.stem) | documentation(script)
         files["modelDescription.xml"] = _description(cls, script, files)
-    return _write(Path(out) / f"{script.stem}.fmu", files)
+    return write_archive(Path(out) / f"{script.stem}.fmu", files)
+
+
+@contextlib.contextmanager
+def fmu_class(source: Path | str) -> Iterator[tuple[type[Fmu], Path, Bundle]]:
+    """The class of an FMU as the FMU will have it, its script, and what comes along; forgotten afterwards.
+
+    Parameters
+    ----------
+    source : Path or str
+        As of `build_fmu`.
+
+    Raises
+    ------
+    ShipcosimError
+        As of `build_fmu`.
+    """
+    script = _script(Path(source))
+    bundled = bundle(script)
+    with _imported(bundled) as module:
+        yield _fmu_class(module, script), script, bundled
 
 
 def build_all(root: Path | str, names: Iterable[str] = (), out: Path | str = "build/fmus") -> list[Path]:
@@ -228,7 +245,8 @@ def _binaries(identifier: str) -> dict[str, bytes]:
     return files | {"documentation/licenses/pythonfmu.txt": (licence or "MIT, NTNU-IHB/PythonFMU").encode()}
 
 
-def _documentation(script: Path) -> dict[str, bytes]:
+def documentation(script: Path) -> dict[str, bytes]:
+    """What comes along to be read: README.md, also as a page, and reference.csv."""
     files = {}
     for name in ("README.md", "reference.csv"):
         path = script.parent / name
@@ -239,7 +257,7 @@ def _documentation(script: Path) -> dict[str, bytes]:
     return files
 
 
-def _write(path: Path, files: dict[str, bytes]) -> Path:
+def write_archive(path: Path, files: dict[str, bytes]) -> Path:
     """Write an archive whose bytes depend on the files alone: sorted, not compressed, one date, one mode."""
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as archive:

@@ -37,6 +37,9 @@ def substeps(h: float, longest: float) -> int:
     >>> substeps(0.05, 0.05), substeps(0.1, 0.03)
     (1, 4)
     """
+    own = getattr(h, "maths", None)
+    if own is not None:
+        return own.maximum(own.whole(ceil(h / longest - _EXACT)), 1)
     return max(1, int(ceil(h / longest - _EXACT)))
 
 

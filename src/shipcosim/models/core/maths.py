@@ -379,7 +379,7 @@ def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
     first = state
     while isinstance(first, tuple):
         first = first[0]
-    if (own := getattr(first, "maths", None)) is not None:
+    if (own := getattr(count, "maths", None) or getattr(first, "maths", None)) is not None:
         return own.repeat(lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state))[1]
     for _ in range(count):
         state = turn(state)

@@ -24,7 +24,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from shipcosim.models.core.integrate import rk4_pair, substeps
-from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, pi, where
+from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, pi, times, where
 from shipcosim.models.propulsion.failures import Failures
 
 _LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
@@ -136,11 +136,15 @@ def drive_step(
         n_dot = (given - load - friction * n) / inertia
         return n_dot, integral_gain * (n_d - speed(sign * thrust)) + ratio * (given - asked)
 
-    n, integral, now = thruster.n, running * thruster.integral, demand(0.0)
     parts = substeps(h, _LONGEST_SUBSTEP)
-    for part in range(parts):
-        before, middle, now = now, demand((part + 0.5) / parts), demand((part + 1.0) / parts)
-        n, integral = rk4_pair(rates, n, integral, h / parts, before, middle, now)
+
+    def turn(state):
+        part, n, integral, before = state
+        middle, after = demand((part + 0.5) / parts), demand((part + 1.0) / parts)
+        return part + 1.0, *rk4_pair(rates, n, integral, h / parts, before, middle, after), after
+
+    state = 0.0, thruster.n, running * thruster.integral, demand(0.0)
+    _, n, integral, now = times(parts, turn, state)
     reached = start + change
     thrust, load = loads(n)
     asked, given = motor(n, integral, now[1], load)

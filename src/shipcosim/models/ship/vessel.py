@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import rk4_motion, substeps
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.maths import Arithmetic, times
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import required_table
 from shipcosim.models.ship.hull import HullParameters, hull_loads
@@ -72,8 +72,8 @@ def step(
     u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
     x, y, psi, r = vessel.x + h * current_north, vessel.y + h * current_east, vessel.psi, vessel.r
     parts = substeps(h, _LONGEST_SUBSTEP)
-    for _ in range(parts):
-        x, y, psi, u_r, v_r, r = rk4_motion(rates, x, y, psi, u_r, v_r, r, h / parts)
+    moving = (x, y, psi, u_r, v_r, r)
+    x, y, psi, u_r, v_r, r = times(parts, lambda now: rk4_motion(rates, *now, h / parts), moving)
     u_c, v_c = to_body(psi, current_north, current_east)
     return Motion(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
 

@@ -1,0 +1,50 @@
+"""What a recorded model asks of others, in C as well: functions whose results are kept, and numeric primitives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from shipcosim.native.leaves import Flat, made_like
+from shipcosim.native.recording import Block, Call, Recording, typed
+from shipcosim.native.symbols import Symbol
+
+
+class ExportRecording(Recording):
+    """A recording for code without Python: what is kept by its arguments is recorded too."""
+
+
+@dataclass(frozen=True, eq=False)
+class Procedure:
+    """A function whose results are kept, as a recording.
+
+    Parameters
+    ----------
+    recording, root, outputs
+        As of a `Step`; the memory are the arguments that change.
+    """
+
+    recording: Recording
+    root: Block
+    outputs: frozenset[int] = frozenset()
+
+
+def procedure_of(call: Call) -> Procedure:
+    """Record a function whose results are kept."""
+    given = Flat(call.arguments)
+    recording = ExportRecording([given.numbers[place] for place in call.changing])
+
+    def run():
+        numbers = [typed(number, leaf.kind) for number, leaf in zip(given.numbers, given.leaves, strict=True)]
+        symbols = [
+            recording.value("load", given.leaves[place].kind, number) for number, place in enumerate(call.changing)
+        ]
+        for place, symbol in zip(call.changing, symbols, strict=True):
+            numbers[place] = symbol
+        found: list[Any] = Flat(call.function(*made_like(call.arguments, iter(numbers)))).numbers
+        return list(enumerate(found))
+
+    return Procedure(recording, recording.record(run))
+
+
+__all__ = ["ExportRecording", "Procedure", "Symbol", "procedure_of"]

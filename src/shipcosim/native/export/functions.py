@@ -1,0 +1,75 @@
+"""Python's own functions of numbers, which take floats alone, for modules that run on symbols."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import SimpleNamespace
+from typing import Any
+
+from shipcosim.native.symbols import Maths, Symbol
+
+NAMED = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "asin", "acos", "atan", "sinh", "cosh", "log10")
+
+
+def _of(original: Callable, of_symbols: Callable) -> Callable:
+    def call(*values):
+        return of_symbols(*values) if any(isinstance(value, Symbol) for value in values) else original(*values)
+
+    return call
+
+
+class _AsType(type):
+    """A type of numbers that makes symbols of symbols."""
+
+    def __call__(cls, *values: Any) -> Any:
+        if values and isinstance(values[0], Symbol):
+            return cls.of_symbol(values[0])  # pyright: ignore[reportAttributeAccessIssue]
+        return cls.original(*values)  # pyright: ignore[reportAttributeAccessIssue]
+
+    def __instancecheck__(cls, value: Any) -> bool:
+        return isinstance(value, cls.original)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+class _Int(metaclass=_AsType):
+    original, of_symbol = int, staticmethod(Maths.whole)
+
+
+class _Float(metaclass=_AsType):
+    original, of_symbol = float, staticmethod(Maths.number)
+
+
+_FUNCTIONS: dict[str, Callable] = {name: lambda x, name=name: x.function(name) for name in NAMED} | {
+    "atan2": Maths.atan2,
+    "hypot": lambda x, y: Maths.sqrt(x * x + y * y),
+    "fabs": abs,
+    "pow": lambda x, y: x**y,
+    "radians": lambda x: x * (math.pi / 180.0),
+    "degrees": lambda x: x * (180.0 / math.pi),
+}
+_REPLACED = {getattr(math, name): _of(getattr(math, name), function) for name, function in _FUNCTIONS.items()}
+_MATH = SimpleNamespace(**(vars(math) | {f.__name__: replaced for f, replaced in _REPLACED.items()}))
+
+
+@contextmanager
+def understood(package: str) -> Iterator[None]:
+    """Let int, float and the functions of `math` take symbols in the modules of a package, for a while."""
+    modules = [vars(module) for name, module in list(sys.modules.items()) if name.partition(".")[0] == package]
+    before = [dict(module) for module in modules]
+    for module in modules:
+        for name, value in list(module.items()):
+            if value is math:
+                module[name] = _MATH
+            elif callable(value) and getattr(value, "__module__", "") == "math":
+                module[name] = _REPLACED.get(value, value)
+        module.setdefault("int", _Int)
+        module.setdefault("float", _Float)
+    try:
+        yield
+    finally:
+        for module, kept in zip(modules, before, strict=True):
+            for name in set(module) - set(kept):
+                del module[name]
+            module.update(kept)

@@ -1,0 +1,121 @@
+"""Packs FMUs without Python: what `shipcosim build --native` does for one of them."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.fmi.export.builder import documentation, fmu_class, write_archive
+from shipcosim.fmi.export.description import model_description
+from shipcosim.native.export.checking import refuse_other_results
+from shipcosim.native.export.functions import understood
+from shipcosim.native.export.targets import TARGETS, compiled, own_target
+from shipcosim.native.export.text import source_of_model
+from shipcosim.native.export.variants import Variant, variant_of
+from shipcosim.native.symbols import Untraceable
+
+MOST_FLAGS = 2
+"""Flags that belong to the code up to which every combination of them gets a variant."""
+
+
+def build_native_fmu(
+    source: Path | str, out: Path | str, examples: Sequence[Mapping[str, Any]] = (), targets: Sequence[str] = ()
+) -> Path:
+    """Build an FMU with its model in C, and compare it with the one in Python.
+
+    Parameters
+    ----------
+    source : Path or str
+        Folder of the FMU, or its script.
+    out : Path or str
+        Folder for ``<name>.fmu``, made if needed.
+    examples : sequence of mapping of str to value
+        Sets of parameters, as systems have them: texts, and flags and counts that shape the code, can have the values
+        that occur in them, or the FMU's own start values.
+    targets : sequence of str
+        Keys of `TARGETS`; the own platform without.
+
+    Returns
+    -------
+    Path
+        The FMU.
+
+    Raises
+    ------
+    Untraceable
+        It cannot be written in C, or does not give what Python gives; the text says why, and where.
+    ShipcosimError
+        There is no such FMU, it is wrong by itself, the compiler fails, or the file cannot be written.
+    """
+    with fmu_class(source) as (cls, script, bundled):
+        words = sys.modules[f"{bundled.package}.shipcosim.fmi.failures"].text_of
+        with understood(bundled.package):
+            found = list(_variants(cls, examples))
+            variants, values = [variant for variant, _ in found], [given for _, given in found]
+            text = source_of_model(cls, script.stem, "", variants, words)
+        try:
+            blank = _description(cls, script.stem, "")
+            guid = f"{{{hashlib.sha256(blank + text.encode()).hexdigest()[:32]}}}"
+            files = {"modelDescription.xml": _description(cls, script.stem, guid)} | documentation(script)
+        except ValueError as error:
+            raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
+        text = text.replace('#define GUID ""', f'#define GUID "{guid}"')
+        own = compiled(text, own_target())
+        refuse_other_results(cls, own, guid, values)
+    files["sources/all.c"] = text.encode()
+    for name in targets or [own_target()]:
+        path = f"binaries/{TARGETS[name].folder}/{script.stem}{TARGETS[name].suffix}"
+        files[path] = own if name == own_target() else compiled(text, name)
+    return write_archive(Path(out) / f"{script.stem}.fmu", files)
+
+
+def _variants(cls: Any, examples: Sequence[Mapping[str, Any]]) -> Iterator[tuple[Variant, dict[str, Any]]]:
+    """Variants for the examples and the FMU's own start values, each with its parameters.
+
+    The first one that cannot be recorded ends it; of the flags' other values those that can be recorded are taken.
+    """
+    seen: list[dict[str, Any]] = []
+    needed = [v for v in cls.variables if v.required]
+    given = [dict(example) for example in examples] or [{}]
+    if examples and not needed:
+        given.append({})
+    for values in given:
+        if any(all(_value(cls, values, name) == kept for name, kept in fixed.items()) for fixed in seen):
+            continue
+        variant = variant_of(cls, values, cls.default_step_size)
+        yield variant, values
+        seen.append(variant.fixed)
+        flags = [v.name for v in cls.variables if v.type == "Boolean" and v.name in variant.fixed]
+        for chosen in itertools.product([False, True], repeat=len(flags)) if len(flags) <= MOST_FLAGS else ():
+            other = values | dict(zip(flags, chosen, strict=True))
+            fixed = variant.fixed | dict(zip(flags, chosen, strict=True))
+            if fixed in seen:
+                continue
+            try:
+                yield variant_of(cls, other, cls.default_step_size), other
+                seen.append(fixed)
+            except Untraceable:
+                continue
+
+
+def _value(cls, values, name):
+    starts = {variable.name: variable.start for variable in cls.variables}
+    return values.get(name, starts[name])
+
+
+def _description(cls, identifier, guid) -> bytes:
+    """The model description of the FMU in Python, but for what is said of its binary."""
+    root = ElementTree.fromstring(model_description(cls, identifier, guid))
+    binary = root.find("CoSimulation")
+    assert binary is not None
+    binary.set("needsExecutionTool", "false")
+    files = ElementTree.SubElement(binary, "SourceFiles")
+    ElementTree.SubElement(files, "File", name="all.c")
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"

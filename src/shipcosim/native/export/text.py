@@ -1,0 +1,229 @@
+"""C text of a model: its variables, and start and step of each variant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from importlib.resources import files
+from typing import Any
+
+from shipcosim.native.export.calls import procedure_of
+from shipcosim.native.export.variants import START_TIME, Variant
+from shipcosim.native.recording import Recording
+from shipcosim.native.sayings import parts
+from shipcosim.native.source import Writer, kept_sizes, literal, operand
+from shipcosim.native.symbols import Symbol
+
+LEFT_OUT = 1e30
+TYPES = {"Real": "REAL", "Integer": "INTEGER", "Boolean": "BOOLEAN", "String": "STRING"}
+
+
+def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Variant], words: Callable) -> str:
+    """The whole C text of an FMU.
+
+    Parameters
+    ----------
+    cls : type of Fmu
+        The class.
+    identifier, guid : str
+        As in the model description.
+    variants : sequence of Variant
+        At least one.
+    words : callable
+        ``words(error)`` is what the FMU in Python says of an error.
+    """
+    functions, kept = [], []
+    for number, variant in enumerate(variants):
+        text, size = _functions(variant, number, words)
+        functions.append(text)
+        kept.append(size)
+    outputs = [str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"]
+    head = [
+        f"#define IDENTIFIER {_text(identifier)}",
+        f"#define GUID {_text(guid)}",
+        f"enum {{ N_VARIABLES = {len(cls.variables)}, N_VARIANTS = {len(variants)}, N_OUTPUTS = {len(outputs)},",
+        f"       MOST_MEMORY = {max(variant.size for variant in variants)}, MOST_KEPT = {max(kept)} }};",
+        f"#define LEFT_OUT {LEFT_OUT!r}",
+        "",
+        f"static const int outputs[N_OUTPUTS + 1] = {{{', '.join([*outputs, '0'])}}};",
+        "static const Variable variables[N_VARIABLES] = {",
+        *(_variable(variable) for variable in cls.variables),
+        "};",
+        "",
+    ]
+    table = [
+        _variant(cls, number, variant, size) for number, (variant, size) in enumerate(zip(variants, kept, strict=True))
+    ]
+    rows = [*(choices for choices, _ in table), "static const Variant variants[N_VARIANTS] = {"]
+    rows += [*(row for _, row in table), "};", ""]
+    return "\n".join([_runtime("model.h"), _runtime("primitives.h"), *head, *functions, *rows, _runtime("fmi2.c")])
+
+
+def _functions(variant: Variant, number: int, words: Callable) -> tuple[str, int]:
+    """Start and step of a variant as C, and how many numbers they keep together."""
+    n = len(variant.places)
+    start = ModelWriter(variant.start, f"start_{number}", words, lambda place: place, 0)
+    step = ModelWriter(variant.step, f"step_{number}", words, variant.places.__getitem__, start.n_kept)
+    assert n == len(variant.places)
+    return "\n".join([start.function(), step.function()]), start.n_kept + step.n_kept
+
+
+class ModelWriter(Writer):
+    """Writes a recording as a C function for an FMU without Python.
+
+    Parameters
+    ----------
+    step : Step
+        The recording.
+    name : str
+        Of the function.
+    words : callable
+        See `source_of_model`.
+    place : callable
+        Where a number of the recording lies in the memory.
+    first_kept : int
+        Where the results that it keeps begin.
+    """
+
+    def __init__(self, step: Any, name: str, words: Callable, place: Callable[[int], int], first_kept: int):
+        super().__init__(step)
+        self.name, self._words, self._where = name, words, place
+        self.n_kept = sum(a + b for a, b in kept_sizes(step.recording))
+        self.arguments = [first_kept + first for first in self.arguments]
+        self.results = [first_kept + first for first in self.results]
+
+    def function(self) -> str:
+        """The function, behind those that it calls."""
+        called = []
+        for number, call in enumerate(self.recording.calls):
+            name = f"{self.name}_kept_{number}"
+            called.append(_Procedure(procedure_of(call), name, self._words).function())
+        self._block(self.step.root, 1, self._finish)
+        head = f"static int {self.name}(double *restrict m, double *restrict k, Instance *o)"
+        tables = [
+            f"    static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
+            for number, table in enumerate(self.recording.tables)
+        ]
+        return "\n".join([*called, head, "{", *tables, "    (void)m, (void)k, (void)o;", *self.lines, "}", ""])
+
+    def _place(self, place):
+        return self._where(place)
+
+    def _finish(self, result, depth):
+        if isinstance(result, list):
+            for place, number in result:
+                self._put(depth, f"m[{self._place(place)}] = {operand(number)};")
+            self._put(depth, "return DONE;")
+        else:
+            self._put(depth, self._fail(result))
+
+    def _fail(self, error):
+        return f"{{ {say(self._words(error), self.recording)}return GIVEN_UP; }}"
+
+    def _other(self, symbol, found):
+        said = f'say(o, "this native FMU was built where a number that shapes its code is "); say_float(o, {found});'
+        said += f' say(o, ", and not for "); say_float(o, {operand(symbol)});'
+        said += ' say(o, ": take the FMU in Python, or build it again");'
+        return f"{{ {said} return GIVEN_UP; }}"
+
+    def _value(self, symbol: Symbol, depth):
+        if symbol.op == "primitive":
+            name, size, *arguments = symbol.operands
+            given = ", ".join(map(operand, arguments))
+            self._put(depth, f"double p{symbol.number}[{size}];")
+            self._put(depth, f"{{ const double a[] = {{{given}}}; {name}(p{symbol.number}, a, {len(arguments)}); }}")
+        else:
+            super()._value(symbol, depth)
+
+    def _expression(self, symbol):
+        if symbol.op == "part":
+            primitive, place = symbol.operands
+            return f"p{primitive.number}[{place}]"
+        return super()._expression(symbol)
+
+    def _call(self, operands, depth):
+        number, *arguments = operands
+        first = self.arguments[number]
+        same = " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
+        self._put(depth, f"if ({same}) {{")
+        for i, a in enumerate(arguments):
+            self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
+        self._put(depth + 1, f"if ({self.name}_kept_{number}(k + {first}, k + {self.results[number]}, o)) {{")
+        self._put(depth + 2, f"{f'k[{first}] = NAN; ' if arguments else ''}return GIVEN_UP;")
+        self._put(depth + 1, "}")
+        self._put(depth, "}")
+
+
+class _Procedure(ModelWriter):
+    """Writes a function that computes what is kept: from its arguments in `m` into `k`."""
+
+    def __init__(self, procedure: Any, name: str, words: Callable):
+        super().__init__(procedure, name, words, lambda place: place, 0)
+
+    def _finish(self, result, depth):
+        if isinstance(result, list):
+            for place, number in result:
+                self._put(depth, f"k[{place}] = {operand(number)};")
+            self._put(depth, "return DONE;")
+        else:
+            self._put(depth, self._fail(result))
+
+
+def say(text: str, recording: Recording) -> str:
+    """C that says a text, with its values."""
+    said = []
+    for words, how in parts(text):
+        if not how:
+            said.append(f"say(o, {_text(words)});")
+            continue
+        symbol = recording.said[int(words)]
+        if how != "r":
+            said.append(f"say_number(o, {operand(symbol)}, {_text('%' + how.replace('d', '.0f'))});")
+        elif symbol.kind == "i":
+            said.append(f'say_number(o, {operand(symbol)}, "%.0f");')
+        else:
+            said.append(f"{'say_truth' if symbol.kind == 'b' else 'say_float'}(o, {operand(symbol)});")
+    return "".join(f"{one} " for one in said)
+
+
+def _variable(variable) -> str:
+    text = variable.type == "String"
+    low = -math.inf if variable.minimum is None else variable.minimum
+    high = math.inf if variable.maximum is None else variable.maximum
+    parts = [
+        _text(variable.name),
+        TYPES[variable.type],
+        variable.causality.upper(),
+        str(int(variable.tunable)),
+        str(int(variable.required)),
+        *(literal(number) for number in (low, high, 0.0 if text else variable.start)),
+        _text(variable.unit),
+        _text(variable.start) if text else '""',
+    ]
+    return f"    {{{', '.join(parts)}}},"
+
+
+def _variant(cls, number, variant: Variant, kept: int) -> tuple[str, str]:
+    references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
+    choices = [
+        f"{{{references[name]}, {'0.0' if isinstance(value, str) else literal(value)}, "
+        f"{_text(value) if isinstance(value, str) else 'NULL'}}}"
+        for name, value in variant.fixed.items()
+    ]
+    table = f"static const Choice choices_{number}[] = {{{', '.join([*choices, '{0, 0.0, NULL}'])}}};"
+    row = f"{len(choices)}, {variant.size}, {kept}, choices_{number}, start_{number}, step_{number}"
+    return table, f"    {{{row}}},"
+
+
+def _text(value: str) -> str:
+    """A text as a literal of C, in parts of a length that every compiler takes."""
+    escapes = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "?": "\\?"}
+    letters = [escapes.get(c, c if " " <= c <= "~" else "".join(f"\\{b:03o}" for b in c.encode())) for c in value]
+    return " ".join('"' + "".join(letters[i : i + 500]) + '"' for i in range(0, len(letters), 500)) or '""'
+
+
+def _runtime(name: str) -> str:
+    return files("shipcosim.native").joinpath("runtime", name).read_text(encoding="utf-8")
+
+
+__all__ = ["START_TIME", "ModelWriter", "source_of_model"]

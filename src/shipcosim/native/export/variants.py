@@ -1,0 +1,186 @@
+"""Start and step of an FMU as recordings, for parameters that are known only when the FMU runs.
+
+Numbers are symbols. Texts are part of the code, and so are flags and counts where they shape it: each set of them is a
+variant of its own.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from shipcosim.native.export.calls import ExportRecording
+from shipcosim.native.leaves import Flat, text_of
+from shipcosim.native.purity import only_arithmetic
+from shipcosim.native.recording import Recording, ends
+from shipcosim.native.sayings import line_of
+from shipcosim.native.symbols import Symbol, Untraceable, kind_of
+from shipcosim.native.trace import Shape, Step, remember, trace
+
+KINDS = {"Real": "d", "Integer": "i", "Boolean": "b"}
+START_TIME, TIME, STEP_SIZE, STATE = range(4)
+"""Places in the memory after those of the variables."""
+
+
+@dataclass(frozen=True, eq=False)
+class Variant:
+    """An FMU with some values that belong to its code.
+
+    Parameters
+    ----------
+    fixed : dict of str to text or number
+        Those values, by the names of parameters.
+    start, step : Step
+        Recordings on the memory: the variables in their order, `START_TIME` and so on, then the state.
+    places : list of int
+        Where the numbers of the step lie in the memory.
+    names : list of str
+        What they are.
+    size : int
+        Of the memory.
+    """
+
+    fixed: dict[str, Any]
+    start: Step
+    step: Step
+    places: list[int]
+    names: list[str]
+    size: int
+
+
+def variant_of(cls: type, values: Mapping[str, Any], step_size: float) -> Variant:
+    """The variant for some parameters, in which as few of them as possible belong to the code.
+
+    Parameters
+    ----------
+    cls : type of Fmu
+        The class.
+    values : mapping of str to value
+        Parameters of an example.
+    step_size : float
+        Of the example. [s]
+
+    Raises
+    ------
+    Untraceable
+        With what cannot be recorded, and its line.
+    """
+    parameters = [variable for variable in cls.variables if variable.causality == "parameter"]  # pyright: ignore
+    given = {variable.name: values.get(variable.name, variable.start) for variable in parameters}
+    texts = [variable.name for variable in parameters if variable.type == "String"]
+    whole = [variable.name for variable in parameters if variable.type in ("Integer", "Boolean")]
+    try:
+        return _recorded(cls, given, texts, step_size)
+    except Untraceable:
+        found = _recorded(cls, given, [*texts, *whole], step_size)
+    for name in whole if len(whole) > 1 else ():
+        try:
+            found = _recorded(cls, given, [other for other in found.fixed if other != name], step_size)
+        except Untraceable:
+            continue
+    return found
+
+
+def with_its_line(function: Callable) -> Callable:
+    """Whatever a function raises is an `Untraceable` that names the line of the component's own code."""
+
+    @functools.wraps(function)
+    def call(*arguments):
+        try:
+            return function(*arguments)
+        except Untraceable as reason:
+            raise Untraceable(f"{line_of(reason)}{reason}") from None
+        except Exception as error:  # whatever a model says to a symbol in place of a number
+            raise Untraceable(f"{line_of(error)}{type(error).__name__}: {error}") from None
+
+    return call
+
+
+@with_its_line
+def _recorded(cls, given, names, step_size) -> Variant:
+    fixed = {name: given[name] for name in names}
+    constant, unchanging = frozenset(fixed), frozenset(group.name for group in cls.groups)
+    n = len(cls.variables)
+    example = [0.0 if v.type == "String" else given.get(v.name, v.start) for v in cls.variables]
+    recording, made = ExportRecording([*example, 0.0]), []
+
+    def run():
+        clone = _with_symbols(cls, fixed, recording)
+        with only_arithmetic(cls.__module__.partition(".")[0]):
+            clone.start()
+            for group in cls.groups:
+                remember(getattr(clone, group.name))
+        if clone.messages:
+            raise Untraceable("it writes to the log")
+        flat = Flat(vars(clone), constant, unchanging)
+        made.append((clone, flat))
+        return flat
+
+    root = recording.record(run)
+    if not made:
+        raise next(end.result for end in ends(root))
+    clone, flat = made[0]
+    references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
+    state = iter(range(n + STATE, n + STATE + len(flat.leaves)))
+    places = [
+        references[leaf.path[0]] if len(leaf.path) == 1 and leaf.path[0] in references else next(state)
+        for leaf in flat.leaves
+    ]
+    numbers = _numbers(flat, recording)
+    shape = Shape(_widest(flat, root), constant, unchanging, frozenset())
+    step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
+    for end in ends(root):
+        if isinstance(end.result, Flat):
+            end.result = _written(end.result, flat, places)
+    size = max([n + STATE, *(place + 1 for place in places)])
+    names = [text_of(leaf.path) for leaf in flat.leaves]
+    return Variant(fixed, Step(recording, root, frozenset()), step, [*places, n + TIME, n + STEP_SIZE], names, size)
+
+
+def _with_symbols(cls, fixed, recording: Recording):
+    """A component whose inputs and parameters are symbols, but for the fixed ones."""
+    clone = cls("it")
+    clone.start_time = recording.value("load", "d", len(cls.variables) + START_TIME)
+    values = vars(clone)
+    for reference, variable in enumerate(cls.variables):
+        if variable.name in fixed:
+            values[variable.name] = fixed[variable.name]
+        elif variable.causality != "output" and variable.type != "String":
+            values[variable.name] = recording.value("load", KINDS[variable.type], reference)
+    return clone
+
+
+def _numbers(flat, recording):
+    """The numbers of an example after its start, as far as they are known."""
+    found = []
+    for number in flat.numbers:
+        try:
+            found.append(recording.example(number))
+        except (Untraceable, ArithmeticError, ValueError):
+            found.append(0.0)
+    return found
+
+
+def _widest(flat: Flat, root) -> Flat:
+    """The leaves of the first way, where all ways have this shape; floats where one way has a float."""
+    for end in ends(root):
+        if isinstance(end.result, Flat):
+            if not end.result.same_shape(flat):
+                raise Untraceable(f"its start gives states of several shapes: {flat.difference(end.result)}")
+            kinds = [kind_of(number) for number in end.result.numbers]
+            flat.leaves = [
+                leaf._replace(kind="d") if k == "d" else leaf for leaf, k in zip(flat.leaves, kinds, strict=True)
+            ]
+    return flat
+
+
+def _written(result: Flat, flat: Flat, places) -> list[tuple[int, Any]]:
+    """What a way of the start writes: all but what lies there already."""
+    pairs = zip(places, result.numbers, strict=True)
+    return [
+        (place, number)
+        for place, number in pairs
+        if not (isinstance(number, Symbol) and number.op == "load" and number.operands[0] == place)
+    ]

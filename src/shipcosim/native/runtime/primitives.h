@@ -1,0 +1,1 @@
+/* Numeric primitives that models ask for: what NumPy does for them in Python. */

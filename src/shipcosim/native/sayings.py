@@ -1,0 +1,39 @@
+"""Texts of errors with values in them that are known only when the compiled code runs."""
+
+from __future__ import annotations
+
+import re
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shipcosim.native.symbols import SAID, Symbol
+
+if TYPE_CHECKING:
+    from shipcosim.native.recording import Recording
+
+_VALUE = re.compile(f"{SAID}([0-9]+):([^{SAID}]*){SAID}")
+
+
+def said(error: Exception, recording: Recording) -> list[Symbol]:
+    """The values in the text of an error."""
+    return [recording.said[int(number)] for number, _ in _VALUE.findall(str(error))]
+
+
+def parts(text: str) -> list[tuple[str, str]]:
+    """A text as pairs: (words, "") and (number of a value, how it is written as Python's formats say)."""
+    found = _VALUE.split(text)
+    pairs = [(found[0], "")]
+    for number, how, words in zip(found[1::3], found[2::3], found[3::3], strict=True):
+        pairs += [(number, how or "r"), (words, "")]
+    return [pair for pair in pairs if pair[0]]
+
+
+def line_of(error: BaseException) -> str:
+    """The line of the component's own code that an error comes from, as text; empty where it is none of its lines."""
+    frames = [
+        frame
+        for frame in traceback.extract_tb(error.__traceback__)
+        if "/models/" in frame.filename.replace("\\", "/") or "_code" in frame.filename
+    ]
+    return f"{Path(frames[-1].filename).name}, line {frames[-1].lineno}: " if frames else ""
