@@ -58,6 +58,7 @@ MAY_IMPORT = {
         "diagnose",
         "capability",
         "learn",
+        "native",
     },
     "results": {
         "errors",

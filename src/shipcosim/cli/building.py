@@ -1,6 +1,6 @@
 """The command `build`: FMUs and packed systems of a project."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +8,7 @@ from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.native.export.packing import build_native_fmu
+from shipcosim.native.export.targets import targets_of
 from shipcosim.native.symbols import Untraceable
 from shipcosim.ssp import pack, read_system
 
@@ -60,7 +61,7 @@ def build_native(
     project: Path,
     names: Collection[str],
     out: Path,
-    targets: Sequence[str],
+    targets: str,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[list[Path], list[Problem]]:
     """Build FMUs with their models in C, as far as that can be.
@@ -73,8 +74,8 @@ def build_native(
         Of FMUs; all if empty.
     out : Path
         Folder for them.
-    targets : sequence of str
-        Platforms.
+    targets : str
+        Platforms, by commas; this one's where it is empty.
     progress : callable, optional
         Called with (done, in all).
 
@@ -90,14 +91,14 @@ def build_native(
     ShipcosimError
         With all problems; what has none is built nevertheless.
     """
-    sources = library.fmu_sources(project)
+    sources, platforms = library.fmu_sources(project), targets_of(targets)
     problems = [Problem(n, "There is no such FMU.", suggestion(n, [*sources])) for n in names if n not in sources]
     jobs = {name: path for name, path in sources.items() if not names or name in names}
     examples = _parameters_in_systems(project) if jobs else {}
     built, left = [], []
     for done, (name, path) in enumerate(jobs.items(), start=1):
         try:
-            built.append(build_native_fmu(path, out, examples.get(name, ()), targets))
+            built.append(build_native_fmu(path, out, examples.get(name, ()), platforms))
         except Untraceable as reason:
             left.append(Problem(name, f"stays in Python: {reason}."))
             (out / f"{name}.fmu").unlink(missing_ok=True)

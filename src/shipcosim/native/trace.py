@@ -128,7 +128,7 @@ def trace(
     return Step(recording, root, outputs)
 
 
-def remember(parameters):
+def remember(parameters: Any) -> None:
     """Let a dataclass compute all that it remembers, so that it belongs to the memory."""
     for cls in type(parameters).__mro__:
         for name, item in vars(cls).items():

@@ -35,7 +35,7 @@ def build(
     Example: shipcosim build vessel
     """
     from shipcosim import library
-    from shipcosim.cli.building import build_named
+    from shipcosim.cli.building import build_named, build_native
     from shipcosim.cli.console import print_problems, progress_of, shown_path
 
     project = library.project_of()
@@ -44,18 +44,12 @@ def build(
         raise ShipcosimError(Problem(str(Path.cwd()), "There is no project here.", remedy))
     if targets and not native:
         raise ShipcosimError(Problem("--targets", "FMUs in Python run on Linux and Windows.", "Give --native too."))
-    if native:
-        from shipcosim.cli.building import build_native
-        from shipcosim.native.export.targets import targets_of
-
-        platforms = targets_of(targets)
-        with progress_of("Building") as progress:
-            built, left = build_native(project, names or [], out or project / "build" / "native", platforms, progress)
-        print_problems(left)
-        for path in built:
-            typer.echo(shown_path(path))
-        return
+    left = []
     with progress_of("Building") as progress:
-        built = build_named(project, names or [], out or project / "build", progress)
+        if native:
+            built, left = build_native(project, names or [], out or project / "build" / "native", targets, progress)
+        else:
+            built = build_named(project, names or [], out or project / "build", progress)
+    print_problems(left)
     for path in built:
         typer.echo(shown_path(path))

@@ -72,8 +72,12 @@ def step(
     u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
     x, y, psi, r = vessel.x + h * current_north, vessel.y + h * current_east, vessel.psi, vessel.r
     parts = substeps(h, _LONGEST_SUBSTEP)
-    moving = (x, y, psi, u_r, v_r, r)
-    x, y, psi, u_r, v_r, r = times(parts, lambda now: rk4_motion(rates, *now, h / parts), moving)
+
+    def turn(now):
+        x, y, psi, u_r, v_r, r = now
+        return rk4_motion(rates, x, y, psi, u_r, v_r, r, h / parts)
+
+    x, y, psi, u_r, v_r, r = times(parts, turn, (x, y, psi, u_r, v_r, r))
     u_c, v_c = to_body(psi, current_north, current_east)
     return Motion(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
 

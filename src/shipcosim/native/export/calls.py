@@ -7,7 +7,6 @@ from typing import Any
 
 from shipcosim.native.leaves import Flat, made_like
 from shipcosim.native.recording import Block, Call, Recording, typed
-from shipcosim.native.symbols import Symbol
 
 
 class ExportRecording(Recording):
@@ -35,7 +34,9 @@ def procedure_of(call: Call) -> Procedure:
     recording = ExportRecording([given.numbers[place] for place in call.changing])
 
     def run():
-        numbers = [typed(number, leaf.kind) for number, leaf in zip(given.numbers, given.leaves, strict=True)]
+        numbers: list[Any] = [
+            typed(number, leaf.kind) for number, leaf in zip(given.numbers, given.leaves, strict=True)
+        ]
         symbols = [
             recording.value("load", given.leaves[place].kind, number) for number, place in enumerate(call.changing)
         ]
@@ -45,6 +46,3 @@ def procedure_of(call: Call) -> Procedure:
         return list(enumerate(found))
 
     return Procedure(recording, recording.record(run))
-
-
-__all__ = ["ExportRecording", "Procedure", "Symbol", "procedure_of"]

@@ -8,7 +8,7 @@ from importlib.resources import files
 from typing import Any
 
 from shipcosim.native.export.calls import procedure_of
-from shipcosim.native.export.variants import START_TIME, Variant
+from shipcosim.native.export.variants import Variant
 from shipcosim.native.recording import Recording
 from shipcosim.native.sayings import parts
 from shipcosim.native.source import Writer, kept_sizes, literal, operand
@@ -224,6 +224,3 @@ def _text(value: str) -> str:
 
 def _runtime(name: str) -> str:
     return files("shipcosim.native").joinpath("runtime", name).read_text(encoding="utf-8")
-
-
-__all__ = ["START_TIME", "ModelWriter", "source_of_model"]
