@@ -42,7 +42,7 @@ def refuse_other_results(compiled: Any, time: float, step_size: float) -> None:
     try:
         for number in range(STEPS):
             _give_inputs(python, compiled, random)
-            compiled.memory[:-2] = shape_of(python).flat.numbers
+            compiled.memory[:-2] = shape_of(python).numbers
             compiled.memory[-2:] = time + number * step_size, step_size
             pointers = (array.ctypes.data for array in (compiled.memory, compiled.kept))
             status = function(*pointers, call, None)
@@ -85,7 +85,7 @@ def _give_inputs(fmu, compiled, random):
 
 
 def _compare(compiled, shape, number):
-    expected = np.array(shape.flat.numbers, dtype=float)
+    expected = np.array(shape.numbers, dtype=float)
     if len(expected) != len(compiled.memory) - 2:
         raise Untraceable(f"in step {number} its state has another shape than compiled code gives it")
     with np.errstate(invalid="ignore"):

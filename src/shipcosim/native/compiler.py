@@ -53,8 +53,15 @@ def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
     ShipcosimError
         There is no compiler, it fails, or the cache cannot be written.
     """
+    sources = list(sources)
+    missing = [source for source in dict.fromkeys(sources) if source not in _LOADED]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return [ctypes.CDLL(str(path)) for path in pool.map(_compiled, sources)]
+        _LOADED.update(zip(missing, (ctypes.CDLL(str(path)) for path in pool.map(_compiled, missing)), strict=True))
+    return [_LOADED[source] for source in sources]
+
+
+_LOADED: dict[str, ctypes.CDLL] = {}
+"""Libraries that this process has loaded, which keeps them anyway."""
 
 
 def _compiled(source: str) -> Path:

@@ -55,19 +55,18 @@ class CompiledStep:
     def __init__(self, fmu: Any, shape: Shape, record: Record, library: ctypes.CDLL):
         self.fmu, self._shape, self._record, self._library = fmu, shape, record, library
         self.function = ctypes.cast(library.step, ctypes.c_void_p)
-        self.memory = np.zeros(len(shape.flat.leaves) + 2)
-        self.memory[:-2] = shape.flat.numbers
+        self.memory = np.zeros(len(shape.numbers) + 2)
+        self.memory[:-2] = shape.numbers
         self.kept = np.full(max(1, sum(len(call.changing) + call.size for call in record.calls)), np.nan)
         self.call = CALL(self._called)
-        self._examples = [Flat(call.arguments) for call in record.calls]
-        self.places = {leaf.path[0]: place for place, leaf in enumerate(shape.flat.leaves) if len(leaf.path) == 1}
+        self.places = shape.flat.places
 
     def take(self) -> None:
         """Take the numbers of the Python object. Raises Untraceable where it has another shape now."""
         shape = shape_of(self.fmu)
         if not shape.flat.same_shape(self._shape.flat):
             raise Untraceable(f"its state changes its shape: {self._shape.flat.difference(shape.flat)}")
-        self.memory[:-2] = shape.flat.numbers
+        self.memory[:-2] = shape.numbers
 
     def give_back(self) -> None:
         """Give the numbers to the Python object."""
@@ -83,7 +82,8 @@ class CompiledStep:
         """Compute a function that stays in Python; its errors come up again when Python takes the step."""
         call = self._record.calls[number]
         try:
-            numbers, leaves = list(self._examples[number].numbers), self._examples[number].leaves
+            example = self._record.examples[number]
+            numbers, leaves = list(example.numbers), example.leaves
             for place, changing in enumerate(call.changing):
                 numbers[changing] = typed(arguments[place], leaves[changing].kind)
             result = call.function(*made_like(call.arguments, iter(numbers)))
@@ -132,7 +132,7 @@ def _recorded(fmu, time, step_size) -> _Recorded | Untraceable:
     """What a component records as, from the cache where it is there."""
     try:
         shape = shape_of(fmu)
-        numbers, key = [*shape.flat.numbers, time, step_size], key_of(fmu, shape)
+        numbers, key = [*shape.numbers, time, step_size], key_of(fmu, shape)
         if (record := kept_record(key, numbers)) is not None:
             return _Recorded(fmu, shape, record, "")
         step = trace(fmu, shape, time, step_size)

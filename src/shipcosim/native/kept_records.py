@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -64,6 +65,11 @@ class Record:
     calls: list[KeptCall]
     guards: dict[int, float]
 
+    @cached_property
+    def examples(self) -> list[Flat]:
+        """Arguments of the functions that stay in Python, taken apart."""
+        return [Flat(call.arguments) for call in self.calls]
+
 
 def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
     """What belongs to a step that was recorded from some numbers."""
@@ -82,17 +88,33 @@ def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
 
 def key_of(fmu: Any, shape: Shape) -> str:
     """Key of a component's code and shape. The module of an FMU has a name unique to its content."""
-    flat = shape.flat
-    parts = type(fmu).__module__, type(fmu).__qualname__, shipcosim.__version__, flat.structure, flat.leaves, _OWN_CODE
+    return _key(type(fmu), shape.flat)
+
+
+@lru_cache(maxsize=256)
+def _key(cls, flat):
+    parts = cls.__module__, cls.__qualname__, shipcosim.__version__, flat.structure, flat.leaves, _OWN_CODE
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
 def kept_record(key: str, numbers: Sequence[float]) -> Record | None:
     """The record in the cache that fits some numbers."""
+    path = _path(key)
+    if (record := _fitting(_READ.get(path, ()), numbers)) is not None:
+        return record
     try:
-        records = pickle.loads(_path(key).read_bytes())
+        _READ[path] = pickle.loads(path.read_bytes())
     except (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError):
         return None
+    return _fitting(_READ[path], numbers)
+
+
+_READ: dict[Path, list[Record]] = {}
+"""Records that this process has read."""
+
+
+def _fitting(records, numbers):
+    """The first record whose code belongs to some numbers."""
     fitting = (
         record for record in records if all(_rounded(numbers[place]) == value for place, value in record.guards.items())
     )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import Any
 
-from shipcosim.native.leaves import Flat, attributes_like, text_of
+from shipcosim.native.leaves import Flat, attributes_like, numbers_of, text_of
 from shipcosim.native.purity import only_arithmetic
 from shipcosim.native.recording import Block, Recording, ends
 from shipcosim.native.symbols import Symbol, Untraceable, kind_of
@@ -22,7 +22,9 @@ class Shape:
     Parameters
     ----------
     flat : Flat
-        Its attributes, taken apart.
+        Its attributes, taken apart; those of the first instance of this shape.
+    numbers : list
+        Its numbers.
     constant, unchanging : frozenset of str
         Attributes that are part of the structure; dataclasses of parameters, whose flags are.
     choices : frozenset of int
@@ -30,6 +32,7 @@ class Shape:
     """
 
     flat: Flat
+    numbers: list
     constant: frozenset[str]
     unchanging: frozenset[str]
     choices: frozenset[int]
@@ -62,16 +65,34 @@ def shape_of(fmu: Any) -> Shape:
     Untraceable
         It keeps what is no plain data.
     """
-    parameters = [variable for variable in fmu.variables if variable.causality == "parameter"]
-    whole = frozenset(variable.name for variable in parameters if variable.type == "Integer")
-    constant = frozenset(variable.name for variable in fmu.variables if variable.type == "String")
-    constant |= {variable.name for variable in parameters if variable.type == "Boolean"}
+    whole, constant, unchanging = _structure_of(type(fmu))
     for group in fmu.groups:
         remember(getattr(fmu, group.name))
-    unchanging = frozenset(group.name for group in fmu.groups)
-    flat = Flat(vars(fmu), constant, unchanging)
-    choices = (n for n, leaf in enumerate(flat.leaves) if leaf.kind == "i" and leaf.path[0] in whole | unchanging)
-    return Shape(flat, constant, unchanging, frozenset(choices))
+    numbers, rest = numbers_of(vars(fmu), constant, unchanging)
+    known = _SHAPES.get((type(fmu), rest))
+    if known is None:
+        flat = Flat(vars(fmu), constant, unchanging)
+        choices = (n for n, leaf in enumerate(flat.leaves) if leaf.kind == "i" and leaf.path[0] in whole | unchanging)
+        known = Shape(flat, numbers, constant, unchanging, frozenset(choices))
+        if len(_SHAPES) >= MOST_SHAPES:
+            _SHAPES.clear()
+        _SHAPES[type(fmu), rest] = known
+    return replace(known, numbers=numbers)
+
+
+_SHAPES: dict[tuple, Shape] = {}
+MOST_SHAPES = 200
+"""Shapes that are remembered: components in a process, as a rule."""
+
+
+@lru_cache(maxsize=MOST_SHAPES)
+def _structure_of(cls):
+    """Names of parameters that are whole numbers, of what belongs to the structure, of dataclasses of parameters."""
+    parameters = [variable for variable in cls.variables if variable.causality == "parameter"]
+    whole = frozenset(variable.name for variable in parameters if variable.type == "Integer")
+    constant = frozenset(variable.name for variable in cls.variables if variable.type == "String")
+    constant |= {variable.name for variable in parameters if variable.type == "Boolean"}
+    return whole, constant, frozenset(group.name for group in cls.groups)
 
 
 def trace(
@@ -104,7 +125,7 @@ def trace(
     """
     before, constant, unchanging = shape.flat, shape.constant, shape.unchanging
     values, n = dict(vars(fmu)), len(before.leaves)
-    recording = kind([*(before.numbers if numbers is None else numbers), time, step_size], shape.choices)
+    recording = kind([*(shape.numbers if numbers is None else numbers), time, step_size], shape.choices)
 
     def run():
         loads = [recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)]

@@ -176,6 +176,9 @@ class Master:
         if progress is not None:
             progress(last - first, last - first)
 
+    def give_back(self) -> None:
+        """Bring the FMUs into the state that the run has reached, where it does not keep them there all the time."""
+
     def _act(self, actions):
         for action in actions:
             action()

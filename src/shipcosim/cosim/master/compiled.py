@@ -82,6 +82,12 @@ class CompiledMaster(Master):
     """
 
     reasons: Mapping[str, str] = MappingProxyType({})
+    _loop: _Loop | None = None
+
+    def give_back(self) -> None:
+        """See `Master.give_back`."""
+        if self._loop is not None:
+            self._loop.give_back()
 
     def run(
         self,
@@ -119,8 +125,7 @@ class CompiledMaster(Master):
                 k = loop.run(k, end)
                 steps = 2 * steps if perf_counter() - began < 0.5 * BETWEEN_REPORTS else max(1, steps // 2)
         finally:
-            loop.give_back()
-            self.reasons = loop.reasons
+            self._loop, self.reasons = loop, loop.reasons
         if last % grid.steps_per_row == 0:
             recorders.record()
         if progress is not None:

@@ -166,6 +166,8 @@ class Simulation:
 
     def snapshot(self) -> Snapshot:
         """State of the whole system at the end of the time grid. Raises RunError if an FMU does not give its state."""
+        if self._master is not None:
+            self._master.give_back()
         try:
             return take_snapshot(
                 self._plan, self._exchanges, self._components, self._grid, self._scenario, self._active

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed
+from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import clip, cos, pi, sin, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
@@ -68,6 +69,7 @@ def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
     return (*units, (0.0, 1.0, p.tunnel_x))
 
 
+@kept(8)
 def design(parameters: AllocationParameters) -> Design:
     """Weighted generalised inverses for all sets of free units.
 

@@ -18,6 +18,7 @@ import numpy as np
 from shipcosim.angles import wrap
 from shipcosim.models.control.wave_filter import AxisNoise, filter_at, filter_table
 from shipcosim.models.core.interpolation import EvenTable
+from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, clip, cos, minimum, sin
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import required
@@ -160,6 +161,7 @@ class Design(NamedTuple):
     inverse_mass: tuple
 
 
+@kept(8)
 def design(ship: DpShip, parameters: ObserverParameters) -> Design:
     """Gains, wave models and inverse of the mass matrix for a ship.
 

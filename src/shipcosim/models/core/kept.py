@@ -22,7 +22,7 @@ def kept(most: int) -> Callable[[Callable], Callable]:
     -------
     callable
         The decorator. Arguments that record what is computed with them, known by their `maths`, keep results in their
-        own way.
+        own way; for arrays nothing is kept.
 
     Examples
     --------
@@ -43,6 +43,10 @@ def kept(most: int) -> Callable[[Callable], Callable]:
             for argument in arguments:
                 if (maths := getattr(argument, "maths", None)) is not None:
                     return maths.kept(function, arguments)
+            try:
+                hash(arguments)
+            except TypeError:
+                return function(*arguments)
             return remembered(*arguments)
 
         return call

@@ -129,7 +129,7 @@ def _recorded(cls, given, names, step_size) -> Variant:
         for leaf in flat.leaves
     ]
     numbers = _numbers(flat, recording)
-    shape = Shape(_widest(flat, root), constant, unchanging, frozenset())
+    shape = Shape(_widest(flat, root), numbers, constant, unchanging, frozenset())
     step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
     for end in ends(root):
         if isinstance(end.result, Flat):
