@@ -1,21 +1,19 @@
-"""The array form of the DP loop: against the FMUs stepped one by one, and whether she holds."""
+"""The DP loop: against its FMUs stepped one by one by hand, and whether she holds on many seeds."""
 
 import importlib.util
 import math
 
 import numpy as np
 import pytest
-from dp_loop import MODERATE, NORTH_EAST, ROUGH, WIND_8, WIND_10, simulate, with_seeds
+from dp_runs import MODERATE, NORTH_EAST, ROUGH, SEA, simulate
 from ships import equipped
 
-from shipcosim.models.ship.sensors import ReferenceFailure, SensorFailures
-
 LEGS = [
-    (0.0, dict(x_set=20.0)),
-    (250.0, dict(y_set=-20.0)),
-    (450.0, dict(psi_set=-NORTH_EAST)),
-    (650.0, dict(x_set=0.0)),
-    (850.0, dict(y_set=0.0, psi_set=0.0)),
+    (0.0, {"reference.x_set": 20.0}),
+    (250.0, {"reference.y_set": -20.0}),
+    (450.0, {"reference.psi_set": -NORTH_EAST}),
+    (650.0, {"reference.x_set": 0.0}),
+    (850.0, {"reference.y_set": 0.0, "reference.psi_set": 0.0}),
 ]
 CORNERS = [(250, 20, 0, 0), (450, 20, -20, 0), (650, 20, -20, -NORTH_EAST), (850, 0, -20, -NORTH_EAST), (1100, 0, 0, 0)]
 
@@ -101,39 +99,41 @@ def stepped_one_by_one(fmus, inputs, parameters, seconds, h=0.05):
         yield fmus
 
 
-def test_array_form_follows_the_fmus_stepped_one_by_one(fmus):
+def test_runs_follow_the_fmus_stepped_one_by_one(fmus):
     components = {name: fmus(name)() for name in ("environment", "vessel", "sensors", "reference", "allocator")}
     components |= {name: fmus("azimuth_thruster")() for name in ("port", "starboard")}
     components |= {"tunnel": fmus("tunnel_thruster")(), "controller": fmus("dp_controller")()}
     for name in set(components) - {"environment"}:
         equipped(components[name], name)
-    parameters = [("environment", name, value) for name, value in MODERATE.items()]
-    parameters += [("environment", "seed", 3), ("sensors", "seed", 103)]
-    inputs = [("environment", name, value) for name, value in WIND_8.items()] + [("reference", "x_set", 20.0)]
-    run = simulate(with_seeds([3, 8], **MODERATE), [(0.0, dict(x_set=20.0, **WIND_8))], variations=2, stop_time=60.0)
-    signals = [name for name in run if name != "time"]
+    values = MODERATE | {"reference.x_set": 20.0}
+    inputs = [(*name.split("."), value) for name, value in values.items()]
+    seeds = [("environment", "seed", 3), ("sensors", "seed", 103)]
+    run = simulate([3, 8], values, record=SHOWN, stop_time=60.0)
     rows = [
-        [float(getattr(components[name.split(".")[0]], name.split(".")[1])) for name in signals]
-        for components in stepped_one_by_one(components, inputs, parameters, 60.0)
+        [float(getattr(components[name.split(".")[0]], name.split(".")[1])) for name in run if name != "time"]
+        for components in stepped_one_by_one(components, inputs, seeds, 60.0)
     ]
-    for name, expected in zip(signals, np.array(rows).T, strict=True):
+    for name, expected in zip([name for name in run if name != "time"], np.array(rows).T, strict=True):
         span = np.ptp(expected) or 1.0
         np.testing.assert_allclose(run[name][1:, 0] / span, expected / span, atol=1e-9, err_msg=name)
 
 
-def test_variation_runs_as_if_it_were_alone():
-    """Beside enough others for the arithmetic of large arrays, which is another one than that of a single ship."""
-    seeds = [3, 8, *range(20, 28)]
-    events = [(0.0, WIND_8), (5.0, dict(tunnel_failed=np.arange(len(seeds)) == 1))]
-    many = simulate(with_seeds(seeds, **MODERATE), events, variations=len(seeds), stop_time=20.0)
-    events = [(0.0, WIND_8), (5.0, dict(tunnel_failed=True))]
-    alone = simulate(with_seeds([8], **MODERATE), events, variations=1, stop_time=20.0)
-    for name in set(alone) - {"time"}:
-        np.testing.assert_allclose(many[name][:, 1], alone[name][:, 0], rtol=1e-9, atol=1e-9, err_msg=name)
+SHOWN = (
+    *(f"vessel.{name}" for name in SHIP),
+    *(f"environment.{name}" for name in WATER),
+    *(f"{unit}.{name}" for unit in UNITS for name in ("thrust", "rpm", "saturated")),
+    *(f"sensors.{name}" for name in MEASURED),
+    *("reference.x_d", "reference.y_d", "reference.psi_d"),
+    *(f"controller.{name}_hat" for name in (*SHIP, "wave_frequency")),
+    *(f"controller.{load}_cmd" for load in LOADS),
+    *("controller.positions_used", "controller.compass_1_rejected", "controller.dead_reckoning_time"),
+    *(f"allocator.{unit}_thrust_cmd" for unit in UNITS),
+    *("allocator.port_azimuth_cmd", "allocator.starboard_azimuth_cmd", "allocator.saturated"),
+)
 
 
 def test_ship_is_held_in_moderate_weather():
-    run = simulate(with_seeds([1, 2, 3], **MODERATE), [(0.0, WIND_8)], variations=3, stop_time=120.0, every=10)
+    run = simulate([1, 2, 3], MODERATE, stop_time=120.0, every=10)
     late = run["time"] > 60.0
     assert np.hypot(run["vessel.x"], run["vessel.y"])[late].max() < 0.6
     assert np.abs(run["vessel.psi"][late]).max() < math.radians(1.0)
@@ -141,19 +141,17 @@ def test_ship_is_held_in_moderate_weather():
 
 
 def test_half_the_step_changes_the_track_by_less_than_5_cm():
-    events = [(0.0, dict(x_set=20.0, **WIND_8))]
-    system = with_seeds([1, 2], **MODERATE)
-    coarse = simulate(system, events, variations=2, stop_time=100.0, every=20)
-    fine = simulate(system, events, variations=2, stop_time=100.0, h=0.025, every=40)
+    values = MODERATE | {"reference.x_set": 20.0}
+    coarse = simulate([1, 2], values, stop_time=100.0, every=20)
+    fine = simulate([1, 2], values, stop_time=100.0, h=0.025, every=40)
     assert np.hypot(coarse["vessel.x"] - fine["vessel.x"], coarse["vessel.y"] - fine["vessel.y"]).max() < 0.05
 
 
 @pytest.mark.slow
 def test_a_minute_of_dead_reckoning_ends_within_5_m_on_20_seeds_and_the_thrust_does_not_jump():
     """Seeds that nothing was tuned on."""
-    lost = SensorFailures(positions=(ReferenceFailure(lost=True),) * 3)
-    events = [(0.0, WIND_8), (300.0, dict(sensor_failures=lost)), (360.0, dict(sensor_failures=SensorFailures()))]
-    run = simulate(with_seeds(range(3001, 3021), **MODERATE), events, variations=20, stop_time=420.0, every=10)
+    lost, found = ({f"sensors.position_{i}_lost": value for i in (1, 2, 3)} for value in (True, False))
+    run = simulate(range(3001, 3021), MODERATE, [(300.0, lost), (360.0, found)], stop_time=420.0, every=10)
     time, distance = run["time"], np.hypot(run["vessel.x"], run["vessel.y"])
     last = distance[np.argmin(np.abs(time - 360.0))]
     print(f"after 60 s: {last.mean():.2f} m in the mean, {last.max():.2f} m at worst")
@@ -166,32 +164,28 @@ def test_a_minute_of_dead_reckoning_ends_within_5_m_on_20_seeds_and_the_thrust_d
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("weather", "sea", "metres", "degrees"), [(WIND_8, MODERATE, 0.5, 1.0), (WIND_10, ROUGH, 1.0, 2.0)]
-)
-def test_four_corners_are_held_on_20_seeds(weather, sea, metres, degrees):
-    events = [(0.0, weather), *LEGS]
-    run = simulate(with_seeds(range(1, 21), **sea), events, variations=20, stop_time=1100.0, every=10)
+@pytest.mark.parametrize(("values", "metres", "degrees"), [(MODERATE, 0.5, 1.0), (ROUGH, 1.0, 2.0)])
+def test_four_corners_are_held_on_20_seeds(values, metres, degrees):
+    run = simulate(range(1, 21), values, LEGS, stop_time=1100.0, every=10, record="vessel")
     places, turns = worst_at_corners(run)
     held = (places < metres).all(axis=0) & (turns < degrees).all(axis=0)
     assert held.all()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("unit", ["port_failed", "starboard_failed", "tunnel_failed"])
+@pytest.mark.parametrize("unit", ["port", "starboard", "tunnel"])
 def test_any_two_units_keep_the_place_while_the_heading_goes(unit):
-    events = [(0.0, WIND_8), (100.0, {unit: True})]
-    run = simulate(with_seeds([1, 2, 3], **MODERATE), events, variations=3, stop_time=600.0, every=10)
+    run = simulate([1, 2, 3], MODERATE, [(100.0, {f"{unit}.failed": True})], stop_time=600.0, every=10)
     assert np.hypot(run["vessel.x"], run["vessel.y"]).max() < 8.0
     assert run["allocator.saturated"][-200:].mean() > 0.9
 
 
 @pytest.mark.slow
 def test_storm_that_is_too_strong_is_said_and_leaves_nothing_wound_up():
-    weather = dict(significant_wave_height=0.5, peak_period=6.0, waves_from=math.pi / 2.0)
-    events = [(0.0, dict(wind_speed=8.0, wind_from=math.pi / 2.0)), (100.0, dict(wind_speed=18.0))]
-    events.append((250.0, dict(wind_speed=6.0)))
-    run = simulate(with_seeds([1, 2, 3], **weather), events, variations=3, stop_time=550.0, every=10)
+    east = {"environment.waves_from": math.pi / 2.0, "environment.wind_from": math.pi / 2.0}
+    values = SEA | east | {"environment.significant_wave_height": 0.5, "environment.peak_period": 6.0}
+    events = [(100.0, {"environment.wind_speed": 18.0}), (250.0, {"environment.wind_speed": 6.0})]
+    run = simulate([1, 2, 3], values | {"environment.wind_speed": 8.0}, events, stop_time=550.0, every=10)
     distance, time = np.hypot(run["vessel.x"], run["vessel.y"]), run["time"]
     storm, after = (time > 150.0) & (time < 250.0), time > 450.0
     assert distance[storm].max() > 3.0 and run["allocator.saturated"][storm].mean() > 0.5

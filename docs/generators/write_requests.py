@@ -7,7 +7,6 @@ drawn anew for each seed. The seeds, from `FIRST_SEED` on, are of training alone
 
 import math
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
-import dp_loop  # noqa: E402
+import dp_runs  # noqa: E402
 
 from shipcosim.learn.requests import FIRST_SEED, REQUESTS  # noqa: E402
 
@@ -29,36 +28,36 @@ def weather(seeds):
     """Wind, waves and current of each seed: wind of 2 to 14 m/s from anywhere, waves that such wind makes near land."""
     draw = np.random.default_rng(int(seeds[0]))
     wind, towards = draw.uniform(2.0, 14.0, len(seeds)), draw.uniform(-math.pi, math.pi, (2, len(seeds)))
-    sea = {
-        "significant_wave_height": 0.05 * wind,
-        "peak_period": draw.uniform(4.0, 7.0, len(seeds)),
-        "waves_from": towards[0],
-        "wind_turn_rate": math.radians(9.0),
+    return {
+        "environment.significant_wave_height": 0.05 * wind,
+        "environment.peak_period": draw.uniform(4.0, 7.0, len(seeds)),
+        "environment.waves_from": towards[0],
+        "environment.wind_turn_rate": math.radians(9.0),
+        "environment.wind_speed": wind,
+        "environment.wind_from": towards[0],
+        "environment.current_speed": draw.uniform(0.0, 0.5, len(seeds)),
+        "environment.current_to": towards[1],
     }
-    air = {"wind_speed": wind, "wind_from": towards[0]}
-    return sea, air | {"current_speed": draw.uniform(0.0, 0.5, len(seeds)), "current_to": towards[1]}
 
 
 def recorded(seeds, events, stop_time):
     """Requests of each seed, (m, n, 3), in multiples of UNIT."""
-    sea, air = weather(seeds)
-    system = dp_loop.with_seeds(seeds, **{name: value for name, value in sea.items() if name != "wind_turn_rate"})
-    system = replace(system, environment=replace(system.environment, wind_turn_rate=sea["wind_turn_rate"]))
-    events = [(0.0, air), *((time, change(air)) for time, change in events)]
-    found = dp_loop.simulate(
-        system, events, variations=len(seeds), stop_time=stop_time, h=0.05, every=round(INTERVAL / 0.05)
+    values = weather(seeds)
+    changes = [(time, change(values)) for time, change in events]
+    found = dp_runs.simulate(
+        seeds, values, changes, stop_time=stop_time, every=round(INTERVAL / 0.05), record="controller"
     )
     requests = np.stack([found[f"controller.tau_{axis}_cmd"].T for axis in "XYN"], -1)
     return np.round(requests / UNIT).astype(np.int16)
 
 
-STATIONKEEPING = [(150.0, lambda air: {"wind_from": air["wind_from"] - SECTION})]
+STATIONKEEPING = [(150.0, lambda values: {"environment.wind_from": values["environment.wind_from"] - SECTION})]
 FOUR_CORNERS = [
-    (0.0, lambda air: {"x_set": 20.0}),
-    (250.0, lambda air: {"y_set": -20.0}),
-    (450.0, lambda air: {"psi_set": -SECTION}),
-    (650.0, lambda air: {"x_set": 0.0}),
-    (850.0, lambda air: {"y_set": 0.0, "psi_set": 0.0}),
+    (0.0, lambda _: {"reference.x_set": 20.0}),
+    (250.0, lambda _: {"reference.y_set": -20.0}),
+    (450.0, lambda _: {"reference.psi_set": -SECTION}),
+    (650.0, lambda _: {"reference.x_set": 0.0}),
+    (850.0, lambda _: {"reference.y_set": 0.0, "reference.psi_set": 0.0}),
 ]
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
-"""The DP loop over all seeds of wind at once, with any law in it: requests are recorded there, and loops closed."""
+"""The DP loop over many seeds of wind, with any FMU for its law: requests are recorded there, and loops closed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
-import dp_loop
+import dp_runs
 import numpy as np
+from ships import parameters
 
 from allocation.laws import LAWS, ROOT, UNITS
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
-from shipcosim.models.allocation.units import Allocated
 from shipcosim.scenario import read_scenario
 from shipcosim.units import number_in, spelled_unit
 
@@ -48,50 +48,9 @@ class Commanded:
     proposed: np.ndarray | None = None
 
 
-class InLoop:
-    """A law for `dp_loop`: one of its kind for each seed, and a record of what they commanded."""
-
-    def __init__(self, name: str):
-        self.name, self.laws, self.record = name, [], []
-
-    def design(self, parameters):
-        """Nothing that the laws do not make themselves."""
-
-    def at_rest(self, tau, *, parameters):
-        """As `pseudo_inverse.at_rest`."""
-        self.laws, self.record = [LAWS[self.name]() for _ in tau[0]], []
-        return self._state(tau, [law.step((0.0, 0.0, 0.0), (True, True, True), STEP) for law in self.laws])
-
-    def step(self, state, tau, available, h, *, parameters, design):
-        """As `pseudo_inverse.step`."""
-        tau = [np.asarray(axis, float) for axis in tau]
-        usable = [np.broadcast_to(unit, tau[0].shape) for unit in available]
-        found = [
-            law.step(tuple(float(axis[k]) for axis in tau), tuple(bool(unit[k]) for unit in usable), h)
-            for k, law in enumerate(self.laws)
-        ]
-        self.record.append((tau, usable, found))
-        return self._state(tau, found)
-
-    def _state(self, tau, found):
-        thrusts, azimuths = np.array([one.thrusts for one in found]), np.array([one.azimuths for one in found])
-        X, Y, N = loads(thrusts, azimuths)
-        beam = np.full(len(found), 0.5 * np.pi)
-        return Allocated(tuple(thrusts.T), (*azimuths.T, beam), X, Y, N, np.zeros(len(found), bool))
-
-    def commanded(self) -> Commanded:
-        """What was asked and commanded."""
-        asked = np.array([np.transpose(tau) for tau, _, _ in self.record])
-        usable = np.array([np.transpose(units) for _, units, _ in self.record])
-        thrusts = np.array([[one.thrusts for one in found] for _, _, found in self.record])
-        azimuths = np.array([[one.azimuths for one in found] for _, _, found in self.record])
-        seconds = np.array([[one.seconds for one in found] for _, _, found in self.record])
-        return Commanded(STEP, asked, thrusts, azimuths, seconds, usable)
-
-
 def loads(thrusts, azimuths):
     """Load of commands by the full configuration matrix: X, Y, N, each of the shape of a thrust. [N, N, N.m]"""
-    p = dp_loop.parameters(AllocationParameters)
+    p = parameters(AllocationParameters)
     port, starboard, tunnel = np.moveaxis(thrusts, -1, 0)
     X, Y, N = 0.0 * tunnel, tunnel, p.tunnel_x * tunnel
     for f, angle, x, y in (
@@ -113,7 +72,7 @@ def run(scenario: str, seeds, law: str | None = None, lost: Sequence[str | None]
     seeds : sequence of int
         Of wind and waves; those of the sensors are 100 more.
     law : str, optional
-        Of `LAWS`; the generalised inverse of the array form by default.
+        Of `LAWS`; the generalised inverse of the system by default.
     lost : sequence of str or None
         Units that stop at `LOST_AT`: all seeds are run with each, side by side; None is a run without a failure.
     until : float
@@ -122,22 +81,48 @@ def run(scenario: str, seeds, law: str | None = None, lost: Sequence[str | None]
     Returns
     -------
     dict of str to array, Commanded or None
-        Signals of `dp_loop.simulate` every 0.1 s, (n, k m); what was commanded, where a law is given.
+        Signals every 0.1 s, (n, k m); what was commanded at every step, where a law is given.
     """
     asked = read_scenario(ROOT / "scenarios" / f"{scenario}.toml")
-    events = [(0.0, _inputs(asked.set)), *((event.time, _inputs(event.override)) for event in asked.events)]
-    fails = {f"{unit}_failed": np.repeat([name == unit for name in lost], len(seeds)) for unit in UNITS}
-    events.append((LOST_AT, {name: which for name, which in fails.items() if which.any()}))
-    known = {field.name for field in fields(dp_loop.EnvironmentParameters)} - {"seed"}
-    weather = {name: value for name, value in _settings(asked.set, "environment").items() if name in known}
+    events = [(event.time, _in_si(event.override)) for event in asked.events]
     variations = np.tile(seeds, len(lost))
-    system = dp_loop.with_seeds(variations, **weather)
-    inside = InLoop(law) if law else None
-    if inside:
-        system = replace(system, law=inside)
-    stop = min(asked.stop_time, until)
-    signals = dp_loop.simulate(system, events, variations=len(variations), stop_time=stop, h=STEP, every=2)
-    return signals, inside.commanded() if inside else None
+    for unit in UNITS:
+        which = np.repeat([name == unit for name in lost], len(seeds))
+        events += [(LOST_AT, {f"{unit}.failed": which})] if which.any() else []
+    values = {name: value for name, value in _in_si(asked.set).items() if not name.endswith(".seed")}
+    component, _, variant = (law or "").partition(", ")
+    swapped = {"allocator": component} if law else None
+    if variant:
+        values["allocator.variant"] = VARIANTS[variant]
+    if law:
+        values["allocator.measure_solve_time"] = True
+    shown = ["vessel", "reference", *UNITS, "controller", "allocator"]
+    found = dp_runs.simulate(
+        variations, values, events, stop_time=min(asked.stop_time, until), h=STEP, record=shown, components=swapped
+    )
+    return {name: column[::2] for name, column in found.items()}, _commanded(found) if law else None
+
+
+VARIANTS = {"walks": "paper-v-walks"}
+"""What stands behind the name of a law in `LAWS`, and the parameter of its FMU."""
+
+
+def _commanded(found):
+    """What was asked and commanded in runs: what is asked in a row is answered in the next."""
+
+    def stacked(names, rows):
+        return np.stack([found[name][rows] for name in names], -1)
+
+    asked, given = slice(None, -1), slice(1, None)
+
+    return Commanded(
+        STEP,
+        stacked([f"controller.tau_{axis}_cmd" for axis in "XYN"], asked),
+        stacked([f"allocator.{unit}_thrust_cmd" for unit in UNITS], given),
+        stacked([f"allocator.{unit}_azimuth_cmd" for unit in UNITS[:2]], given),
+        found["allocator.solve_time"][given],
+        stacked([f"{unit}.available" for unit in UNITS], asked).astype(bool),
+    )
 
 
 def requests(scenario: str, seeds) -> np.ndarray:
@@ -160,14 +145,7 @@ def replay(law: str, asked: np.ndarray, available: np.ndarray | None = None, ste
     return Commanded(step, asked, thrusts, azimuths, seconds, usable, proposed if proposed.any() else None)
 
 
-def _settings(given, component):
-    """Values of a component's connectors in SI units; radians are the only unit that these scenarios write."""
-    own = {name.partition(".")[2]: value for name, value in given.items() if name.startswith(f"{component}.")}
+def _in_si(given):
+    """Values in SI units; radians are the only unit that these scenarios write."""
     radians = spelled_unit("rad")
-    return {name: number_in(value, radians) if isinstance(value, str) else value for name, value in own.items()}
-
-
-def _inputs(given):
-    """Fields of `dp_loop.Inputs` that a scenario sets."""
-    values = _settings(given, "environment") | _settings(given, "reference")
-    return {name: value for name, value in values.items() if name in dp_loop.Inputs._fields}
+    return {name: number_in(value, radians) if isinstance(value, str) else value for name, value in given.items()}
