@@ -8,6 +8,9 @@ from shipcosim.report.run.derived import add_derived
 from shipcosim.report.run.roles import find_roles
 from shipcosim.report.theme.display import display_table, thinned
 
+FLOWS = ("environment", 3.0), ("harbour", 1.0), ("predictor", 2.0)
+"""Components with wind and current, and their components north and east. [m/s]"""
+
 
 def table_of(time=None, **signals):
     """Table of (values, unit), with two underscores for the dot of a signal's name."""
@@ -61,6 +64,14 @@ def test_wind_that_blows_to_the_south_west_comes_from_the_north_east():
     drawn = shown(table_of(weather__wind_north=([-3.0], "m/s"), weather__wind_east=([-3.0], "m/s")))
     assert float(drawn["wind from"][0]) == pytest.approx(45.0)
     assert float(drawn["wind speed"][0]) == pytest.approx(np.sqrt(18.0))
+
+
+def test_wind_and_current_are_those_at_the_ship_where_a_harbour_changes_them():
+    flow = ("wind_north", "wind_east", "current_north", "current_east")
+    at_sea, inside, guessed = ({f"{who}__{name}": ([-value], "m/s") for name in flow} for who, value in FLOWS)
+    guessed["predictor__predicted_at"] = ([0.0], "s")
+    drawn = shown(table_of(environment__wind_speed_mean=([9.0], "m/s"), **at_sea, **guessed, **inside))
+    assert float(drawn["wind speed"][0]) == float(drawn["current speed"][0]) == pytest.approx(np.sqrt(2.0))
 
 
 def test_thinning_keeps_the_peaks_the_order_of_time_and_both_ends():

@@ -79,10 +79,10 @@ def judged_distance(table: Dataset, signals: list[str | None], verdicts: Sequenc
 
 
 def true_flow(shown: Dataset, roles: Roles) -> dict[str, Variable]:
-    """Speed and direction of wind and current from their components north and east."""
+    """Speed and direction of wind and current at the ship, from their components north and east."""
     found = {}
     for what, sense, suffix in [("wind", -1.0, "from"), ("current", 1.0, "to")]:
-        parts = [roles.signal(roles.environment, f"{what}_{way}") for way in ("north", "east")]
+        parts = [roles.signal(roles.harbour or roles.environment, f"{what}_{way}") for way in ("north", "east")]
         if None not in parts:
             north, east = (sense * shown[part].values for part in parts)
             found[f"{what} speed"] = as_variable(np.hypot(north, east), "m/s", f"{what} speed")

@@ -219,7 +219,10 @@ def _environment(shown: Dataset, roles: Roles) -> list[Panel]:
     }
     panels = []
     for title, signals in flow.items():
-        looks = [("with gusts", palette.SKY, "solid"), ("mean", palette.INK, "dash")]
+        looks = [
+            ("with gusts", palette.SKY, "solid"),
+            ("mean at sea" if roles.harbour else "mean", palette.INK, "dash"),
+        ]
         lines = [Line(s, *look) for s, look in zip(signals, looks, strict=False)]
         panels += _panel(shown, title, [Line(lines[0].signal, "current", palette.BLUE)] if len(lines) == 1 else lines)
     waves = {at("elevation"): "surface"}

@@ -23,6 +23,8 @@ class Roles:
         Components with a thrust, and with a shaft or the force that they give the ship.
     environment : str or None
         Component with the wind over ground.
+    harbour : str or None
+        Component with wind and current at the ship, where these are not the environment's.
     connectors : dict of str to list of str
         Connector names of every component.
     """
@@ -31,6 +33,7 @@ class Roles:
     reference: str | None
     thrusters: tuple[str, ...]
     environment: str | None
+    harbour: str | None
     connectors: dict[str, list[str]] = field(repr=False)
 
     def signal(self, component: str | None, *connectors: str) -> str | None:
@@ -97,13 +100,16 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
 
     ships = sorted(having("x", "y", "psi"), key=lambda c: _likeness(c, connectors[c]), reverse=True)
     winds = having("wind_speed_mean") or having("wind_north", "wind_east")
+    environment = next(iter([c for c in winds if c not in ships] or winds), None)
+    local = [c for c in having("wind_north", "current_north") if c not in (environment, *having("predicted_at"))]
     return Roles(
         ship=next(iter(ships), None),
         reference=next(iter(having("x_d", "y_d", "psi_d")), None),
         thrusters=tuple(
             c for c in having("thrust") if {"rpm", "power", "torque"} & set(connectors[c]) or c in having(*FORCE)
         ),
-        environment=next(iter([c for c in winds if c not in ships] or winds), None),
+        environment=environment,
+        harbour=next((c for c in local if c not in ships), None),
         connectors=connectors,
     )
 

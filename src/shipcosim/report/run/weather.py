@@ -43,7 +43,8 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
     for what, sense in [("wind", "from"), ("current", "to")]:
         if f"{what} speed" in shown:
             means = [roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)]
-            size, angle = means if None not in means else (f"{what} speed", f"{what} {sense}")
+            known = roles.harbour is None and None not in means
+            size, angle = means if known else (f"{what} speed", f"{what} {sense}")
             if np.nanmax(shown[size].values) > 0.0:
                 found.append(Flow(what, _span(shown[size].values), "m/s", _mean_direction(shown[angle].values), sense))
     height, source = (roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from"))
