@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from prediction import measuring, pages
+from prediction import learned, measuring, pages
 from prediction.rivals import PREDICTORS, there
 from shipcosim.learn.prediction.worlds import HELD_OUT, KNOWN, Record
 from shipcosim.models.core.kinematics import to_ned
+from shipcosim.models.prediction import own_record
 
 WORLDS = range(300, 308)  # of those to choose by
 
@@ -97,3 +98,12 @@ def test_all_predictors_in_worlds_to_choose_by(capsys):
     position = {name: pages.by_world(found[name][1.0], 20)[:, -1, 3].mean() for name in found}
     assert position["kinetic"] < position["constant velocity"]
     assert set(PREDICTORS) >= set(position)
+
+
+def test_a_learned_force_is_what_its_coefficients_say(tmp_path):
+    share = np.zeros(len(own_record.COEFFICIENTS))
+    share[own_record.COEFFICIENTS.index("wind_Y")] = 0.4
+    run = learned.sailed(learned.plan(301, {}), learned.force_of({"coefficients": share}, tmp_path), until=5.0)
+    wind, force = run.table["vessel.tau_wind_Y"].values, run.table["learned.tau_Y"].values
+    np.testing.assert_allclose(force[1:], 0.4 * wind[1:], rtol=0.05)
+    assert np.abs(run.table["learned.tau_X"]).max() == 0.0
