@@ -4,6 +4,7 @@ from pathlib import Path
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter
 from shipcosim.models.core.kinematics import to_ned
+from shipcosim.models.core.maths import number
 from shipcosim.models.core.networks import read_arrays
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.prediction import motion_filter, velocity_network
@@ -82,7 +83,7 @@ class DeadReckoning(Fmu):
         """Outputs at t: between samples the reckoned position moves on with its velocity."""
         state, since = self.state, t - (self.taken - 1) * SAMPLE_TIME
         north, east = to_ned(self.psi_meas, state.u, state.v)
-        self.x_hat = self.x_meas if self.position_valid else float(state.x + since * north)
-        self.y_hat = self.y_meas if self.position_valid else float(state.y + since * east)
-        self.u_hat, self.v_hat, self.lost_for = float(state.u), float(state.v), float(state.lost_for)
-        self.position_region = float(radius(state.lost_for, state.sea, region=self.region))
+        self.x_hat = self.x_meas if self.position_valid else number(state.x + since * north)
+        self.y_hat = self.y_meas if self.position_valid else number(state.y + since * east)
+        self.u_hat, self.v_hat, self.lost_for = number(state.u), number(state.v), number(state.lost_for)
+        self.position_region = number(radius(state.lost_for, state.sea, region=self.region))

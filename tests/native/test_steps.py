@@ -45,7 +45,7 @@ class Arithmetic(Fmu):
 
     def start(self):
         self.pair, self.vector, self.taken = Pair(0.5, (1.0, -2.0)), np.array([1.0, 2.0, 3.0]), 0
-        self.out = self.x
+        self.out, self.heights = self.x, YS
 
     def step(self, t, h):
         x, y = self.x, self.y
@@ -53,6 +53,7 @@ class Arithmetic(Fmu):
         a = a + maths.atan2(y, x) + maths.floor(3.0 * x) + wrap(4.0 * x) + maths.clip(y, -0.5, 0.5)
         a = a + maths.where(x > y, x, 2.0 * y) + x % 0.7 + (-x) % 0.7 + x // 0.3 + (abs(x) + 0.1) ** 1.5
         a = a + interp(x, XS, YS) + sum(interp_columns(y, XS, YS, ZS)) + interp_even(x, TABLE)[0]
+        a = a + interp(x, XS, self.heights) + np.log1p(abs(y))
         a = a + maths.number(self.flag) + maths.minimum(x, y) - maths.maximum(x, y) + tidy_time(t + h)
         for _ in range(self.mode):
             a = a + self.gain * h

@@ -386,6 +386,7 @@ EXAMPLES: dict[str, Callable] = {
     "tan": math.tan,
     "exp": math.exp,
     "log": math.log,
+    "log1p": math.log1p,
     "sqrt": math.sqrt,
     "tanh": math.tanh,
     "asin": math.asin,

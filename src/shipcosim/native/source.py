@@ -54,7 +54,7 @@ static double interpolated(double x, const double *xs, const double *ys, int n) 
 }
 """
 
-FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "floor", "ceil")
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "log1p", "sqrt", "tanh", "floor", "ceil")
 FUNCTIONS += ("asin", "acos", "atan", "sinh", "cosh", "log10")
 UNARY = {
     "neg": "-{}",

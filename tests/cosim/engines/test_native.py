@@ -13,7 +13,14 @@ from shipcosim.cosim.systems import system_of
 from shipcosim.scenario import Event, read_scenario
 
 NATIVE = RunOptions(engine="native")
-SCENARIOS = ("four_corner", "drift", "failures/bus_a_short_of_power", "allocation/four_corner_extended")
+SCENARIOS = (
+    "four_corner",
+    "drift",
+    "failures/bus_a_short_of_power",
+    "allocation/four_corner_extended",
+    "prediction/gnss_loss",
+    "paper_i/exercise",
+)
 CLOSE = 1e-12
 
 

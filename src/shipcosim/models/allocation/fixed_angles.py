@@ -4,13 +4,16 @@ The units are what their parameters say: a propeller, a tunnel thruster, an azim
 is none. As in `pseudo_inverse`, what one unit cannot give is asked of those that are not yet at a limit.
 """
 
+import functools
+import math
+import operator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from shipcosim.models.allocation.units import Allocated, load, missed
-from shipcosim.models.core.maths import clip, cos, sin, where
+from shipcosim.models.core.maths import clip, cos, is_single, row_of, sin, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity, required
 
@@ -211,7 +214,8 @@ def _within_limits(tau, available, design):
         given = [clip(f, low, high) for f, low, high in zip(found, design.least, design.most, strict=True)]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = [abs(f - g) > 1e-9 for f, g in zip(found, given, strict=True)]
-        if not any(one if isinstance(one, bool) else bool(one.any()) for one in over):
+        anywhere = functools.reduce(operator.or_, over)
+        if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
             break
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
@@ -221,8 +225,8 @@ def _within_limits(tau, available, design):
 def _solve(tau, free, inverses):
     """Thrusts of the free units for a load, 0 for the others."""
     chosen = sum(2.0**unit * one for unit, one in enumerate(free))
-    if isinstance(chosen, float):
-        return [a * tau[0] + b * tau[1] + c * tau[2] for a, b, c in inverses[int(chosen)].tolist()]
+    if is_single(chosen):
+        return [a * tau[0] + b * tau[1] + c * tau[2] for a, b, c in row_of(inverses, math.floor(chosen)).tolist()]
     found = [0.0 * tau[0]] * UNITS
     for k in range(1, 1 << UNITS):
         rows = inverses[k].tolist()
