@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from shipcosim.native.symbols import Symbol, Untraceable, kind_of
+from shipcosim.native.symbols import Symbol, SymbolArray, Untraceable, kind_of
 
 STRUCTURE = (str, bytes, type(None), type)
 WHOLE = (bool, int, np.integer, np.bool_)
@@ -168,10 +168,9 @@ def made_like(value: Any, numbers: Iterator[Any]) -> Any:
         return value
     if isinstance(value, np.ndarray):
         found = [next(numbers) for _ in range(value.size)]
-        kind = (
-            object if any(isinstance(one, Symbol) for one in found) else float if value.dtype == object else value.dtype
-        )
-        return np.array(found, dtype=kind).reshape(value.shape)
+        if any(isinstance(one, Symbol) for one in found):
+            return np.array(found, dtype=object).reshape(value.shape).view(SymbolArray)
+        return np.array(found, dtype=float if value.dtype == object else value.dtype).reshape(value.shape)
     if isinstance(value, (tuple, list)):
         made = [made_like(part, numbers) for part in value]
         return type(value)(*made) if hasattr(value, "_fields") else type(value)(made)

@@ -126,6 +126,9 @@ class Recording:
         Values that were put into texts, by their numbers.
     """
 
+    has_primitives = False
+    """Whether the code will have a C runtime with it, for products of matrices and the like."""
+
     def __init__(self, example: Sequence[float], choices: Set[int] = frozenset()):
         self.memory, self._choices = example, choices
         self.tables: list[np.ndarray] = []
@@ -396,6 +399,7 @@ EXAMPLES: dict[str, Callable] = {
     "cosh": math.cosh,
     "log10": math.log10,
     "atan2": math.atan2,
+    "copysign": math.copysign,
     "number": float,
     "whole": int,
     "where": lambda condition, a, b: a if condition else b,

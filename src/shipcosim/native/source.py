@@ -68,6 +68,7 @@ BINARY = {op: f"{{}} {op} {{}}" for op in ("+", "-", "*", "/", "<", "<=", ">", "
     "%": "remainder_of({}, {})",
     "//": "floor_division({}, {})",
     "atan2": "atan2({}, {})",
+    "copysign": "copysign({}, {})",
 }
 
 

@@ -66,6 +66,8 @@ class Symbol:
 
     def combined(self, op: str, a: Any, b: Any, kind: str | None = None) -> Symbol:
         """The value of an operation of two operands."""
+        if op == "*" and (isinstance(a, (tuple, list)) or isinstance(b, (tuple, list))):
+            return operator.index(a) * b if isinstance(a, Symbol) else a * operator.index(b)
         if not isinstance(a, NUMBERS) or not isinstance(b, NUMBERS):
             raise Untraceable(f"it computes with a {type(b if isinstance(a, NUMBERS) else a).__name__}")
         a, b = plain(a), plain(b)
@@ -234,7 +236,7 @@ def _elementwise(function: Callable) -> Callable:
 
     def call(*values):
         if any(isinstance(value, np.ndarray) for value in values):
-            return np.frompyfunc(function, len(values), 1)(*values)
+            return as_symbols(np.frompyfunc(function, len(values), 1)(*values))
         return function(*values)
 
     return staticmethod(call)
@@ -258,6 +260,12 @@ def _where(condition, a, b):
 def _atan2(y, x):
     symbol = first_symbol(y, x)
     return np.arctan2(y, x) if symbol is None else symbol.combined("atan2", y, x, "d")
+
+
+def _first(*values):
+    symbol = first_symbol(*values)
+    assert symbol is not None
+    return symbol
 
 
 class Maths:
@@ -319,6 +327,7 @@ class Maths:
         after = condition.recording.repeat(lambda state: with_state(going, state), turned, start)
         values.update({**before, **after})
 
+    copysign = _elementwise(lambda x, y: _first(x, y).combined("copysign", x, y, "d"))
     stack = staticmethod(np.stack)
     concatenate = staticmethod(np.concatenate)
 
@@ -392,3 +401,76 @@ def _chosen(condition, a, b):
         parts = [_chosen(condition, one, other) for one, other in zip(a, b, strict=True)]
         return type(a)._make(parts) if hasattr(a, "_make") else tuple(parts)  # pyright: ignore
     return Maths.where(condition, a, b)
+
+
+def primitive(symbol: Symbol, name: str, shape: tuple[int, ...], arguments: Sequence[Any]) -> np.ndarray:
+    """The result of a function of the C runtime, as an array of symbols.
+
+    Parameters
+    ----------
+    symbol : Symbol
+        Any of the recording.
+    name : str
+        Of the function.
+    shape : tuple of int
+        Of its result.
+    arguments : sequence of float or Symbol
+        What it is given.
+    """
+    size, recording = int(np.prod(shape, dtype=int)), symbol.recording
+    made = recording.value("primitive", "d", name, size, *arguments)
+    parts = [recording.value("part", "d", made, place) for place in range(size)]
+    found = np.empty(size, dtype=object)
+    found[:] = parts
+    return found.reshape(shape).view(SymbolArray)
+
+
+class SymbolArray(np.ndarray):
+    """An array that may hold symbols: its comparisons are symbols too, and its extremes need no answers."""
+
+    @property
+    def maths(self) -> Any:
+        """See `Symbol.maths`; None where it holds numbers alone."""
+        return None if first_symbol(self) is None else Maths
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **named: Any) -> Any:
+        given = [one.view(np.ndarray) if isinstance(one, SymbolArray) else one for one in inputs]
+        named.pop("out", None)
+        if method == "__call__" and ufunc.__name__ in COMPARISONS:
+            named["dtype"] = object
+        elif method == "__call__" and ufunc.__name__ in FUNCTIONS:
+            return as_symbols(FUNCTIONS[ufunc.__name__](*given))
+        elif ufunc is np.matmul and min(one.ndim for one in given) > 1 and given[0].shape[-1] > 3:
+            symbol = first_symbol(*given)
+            if symbol is not None and symbol.recording.has_primitives:
+                return _products(symbol, *given)
+        elif ufunc in _EXTREMES:
+            ufunc = _EXTREMES[ufunc]
+            named = {key: value for key, value in named.items() if key == "axis"}
+        found = getattr(ufunc, method)(*given, **named)
+        return found.item() if isinstance(found, np.ndarray) and found.ndim == 0 else as_symbols(found)
+
+
+def _products(symbol, a, b):
+    """Product of matrices, of the last two axes."""
+    stack = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
+    if stack:
+        a, b = (np.broadcast_to(one, (*stack, *one.shape[-2:])) for one in (a, b))
+        return np.stack([_products(symbol, one, other) for one, other in zip(a, b, strict=True)]).view(SymbolArray)
+    sizes = [*a.shape, b.shape[1]]
+    return primitive(symbol, "multiplied", (a.shape[0], b.shape[1]), [*sizes, *a.ravel().tolist(), *b.ravel().tolist()])
+
+
+COMPARISONS = {"greater", "greater_equal", "less", "less_equal", "equal", "not_equal"}
+FUNCTIONS = {name: getattr(Maths, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "floor")}
+FUNCTIONS["arctan2"] = Maths.atan2
+_EXTREMES = {np.maximum: np.frompyfunc(Maths.maximum, 2, 1), np.minimum: np.frompyfunc(Maths.minimum, 2, 1)}
+
+
+def as_symbols(value: Any) -> Any:
+    """Arrays of objects, alone or in a tuple or list, as `SymbolArray`; anything else as it is."""
+    if isinstance(value, np.ndarray) and value.dtype == object:
+        return value.view(SymbolArray)
+    if type(value) in (tuple, list):
+        return type(value)(as_symbols(part) if isinstance(part, np.ndarray) else part for part in value)
+    return value

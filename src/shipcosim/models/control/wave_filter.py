@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.core.interpolation import EvenTable, even_table, interp_even
-from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.maths import Arithmetic, times
 
 
 class AxisGains(NamedTuple):
@@ -104,10 +104,14 @@ def kalman_gain(transition: np.ndarray, noise: np.ndarray, output: np.ndarray, o
     transposed = np.swapaxes(output, -1, -2)
     g = transposed @ np.linalg.inv(output_noise) @ output
     eye = np.eye(output.shape[-1])
-    for _ in range(20):
+
+    def doubled(state):
+        g, h, a = state
         inverse = np.linalg.inv(eye + g @ h)
         at = np.swapaxes(a, -1, -2)
-        g, h, a = g + a @ inverse @ g @ at, h + at @ h @ inverse @ a, a @ inverse @ a
+        return g + a @ inverse @ g @ at, h + at @ h @ inverse @ a, a @ inverse @ a
+
+    g, h, a = times(20, doubled, (g, h, a))
     return h @ transposed @ np.linalg.inv(output @ h @ transposed + output_noise)
 
 

@@ -376,10 +376,12 @@ def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
     >>> times(3, lambda n: 2 * n, 5)
     40
     """
-    first = state
-    while isinstance(first, tuple):
-        first = first[0]
-    if (own := getattr(count, "maths", None) or getattr(first, "maths", None)) is not None:
+    own = getattr(count, "maths", None)
+    for part in state if isinstance(state, tuple) else (state,):
+        while isinstance(part, tuple):
+            part = part[0]
+        own = own or getattr(part, "maths", None)
+    if own is not None:
         return own.repeat(lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state))[1]
     for _ in range(count):
         state = turn(state)

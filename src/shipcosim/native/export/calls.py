@@ -12,6 +12,8 @@ from shipcosim.native.recording import Block, Call, Recording, typed
 class ExportRecording(Recording):
     """A recording for code without Python: what is kept by its arguments is recorded too."""
 
+    has_primitives = True
+
 
 @dataclass(frozen=True, eq=False)
 class Procedure:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import sys
 from collections.abc import Callable, Iterator
@@ -9,14 +10,17 @@ from contextlib import contextmanager
 from types import SimpleNamespace
 from typing import Any
 
-from shipcosim.native.symbols import Maths, Symbol
+import numpy as np
+
+from shipcosim.native.export.arrays import NumPy
+from shipcosim.native.symbols import Maths, Symbol, first_symbol
 
 NAMED = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "asin", "acos", "atan", "sinh", "cosh", "log10")
 
 
 def _of(original: Callable, of_symbols: Callable) -> Callable:
     def call(*values):
-        return of_symbols(*values) if any(isinstance(value, Symbol) for value in values) else original(*values)
+        return original(*values) if first_symbol(*values) is None else of_symbols(*values)
 
     return call
 
@@ -25,6 +29,8 @@ class _AsType(type):
     """A type of numbers that makes symbols of symbols."""
 
     def __call__(cls, *values: Any) -> Any:
+        if values and isinstance(values[0], np.ndarray) and values[0].ndim == 0:
+            values = (values[0].item(),)
         if values and isinstance(values[0], Symbol):
             return cls.of_symbol(values[0])  # pyright: ignore[reportAttributeAccessIssue]
         return cls.original(*values)  # pyright: ignore[reportAttributeAccessIssue]
@@ -45,6 +51,7 @@ _FUNCTIONS: dict[str, Callable] = {name: lambda x, name=name: x.function(name) f
     "atan2": Maths.atan2,
     "hypot": lambda x, y: Maths.sqrt(x * x + y * y),
     "fabs": abs,
+    "copysign": lambda x, y: Maths.copysign(x, y),
     "pow": lambda x, y: x**y,
     "radians": lambda x: x * (math.pi / 180.0),
     "degrees": lambda x: x * (180.0 / math.pi),
@@ -52,16 +59,22 @@ _FUNCTIONS: dict[str, Callable] = {name: lambda x, name=name: x.function(name) f
 _REPLACED = {getattr(math, name): _of(getattr(math, name), function) for name, function in _FUNCTIONS.items()}
 _MATH = SimpleNamespace(**(vars(math) | {f.__name__: replaced for f, replaced in _REPLACED.items()}))
 
+_NUMPY = NumPy()
+
 
 @contextmanager
 def understood(package: str) -> Iterator[None]:
-    """Let int, float and the functions of `math` take symbols in the modules of a package, for a while."""
+    """Let int, float and the functions of `math` and NumPy take symbols in the modules of a package, for a while."""
     modules = [vars(module) for name, module in list(sys.modules.items()) if name.partition(".")[0] == package]
     before = [dict(module) for module in modules]
     for module in modules:
         for name, value in list(module.items()):
             if value is math:
                 module[name] = _MATH
+            elif value is np:
+                module[name] = _NUMPY
+            elif isinstance(value, functools._lru_cache_wrapper):
+                module[name] = _of(value, value.__wrapped__)
             elif callable(value) and getattr(value, "__module__", "") == "math":
                 module[name] = _REPLACED.get(value, value)
         module.setdefault("int", _Int)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from importlib.resources import files
 from typing import Any
@@ -15,6 +16,10 @@ from shipcosim.native.source import Writer, kept_sizes, literal, operand
 from shipcosim.native.symbols import Symbol
 
 LEFT_OUT = 1e30
+MUCH = 3000
+"""Lines of a function from which on a compiler takes minutes to make it fast, where it is called seldom."""
+
+_VALUES = re.compile(r"\b[vpc][0-9]+\b")
 TYPES = {"Real": "REAL", "Integer": "INTEGER", "Boolean": "BOOLEAN", "String": "STRING"}
 
 
@@ -32,9 +37,9 @@ def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Var
     words : callable
         ``words(error)`` is what the FMU in Python says of an error.
     """
-    functions, kept = [], []
+    functions, kept, others = [], [], {}
     for number, variant in enumerate(variants):
-        text, size = _functions(variant, number, words)
+        text, size = _functions(variant, number, words, others)
         functions.append(text)
         kept.append(size)
     outputs = [str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"]
@@ -56,14 +61,24 @@ def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Var
     ]
     rows = [*(choices for choices, _ in table), "static const Variant variants[N_VARIANTS] = {"]
     rows += [*(row for _, row in table), "};", ""]
-    return "\n".join([_runtime("model.h"), _runtime("primitives.h"), *head, *functions, *rows, _runtime("fmi2.c")])
+    return "\n".join(
+        [
+            _runtime("model.h"),
+            _runtime("random.h"),
+            _runtime("primitives.h"),
+            *head,
+            *functions,
+            *rows,
+            _runtime("fmi2.c"),
+        ]
+    )
 
 
-def _functions(variant: Variant, number: int, words: Callable) -> tuple[str, int]:
+def _functions(variant: Variant, number: int, words: Callable, others: dict[str, str]) -> tuple[str, int]:
     """Start and step of a variant as C, and how many numbers they keep together."""
     n = len(variant.places)
-    start = ModelWriter(variant.start, f"start_{number}", words, lambda place: place, 0)
-    step = ModelWriter(variant.step, f"step_{number}", words, variant.places.__getitem__, start.n_kept)
+    start = ModelWriter(variant.start, f"start_{number}", words, lambda place: place, 0, others)
+    step = ModelWriter(variant.step, f"step_{number}", words, variant.places.__getitem__, start.n_kept, others)
     assert n == len(variant.places)
     return "\n".join([start.function(), step.function()]), start.n_kept + step.n_kept
 
@@ -83,11 +98,22 @@ class ModelWriter(Writer):
         Where a number of the recording lies in the memory.
     first_kept : int
         Where the results that it keeps begin.
+    others : dict of str to str
+        Functions that are written already: names by their texts.
     """
 
-    def __init__(self, step: Any, name: str, words: Callable, place: Callable[[int], int], first_kept: int):
+    def __init__(
+        self,
+        step: Any,
+        name: str,
+        words: Callable,
+        place: Callable[[int], int],
+        first_kept: int,
+        others: dict[str, str],
+    ):
         super().__init__(step)
         self.name, self._words, self._where = name, words, place
+        self._others, self._names = others, []
         self.n_kept = sum(a + b for a, b in kept_sizes(step.recording))
         self.arguments = [first_kept + first for first in self.arguments]
         self.results = [first_kept + first for first in self.results]
@@ -95,11 +121,13 @@ class ModelWriter(Writer):
     def function(self) -> str:
         """The function, behind those that it calls."""
         called = []
-        for number, call in enumerate(self.recording.calls):
-            name = f"{self.name}_kept_{number}"
-            called.append(_Procedure(procedure_of(call), name, self._words).function())
+        for call in self.recording.calls:
+            name, text = _Procedure(procedure_of(call), "kept", self._words, self._others).named_function()
+            self._names.append(name)
+            called.append(text)
         self._block(self.step.root, 1, self._finish)
-        head = f"static int {self.name}(double *restrict m, double *restrict k, Instance *o)"
+        much = "PLAIN " if len(self.lines) > MUCH else ""
+        head = f"static {much}int {self.name}(double *restrict m, double *restrict k, Instance *o)"
         tables = [
             f"    static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
             for number, table in enumerate(self.recording.tables)
@@ -148,7 +176,7 @@ class ModelWriter(Writer):
         self._put(depth, f"if ({same}) {{")
         for i, a in enumerate(arguments):
             self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
-        self._put(depth + 1, f"if ({self.name}_kept_{number}(k + {first}, k + {self.results[number]}, o)) {{")
+        self._put(depth + 1, f"if ({self._names[number]}(k + {first}, k + {self.results[number]}, o)) {{")
         self._put(depth + 2, f"{f'k[{first}] = NAN; ' if arguments else ''}return GIVEN_UP;")
         self._put(depth + 1, "}")
         self._put(depth, "}")
@@ -157,8 +185,18 @@ class ModelWriter(Writer):
 class _Procedure(ModelWriter):
     """Writes a function that computes what is kept: from its arguments in `m` into `k`."""
 
-    def __init__(self, procedure: Any, name: str, words: Callable):
-        super().__init__(procedure, name, words, lambda place: place, 0)
+    def __init__(self, procedure: Any, name: str, words: Callable, others: dict[str, str]):
+        super().__init__(procedure, name, words, lambda place: place, 0, others)
+
+    def named_function(self) -> tuple[str, str]:
+        """Its name, and its text where there is none like it yet."""
+        text = self.function()
+        numbers = {found: f"v{place}" for place, found in enumerate(dict.fromkeys(_VALUES.findall(text)))}
+        plain = _VALUES.sub(lambda found: numbers[found[0]], text)
+        if plain in self._others:
+            return self._others[plain], ""
+        name = self._others[plain] = f"kept_{len(self._others)}"
+        return name, text.replace(f"int {self.name}(", f"int {name}(", 1)
 
     def _finish(self, result, depth):
         if isinstance(result, list):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,16 +72,13 @@ def variant_of(cls: type, values: Mapping[str, Any], step_size: float) -> Varian
     given = {variable.name: values.get(variable.name, variable.start) for variable in parameters}
     texts = [variable.name for variable in parameters if variable.type == "String"]
     whole = [variable.name for variable in parameters if variable.type in ("Integer", "Boolean")]
-    try:
-        return _recorded(cls, given, texts, step_size)
-    except Untraceable:
-        found = _recorded(cls, given, [*texts, *whole], step_size)
-    for name in whole if len(whole) > 1 else ():
+    reasons = []
+    for names, decided in ((texts, False), ([*texts, *whole], False), (texts, True), ([*texts, *whole], True)):
         try:
-            found = _recorded(cls, given, [other for other in found.fixed if other != name], step_size)
-        except Untraceable:
-            continue
-    return found
+            return _recorded(cls, given, names, step_size, decided)
+        except Untraceable as reason:
+            reasons.append(reason)
+    raise reasons[-1]
 
 
 def with_its_line(function: Callable) -> Callable:
@@ -99,16 +97,18 @@ def with_its_line(function: Callable) -> Callable:
 
 
 @with_its_line
-def _recorded(cls, given, names, step_size) -> Variant:
+def _recorded(cls, given, names, step_size, decided) -> Variant:
+    """With `decided`, questions that parameters alone answer belong to the code, answered as for the example."""
     fixed = {name: given[name] for name in names}
     constant, unchanging = frozenset(fixed), frozenset(group.name for group in cls.groups)
     n = len(cls.variables)
     example = [0.0 if v.type == "String" else given.get(v.name, v.start) for v in cls.variables]
-    recording, made = ExportRecording([*example, 0.0]), []
+    settled = {place for place, v in enumerate(cls.variables) if v.causality == "parameter"} if decided else set()
+    recording, made = ExportRecording([*example, 0.0], settled), []
 
     def run():
         clone = _with_symbols(cls, fixed, recording)
-        with only_arithmetic(cls.__module__.partition(".")[0]):
+        with only_arithmetic(cls.__module__.partition(".")[0]), _remembering(cls.groups):
             clone.start()
             for group in cls.groups:
                 remember(getattr(clone, group.name))
@@ -129,7 +129,9 @@ def _recorded(cls, given, names, step_size) -> Variant:
         for leaf in flat.leaves
     ]
     numbers = _numbers(flat, recording)
-    shape = Shape(_widest(flat, root), numbers, constant, unchanging, frozenset())
+    pairs = enumerate(zip(flat.leaves, places, strict=True))
+    choices = {number for number, (leaf, place) in pairs if leaf.path[0] in unchanging or place in settled}
+    shape = Shape(_widest(flat, root), numbers, constant, unchanging, frozenset(choices) if decided else frozenset())
     step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
     for end in ends(root):
         if isinstance(end.result, Flat):
@@ -137,6 +139,25 @@ def _recorded(cls, given, names, step_size) -> Variant:
     size = max([n + STATE, *(place + 1 for place in places)])
     names = [text_of(leaf.path) for leaf in flat.leaves]
     return Variant(fixed, Step(recording, root, frozenset()), step, [*places, n + TIME, n + STEP_SIZE], names, size)
+
+
+@contextmanager
+def _remembering(groups):
+    """Let dataclasses of parameters compute all that they remember when they are made, not inside a loop or a way."""
+    kinds = [group.kind for group in groups]
+
+    def made(kind, **values):
+        parameters = kind(**values)
+        remember(parameters)
+        return parameters
+
+    for group, kind in zip(groups, kinds, strict=True):
+        group.kind = functools.partial(made, kind)
+    try:
+        yield
+    finally:
+        for group, kind in zip(groups, kinds, strict=True):
+            group.kind = kind
 
 
 def _with_symbols(cls, fixed, recording: Recording):

@@ -7,6 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __clang__
+#define PLAIN __attribute__((optnone, noinline))
+#else
+#define PLAIN
+#endif
+
 typedef enum { REAL, INTEGER, BOOLEAN, STRING } Type;
 typedef enum { INPUT, OUTPUT, PARAMETER } Causality;
 enum { DONE = 0, GIVEN_UP = 1 };
