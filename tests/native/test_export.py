@@ -216,3 +216,82 @@ def test_a_platform_that_is_none_is_refused_with_the_nearest():
     assert targets_of("linux, windows") == ["linux", "windows"]
     with pytest.raises(ShipcosimError, match="windows"):
         targets_of("window")
+
+
+NUMERIC = '''
+import numpy as np
+
+from shipcosim.fmi import Fmu, Input, Output, Parameter
+
+
+class Numeric(Fmu):
+    """What models ask NumPy for at the start."""
+
+    x = Input("1", "a number")
+    solved = Output("1", "of equations")
+    inverse = Output("1", "generalised")
+    table = Output("1", "interpolated")
+    sum_of_normals = Output("1", "of random numbers")
+    last_normal = Output("1", "of them")
+    last_uniform = Output("1", "another")
+    seed = Parameter(1, "1", "of random numbers", minimum=0)
+    a = Parameter(1.3, "1", "in a matrix")
+    b = Parameter(-0.4, "1", "in a matrix")
+
+    def start(self):
+        matrix = np.array([[self.a, 0.2, 0.0, 1.0], [self.b, 2.0, 0.1, 0.0], [0.0, self.a, 3.0, self.b], [1, 0, 0, 2]])
+        self.solved = float(np.linalg.solve(matrix @ matrix, np.array([1.0, 2.0, self.a, 0.5]))[2])
+        self.inverse = float(np.linalg.pinv(matrix[:, :2] * self.b, rcond=1e-6)[1, 2] + np.linalg.inv(matrix)[3, 1])
+        xs = np.cumsum(np.array([0.0, 1.0, self.a, 2.0]))
+        self.table = float(np.interp(np.array([0.7, self.a]), xs, np.array([0.0, self.b, 4.0, 1.0]))[1])
+        random = np.random.default_rng((7, self.seed))
+        normals = random.standard_normal(3000)
+        self.sum_of_normals, self.last_normal = float(normals.sum()), float(normals[-1])
+        self.last_uniform = float(random.uniform(2.0, 5.0, 10)[-1])
+
+    def step(self, t, h):
+        self.solved += h * self.x
+'''
+
+
+def test_matrices_tables_and_random_numbers_of_a_start_are_those_of_numpy(written, tmp_path):
+    folder = written("numeric", NUMERIC)
+    python, native = build_fmu(folder, tmp_path / "python"), build_native_fmu(folder, tmp_path / "native")
+    for seed, a in ((0, 1.0), (1, 1.3), (2**31 - 1, 0.7)):
+        one, other = (
+            simulate_fmu(str(fmu), stop_time=0.1, step_size=0.05, start_values={"seed": seed, "a": a})
+            for fmu in (python, native)
+        )
+        for name in ("last_normal", "last_uniform"):
+            assert one[name][0] == other[name][0]
+        for name in ("solved", "inverse", "table", "sum_of_normals"):
+            assert one[name][0] == pytest.approx(other[name][0], rel=1e-12)
+    assert one["last_normal"][0] != 0.0
+
+
+def test_a_count_that_shapes_the_state_is_refused_and_another_example_brings_it(written, tmp_path):
+    script = """
+from shipcosim.fmi import Fmu, Output, Parameter
+
+
+class Delay(Fmu):
+    \\"\\"\\"Repeats itself after some steps.\\"\\"\\"
+
+    value = Output("1", "what is given out")
+    latency = Parameter(0.2, "s", "how late", minimum=0.05)
+
+    def start(self):
+        self.queue = (0.0,) * round(self.latency / 0.05)
+
+    def step(self, t, h):
+        self.queue = (*self.queue[1:], t)
+        self.value = self.queue[0]
+"""
+    folder = written("delay", script.replace('\\"', '"'))
+    alone, both = (
+        build_native_fmu(folder, tmp_path / name, examples)
+        for name, examples in (("alone", [{}]), ("both", [{}, {"latency": 0.4}]))
+    )
+    assert "built where a number that shapes its code is 4.0, and not for 8.0" in said(alone, latency=0.4)
+    found = simulate_fmu(str(both), stop_time=1.0, step_size=0.05, start_values={"latency": 0.4})["value"]
+    assert found[-1] == pytest.approx(1.0 - 0.4, abs=1e-9)

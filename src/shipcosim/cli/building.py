@@ -112,19 +112,25 @@ def build_native(
 
 
 def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
-    """Sets of parameters that systems give their components, by FMU. A system that cannot be read gives none."""
+    """Sets of parameters that systems give their components, by FMU. A system that cannot be read gives none.
+
+    An FMU that is in no system has what all components of a system have together, by the names of parameters.
+    """
     found: dict[str, list[dict[str, Any]]] = {}
+    together: list[dict[str, Any]] = []
     folders = library.fmus(project)
     for path in library.names("system", project).values():
         try:
             system = read_system(path, fmus=folders)
         except ShipcosimError:
             continue
+        together.append({})
         for component in system.components.values():
             kinds = component.fmu.variables
             given = {name: value for name, value in component.start.items() if kinds[name].causality == "parameter"}
             found.setdefault(component.fmu.path.stem, []).append(given)
-    return found
+            together[-1] = given | together[-1]
+    return {name: found.get(name, together) for name in library.fmu_sources(project)}
 
 
 def _systems(project: Path) -> dict[str, Path]:

@@ -126,8 +126,10 @@ class Recording:
         Values that were put into texts, by their numbers.
     """
 
-    has_primitives = False
-    """Whether the code will have a C runtime with it, for products of matrices and the like."""
+    stands_alone = False
+    """Whether the code is for other parameters too, without Python, and has a C runtime for products of matrices."""
+
+    most_ways = MOST_PATHS
 
     def __init__(self, example: Sequence[float], choices: Set[int] = frozenset()):
         self.memory, self._choices = example, choices
@@ -164,9 +166,9 @@ class Recording:
             self._prefix, self._taken = self._due.pop(), []
             self.block, self._answers = root, dict(before[1])
             ways += 1
-            if ways > MOST_PATHS:
+            if ways > self.most_ways:
                 (where, _), *_ = self._asked.most_common(1)
-                raise Untraceable(f"it has more than {MOST_PATHS} ways through a step, most of them by {where}")
+                raise Untraceable(f"it has more than {self.most_ways} ways through a step, most of them by {where}")
             try:
                 result = function()
             except (Untraceable, AssertionError, MemoryError, RecursionError):

@@ -299,6 +299,12 @@ class Maths:
         return symbol.recording.repeat(going, turn, state)
 
     @staticmethod
+    def acts(value: Any, neutral: float) -> bool:
+        """Whether a parameter can change anything: asked where it can have another value when the code runs."""
+        symbol = first_symbol(value)
+        return not (isinstance(symbol, Symbol) and symbol.recording.stands_alone) or bool(value != neutral)
+
+    @staticmethod
     def repeat_of(fmu: Any, going: Callable, turn: Callable) -> None:
         """Loop over the attributes of a component; see `Recording.repeat`."""
         fixed = {variable.name for variable in fmu.variables if variable.causality == "parameter"}
@@ -442,7 +448,7 @@ class SymbolArray(np.ndarray):
             return as_symbols(FUNCTIONS[ufunc.__name__](*given))
         elif ufunc is np.matmul and min(one.ndim for one in given) > 1 and given[0].shape[-1] > 3:
             symbol = first_symbol(*given)
-            if symbol is not None and symbol.recording.has_primitives:
+            if symbol is not None and symbol.recording.stands_alone:
                 return _products(symbol, *given)
         elif ufunc in _EXTREMES:
             ufunc = _EXTREMES[ufunc]

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.core.interpolation import EvenTable, even_table, interp_even
-from shipcosim.models.core.maths import Arithmetic, times
+from shipcosim.models.core.kept import kept
+from shipcosim.models.core.maths import Arithmetic, library_of, times
 
 
 class AxisGains(NamedTuple):
@@ -218,8 +219,22 @@ def filter_table(
     """
     spans = sample_period, -horizontal.delay, -yaw.delay
     columns = [column for span in spans for column in wave_transition(span, frequencies, damping)]
-    columns += [column for noise in (horizontal, yaw) for column in axis_gains(frequencies, damping, noise)]
+    columns += [column for noise in (horizontal, yaw) for column in _gains(frequencies, damping, noise)]
     return even_table(frequencies, *columns)
+
+
+def _gains(frequencies, damping, noise):
+    """Gains of one axis over the frequencies; one after the other where it is recorded what is computed."""
+    if not hasattr(library_of(frequencies), "kept"):
+        return axis_gains(frequencies, damping, noise)
+    per_frequency = zip(frequencies, noise.wave, noise.disturbance, noise.bias_drift, strict=True)
+    rows = [_gains_at(one, damping, *noise[:4], *others) for one, *others in per_frequency]
+    return [np.array(column) for column in zip(*rows, strict=True)]
+
+
+@kept(1)
+def _gains_at(frequency, damping, *noise):
+    return axis_gains(frequency, damping, AxisNoise(*noise))
 
 
 def filter_at(frequency: Arithmetic, table: EvenTable) -> WaveFilter:

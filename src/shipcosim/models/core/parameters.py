@@ -148,4 +148,6 @@ def acts(value: Any, neutral: float = 0.0) -> bool:
     >>> acts(0.0), acts(0.1), acts(1.0, neutral=1.0)
     (False, True, False)
     """
+    if (own := getattr(value, "maths", None)) is not None:
+        return own.acts(value, neutral)
     return not isinstance(value, (int, float)) or value != neutral

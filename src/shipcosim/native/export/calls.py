@@ -12,7 +12,8 @@ from shipcosim.native.recording import Block, Call, Recording, typed
 class ExportRecording(Recording):
     """A recording for code without Python: what is kept by its arguments is recorded too."""
 
-    has_primitives = True
+    stands_alone = True
+    most_ways = 60
 
 
 @dataclass(frozen=True, eq=False)

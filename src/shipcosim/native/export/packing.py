@@ -81,32 +81,25 @@ def _variants(cls: Any, examples: Sequence[Mapping[str, Any]]) -> Iterator[tuple
     The first one that cannot be recorded ends it; of the flags' other values those that can be recorded are taken.
     """
     seen: list[dict[str, Any]] = []
-    needed = [v for v in cls.variables if v.required]
     given = [dict(example) for example in examples] or [{}]
-    if examples and not needed:
+    if examples and not any(v.required for v in cls.variables):
         given.append({})
-    for values in given:
-        if any(all(_value(cls, values, name) == kept for name, kept in fixed.items()) for fixed in seen):
+    for number, values in enumerate(given):
+        if values in given[:number]:
             continue
         variant = variant_of(cls, values, cls.default_step_size)
         yield variant, values
         seen.append(variant.fixed)
         flags = [v.name for v in cls.variables if v.type == "Boolean" and v.name in variant.fixed]
         for chosen in itertools.product([False, True], repeat=len(flags)) if len(flags) <= MOST_FLAGS else ():
-            other = values | dict(zip(flags, chosen, strict=True))
-            fixed = variant.fixed | dict(zip(flags, chosen, strict=True))
-            if fixed in seen:
+            flagged = dict(zip(flags, chosen, strict=True))
+            if variant.fixed | flagged in seen:
                 continue
+            seen.append(variant.fixed | flagged)
             try:
-                yield variant_of(cls, other, cls.default_step_size), other
-                seen.append(fixed)
+                yield variant_of(cls, values | flagged, cls.default_step_size), values | flagged
             except Untraceable:
                 continue
-
-
-def _value(cls, values, name):
-    starts = {variable.name: variable.start for variable in cls.variables}
-    return values.get(name, starts[name])
 
 
 def _description(cls, identifier, guid) -> bytes:

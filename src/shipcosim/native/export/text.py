@@ -19,7 +19,7 @@ LEFT_OUT = 1e30
 MUCH = 3000
 """Lines of a function from which on a compiler takes minutes to make it fast, where it is called seldom."""
 
-_VALUES = re.compile(r"\b[vpc][0-9]+\b")
+_VALUES = re.compile(r"\b(?:[vpc]|start_|step_)[0-9]+\b")
 TYPES = {"Real": "REAL", "Integer": "INTEGER", "Boolean": "BOOLEAN", "String": "STRING"}
 
 
@@ -37,11 +37,17 @@ def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Var
     words : callable
         ``words(error)`` is what the FMU in Python says of an error.
     """
-    functions, kept, others = [], [], {}
-    for number, variant in enumerate(variants):
-        text, size = _functions(variant, number, words, others)
+    functions, kept, others, written, found = [], [], {}, set(), []
+    for variant in variants:
+        text, size = _functions(variant, len(found), words, others)
+        plain = (*variant.fixed.items(), _plain(text))
+        if plain in written:
+            continue
+        written.add(plain)
+        found.append(variant)
         functions.append(text)
         kept.append(size)
+    variants = found
     outputs = [str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"]
     head = [
         f"#define IDENTIFIER {_text(identifier)}",
@@ -151,7 +157,7 @@ class ModelWriter(Writer):
     def _other(self, symbol, found):
         said = f'say(o, "this native FMU was built where a number that shapes its code is "); say_float(o, {found});'
         said += f' say(o, ", and not for "); say_float(o, {operand(symbol)});'
-        said += ' say(o, ": take the FMU in Python, or build it again");'
+        said += ' say(o, ": take the FMU in Python, or build it again"); o->is_for_others = 1;'
         return f"{{ {said} return GIVEN_UP; }}"
 
     def _value(self, symbol: Symbol, depth):
@@ -191,8 +197,7 @@ class _Procedure(ModelWriter):
     def named_function(self) -> tuple[str, str]:
         """Its name, and its text where there is none like it yet."""
         text = self.function()
-        numbers = {found: f"v{place}" for place, found in enumerate(dict.fromkeys(_VALUES.findall(text)))}
-        plain = _VALUES.sub(lambda found: numbers[found[0]], text)
+        plain = _plain(text)
         if plain in self._others:
             return self._others[plain], ""
         name = self._others[plain] = f"kept_{len(self._others)}"
@@ -205,6 +210,12 @@ class _Procedure(ModelWriter):
             self._put(depth, "return DONE;")
         else:
             self._put(depth, self._fail(result))
+
+
+def _plain(text: str) -> str:
+    """The text of functions with other names: the same for those that compute the same."""
+    numbers = {found: f"v{place}" for place, found in enumerate(dict.fromkeys(_VALUES.findall(text)))}
+    return _VALUES.sub(lambda found: numbers[found[0]], text)
 
 
 def say(text: str, recording: Recording) -> str:

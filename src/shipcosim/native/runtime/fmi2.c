@@ -231,26 +231,27 @@ static void say_choice(Instance *o, int variable, double number, const char *tex
         say_number(o, number, "%.0f");
 }
 
-/* The variant for the parameters; -1 where there is none, which is said. */
-static int chosen_variant(Instance *o)
+static int fits(const Instance *o, const Variant *variant)
+{
+    int same = 0;
+
+    while (same < variant->n_choices && is_chosen(o, variant->choices + same))
+        same++;
+    return same;
+}
+
+/* Say which parameter has a value that no variant has. */
+static void say_misfit(Instance *o)
 {
     int best = 0, most = -1;
     const Choice *other;
 
-    for (int i = 0; i < N_VARIANTS; i++) {
-        int same = 0;
-
-        while (same < variants[i].n_choices && is_chosen(o, variants[i].choices + same))
-            same++;
-        if (same == variants[i].n_choices)
-            return i;
-        if (same > most) {
-            most = same;
+    for (int i = 0; i < N_VARIANTS; i++)
+        if (fits(o, variants + i) > most) {
+            most = fits(o, variants + i);
             best = i;
         }
-    }
     other = variants[best].choices + most;
-    begin(o);
     say(o, "this native FMU was built with ");
     say(o, variables[other->variable].name);
     say(o, " = ");
@@ -258,7 +259,6 @@ static int chosen_variant(Instance *o)
     say(o, ", and not for ");
     say_choice(o, other->variable, o->m[other->variable], o->texts[other->variable]);
     say(o, ": build it again with a system that has this value, or take the FMU in Python");
-    return -1;
 }
 
 static Status refuse_not_finite_outputs(Instance *o)
@@ -282,21 +282,35 @@ static Status refuse_not_finite_outputs(Instance *o)
     return OK;
 }
 
+/* Start by the first variant whose code is for the parameters. */
 static Status start(Instance *o)
 {
-    int variant;
+    int n_fitting = 0;
 
-    if (is_refused(o) || (variant = chosen_variant(o)) < 0)
+    if (is_refused(o))
         return failed(o);
-    if (variant != o->variant)
-        for (int i = 0; i < MOST_KEPT; i++)
-            o->kept[i] = NAN;
-    o->variant = variant;
-    begin(o);
-    if (variants[variant].start(o->m, o->kept, o) != DONE)
-        return failed(o);
-    o->is_stale = 0;
-    return refuse_not_finite_outputs(o);
+    for (int i = 0; i < N_VARIANTS; i++) {
+        if (fits(o, variants + i) < variants[i].n_choices)
+            continue;
+        n_fitting++;
+        if (i != o->variant)
+            for (int k = 0; k < MOST_KEPT; k++)
+                o->kept[k] = NAN;
+        o->variant = i;
+        o->is_for_others = 0;
+        begin(o);
+        if (variants[i].start(o->m, o->kept, o) == DONE) {
+            o->is_stale = 0;
+            return refuse_not_finite_outputs(o);
+        }
+        if (!o->is_for_others)
+            return failed(o);
+    }
+    if (!n_fitting) {
+        begin(o);
+        say_misfit(o);
+    }
+    return failed(o);
 }
 
 EXPORT Status FMI(EnterInitializationMode)(void *component)

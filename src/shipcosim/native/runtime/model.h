@@ -42,6 +42,7 @@ typedef struct Instance {
     size_t n_said, room;
     double time;
     int is_initialising, is_initialised, is_stale, variant, is_logging;
+    int is_for_others;                          /* it failed because its code is for other numbers */
     void *callbacks;
 } Instance;
 
