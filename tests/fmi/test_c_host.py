@@ -21,8 +21,9 @@ from shipcosim.ssp import read_system
 FMUS = sorted(path.stem for path in Path(__file__).parents[2].glob("fmus/*/*.py") if path.stem == path.parent.name)
 
 NATIVE = (
-    "azimuth_thruster drift_force earth_force fixed_thruster harbour mapped_thruster pid_controller propeller_rudder "
-    "reference thruster_monitor tunnel_thruster varying_current"
+    "allocator azimuth_thruster dp_controller dp_predictor drift_force earth_force environment fixed_thruster harbour "
+    "mapped_thruster pid_controller predictor propeller_rudder reference sensors thruster_interaction thruster_monitor "
+    "tunnel_thruster varying_current vessel"
 ).split()
 """FMUs that `shipcosim build --native` writes in C."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -64,10 +64,11 @@ class Symbol:
         """The elementary functions of symbols, which models find by this name."""
         return Maths
 
-    def combined(self, op: str, a: Any, b: Any, kind: str | None = None) -> Symbol:
+    def combined(self, op: str, a: Any, b: Any, kind: str | None = None) -> Any:
         """The value of an operation of two operands."""
         if op == "*" and (isinstance(a, (tuple, list)) or isinstance(b, (tuple, list))):
-            return operator.index(a) * b if isinstance(a, Symbol) else a * operator.index(b)
+            count, repeated = cast("tuple[Any, Any]", (a, b) if isinstance(a, Symbol) else (b, a))
+            return operator.index(count) * repeated
         if not isinstance(a, NUMBERS) or not isinstance(b, NUMBERS):
             raise Untraceable(f"it computes with a {type(b if isinstance(a, NUMBERS) else a).__name__}")
         a, b = plain(a), plain(b)
@@ -477,6 +478,6 @@ def as_symbols(value: Any) -> Any:
     """Arrays of objects, alone or in a tuple or list, as `SymbolArray`; anything else as it is."""
     if isinstance(value, np.ndarray) and value.dtype == object:
         return value.view(SymbolArray)
-    if type(value) in (tuple, list):
-        return type(value)(as_symbols(part) if isinstance(part, np.ndarray) else part for part in value)
-    return value
+    if type(value) is tuple:
+        return tuple(map(as_symbols, value))
+    return [as_symbols(part) for part in value] if type(value) is list else value

@@ -87,7 +87,7 @@ class _Generator:
         raise Untraceable(f"it draws random numbers by {name}: random, uniform and normal ones can be compiled")
 
     def _draw(self, kind, size):
-        shape = () if size is None else (size,) if isinstance(size, (int, np.integer)) else tuple(size)
+        shape: Any = () if size is None else (size,) if isinstance(size, (int, np.integer)) else tuple(size)
         self._drawn += [kind, int(np.prod(shape, dtype=int))]
         symbol = first_symbol(self._seeds)
         assert symbol is not None
