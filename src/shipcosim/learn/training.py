@@ -13,6 +13,24 @@ Progress = Callable[[int, int], None]
 """Is told how many steps are done, and of how many at most."""
 
 
+def part_of(progress: Progress, before: float, share: float) -> Progress:
+    """Progress of one part, told as progress of the whole in thousandths.
+
+    Parameters
+    ----------
+    progress : callable
+        Of the whole.
+    before, share : float
+        Of the whole: what is done when the part begins, and the part. [1]
+
+    Returns
+    -------
+    callable
+        Of the part.
+    """
+    return lambda done, total: progress(round(1000 * (before + share * done / total)), 1000)
+
+
 @dataclass(frozen=True)
 class Schedule:
     """How a network is trained.

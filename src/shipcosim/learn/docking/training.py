@@ -12,7 +12,7 @@ from shipcosim.learn.docking import dockings, ours, paper_iii, predictions, regi
 from shipcosim.learn.docking.inputs import ShipModel, replay
 from shipcosim.learn.docking.records import Record
 from shipcosim.learn.results import Trained
-from shipcosim.learn.training import Progress
+from shipcosim.learn.training import Progress, part_of
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.helm import HelmParameters
 from shipcosim.models.ship.hull import HullParameters
@@ -66,11 +66,8 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
     Trained
         Weights and report.
     """
-
-    def part(before: float, share: float) -> Progress:
-        return lambda done, total: progress(round(1000 * (before + share * done / total)), 1000)
-
-    return learn(sail(part(0.0, SAILING)), ship(), recipe, part(SAILING, 1.0 - SAILING))
+    records = sail(part_of(progress, 0.0, SAILING))
+    return learn(records, ship(), recipe, part_of(progress, SAILING, 1.0 - SAILING))
 
 
 def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.Recipe, progress: Progress) -> Trained:

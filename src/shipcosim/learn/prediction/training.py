@@ -11,7 +11,7 @@ from shipcosim.learn.datasets import digest
 from shipcosim.learn.prediction import drift, paper_iv, worlds
 from shipcosim.learn.prediction.rollouts import Sailed, Ship, ahead, followed, mapped
 from shipcosim.learn.results import Trained
-from shipcosim.learn.training import Progress, repeatable
+from shipcosim.learn.training import Progress, part_of, repeatable
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import drift_off
 from shipcosim.models.prediction.own_record import Learned
@@ -84,16 +84,6 @@ def sail(seeds: Sequence[int], progress: Progress) -> list[worlds.Record]:
     return worlds.sail_all([worlds.draw(seed) for seed in seeds], progress=progress)
 
 
-def parts(progress: Progress, first: bool) -> Progress:
-    """Progress of sailing, which comes first, or of what follows, as that of the whole in thousandths."""
-
-    def tell(done, total):
-        share = done / total
-        progress(round(1000 * (SAILING * share if first else SAILING + (1.0 - SAILING) * share)), 1000)
-
-    return tell
-
-
 def train(learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe: Any, progress: Progress) -> Trained:
     """Train a predictor from scratch: sail the worlds of its recipe, and learn from their records.
 
@@ -111,7 +101,8 @@ def train(learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe
     Trained
         Weights and report.
     """
-    return learn(sail(recipe.seeds, parts(progress, True)), recipe, parts(progress, False))
+    records = sail(recipe.seeds, part_of(progress, 0.0, SAILING))
+    return learn(records, recipe, part_of(progress, SAILING, 1.0 - SAILING))
 
 
 def ours(records: Sequence[worlds.Record], recipe: drift.Recipe, progress: Progress) -> Trained:
