@@ -1,5 +1,6 @@
 """Commands as users and CI jobs call them: exit codes, files, messages."""
 
+import importlib.util
 import json
 import os
 import signal
@@ -60,6 +61,23 @@ def test_build_makes_fmus_and_systems(call, project):
 def test_build_of_one_name_builds_only_that_into_the_folder_asked_for(call, project):
     assert call("build", "lag", "--out", "elsewhere").code == 0
     assert names(project / "elsewhere") == ["fmus"] and not (project / "build").exists()
+
+
+def test_a_native_fmu_is_built_and_run_in_place_of_the_one_in_python(call, project, needs):
+    if importlib.util.find_spec("ziglang") is None:
+        needs("ziglang", 'Install it: pip install -e ".[native]".')
+    done = call("build", "--native")
+    assert done.code == 0, done.err
+    (path,) = (project / "build" / "native").glob("*.fmu")
+    done = call("run", "fill", "--fmus", str(path.parent))
+    assert done.code == 0, done.err
+    failed = call("run", "fill", "--fmus", str(path.parent), "--set", "lag.pause=0.001")
+    assert failed.code != 0 and "this native FMU was built" in failed.err
+
+
+def test_platforms_are_for_native_fmus(call, project):
+    done = call("build", "--targets", "linux")
+    assert done.code == 2 and "--native" in done.err
 
 
 def test_build_of_an_unknown_name_suggests_the_nearest(call, project):
