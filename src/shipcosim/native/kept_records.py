@@ -88,12 +88,12 @@ def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
 
 def key_of(fmu: Any, shape: Shape) -> str:
     """Key of a component's code and shape. The module of an FMU has a name unique to its content."""
-    return _key(type(fmu), shape.flat)
+    return _key(type(fmu).__module__, type(fmu).__qualname__, shape.flat)
 
 
 @lru_cache(maxsize=256)
-def _key(cls, flat):
-    parts = cls.__module__, cls.__qualname__, shipcosim.__version__, flat.structure, flat.leaves, _OWN_CODE
+def _key(module, name, flat):
+    parts = module, name, shipcosim.__version__, flat.structure, flat.leaves, _OWN_CODE
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 

@@ -125,12 +125,12 @@ def numbers_of(values: dict[str, Any], constant: Set[str], unchanging: Set[str])
 
 
 def _take(value, fixed, numbers, rest):
-    kind = type(value)
+    kind, made = type(value), type(value).__qualname__
     if kind is float:
         numbers.append(value)
         rest.append("d")
     elif isinstance(value, (tuple, list)):
-        rest += (kind, len(value))
+        rest += (made, len(value))
         if set(map(type, value)) == {float}:
             numbers += value
             rest.append("d")
@@ -142,7 +142,7 @@ def _take(value, fixed, numbers, rest):
         rest += (value.dtype.kind, value.shape)
     elif isinstance(value, dict) or (dataclasses.is_dataclass(value) and not isinstance(value, type)):
         parts = value if isinstance(value, dict) else vars(value)
-        rest += (kind, *parts)
+        rest += (made, *parts)
         for key, part in parts.items():
             if key != "maths" or kind is dict:
                 _take(part, fixed, numbers, rest)

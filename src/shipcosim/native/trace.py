@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 from shipcosim.native.leaves import Flat, attributes_like, numbers_of, text_of
@@ -65,18 +65,20 @@ def shape_of(fmu: Any) -> Shape:
     Untraceable
         It keeps what is no plain data.
     """
-    whole, constant, unchanging = _structure_of(type(fmu))
+    whole, constant, unchanging = _structure_of(fmu)
     for group in fmu.groups:
         remember(getattr(fmu, group.name))
     numbers, rest = numbers_of(vars(fmu), constant, unchanging)
-    known = _SHAPES.get((type(fmu), rest))
+    # by name, which is that of a content: each run has a class of its own
+    key = type(fmu).__module__, type(fmu).__qualname__, whole, constant, unchanging, rest
+    known = _SHAPES.get(key)
     if known is None:
         flat = Flat(vars(fmu), constant, unchanging)
         choices = (n for n, leaf in enumerate(flat.leaves) if leaf.kind == "i" and leaf.path[0] in whole | unchanging)
         known = Shape(flat, numbers, constant, unchanging, frozenset(choices))
         if len(_SHAPES) >= MOST_SHAPES:
             _SHAPES.clear()
-        _SHAPES[type(fmu), rest] = known
+        _SHAPES[key] = known
     return replace(known, numbers=numbers)
 
 
@@ -85,14 +87,13 @@ MOST_SHAPES = 200
 """Shapes that are remembered: components in a process, as a rule."""
 
 
-@lru_cache(maxsize=MOST_SHAPES)
-def _structure_of(cls):
+def _structure_of(fmu):
     """Names of parameters that are whole numbers, of what belongs to the structure, of dataclasses of parameters."""
-    parameters = [variable for variable in cls.variables if variable.causality == "parameter"]
+    parameters = [variable for variable in fmu.variables if variable.causality == "parameter"]
     whole = frozenset(variable.name for variable in parameters if variable.type == "Integer")
-    constant = frozenset(variable.name for variable in cls.variables if variable.type == "String")
+    constant = frozenset(variable.name for variable in fmu.variables if variable.type == "String")
     constant |= {variable.name for variable in parameters if variable.type == "Boolean"}
-    return whole, constant, frozenset(group.name for group in cls.groups)
+    return whole, constant, frozenset(group.name for group in fmu.groups)
 
 
 def trace(
