@@ -9,6 +9,7 @@ Definition.
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -70,7 +71,7 @@ def tensors_if_any(arrays: tuple, *values: Arithmetic) -> tuple:
     return tuple(tensor.new_tensor(array) for array in arrays)
 
 
-def per_seed(draw: Callable[[int], tuple], seed: int | np.ndarray) -> tuple:
+def per_seed(draw: Callable[[Any], tuple], seed: int | np.ndarray) -> tuple:
     """Random arrays of one seed, or of several seeds in rows.
 
     Parameters
