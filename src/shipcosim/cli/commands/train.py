@@ -34,10 +34,7 @@ def allocator(
 
     Example: shipcosim train allocator --kind paper-v
     """
-    from shipcosim.cli.console import shown_path
-
-    for file in _train("allocator", kind, out):
-        typer.echo(shown_path(file))
+    _train("allocator", kind, out)
 
 
 def drift(
@@ -53,10 +50,7 @@ def drift(
 
     Example: shipcosim train drift --kind ours
     """
-    from shipcosim.cli.console import shown_path
-
-    for file in _train("drift", kind, out):
-        typer.echo(shown_path(file))
+    _train("drift", kind, out)
 
 
 def dead_reckoning(
@@ -74,10 +68,7 @@ def dead_reckoning(
 
     Example: shipcosim train dead-reckoning --kind paper-ii
     """
-    from shipcosim.cli.console import shown_path
-
-    for file in _train("dead-reckoning", kind, out):
-        typer.echo(shown_path(file))
+    _train("dead-reckoning", kind, out)
 
 
 def docking(
@@ -93,14 +84,12 @@ def docking(
 
     Example: shipcosim train docking --kind ours
     """
+    _train("docking", kind, out)
+
+
+def _train(component: str, kind: str, out: Path | None) -> None:
+    """Train a component, write weights and report, and say where. Nothing is written where something is wrong."""
     from shipcosim.cli.console import shown_path
-
-    for file in _train("docking", kind, out):
-        typer.echo(shown_path(file))
-
-
-def _train(component: str, kind: str, out: Path | None) -> list[Path]:
-    """Train a component, write weights and report: the files. Nothing is written where something is wrong."""
     from shipcosim.cli.results import check_targets
     from shipcosim.staging import staged
 
@@ -118,7 +107,8 @@ def _train(component: str, kind: str, out: Path | None) -> list[Path]:
     check_targets(folder)
     with staged(folder) as stage, _progress(kind) as progress:
         written = learn.train(component, kind, stage, progress)
-    return [folder / file.name for file in written]
+    for file in written:
+        typer.echo(shown_path(folder / file.name))
 
 
 @contextmanager

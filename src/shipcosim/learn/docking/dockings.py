@@ -5,7 +5,6 @@ within their tolerances, another form, and a load that is new each time. The pre
 """
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -15,6 +14,7 @@ import numpy as np
 from shipcosim.cosim import simulate, system_of
 from shipcosim.learn.docking.harbours import FAMILIAR, UNSEEN, Harbour, harbour
 from shipcosim.learn.docking.records import KNOWN, TRUTH, Record
+from shipcosim.learn.true_ships import DAMPING, MEMORY, POWER, SPEEDS, STRIPS, WIND, Form, factors, sailed
 from shipcosim.models.core.tables import text
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
@@ -27,15 +27,11 @@ HELD_OUT, HELD_OUT_UNSEEN = range(8300, 8320), range(8320, 8340)
 """Seeds of dockings that nobody looks at before the end, at familiar and at unseen harbours."""
 SAMPLES, STEP, STOP = 1000, 0.2, 1500.0
 """Length of a record; step and latest end of the co-simulation. [1, s, s]"""
-STRIPS, WIND, POWER, DAMPING, MEMORY, LOADING, NOISE = 0.30, 0.15, 0.15, 0.4, 0.25, 0.03, 0.2
-"""Most at distance 1: of the drag factor at five places along the hull, of the wind load factors at eight directions,
-of powers of speed from 2, of linear damping over the quadratic one at `SPEEDS`, of the added mass that remembers, of
-the mass that a docking has more or less, of the errors of sensors. [1]"""
-SPEEDS = (1.0, 0.3, 0.02)  # m/s, m/s, rad/s
+LOADING = 0.03
+"""Most at distance 1 of the mass that a docking has more or less, over the ship's. [1]"""
 CROSS_FLOW, SPEED_LOSS, ANGLE_LOSS = 0.27, 0.1, 0.1
 """At distance 1: cross-flow drag that stands for half of the quadratic damping in sway, loss of the tunnel's thrust
 under way, loss of azimuths athwartships. [1, s2/m2, 1]"""
-_NOISY = ("position_noise_std", "position_drift_std", "velocity_noise_std", "heading_noise_std", "heading_drift_std")
 
 
 @dataclass(frozen=True)
@@ -166,13 +162,7 @@ def sail_all(
     list of Record
         One a docking that ends in time.
     """
-    dockings, records = list(dockings), []
-    with ProcessPoolExecutor(processes) as pool:
-        for done, record in enumerate(pool.map(_sailed, dockings), 1):
-            records += [record] if record else []
-            if progress:
-                progress(done, len(dockings))
-    return records
+    return [record for record in sailed(_sailed, list(dockings), processes, progress) if record]
 
 
 def _sailed(docking: Docking) -> Record | None:
@@ -198,26 +188,21 @@ def true_ship(distance: float = 1.0) -> dict[str, float | str]:
     rng = np.random.default_rng([26, 3, 1])
     values = {name: value + distance * off * rng.standard_normal() for name, value, off in _tolerated()}
     values["vessel.A62"] = values["vessel.A26"]
-    along = 1.0 + distance * STRIPS * rng.uniform(-1.0, 1.0, 5)
-    around = 1.0 + distance * WIND * rng.uniform(-1.0, 1.0, (8, 3))
+    along, around = factors(rng, 5, STRIPS, distance), factors(rng, (8, 3), WIND, distance)
     powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
     memory = distance * MEMORY * rng.uniform(0.0, 1.0, 3)
     quadratic = [values[f"vessel.{name}"] for name in ("X_uu", "Y_modvv", "N_modrr")]
     damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
     half = 0.5 * distance
+    form = Form(along, around, powers, damping, memory)
     return values | {
         "vessel.cross_flow_drag": CROSS_FLOW * distance,
         "vessel.Y_modvv": (1.0 - half) * quadratic[1],
         "vessel.N_modrr": (1.0 - half) * quadratic[2],
-        "vessel.strip_factors": text(zip(np.linspace(-1.0, 1.0, 5), along, strict=True)),
-        "vessel.drag_power": float(powers[0]),
-        "vessel.cross_flow_power": float(powers[1]),
-        "vessel.wind_factors": text(np.column_stack([np.arange(0.0, 361.0, 45.0), np.vstack([around, around[:1]])])),
-        **dict(zip(("vessel.X_u", "vessel.Y_v", "vessel.N_r"), damping.tolist(), strict=True)),
-        **dict(zip(("vessel.memory_surge", "vessel.memory_sway", "vessel.memory_yaw"), memory.tolist(), strict=True)),
         "tunnel.speed_loss": SPEED_LOSS * distance,
         "port.angle_loss": ANGLE_LOSS * distance,
         "starboard.angle_loss": ANGLE_LOSS * distance,
+        **form.values(),
     }
 
 

@@ -1,7 +1,6 @@
 """What `shipcosim train docking` does: dockings sailed, what is learned from them, weights and report."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from shipcosim.learn.docking.inputs import ShipModel, replay
 from shipcosim.learn.docking.records import Record
 from shipcosim.learn.results import Trained
 from shipcosim.learn.training import Progress, part_of
+from shipcosim.learn.true_ships import known_to
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.helm import HelmParameters
 from shipcosim.models.ship.hull import HullParameters
@@ -34,12 +34,8 @@ NOTES = (
 
 def ship() -> ShipModel:
     """The ship as the predictor of the docking system knows her."""
-    values = system_of(dockings.scenario(dockings.draw(1))).components[COMPONENT].start
-
-    def given(kind: Any) -> Any:
-        return kind(**{one.name: values[one.name] for one in fields(kind)})
-
-    return ShipModel(given(HullParameters), given(WindParameters), given(HelmParameters), given(MastParameters))
+    predictor = system_of(dockings.scenario(dockings.draw(1))).components[COMPONENT]
+    return ShipModel(*known_to(predictor, HullParameters, WindParameters, HelmParameters, MastParameters))
 
 
 def sail(progress: Progress) -> dict[str, list[Record]]:

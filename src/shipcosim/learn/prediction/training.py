@@ -1,7 +1,6 @@
 """What `shipcosim train drift` does: worlds sailed, what is learned from them, weights and report."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from shipcosim.learn.prediction import drift, paper_iv, worlds
 from shipcosim.learn.prediction.rollouts import Sailed, Ship, ahead, followed, mapped
 from shipcosim.learn.results import Trained
 from shipcosim.learn.training import Progress, part_of, repeatable
+from shipcosim.learn.true_ships import known_to
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import drift_off
 from shipcosim.models.prediction.own_record import Learned
@@ -34,12 +34,8 @@ SAILING = 0.5
 
 def ship() -> Ship:
     """The DP ship as her predictor knows her."""
-    values = system_of(worlds.scenario(worlds.draw(1, 0.0))).components["predictor"].start
-
-    def given(kind: Any) -> Any:
-        return kind(**{one.name: values[one.name] for one in fields(kind)})
-
-    return Ship(given(HullParameters), given(WindParameters), given(MastParameters))
+    predictor = system_of(worlds.scenario(worlds.draw(1, 0.0))).components["predictor"]
+    return Ship(*known_to(predictor, HullParameters, WindParameters, MastParameters))
 
 
 def aligned(records: Sequence[worlds.Record], before: int, after: int = 81) -> Sailed:

@@ -7,7 +7,6 @@ manoeuvres, loses all thrust at a drawn time and drifts for 160 s.
 
 import tomllib
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -16,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim import simulate, system_of
-from shipcosim.models.core.tables import text
+from shipcosim.learn.true_ships import DAMPING, MEMORY, NOISE, POWER, SPEEDS, STRIPS, WIND, Form, factors, sailed
 from shipcosim.scenario import Event, Scenario
 
 TRAINING, CALIBRATION, TUNING = range(1, 200), range(200, 300), range(300, 400)
@@ -46,11 +45,6 @@ NOISY = tuple(
 )
 """Errors of sensors that are larger or smaller than those of the parameter set."""
 HULL = ("vessel.water_density", "vessel.length", "vessel.draught")
-STRIPS, WIND, POWER, DAMPING, MEMORY, NOISE = 0.30, 0.15, 0.15, 0.4, 0.25, 0.2
-"""Most at distance 1: of the drag factor at five places along the hull, of the wind load factors at eight directions,
-of powers of speed from 2, of linear damping over the quadratic one at `SPEEDS`, of the added mass that remembers, of
-the errors of sensors. [1]"""
-SPEEDS = (1.0, 0.3, 0.02)  # m/s, m/s, rad/s
 MEMORY_TIMES = (3.0, 12.0)  # s
 STEP = 0.1  # s
 DRIFT = 160.0  # s
@@ -209,13 +203,7 @@ def sail_all(
     list of Record
         One a world.
     """
-    worlds, records = list(worlds), []
-    with ProcessPoolExecutor(processes) as pool:
-        for record in pool.map(sail, worlds):
-            records.append(record)
-            if progress:
-                progress(len(records), len(worlds))
-    return records
+    return list(sailed(sail, list(worlds), processes, progress))
 
 
 def _source(name: str) -> str:
@@ -251,16 +239,10 @@ def _form(rng: np.random.Generator, distance: float, values: dict[str, float]) -
     quadratic = np.array([values["vessel.X_uu"], -cross * length, -cross * length**4 / 32.0])
     damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
     memory = distance * MEMORY * rng.uniform(0.0, 1.0, 3)
-    along = 1.0 + distance * STRIPS * rng.uniform(-1.0, 1.0, 5)
+    along = factors(rng, 5, STRIPS, distance)
     powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
-    around = 1.0 + distance * WIND * rng.uniform(-1.0, 1.0, (8, 3))
-    return {
-        "vessel.strip_factors": text(zip(np.linspace(-1.0, 1.0, 5), along, strict=True)),
-        "vessel.drag_power": float(powers[0]),
-        "vessel.cross_flow_power": float(powers[1]),
-        "vessel.wind_factors": text(np.column_stack([np.arange(0.0, 361.0, 45.0), np.vstack([around, around[:1]])])),
-        **dict(zip(("vessel.X_u", "vessel.Y_v", "vessel.N_r"), damping.tolist(), strict=True)),
-        **dict(zip(("vessel.memory_surge", "vessel.memory_sway", "vessel.memory_yaw"), memory.tolist(), strict=True)),
+    around = factors(rng, (8, 3), WIND, distance)
+    return Form(along, around, powers, damping, memory).values() | {
         "vessel.memory_time": float(rng.uniform(*MEMORY_TIMES)),
     }
 

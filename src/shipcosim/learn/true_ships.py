@@ -1,0 +1,121 @@
+"""True ships of simulated records: how far they are from their models, what the models know, many sailed at a time."""
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import fields
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from shipcosim.models.core.tables import text
+from shipcosim.ssp import Component
+
+Drawn = TypeVar("Drawn")
+Record = TypeVar("Record")
+STRIPS, WIND, POWER, DAMPING, MEMORY, NOISE = 0.30, 0.15, 0.15, 0.4, 0.25, 0.2
+"""Most at distance 1: of the drag factor at five places along the hull, of the wind load factors at eight directions,
+of powers of speed from 2, of linear damping over the quadratic one at `SPEEDS`, of the added mass that remembers, of
+the errors of sensors. [1]"""
+SPEEDS = (1.0, 0.3, 0.02)  # m/s, m/s, rad/s
+
+
+class Form(NamedTuple):
+    """Form of a ship that her model does not have, for the FMU `rough_vessel`.
+
+    Parameters
+    ----------
+    along : (5,) array
+        Factors of cross-flow drag from stern to bow. [1]
+    around : (8, 3) array
+        Factors of wind load X, Y, N every 45 deg, wind from the bow first. [1]
+    powers : (2,) array
+        Of speed, in resistance and cross flow. [1]
+    damping : (3,) array
+        Linear damping. [N s/m, N s/m, N m s/rad]
+    memory : (3,) array
+        Share of the added mass that remembers, in surge, sway and yaw. [1]
+    """
+
+    along: np.ndarray
+    around: np.ndarray
+    powers: np.ndarray
+    damping: np.ndarray
+    memory: np.ndarray
+
+    def values(self) -> dict[str, float | str]:
+        """Start values of the component `vessel`."""
+        around = np.vstack([self.around, self.around[:1]])
+        return {
+            "vessel.strip_factors": text(zip(np.linspace(-1.0, 1.0, 5), self.along, strict=True)),
+            "vessel.wind_factors": text(np.column_stack([np.arange(0.0, 361.0, 45.0), around])),
+            **_named(("drag_power", "cross_flow_power"), self.powers),
+            **_named(("X_u", "Y_v", "N_r"), self.damping),
+            **_named(("memory_surge", "memory_sway", "memory_yaw"), self.memory),
+        }
+
+
+def factors(rng: np.random.Generator, size: int | tuple[int, int], most: float, distance: float) -> np.ndarray:
+    """Factors about 1, drawn uniformly.
+
+    Parameters
+    ----------
+    rng : Generator
+        Where they are drawn.
+    size : int or tuple of int
+        Shape of the array. [1]
+    most : float
+        They differ from 1 by at most this, at distance 1. [1]
+    distance : float
+        How far truth and nominal model are apart. [1]
+
+    Returns
+    -------
+    array of this shape
+        [1]
+    """
+    return 1.0 + distance * most * rng.uniform(-1.0, 1.0, size)
+
+
+def known_to(component: Component, *kinds: type) -> list[Any]:
+    """Parameters as a component has them.
+
+    Parameters
+    ----------
+    component : Component
+        As a predictor, which knows the ship by her parameter set.
+    kinds : types
+        Dataclasses of parameters whose names the component has.
+
+    Returns
+    -------
+    list
+        One of each kind.
+    """
+    return [kind(**{one.name: component.start[one.name] for one in fields(kind)}) for kind in kinds]
+
+
+def sailed(
+    sail: Callable[[Drawn], Record], drawn: Sequence[Drawn], processes: int, progress: Callable[[int, int], Any] | None
+) -> Iterator[Record]:
+    """What several co-simulations give, in their order.
+
+    Parameters
+    ----------
+    sail : callable
+        Co-simulates one; a function of a module.
+    drawn : sequence
+        What is sailed.
+    processes : int
+        How many sail at a time. [1]
+    progress : callable, optional
+        Is told how many are done, and of how many.
+    """
+    with ProcessPoolExecutor(processes) as pool:
+        for done, record in enumerate(pool.map(sail, drawn), 1):
+            yield record
+            if progress is not None:
+                progress(done, len(drawn))
+
+
+def _named(names: Sequence[str], numbers: np.ndarray) -> dict[str, float]:
+    return {f"vessel.{name}": number for name, number in zip(names, numbers.tolist(), strict=True)}
