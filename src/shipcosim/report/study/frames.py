@@ -1,0 +1,154 @@
+"""The table that a view is drawn from, its series, and values gathered over runs that are alike."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.report.study.statistics import mean_interval, wilson
+from shipcosim.report.study.tables import FACTOR, Column, StudyTables, columns_of
+from shipcosim.report.theme import palette
+
+RUNS = "the runs"
+MOST_SERIES = 8
+"""Series of a figure: as many as there are colours."""
+
+
+class Point(NamedTuple):
+    """A value with the interval that it is known to, NaN where there is none."""
+
+    value: float
+    low: float
+    high: float
+
+
+class Lacking(Exception):
+    """A view cannot be drawn; its text says why."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A table of the study, by columns.
+
+    Attributes
+    ----------
+    name : str
+        As the page calls it: runs, summary, or the name of another table.
+    columns : mapping of str to Column
+    """
+
+    name: str
+    columns: Mapping[str, Column]
+
+    def column(self, name: object) -> Column:
+        """A column; what there is instead is said where it is missing."""
+        if name not in self.columns:
+            raise Lacking(f"There is no column '{name}' in {self.name}. There is: {', '.join(self.columns)}.")
+        return self.columns[str(name)]
+
+    @cached_property
+    def rows(self) -> int:
+        """How many rows there are."""
+        return len(next(iter(self.columns.values())).values) if self.columns else 0
+
+
+@dataclass(frozen=True)
+class SeriesOfRows:
+    """Rows that are drawn together: their label, colour and numbers."""
+
+    label: str
+    colour: str
+    rows: NDArray
+
+
+def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]) -> Frame:
+    """The table of a view: the one it names, else the summary where it has all columns, else the runs.
+
+    Raises
+    ------
+    Lacking
+        If the table that it names is not there.
+    """
+    said = tables.about.get("columns", ())
+    if name := view.get("table"):
+        every = {"runs": tables.runs, "summary": tables.summary, **tables.tables}
+        if name not in every:
+            raise Lacking(f"There is no table '{name}'. There is: {', '.join(every)}.")
+        return Frame(f"the table '{name}'" if name in tables.tables else f"the {name}", columns_of(every[name], said))
+    if not {*needed} <= {*map(str, tables.summary.columns)}:
+        return Frame(RUNS, columns_of(tables.runs, said))
+    rows = tables.summary.dropna(subset=list(needed))  # summaries over other factors have rows of their own
+    return Frame("the summary", columns_of(rows.dropna(axis="columns", how="all"), said))
+
+
+def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> list[SeriesOfRows]:
+    """Series of a view: levels of the factors that it names; else of all that it does not use, unless it shows runs.
+
+    Parameters
+    ----------
+    frame : Frame
+    view : mapping
+        `series`: name or names; false for a single one.
+    taken : sequence of str
+        Columns that are axes of the view.
+
+    Returns
+    -------
+    list of SeriesOfRows
+        At most eight, in the order of their levels.
+    """
+    asked = view.get("series")
+    if asked is None:
+        free = [c.name for c in frame.columns.values() if c.role == FACTOR and c.name not in taken and c.levels]
+        asked = free if frame.name != RUNS else []
+    names = [asked] if isinstance(asked, str) else list(asked or ())
+    columns = [frame.column(name) for name in names]
+    keys = np.column_stack([column.values for column in columns]) if columns else np.zeros((frame.rows, 0))
+    found, place = np.unique(keys, axis=0, return_inverse=True) if columns else (keys[:1], np.zeros(frame.rows, int))
+    return [
+        SeriesOfRows(_label(columns, key), palette.CYCLE[k], np.flatnonzero(place.ravel() == k))
+        for k, key in enumerate(found[:MOST_SERIES])
+    ]
+
+
+def left_out(frame: Frame, drawn: Sequence[SeriesOfRows]) -> str:
+    """A sentence on rows that no series has; empty where all are drawn."""
+    missing = frame.rows - sum(len(one.rows) for one in drawn)
+    return f"{missing} of {frame.rows} rows are in further series, which are not drawn." if missing else ""
+
+
+def _label(columns: Sequence[Column], key: Sequence[float]) -> str:
+    return ", ".join(c.text(v, with_name=not c.labels) for c, v in zip(columns, key, strict=True))
+
+
+def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
+    """One value of some rows that are alike: that of a single row with its interval, else mean or share over them."""
+    column = frame.column(value)
+    if len(rows) == 1:
+        ends = [
+            frame.columns[f"{value}_{end}"].values[rows[0]] if f"{value}_{end}" in frame.columns else np.nan
+            for end in ("low", "high")
+        ]
+        return Point(float(column.values[rows[0]]), float(ends[0]), float(ends[1]))
+    known = column.values[rows]
+    known = known[np.isfinite(known)]
+    if column.is_truth and len(known):
+        return Point(float(known.mean()), *wilson(int(known.sum()), len(known)))
+    return Point(*mean_interval(known))
+
+
+def how_gathered(frame: Frame, value: str, groups: Sequence[NDArray]) -> str:
+    """What a value and its interval are, as a sentence; empty where neither needs one."""
+    column = frame.column(value)
+    if all(len(rows) <= 1 for rows in groups):
+        return f"Interval: as in {frame.name}, 95 %." if f"{value}_low" in frame.columns else ""
+    counts = [len(rows) for rows in groups if len(rows)]
+    of = f"{min(counts)}" if min(counts) == max(counts) else f"{min(counts)} to {max(counts)}"
+    if column.is_truth:
+        return f"Share of {of} runs each; 95 % interval by Wilson's score."
+    return f"Mean of {of} runs each; 95 % interval of the mean."

@@ -1,0 +1,269 @@
+"""The page of a study: what it shows, and the function that writes it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.report.study import figures, words
+from shipcosim.report.study.frames import Lacking
+from shipcosim.report.study.tables import Column, StudyTables, columns_of, signed
+from shipcosim.report.study.tracks import TracksView, tracks_view
+from shipcosim.report.theme import palette
+from shipcosim.report.theme.packing import most_rows, packed_series
+from shipcosim.report.theme.pages import render
+from shipcosim.report.theme.views import Figure, KeyFigure, Link, Page, Table
+from shipcosim.series import write_file
+
+BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
+EXACT = 1e9  # steps of the numbers of runs
+SECTIONS = {"views": "Views", "runs": "Runs", "failed": "Failed runs", "summary": "Summary", "study": "How it was made"}
+VIEWS: Mapping[str, Callable[[StudyTables, Mapping[str, Any]], Figure]] = {
+    "polar": figures.polar,
+    "curves": figures.curves,
+    "bars": figures.bars,
+    "pareto": figures.pareto,
+    "scatter": figures.scatter,
+}
+
+
+@dataclass(frozen=True)
+class ErrorOfRuns:
+    """What went wrong in some runs, of which some are listed."""
+
+    text: str
+    count: int
+    runs: tuple[int, ...]
+
+
+class Choice(NamedTuple):
+    """A column whose levels readers choose from: its name, its title, and each level with its text."""
+
+    column: str
+    title: str
+    levels: tuple[tuple[float, str], ...]
+
+
+@dataclass(frozen=True)
+class StudyPage(Page):
+    """What the page of a study shows.
+
+    Attributes
+    ----------
+    remarks : tuple of str
+        What must not be overlooked.
+    key_figures : tuple of KeyFigure
+    tracks : tuple of TracksView
+        Charts of recorded tracks.
+    plots, figures : tuple of Figure
+        Views, and all figures in the order of `data["figures"]`.
+    undrawn : tuple of str
+        Views that cannot be drawn, and why.
+    quantities, summary, varied, measured, setup : Table
+    thinned : tuple of int, optional
+        How many runs the page holds of how many, where it does not hold all.
+    errors : tuple of ErrorOfRuns
+    choices : tuple of Choice
+        Columns that are filtered by level.
+    text : str
+        The study as it was read.
+    """
+
+    remarks: tuple[str, ...]
+    key_figures: tuple[KeyFigure, ...]
+    tracks: tuple[TracksView, ...]
+    plots: tuple[Figure, ...]
+    figures: tuple[Figure, ...]
+    undrawn: tuple[str, ...]
+    quantities: Table
+    summary: Table
+    thinned: tuple[int, int] | None
+    errors: tuple[ErrorOfRuns, ...]
+    choices: tuple[Choice, ...]
+    varied: Table
+    measured: Table
+    setup: Table
+    text: str
+
+
+def write_study(tables: StudyTables, path: str | os.PathLike[str]) -> None:
+    """Write the page of a study.
+
+    Parameters
+    ----------
+    tables : StudyTables
+        What the study left.
+    path : path
+        HTML file; it is there completely or not at all.
+
+    Raises
+    ------
+    ShipcosimError
+        If the file cannot be written.
+    """
+    write_file(path, render("study/templates/study.html.jinja", page_of(tables)).encode())
+
+
+def page_of(tables: StudyTables) -> StudyPage:
+    """What the page of a study shows."""
+    said = tables.about.get("columns", ())
+    runs, summary = columns_of(tables.runs, said), columns_of(tables.summary, said)
+    tracks, plots, undrawn = _views(tables)
+    drawn = (*plots, *(view.distance for view in tracks))
+    rows = _kept_rows(tables, list(runs.values()))
+    errors = tuple(ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables))
+    return StudyPage(
+        title=str(tables.study.get("description") or tables.name),
+        facts=words.facts(tables),
+        outcome=words.outcome(tables, runs, summary),
+        links=_links(bool(tracks or plots), bool(errors), len(tables.summary) > 0),
+        data=_data(tables, runs, rows, tracks, drawn),
+        remarks=tuple(map(str, tables.about.get("remarks") or ())),
+        key_figures=words.key_figures(tables, runs, summary),
+        tracks=tracks,
+        plots=plots,
+        figures=drawn,
+        undrawn=undrawn,
+        quantities=words.quantities_table(runs),
+        summary=_summary(summary),
+        thinned=(len(rows), len(tables.runs)) if len(rows) < len(tables.runs) else None,
+        errors=errors[: words.MOST_ERRORS],
+        choices=_choices(runs),
+        varied=words.varied_table(tables.study),
+        measured=words.measured_table(tables.study),
+        setup=words.setup_table(tables),
+        text=words.study_text(tables.study),
+    )
+
+
+def _views(tables: StudyTables) -> tuple[tuple[TracksView, ...], tuple[Figure, ...], tuple[str, ...]]:
+    """The views that the study asks for; what is lacking for one takes nothing from the others."""
+    tracks, plots, undrawn = [], [], []
+    for view in tables.study.get("view") or ():
+        kind = str(view.get("kind"))
+        try:
+            if kind == "tracks":
+                tracks.append(tracks_view(tables, view))
+            elif kind in VIEWS:
+                plots.append(VIEWS[kind](tables, view))
+            else:
+                raise Lacking(f"There is no such kind. There is: {', '.join([*VIEWS, 'tracks'])}.")
+        except Lacking as lack:
+            undrawn.append(f"View '{kind}' is not drawn. {lack}")
+    return tuple(tracks), tuple(plots), tuple(undrawn)
+
+
+def _links(has_views: bool, has_errors: bool, has_summary: bool) -> tuple[Link, ...]:
+    absent = {"views": not has_views, "failed": not has_errors, "summary": not has_summary}
+    return tuple(Link(anchor, title) for anchor, title in SECTIONS.items() if not absent.get(anchor))
+
+
+def _kept_rows(tables: StudyTables, columns: Sequence[Column]) -> NDArray:
+    """Rows that the page has room for: failed ones, at most half of all, and the others evenly spaced."""
+    varying = [column.values for column in columns if column.is_number and not column.levels]
+    most = most_rows([*varying, np.arange(len(tables.runs))], BYTES_FOR_RUNS)
+    if len(tables.runs) <= most:
+        return np.arange(len(tables.runs))
+    failed = words.is_failed(tables)
+    parts = [np.flatnonzero(failed)[: most // 2]]
+    others = np.flatnonzero(~failed)
+    room = min(most - len(parts[0]), len(others))
+    parts.append(others[np.unique(np.linspace(0, len(others) - 1, room).astype(int))])
+    return np.sort(np.concatenate(parts))
+
+
+def _data(
+    tables: StudyTables,
+    columns: Mapping[str, Column],
+    rows: NDArray,
+    tracks: Sequence[TracksView],
+    drawn: Sequence[Figure],
+) -> dict[str, Any]:
+    """What the scripts of the page draw."""
+    failed, kept = words.is_failed(tables)[rows], tables.runs.iloc[rows]
+    texts = [str(error) for error in kept["error"][failed]] if "error" in kept else []
+    different = list(dict.fromkeys(texts))
+    place = {text: k for k, text in enumerate(different)}
+    return {
+        "runs": packed_series(kept["run"].to_numpy(float), EXACT),
+        "columns": [_packed(column, rows) for column in columns.values()],
+        "failed": np.flatnonzero(failed).tolist(),
+        "errors": different,
+        "errorOf": [place[text] for text in texts],
+        "pages": sorted(int(number) for number in tables.pages),
+        "command": tables.command,
+        "colour": _coloured(columns),
+        "cycle": palette.CYCLE,
+        "tracks": [view.data for view in tracks],
+        "figures": [figure.drawn for figure in drawn],
+    }
+
+
+def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
+    """A column as the script reads it: levels by their places, numbers as they are."""
+    values = column.values[rows]
+    made = {name: value for name, value in asdict(column).items() if name in ("name", "role", "description", "unit")}
+    made |= {"labels": column.labels, "truth": column.is_truth}
+    if column.levels and column.is_number:
+        place = {level: k for k, level in enumerate(column.levels)}
+        return made | {"levels": column.levels, "places": [place.get(v, -1) for v in values.tolist()]}
+    if not column.is_number:
+        return made | {"values": [int(v) if np.isfinite(v) else None for v in values]}
+    return made | {"values": packed_series(values), "digits": _digits(column.values)}
+
+
+def _digits(values: NDArray) -> int:
+    """Decimals that tell a thousandth of a column's range apart."""
+    known = values[np.isfinite(values)]
+    span = float(np.ptp(known)) if known.size else 0.0
+    return int(np.clip(3 - np.floor(np.log10(span)) - 1, 0, 9)) if span > 0.0 else 3
+
+
+def _coloured(columns: Mapping[str, Column]) -> str:
+    """The column whose values colour the lines at first: what is true or false, else a factor of few levels."""
+    truths = [c.name for c in columns.values() if c.is_truth and len(c.levels) > 1]
+    factors = [c.name for c in columns.values() if c.role == "factor" and 1 < len(c.levels) <= len(palette.CYCLE)]
+    return next(iter([*truths, *factors]), "")
+
+
+def _choices(columns: Mapping[str, Column]) -> tuple[Choice, ...]:
+    chosen = [c for c in columns.values() if len(c.levels) > 1 and (c.role == "factor" or c.is_truth)]
+    return tuple(Choice(c.name, c.titled, tuple((level, _level(c, level)) for level in c.levels)) for c in chosen)
+
+
+def _level(column: Column, level: float) -> str:
+    """A level without its unit, which the name of the column has."""
+    if column.is_truth:
+        return "yes" if level else "no"
+    return column.text(level) if column.labels else signed(level, 6)
+
+
+def _summary(columns: Mapping[str, Column]) -> Table:
+    """The summary as texts; of a long one its first rows."""
+    ends = {f"{name}_{end}" for name in columns for end in ("low", "high")}
+    shown = [column for name, column in columns.items() if name not in ends]
+    count = min(len(shown[0].values), MOST_SUMMARY) if shown else 0
+    rows = tuple(tuple(_with_interval(columns, column, k) for column in shown) for k in range(count))
+    return Table(rows, tuple(column.titled for column in shown), tight=tuple(range(len(shown))))
+
+
+def _with_interval(columns: Mapping[str, Column], column: Column, row: int) -> str:
+    """A cell of the summary, with its interval where it has one."""
+    cell = _cell(column, column.values[row])
+    ends = [columns[f"{column.name}_{end}"].values[row] for end in ("low", "high") if f"{column.name}_{end}" in columns]
+    return f"{cell} ({' to '.join(signed(end, 3) for end in ends)})" if len(ends) == 2 else cell
+
+
+MOST_SUMMARY = 400
+"""Rows of the summary on the page; summary.csv holds all."""
+
+
+def _cell(column: Column, value: float) -> str:
+    if column.is_number and np.isfinite(value):
+        return signed(value)
+    return column.text(value) if column.labels or not np.isfinite(value) else ("yes" if value else "no")

@@ -1,0 +1,199 @@
+"""The page of a study with a server: a click on a row simulates it. For the own machine only, one simulation at a time.
+
+Served are the files of one folder, to programs of this machine. What a page of another origin could ask for by itself
+is refused: requests by another name than that of the server, and simulations without a header of ours, for which a
+browser asks the server first.
+"""
+
+from __future__ import annotations
+
+import json
+import mimetypes
+import re
+import threading
+from collections.abc import Callable, Collection
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["ADDRESS", "HEADER", "StudyServer", "page_of_run", "study_server"]
+
+ADDRESS = "127.0.0.1"
+HEADER = "X-Shipcosim"
+SLOWEST = 30.0
+"""Time that a request may take to arrive. [s]"""
+SHOWN = {".html", ".csv", ".json", ".parquet", ".nc", ".png", ".svg", ".txt"}
+"""Endings of the files that are served."""
+RUN = re.compile(r"/run/([0-9]{1,9})")
+POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
+    "connect-src 'self' blob:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+)
+
+
+class StudyServer(ThreadingHTTPServer):
+    """A server of one study's folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the study's results; ``report.html`` in it is its page.
+    runs : collection of int
+        Numbers of the runs that there are.
+    simulate : callable
+        Takes a number, leaves ``run-N/report.html`` in the folder; a ShipcosimError is shown on the page.
+    port : int
+        0: one that is free.
+    """
+
+    daemon_threads = True
+    allow_reuse_address = False
+
+    def __init__(self, folder: Path, runs: Collection[int], simulate: Callable[[int], object], port: int = 0):
+        self.folder, self.runs, self.simulate = folder.resolve(), frozenset(runs), simulate
+        self.at_work = threading.Lock()
+        super().__init__((ADDRESS, port), _Handler)
+
+    @property
+    def url(self) -> str:
+        """Address of the page."""
+        return f"http://{ADDRESS}:{self.server_port}/"
+
+    def pages(self) -> list[int]:
+        """Runs that have a page."""
+        return sorted(run for run in self.runs if page_of_run(self.folder, run).is_file())
+
+
+def study_server(folder: Path, runs: Collection[int], simulate: Callable[[int], object], port: int = 0) -> StudyServer:
+    """A server; ``serve_forever()`` runs it.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no page in the folder, or the port is taken.
+    """
+    if not (folder / "report.html").is_file():
+        raise ShipcosimError(Problem(str(folder), "There is no report.html to be shown.", "Run the study first."))
+    try:
+        return StudyServer(folder, runs, simulate, port)
+    except (OSError, OverflowError) as error:
+        text = f"Port {port} cannot be used: {getattr(error, 'strerror', None) or error}."
+        raise ShipcosimError(Problem("--port", text, "Choose another, or leave it to the system.")) from error
+
+
+def page_of_run(folder: Path, run: int) -> Path:
+    """Where the page of one run lies.
+
+    Examples
+    --------
+    >>> page_of_run(Path("results"), 7).as_posix()
+    'results/run-7/report.html'
+    """
+    return folder / f"run-{run}" / "report.html"
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """One request."""
+
+    server: StudyServer
+    timeout = SLOWEST
+    server_version = "shipcosim"
+    sys_version = ""
+
+    def do_GET(self) -> None:
+        path = urlsplit(self.path).path
+        if not self._is_ours():
+            return
+        if path == "/study-server":
+            self._answer(HTTPStatus.OK, {"pages": self.server.pages()})
+        elif file := self._file(path):
+            self._send(
+                HTTPStatus.OK, file.read_bytes(), mimetypes.guess_type(file.name)[0] or "application/octet-stream"
+            )
+        else:
+            self._refuse(HTTPStatus.NOT_FOUND, "There is no such file in the folder of this study.")
+
+    do_HEAD = do_GET
+
+    def do_POST(self) -> None:
+        if not self._is_ours():
+            return
+        if self.headers.get(HEADER) != "run" or self.headers.get("Origin", self._origin()) != self._origin():
+            self._refuse(HTTPStatus.FORBIDDEN, "Only the page of this study may ask for a simulation.")
+            return
+        found = RUN.fullmatch(self.path)
+        if not found or int(found[1]) not in self.server.runs:
+            self._refuse(HTTPStatus.NOT_FOUND, "There is no such run in this study.")
+            return
+        self._simulate(int(found[1]))
+
+    def _simulate(self, run: int) -> None:
+        """Simulate a run that has no page yet, unless another one is being simulated."""
+        page = page_of_run(self.server.folder, run)
+        if not self.server.at_work.acquire(blocking=False):
+            self._refuse(
+                HTTPStatus.CONFLICT, "Another run is being simulated; one at a time. Try again when it is done."
+            )
+            return
+        try:
+            if not page.is_file():
+                self.server.simulate(run)
+            if not page.is_file():
+                raise ShipcosimError(Problem(f"run {run}", "Its simulation left no page.", ""))
+        except ShipcosimError as error:
+            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, "\n".join(map(str, error.problems)))
+        except Exception as error:  # a fault of ours is shown, and the server stays
+            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, f"run {run}: {type(error).__name__}: {error}")
+        else:
+            self._answer(HTTPStatus.OK, {"page": page.relative_to(self.server.folder).as_posix()})
+        finally:
+            self.server.at_work.release()
+
+    def _origin(self) -> str:
+        return f"http://{self.headers.get('Host')}"
+
+    def _is_ours(self) -> bool:
+        """Whether the request is for this server by its own name; a name that only points here is another site's."""
+        port = self.server.server_port
+        if self.headers.get("Host") in (f"{ADDRESS}:{port}", f"localhost:{port}"):
+            return True
+        self._refuse(HTTPStatus.FORBIDDEN, f"This server answers to {ADDRESS}:{port} only.")
+        return False
+
+    def _file(self, path: str) -> Path | None:
+        """A file of the folder, at most one folder deep; None for anything else, links out of the folder included."""
+        parts = unquote(path).strip("/").split("/") if path != "/" else ["report.html"]
+        if len(parts) > 2 or any(not re.fullmatch(r"\w[\w.-]*", part, re.ASCII) for part in parts):
+            return None
+        file = self.server.folder.joinpath(*parts).resolve()
+        is_inside = file.is_relative_to(self.server.folder) and file.suffix in SHOWN
+        return file if is_inside and file.is_file() else None
+
+    def _refuse(self, status: HTTPStatus, why: str) -> None:
+        self._answer(status, {"error": why})
+
+    def _answer(self, status: HTTPStatus, said: object) -> None:
+        self._send(status, json.dumps(said).encode(), "application/json")
+
+    def _send(self, status: HTTPStatus, body: bytes, kind: str) -> None:
+        self.close_connection = True  # whatever else was sent is not read as another request
+        self.send_response(status)
+        for name, value in {
+            "Content-Type": f"{kind}; charset=utf-8" if kind.startswith("text/") else kind,
+            "Content-Length": str(len(body)),
+            "Content-Security-Policy": POLICY,
+            "X-Content-Type-Options": "nosniff",
+            "Cross-Origin-Resource-Policy": "same-origin",
+            "Cache-Control": "no-store",
+            "Connection": "close",
+        }.items():
+            self.send_header(name, value)
+        self.end_headers()
+        if self.command != "HEAD":
+            self.wfile.write(body)
+
+    def log_message(self, format: str, *args: object) -> None:
+        """The terminal is for what matters."""

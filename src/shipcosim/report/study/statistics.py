@@ -1,0 +1,161 @@
+"""Statistics of the page: intervals, distributions, what varies with what, Pareto fronts."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Z = 1.959964
+"""Standard normal deviate of two-sided 95 %."""
+LEVEL = 0.95
+BINS = 10
+
+
+def wilson(count: int, of: int) -> tuple[float, float]:
+    """95 % interval of a share by Wilson's score.
+
+    Parameters
+    ----------
+    count, of : int
+        So many of how many.
+
+    Returns
+    -------
+    (float, float)
+
+    References
+    ----------
+    Wilson, Probable inference, the law of succession, and statistical inference, J. Am. Stat. Assoc. 22, 1927.
+
+    Examples
+    --------
+    >>> [round(end, 3) for end in wilson(9, 10)]
+    [0.596, 0.982]
+    """
+    if not of:
+        return 0.0, 1.0
+    share, more = count / of, Z * Z / of
+    middle = (share + more / 2) / (1 + more)
+    half = Z * np.sqrt(share * (1 - share) / of + more / (4 * of)) / (1 + more)
+    return max(float(middle - half), 0.0), min(float(middle + half), 1.0)
+
+
+def mean_interval(values: ArrayLike) -> tuple[float, float, float]:
+    """Mean and its 95 % interval; the normal one, without an interval for a single value.
+
+    Examples
+    --------
+    >>> [round(float(v), 2) for v in mean_interval([1.0, 2.0, 3.0])]
+    [2.0, 0.87, 3.13]
+    """
+    known = np.asarray(values, float)
+    known = known[np.isfinite(known)]
+    if not known.size:
+        return np.nan, np.nan, np.nan
+    middle = float(known.mean())
+    half = Z * float(known.std(ddof=1)) / np.sqrt(known.size) if known.size > 1 else np.nan
+    return middle, middle - half, middle + half
+
+
+def distribution(values: ArrayLike) -> tuple[NDArray, NDArray, float]:
+    """Empirical distribution: values in their order, the share up to each, half width of its simultaneous 95 % band.
+
+    Parameters
+    ----------
+    values : (n,) array
+        What is infinite or not a number is never reached: it counts below the share, and is left out of the values.
+
+    Returns
+    -------
+    (array, array, float)
+
+    References
+    ----------
+    Massart, The tight constant in the Dvoretzky-Kiefer-Wolfowitz inequality, Ann. Probab. 18, 1990.
+
+    Examples
+    --------
+    >>> reached, share, half = distribution([3.0, 1.0, np.nan, 2.0])
+    >>> reached.tolist(), share.tolist(), round(half, 2)
+    ([1.0, 2.0, 3.0], [0.25, 0.5, 0.75], 0.68)
+    """
+    found = np.asarray(values, float)
+    reached = np.sort(found[np.isfinite(found)])
+    half = float(np.sqrt(np.log(2 / (1 - LEVEL)) / (2 * len(found)))) if len(found) else 1.0
+    return reached, np.arange(1, len(reached) + 1) / max(len(found), 1), half
+
+
+def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
+    """Share of the variance of one column that goes with another alone.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Of a quantity.
+    by : (n,) array
+        Of a factor; ten groups of equal size where it has no levels.
+    are_levels : bool
+
+    Returns
+    -------
+    float
+        Epsilon squared, the correlation ratio without its bias. 0 where it is not above two standard deviations of what
+        chance alone gives; NaN with too few runs.
+
+    References
+    ----------
+    Kelley, An unbiased correlation ratio measure, Proc. Natl. Acad. Sci. 21, 1935.
+
+    Examples
+    --------
+    >>> round(explained(4 * [1.0, 1.1, 5.0, 5.1], 4 * [0.0, 0.0, 1.0, 1.0], True), 3)
+    0.999
+    """
+    quantity, cause = np.asarray(values, float), np.asarray(by, float)
+    known = np.isfinite(quantity) & np.isfinite(cause)
+    quantity, cause = quantity[known], cause[known]
+    groups = np.unique(cause, return_inverse=True)[1] if are_levels else _bins(cause)
+    count = np.bincount(groups) if len(groups) else np.zeros(0)
+    left = len(quantity) - np.count_nonzero(count)
+    if np.count_nonzero(count) < 2 or left < 2 or not np.ptp(quantity):
+        return float("nan")
+    means = np.bincount(groups, quantity) / np.maximum(count, 1)
+    within = float(np.square(quantity - means[groups]).sum()) / left
+    share = 1.0 - within / float(quantity.var(ddof=1))
+    by_chance = 2.0 * np.sqrt(2.0 * (np.count_nonzero(count) - 1)) / (len(quantity) - 1)
+    return float(share) if share > by_chance else 0.0
+
+
+def _bins(values: NDArray) -> NDArray:
+    ranks = np.argsort(np.argsort(values, kind="stable"), kind="stable")
+    return (ranks * min(BINS, max(len(values) // 3, 1))) // max(len(values), 1)
+
+
+def pareto_front(quantities: Sequence[ArrayLike]) -> NDArray:
+    """Which points no other point beats: at least as low in every quantity and lower in one.
+
+    Parameters
+    ----------
+    quantities : sequence of (n,) array
+        Less is better.
+
+    Returns
+    -------
+    (n,) array of bool
+        False where a quantity is not known.
+
+    Examples
+    --------
+    >>> pareto_front([[1.0, 2.0, 2.0, 3.0], [3.0, 2.0, 3.0, 1.0]]).tolist()
+    [True, True, False, True]
+    """
+    points = np.column_stack([np.asarray(one, float) for one in quantities])
+    front = np.zeros(len(points), bool)
+    rows = np.flatnonzero(np.isfinite(points).all(axis=1))
+    best = np.empty((0, points.shape[1]))
+    for row in rows[np.lexsort(points[rows].T[::-1])]:
+        beaten = ((best <= points[row]).all(axis=1) & (best < points[row]).any(axis=1)).any()
+        if not beaten:
+            front[row] = True
+            best = np.vstack([best, points[row]])
+    return front

@@ -1,0 +1,218 @@
+"""What a study of many runs left, as the page takes it, and its columns as people read them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from shipcosim.report.theme.display import READ_AS
+
+if TYPE_CHECKING:
+    from pandas import DataFrame, Series
+
+FACTOR, SAMPLE, QUANTITY, SUMMARY = "factor", "sample", "quantity", "summary"
+MOST_LEVELS = 40
+"""Different numbers of a column that are still levels, which readers may choose from."""
+_TRUTH = (False, True)
+
+
+@dataclass(frozen=True)
+class StudyTables:
+    """What a study left.
+
+    Attributes
+    ----------
+    about : mapping
+        ``study.json``: `name`, the `study` as read, `columns` with their role, unit, description and order of labels,
+        `runs` planned, done and failed, `versions`; where known `engine`, `ship`, `beside` and `remarks`.
+    runs : pandas.DataFrame
+        A row a run. [units as `columns` says]
+    summary : pandas.DataFrame
+        A row for each combination of the factors that are left.
+    tracks : pandas.DataFrame, optional
+        `run`, `time` [s] and the signals that were kept of each run.
+    tables : mapping of str to pandas.DataFrame
+        Others that views name.
+    pages : collection of int
+        Runs whose page lies in the folder ``run-N`` beside this one.
+    command : str
+        What a user types to make this study; with ``--run N`` it simulates one row again.
+    """
+
+    about: Mapping[str, Any]
+    runs: DataFrame
+    summary: DataFrame
+    tracks: DataFrame | None = None
+    tables: Mapping[str, DataFrame] = field(default_factory=dict)
+    pages: Collection[int] = ()
+    command: str = "shipcosim sweep STUDY.toml"
+
+    @property
+    def study(self) -> Mapping[str, Any]:
+        """The study as it was read, without `extends`."""
+        return self.about.get("study", {})
+
+    @property
+    def name(self) -> str:
+        """Name of the study."""
+        return str(self.about.get("name") or "study")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Attributes
+    ----------
+    name, role, description : str
+    unit : str
+        As it is shown.
+    values : (n,) array
+        Numbers in `unit`, NaN where there is none; 0 and 1 of what is true or false; places in `labels`.
+    labels : tuple of str
+        Of what is no number, in their order.
+    is_truth : bool
+        Whether it is true or false.
+    """
+
+    name: str
+    role: str
+    description: str
+    unit: str
+    values: NDArray
+    labels: tuple[str, ...] = ()
+    is_truth: bool = False
+
+    @property
+    def is_number(self) -> bool:
+        """Whether its values are numbers."""
+        return not self.labels and not self.is_truth
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """Different values of a factor, or whole numbers, in their order; empty where too many to choose from."""
+        if self.labels:
+            return tuple(float(k) for k in range(len(self.labels)))
+        found = np.unique(self.values[np.isfinite(self.values)])
+        are_few = len(found) <= MOST_LEVELS and (self.role == FACTOR or bool(np.all(found == np.round(found))))
+        return tuple(found.tolist()) if are_few else ()
+
+    @property
+    def titled(self) -> str:
+        """Name with unit.
+
+        Examples
+        --------
+        >>> Column("wind", FACTOR, "", "m/s", np.zeros(1)).titled
+        'wind [m/s]'
+        """
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    def text(self, value: float, with_name: bool = False) -> str:
+        """A value as people read it.
+
+        Examples
+        --------
+        >>> Column("wind", FACTOR, "", "m/s", np.zeros(1)).text(7.5, with_name=True)
+        'wind 7.5 m/s'
+        """
+        if not np.isfinite(value):
+            return "–"
+        if self.labels:
+            return self.labels[int(value)]
+        if self.is_truth:
+            return f"{self.name}: yes" if with_name and value else ("yes" if value else f"{self.name}: no")
+        number = f"{signed(value, 4 if self.role == FACTOR else 3)}{'' if self.unit in ('', '°') else ' '}{self.unit}"
+        return f"{self.name} {number}" if with_name else number
+
+
+def signed(value: float, digits: int = 4) -> str:
+    """A number as a cell of a table has it.
+
+    Examples
+    --------
+    >>> signed(-0.25), signed(1234567.0)
+    ('−0.25', '1.235e+06')
+    """
+    return f"{value:.{digits}g}".replace("-", "−").replace("e−", "e-")
+
+
+def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str, Column]:
+    """Columns of a table by name, without `run`, `error` and `input`.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+    said : iterable of mapping
+        Of columns: `name`, `role`, `unit`, `description`, `labels`. What is said of NAME holds for NAME_low and
+        NAME_high.
+
+    Returns
+    -------
+    dict of str to Column
+        In the order of the table.
+    """
+    known = {str(one["name"]): one for one in said}
+    for name, one in list(known.items()):
+        for end in ("low", "high"):
+            known.setdefault(f"{name}_{end}", one)
+    names = [str(name) for name in frame.columns if name not in ("run", "error", "input")]
+    return {name: column_of(name, cast("Series", frame[name]), known.get(name, {})) for name in names}
+
+
+def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
+    """One column, in the unit that people read: degrees, kN where numbers are large."""
+    made = Column(name, str(said.get("role") or ""), str(said.get("description") or ""), "", np.zeros(0))
+    known = values[values.notna()]
+    if values.dtype.kind == "b" or (
+        values.dtype.kind == "O" and len(known) and all(value in _TRUTH for value in known)
+    ):
+        return replace(made, values=_numbers(values), is_truth=True)
+    if values.dtype.kind in "iuf" or not len(known):
+        shown, unit = readable(_numbers(values), said.get("unit"))
+        return replace(made, values=shown, unit=unit)
+    texts = [_label(value) for value in values]
+    if all(map(_is_number, filter(None, texts))):
+        return column_of(name, values.map(lambda value: float(_label(value) or "nan")), said)
+    order = [_label(value) for value in said.get("labels") or ()]
+    labels = tuple(dict.fromkeys([*(one for one in order if one in set(texts)), *(one for one in texts if one)]))
+    place = {label: float(k) for k, label in enumerate(labels)}
+    return replace(made, values=np.array([place.get(text, np.nan) for text in texts]), labels=labels)
+
+
+def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
+    """Numbers and their unit as people read them.
+
+    Examples
+    --------
+    >>> readable([0.0, np.pi / 4], "rad")
+    (array([ 0., 45.]), '°')
+    """
+    found = np.asarray(values, float)
+    shown, factor, least = READ_AS.get(unit or None, (unit or "", 1.0, 0.0))
+    known = np.abs(found[np.isfinite(found)])
+    if known.size and known.max() < least:
+        shown, factor = unit or "", 1.0
+    scaled = factor * found
+    power = np.where(np.isfinite(scaled) & (scaled != 0.0), np.floor(np.log10(np.abs(scaled) + 1e-300)), 0.0)
+    return np.round(scaled / 10.0**power, 11) * 10.0**power, {"deg": "°"}.get(shown, shown)
+
+
+def _numbers(values: Series) -> NDArray:
+    return np.array([float(v) if v is not None and v == v else np.nan for v in values.astype(object)], float)
+
+
+def _is_number(text: str) -> bool:
+    return bool(re.fullmatch(r"[-+]?\d+(\.\d*)?", text, re.ASCII))
+
+
+def _label(value: object) -> str:
+    """A value of a column of labels as text; a number as 2, not 2.0."""
+    if value is None or value != value:
+        return ""
+    return f"{value:g}" if isinstance(value, float) else str(value)

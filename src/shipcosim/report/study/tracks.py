@@ -1,0 +1,199 @@
+"""The view of recorded tracks: where the ship of each run was, its density, outlines to scale, circles of distance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.report.run.track import hull_outline, symbol_size
+from shipcosim.report.study.figures import distance_figure
+from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, left_out, series_of
+from shipcosim.report.study.tables import StudyTables, columns_of
+from shipcosim.report.theme.packing import packed_series
+from shipcosim.report.theme.views import Figure
+
+MOST_TRACKS, MOST_TIMES, CELLS = 150, 80, 72
+"""Tracks that are drawn, times of them, and cells of the density each way."""
+LEVELS = 3000
+
+
+@dataclass(frozen=True)
+class TracksView:
+    """A chart of tracks.
+
+    Attributes
+    ----------
+    title, note : str
+    series : tuple of (str, str)
+        Label and colour of each.
+    data : dict
+        What the script draws: times, tracks, density and the share beyond each circle over time.
+    distance : Figure
+        How far the runs are from where they began, over time.
+    """
+
+    title: str
+    note: str
+    series: tuple[tuple[str, str], ...]
+    data: dict[str, Any]
+    distance: Figure
+
+
+@dataclass(frozen=True)
+class _Tracks:
+    """Tracks on common times: each from where it began; after its end a run stays unknown."""
+
+    time: NDArray  # (m,) [s]
+    north: NDArray  # (n, m) [m]
+    east: NDArray
+    heading: NDArray  # [deg]
+
+
+def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
+    """The chart of all recorded tracks.
+
+    Raises
+    ------
+    Lacking
+        If no tracks were kept.
+    """
+    frame = Frame(RUNS, columns_of(tables.runs, tables.about.get("columns", ())))
+    tracks = _read(tables)
+    series = series_of(frame, {"series": False} | dict(view), [])
+    known = [np.flatnonzero(np.isfinite(tracks.north[one.rows]).any(axis=1)) for one in series]
+    series = [SeriesOfRows(one.label, one.colour, one.rows[some]) for one, some in zip(series, known, strict=True)]
+    distance = np.hypot(tracks.north, tracks.east)
+    circles = [float(radius) for radius in view.get("circles") or _circles(distance)]
+    drawn = _chosen(series)
+    note = (
+        f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
+    )
+    note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
+    said = [str(view.get("note") or note), left_out(frame, [*series, *_without(frame, series)])]
+    spread = [(one, _spread(distance[one.rows])) for one in series if len(one.rows)]
+    return TracksView(
+        title=str(view.get("title") or "Tracks"),
+        note=" ".join(filter(None, said)),
+        series=tuple((one.label or "all runs", one.colour) for one in series),
+        data=_data(tables, tracks, series, drawn, circles),
+        distance=distance_figure(tracks.time, spread),
+    )
+
+
+def _without(frame: Frame, series: Sequence[SeriesOfRows]) -> list[SeriesOfRows]:
+    """Rows without a track, which no series leaves out."""
+    there = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
+    return [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
+
+
+def _read(tables: StudyTables) -> _Tracks:
+    """Tracks of the table on few common times."""
+    names = [str(name) for name in (tables.study.get("tracks") or {}).get("signals", ())]
+    if tables.tracks is None or not len(tables.tracks) or len(names) < 2:
+        raise Lacking("No tracks were kept: the study has no [tracks] with signals of north, east and heading.")
+    table = tables.tracks
+    place = {int(run): k for k, run in enumerate(tables.runs["run"])}
+    stamps, column = np.unique(table["time"].to_numpy(float), return_inverse=True)
+    row = np.array([place.get(int(run), -1) for run in table["run"]])
+    full = np.full((3, len(place), len(stamps)), np.nan)
+    for k, name in enumerate(names[:3]):
+        full[k, row[row >= 0], column[row >= 0]] = table[name].to_numpy(float)[row >= 0]
+    kept = np.unique(np.linspace(0, len(stamps) - 1, MOST_TIMES).astype(int))
+    north, east, psi = full[:, :, kept]
+    first = [np.array([row[np.isfinite(row)][:1].sum() for row in one])[:, None] for one in full[:2]]
+    return _Tracks(stamps[kept], north - first[0], east - first[1], np.degrees(psi))
+
+
+def _circles(distance: NDArray) -> list[float]:
+    """Three round radii within what the runs reach. [m]"""
+    most = float(np.nanmax(distance)) if np.isfinite(distance).any() else 1.0
+    power = 10.0 ** np.floor(np.log10(max(most, 0.1)))
+    return [r for r in np.outer([0.1, 1.0], [1.0, 2.0, 5.0]).ravel() * power if r <= most][-3:] or [power]
+
+
+def _chosen(series: Sequence[SeriesOfRows]) -> list[NDArray]:
+    """Rows of which tracks are drawn: as many of each series."""
+    most = MOST_TRACKS // max(len(series), 1)
+    return [
+        one.rows[np.unique(np.linspace(0, len(one.rows) - 1, min(most, len(one.rows))).astype(int))]
+        if len(one.rows)
+        else one.rows
+        for one in series
+    ]
+
+
+def _spread(distance: NDArray) -> NDArray:
+    """5 %, 50 % and 95 % at each time; NaN where no run is left. [m]"""
+    found = np.full((3, distance.shape[1]), np.nan)
+    some = np.isfinite(distance).any(axis=0)
+    found[:, some] = np.nanquantile(distance[:, some], [0.05, 0.5, 0.95], axis=0)
+    return found
+
+
+def _data(
+    tables: StudyTables,
+    tracks: _Tracks,
+    series: Sequence[SeriesOfRows],
+    drawn: Sequence[NDArray],
+    circles: Sequence[float],
+) -> dict[str, Any]:
+    every = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
+    box = _box(tracks, every)
+    ship = tables.about.get("ship") or {}
+    size = (float(ship.get("length") or 0.0), float(ship.get("breadth") or 0.0))
+    is_to_scale = min(size) > 0.0
+    forward, starboard = hull_outline(*(size if is_to_scale else symbol_size(tracks.north[every], tracks.east[every])))
+    return {
+        "time": tracks.time.tolist(),
+        "box": box,
+        "hull": [forward.tolist(), starboard.tolist()],
+        "toScale": is_to_scale,
+        "circles": list(circles),
+        "series": [
+            {
+                "label": one.label or "all runs",
+                "colour": one.colour,
+                "count": len(one.rows),
+                "cells": _density(tracks, one.rows, box),
+                "beyond": _beyond(tracks, one.rows, circles),
+                "tracks": [_track(tables, tracks, row) for row in rows],
+            }
+            for one, rows in zip(series, drawn, strict=True)
+        ],
+        "cells": CELLS,
+    }
+
+
+def _box(tracks: _Tracks, rows: NDArray) -> list[float]:
+    """West, east, south and north end of all tracks, the start included. [m]"""
+    ends = []
+    for values in (tracks.east[rows], tracks.north[rows]):
+        known = values[np.isfinite(values)]
+        ends += [min(float(known.min()), 0.0), max(float(known.max()), 0.0)] if known.size else [-1.0, 1.0]
+    return [float(f"{end:.6g}") for end in ends]
+
+
+def _density(tracks: _Tracks, rows: NDArray, box: Sequence[float]) -> list[int]:
+    """How many positions lie in each cell, row by row from the north."""
+    north, east = tracks.north[rows].ravel(), tracks.east[rows].ravel()
+    known = np.isfinite(north) & np.isfinite(east)
+    west, right, south, top = (end + k for end, k in zip(box, (-1e-6, 1e-6, -1e-6, 1e-6), strict=True))
+    counts, _, _ = np.histogram2d(north[known], east[known], bins=CELLS, range=[[south, top], [west, right]])
+    return counts[::-1].astype(int).ravel().tolist()
+
+
+def _beyond(tracks: _Tracks, rows: NDArray, circles: Sequence[float]) -> list[list[float]]:
+    """Share of the runs that have left each circle by each time."""
+    distance = np.hypot(tracks.north[rows], tracks.east[rows])
+    largest = np.fmax.accumulate(np.where(np.isfinite(distance), distance, 0.0), axis=1)
+    shares = [(largest > radius).mean(axis=0) if len(rows) else np.zeros(len(tracks.time)) for radius in circles]
+    return [[round(float(share), 4) for share in one] for one in shares]
+
+
+def _track(tables: StudyTables, tracks: _Tracks, row: int) -> dict[str, Any]:
+    parts = {"north": tracks.north[row], "east": tracks.east[row], "heading": tracks.heading[row]}
+    return {"run": int(tables.runs["run"].iloc[row])} | {k: packed_series(v, LEVELS) for k, v in parts.items()}

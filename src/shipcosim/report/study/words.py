@@ -1,0 +1,277 @@
+"""A study in words: what it comes to, its key figures, what was varied, and how."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shipcosim.report.study.statistics import explained, wilson
+from shipcosim.report.study.tables import FACTOR, QUANTITY, SAMPLE, SUMMARY, Column, StudyTables, signed
+from shipcosim.report.theme.numbers import percent, plain
+from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
+
+MOST_FIGURES, MOST_ERRORS, MOST_VALUES = 4, 50, 12
+MATTERS = 0.05
+"""Share of a variance from which a factor is named."""
+
+
+def facts(tables: StudyTables) -> tuple[Fact, ...]:
+    """What was varied, how often, by what."""
+    about, study = tables.about, tables.study
+    runs = about.get("runs") or {}
+    planned = runs.get("planned")
+    known = {
+        "Study": tables.name,
+        "Scenario": study.get("scenario"),
+        "Runs": f"{len(tables.runs)} of {planned}" if planned and planned != len(tables.runs) else len(tables.runs),
+        "Seed": study.get("seed", about.get("seed")),
+        "Engine": about.get("engine"),
+    }
+    return tuple(Fact(name, str(text)) for name, text in known.items() if text not in (None, ""))
+
+
+def outcome(tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]) -> Outcome:
+    """What the study says, in one sentence."""
+    failed, count = int(is_failed(tables).sum()), len(tables.runs)
+    word = f"{count} runs" if count != 1 else "1 run"
+    said = _of_summary(summary) or _of_runs(runs) or "No quantity has a value."
+    if failed:
+        said += f" {failed} of {count} runs failed."
+    return Outcome("failed" if failed == count else "partial" if failed else "named", word, said)
+
+
+def _of_summary(summary: Mapping[str, Column]) -> str:
+    """The range of the first summary, and where its ends lie."""
+    found = next((c for c in summary.values() if c.role == SUMMARY and np.isfinite(c.values).any()), None)
+    if found is None:
+        return ""
+    name = found.description or found.name.replace("_", " ")
+    if len(found.values) == 1:
+        return f"{_capital(name)}: {found.text(found.values[0])}."
+    low, high = int(np.nanargmin(found.values)), int(np.nanargmax(found.values))
+    if found.values[low] == found.values[high]:
+        return f"{_capital(name)}: {found.text(found.values[low])} everywhere."
+    ends = [f"{found.text(found.values[row])} ({_where(summary, row)})" for row in (low, high)]
+    return f"{_capital(name)}: from {ends[0]} to {ends[1]}."
+
+
+def _where(columns: Mapping[str, Column], row: int) -> str:
+    """Levels of the factors of a row."""
+    factors = [c for c in columns.values() if c.role in (FACTOR, SAMPLE)]
+    return ", ".join(c.text(c.values[row], with_name=not c.labels) for c in factors) or "one row"
+
+
+def _of_runs(runs: Mapping[str, Column]) -> str:
+    """The first quantity over all runs."""
+    found = next((c for c in runs.values() if c.role == QUANTITY and np.isfinite(c.values).any()), None)
+    if found is None:
+        return ""
+    known, name = found.values[np.isfinite(found.values)], _capital(found.description or found.name)
+    if found.is_truth:
+        low, high = wilson(int(known.sum()), len(known))
+        return f"{name}: {percent(known.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
+    low, middle, high = np.quantile(known, [0.0, 0.5, 0.9])
+    most = found.text(known.max())
+    return f"{name}: {found.text(middle)} in the median, {found.text(high)} in nine of ten runs, {most} at most."
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def key_figures(
+    tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]
+) -> tuple[KeyFigure, ...]:
+    """Runs, and what the first quantities and summaries come to."""
+    found = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
+    for column in [*summary.values(), *runs.values()]:
+        known = column.values[np.isfinite(column.values)]
+        if not len(known) or column.labels or (column.role not in (QUANTITY, SUMMARY)):
+            continue
+        if column.name.endswith(("_low", "_high")):
+            continue
+        found.append(_key_figure(column, known))
+    return tuple(found[:MOST_FIGURES])
+
+
+def _key_figure(column: Column, known: NDArray) -> KeyFigure:
+    name = column.description or column.name.replace("_", " ")
+    if column.is_truth:
+        low, high = wilson(int(known.sum()), len(known))
+        return KeyFigure(percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}")
+    if column.role == SUMMARY:
+        low, high = column.text(known.min()), column.text(known.max())
+        return KeyFigure(low if low == high else f"{signed(known.min(), 3)} to {high}", name)
+    return KeyFigure(column.text(np.quantile(known, 0.9)), f"{name}: nine of ten runs are below")
+
+
+def quantities_table(runs: Mapping[str, Column]) -> Table:
+    """Each quantity over all runs, and the factor that it varies with most."""
+    causes = [c for c in runs.values() if c.role in (FACTOR, SAMPLE)]
+    rows = []
+    for column in (c for c in runs.values() if c.role == QUANTITY):
+        known = column.values[np.isfinite(column.values)]
+        missing = str(len(column.values) - len(known)) if len(known) < len(column.values) else "–"
+        if column.is_truth or not len(known):
+            share = percent(known.mean(), 1) if len(known) else "–"
+            numbers = ("", f"yes in {share}", "", "")
+        else:
+            numbers = tuple(plain(v) for v in np.quantile(known, [0.0, 0.5, 0.9, 1.0]))
+        rows.append((column.name, column.unit, *numbers, missing, _varies_with(column, causes)))
+    head = ("quantity", "unit", "least", "median", "90 %", "largest", "no value", "varies most with")
+    return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6))
+
+
+def _varies_with(column: Column, causes: Sequence[Column]) -> str:
+    """The factors that explain most of a quantity's variance, each alone."""
+    if column.labels:
+        return "–"
+    shares = [(explained(column.values, cause.values, bool(cause.levels)), cause.name) for cause in causes]
+    named = sorted(((share, name) for share, name in shares if share >= MATTERS), key=lambda one: -one[0])[:3]
+    return ", ".join(f"{name} ({percent(share)})" for share, name in named) or "–"
+
+
+def is_failed(tables: StudyTables) -> NDArray:
+    """Which runs failed, (n,) of bool."""
+    if "error" not in tables.runs:
+        return np.zeros(len(tables.runs), bool)
+    return np.array([isinstance(error, str) and bool(error) for error in tables.runs["error"]], bool)
+
+
+def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
+    """What went wrong, with the numbers of the runs, the most frequent first."""
+    found: dict[str, list[int]] = {}
+    failed = tables.runs[is_failed(tables)]
+    for number, error in zip(failed["run"], failed["error"] if len(failed) else (), strict=True):
+        found.setdefault(str(error), []).append(int(number))
+    ordered = sorted(found.items(), key=lambda one: -len(one[1]))
+    return tuple((text, tuple(numbers)) for text, numbers in ordered)
+
+
+# ---- how it was made
+
+
+def varied_table(study: Mapping[str, Any]) -> Table:
+    """What was varied: a row a factor and a sampled value."""
+    rows = [(str(one.get("name", "")), _signals(one), _values(one)) for one in _parts(study, "factor")]
+    sampled = _given(_given(study).get("sample") or {}).get("of") or {}
+    for signal, how in sampled.items():
+        rows.append((str(_given(how).get("name") or signal), str(signal), _distribution(_given(how))))
+    return Table(tuple(rows), ("name", "what it sets", "values"), tight=(0,))
+
+
+def _given(part: Mapping[str, Any]) -> dict[str, Any]:
+    """What a part of a study file says, without what it leaves open."""
+    return {key: value for key, value in part.items() if value not in (None, "", [], {}, False)}
+
+
+def _parts(study: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
+    """Tables of one kind."""
+    return [_given(one) for one in study.get(name) or ()]
+
+
+def _signals(factor: Mapping[str, Any]) -> str:
+    if cases := factor.get("case"):
+        names = dict.fromkeys(name for case in cases for name in case.get("set") or {})
+        events = ["events"] if any(case.get("events") for case in cases) else []
+        return ", ".join([*names, *events]) or "cases"
+    signals = factor.get("signal") or factor.get("signals")
+    if "seeds" in factor and not signals:
+        return "every parameter named seed"
+    return _plain(signals or factor.get("name", "")) + (" (at the fork)" if factor.get("at_fork") else "")
+
+
+def _values(factor: Mapping[str, Any]) -> str:
+    if "seeds" in factor:
+        return f"{factor['seeds']} seeds, drawn from the study's seed"
+    if cases := factor.get("case"):
+        return _listed([str(case.get("label", "")) for case in cases])
+    if "values" in factor:
+        return _listed([str(value) for value in factor["values"]])
+    stretch = f"{factor.get('from', 0)} to {factor.get('to', 0)}"
+    return f"{stretch} by {factor['step']}" if "step" in factor else f"{stretch}, {factor.get('count')} values"
+
+
+def _listed(texts: Sequence[str]) -> str:
+    shown = ", ".join(texts[:MOST_VALUES])
+    return shown if len(texts) <= MOST_VALUES else f"{shown}, ... ({len(texts)})"
+
+
+def _distribution(how: Mapping[str, Any]) -> str:
+    """A distribution as one would write it down."""
+    later = " (at the fork)" if how.get("at_fork") else ""
+    if how.get("tolerance"):
+        return f"normal about the start value, standard deviation: the tolerance of the parameter set{later}"
+    others = ("distribution", "unit", "name", "at_fork", "tolerance")
+    numbers = ", ".join(f"{name} {value}" for name, value in how.items() if name not in others)
+    unit = f" {how['unit']}" if how.get("unit") else ""
+    return f"{how.get('distribution', '')}: {numbers}{unit}{later}"
+
+
+def measured_table(study: Mapping[str, Any]) -> Table:
+    """What was taken of each run, and of runs that are alike."""
+    rows = [(str(one.get("name", "")), _quantity(one)) for one in _parts(study, "quantity")]
+    rows += [(str(one.get("name", "")), _summary(one)) for one in _parts(study, "summary")]
+    return Table(tuple(rows), ("name", "what it is"), tight=(0,))
+
+
+def _quantity(one: Mapping[str, Any]) -> str:
+    if one.get("scenario_expectations"):
+        return "whether all that the scenario expects holds"
+    if wanted := one.get("expect"):
+        return f"whether all holds: {'; '.join(_plain(_given(claim)) for claim in wanted)}"
+    of = _plain(one.get("signal", ""))
+    if "near" in one:
+        of = f"the distance of {of} from {_plain(one['near'])}"
+    given = [f"{key} {one[key]}" for key in ("percentile", "limit", "time") if key in one]
+    during = [f"during {' to '.join(map(str, one['during']))}"] if "during" in one else []
+    return ", ".join([f"{str(one.get('reduce', '')).replace('_', ' ')} of {of}", *given, *during])
+
+
+def _summary(one: Mapping[str, Any]) -> str:
+    statistic = str(one.get("statistic", "")).replace("_", " ")
+    given = [f"{key} {one[key]}" for key in ("percentile", "along", "share") if key in one]
+    return ", ".join([f"{statistic} of {one.get('quantity')} over {_plain(one.get('over', ''))}", *given])
+
+
+def _plain(value: Any) -> str:
+    """A value of a study file on one line."""
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_plain, value))
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {f'({_plain(v)})' if isinstance(v, list | tuple) else v}" for key, v in value.items())
+    return str(value)
+
+
+def setup_table(tables: StudyTables) -> Table:
+    """Scenario, start values, sampling, seed, engine and versions."""
+    about, study = tables.about, _given(tables.study)
+    sample = _given(study.get("sample") or {})
+    known: dict[str, Any] = {
+        "scenario": study.get("scenario"),
+        "start values of all runs": _plain(study["set"]) if study.get("set") else None,
+        "stop time": study.get("stop_time"),
+        "runs share the time before": study.get("fork_at"),
+        "sampling": f"{sample['method']}, {sample.get('runs')} points" if sample.get("method") else None,
+        "seed": study.get("seed", about.get("seed")),
+        "engine": about.get("engine"),
+        "plan": about.get("plan"),
+        "versions": _plain(about["versions"]) if about.get("versions") else None,
+    }
+    return Table(tuple((name, str(value)) for name, value in known.items() if value not in (None, "")), tight=(0,))
+
+
+def study_text(study: Mapping[str, Any]) -> str:
+    """The study as it was read, with all it inherits."""
+    return json.dumps(_short(study), indent=2, ensure_ascii=False, default=str)
+
+
+def _short(value: Any) -> Any:
+    """A study without what it leaves open."""
+    if isinstance(value, Mapping):
+        return {key: _short(part) for key, part in _given(value).items()}
+    return [_short(part) for part in value] if isinstance(value, list | tuple) else value
