@@ -2,11 +2,11 @@
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-SHIPPED = ("fmus", "ssp", "scenarios", "docs/examples")
+SHIPPED = ("fmus", "ssp", "scenarios", "studies", "docs/examples")
 
 
 class Shipped(BuildHookInterface):
-    """Puts ships, systems, scenarios, FMU sources and examples into the wheel, where `shipcosim.library` finds them."""
+    """Puts ships, systems, scenarios, studies, FMU sources and examples into the wheel, where `shipcosim.library` finds them."""
 
     def initialize(self, version, build_data):
         if version != "editable":

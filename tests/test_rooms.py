@@ -22,9 +22,10 @@ MAY_IMPORT = {
     "native": {"library", "fmi", "errors"},
     "cosim": {"library", "series", "ssp", "scenario", "fmi", "errors", "options", "units", "native"},
     "diagnose": {"library", "errors", "angles", "options", "units", "models", "series", "ssp", "scenario", "cosim"},
+    "sweep": {"library", "errors", "options", "staging", "units", "series", "ssp", "scenario", "cosim"},
     "ships": {"errors", "units", "models", "ssp"},
     "capability": {"library", "errors", "angles", "models", "ships", "ssp"},
-    "checks": {"library", "errors", "series", "ssp", "ships", "scenario", "cosim", "diagnose"},
+    "checks": {"library", "errors", "series", "ssp", "ships", "scenario", "cosim", "diagnose", "sweep"},
     "report": {
         "errors",
         "angles",
@@ -59,6 +60,7 @@ MAY_IMPORT = {
         "capability",
         "learn",
         "native",
+        "sweep",
     },
     "results": {
         "errors",
@@ -71,6 +73,7 @@ MAY_IMPORT = {
         "diagnose",
         "capability",
         "report",
+        "sweep",
     },
     "api": {
         "errors",
@@ -88,6 +91,7 @@ MAY_IMPORT = {
         "capability",
         "staging",
         "checks",
+        "sweep",
     },
 }
 ONLY_DOOR = {
@@ -102,7 +106,11 @@ ONLY_DOOR = {
     "jinja2": {"report.theme"},
     "markupsafe": {"report.theme"},
     "typer": {"cli"},
-    "scipy": set(),  # 143 MB: for tests alone
+    "scipy": {"sweep"},  # 143 MB: an extra
+    "SALib": {"sweep"},
+    "optuna": {"sweep"},
+    "distributed": {"sweep.workers"},
+    "pyarrow": {"series", "sweep.storage"},
 }
 
 

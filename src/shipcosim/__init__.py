@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         sea_trials,
         simulate,
         simulate_many,
+        sweep,
         write_ssv,
         write_table,
     )
@@ -70,6 +71,7 @@ __all__ = [
     "sea_trials",
     "simulate",
     "simulate_many",
+    "sweep",
     "write_report",
     "write_ssv",
     "write_table",
@@ -98,6 +100,8 @@ def __getattr__(name):
         import shipcosim.capability as found
     elif name == "diagnose":
         import shipcosim.diagnose as found
+    elif name == "sweep":
+        import shipcosim.sweep as found
     elif name == "write_report":
         from shipcosim.report import write_report as found
     else:

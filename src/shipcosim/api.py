@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from shipcosim.results.check import CheckedFiles
     from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
     from shipcosim.results.studies import Calibration, CapabilityOfShip, EngineComparison, Replay, SeaTrials
+    from shipcosim.results.study import StudyResult
 
     AnyLog = str | os.PathLike[str] | xarray.Dataset | Log | Run
     AnySystem = str | os.PathLike[str] | SystemStructure | System
@@ -79,6 +80,7 @@ __all__ = [
     "sea_trials",
     "simulate",
     "simulate_many",
+    "sweep",
     "write_ssv",
     "write_table",
 ]
@@ -315,6 +317,76 @@ def simulate_many(
         reduce=reduce,
         workers=workers,
     )
+
+
+@with_known_keywords
+def sweep(
+    study: str | os.PathLike[str],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    engine: str = "native",
+    set: Mapping[str, object] | None = None,
+    at_most: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    force: bool = False,
+) -> StudyResult:
+    """Run a study: a scenario many times, with other weather, events, parameters.
+
+    It goes on where it was interrupted. A run that fails is a row with its error.
+
+    Parameters
+    ----------
+    study : path or name
+        A study file, or its name: ``"wind_limits"``.
+    out : path, optional
+        Folder of the results; results/STUDY without.
+    scheduler : str, optional
+        Address of a scheduler of Dask; processes of this machine without.
+    workers : int, optional
+        Processes of this machine; one a core without.
+    engine : str
+        ``"native"`` or ``"fmpy"``, as in `shipcosim.options.RunOptions`.
+    set : mapping of str to value, optional
+        Start values of all runs, over those of scenario and study; factors go before them.
+    at_most : int, optional
+        Do at most so many runs now.
+    progress : callable, optional
+        Called with (runs done, runs in all).
+    force : bool
+        Do all runs again, and replace earlier results.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    ShipcosimError
+        If something does not fit together, or results cannot be written.
+    """
+    from shipcosim.results.study import StudyResult
+    from shipcosim.sweep import plan_of, read_study, run_study
+
+    plan = plan_of(read_study(_found("study", study)), _mapping("set", set))
+    folder = Path("results") / plan.study.name if out is None else Path(out)
+    swept = run_study(
+        plan,
+        folder,
+        engine=engine,
+        scheduler=scheduler,
+        workers=workers,
+        at_most=at_most,
+        progress=progress,
+        force=force,
+        again=force,
+    )
+
+    def run_again(number: int) -> Run:
+        return run(plan.alone(number), engine=engine)
+
+    return StudyResult(**parts_of(swept), simulate=run_again)
 
 
 def read(path: str | os.PathLike[str], *, fmus: Iterable[str | os.PathLike[str]] | None = None) -> SystemStructure:

@@ -22,6 +22,7 @@ from shipcosim.cli.commands import (
     run,
     sea_trials,
     simulate,
+    sweep,
     train,
 )
 from shipcosim.cli.exits import EXIT_CODES, guarded
@@ -47,6 +48,7 @@ for _function in (
     build.build,
     run.run,
     simulate.simulate,
+    sweep.sweep,
     compare.compare,
     check.check,
     channels.channels,

@@ -273,3 +273,35 @@ def _stacked(parts) -> np.ndarray:
         if array is not None:
             row[tuple(slice(n) for n in array.shape)] = array
     return stacked
+
+
+class OneAfterAnother:
+    """Runs of one system in the calling thread, which come one by one and share what `simulate_many` shares.
+
+    Parameters
+    ----------
+    system, options, choose, reduce
+        As of `simulate_many`; what runs is checked before.
+    check_interrupt : callable
+        Raises KeyboardInterrupt where a run is to end.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        options: RunOptions,
+        choose: Choose,
+        reduce: Reduce,
+        check_interrupt: Callable[[], None] = lambda: None,
+    ):
+        self._runs, self._stack = _Runs(system, options, choose, reduce), ExitStack()
+        self._runs.check_interrupt = check_interrupt
+        self._source = self._stack.enter_context(_sources(1))[0]
+
+    def run(self, variation: Variation) -> Done:
+        """One run; an error of it is part of the result."""
+        return self._runs.run(variation, self._source)
+
+    def close(self) -> None:
+        """Free the FMUs."""
+        self._stack.close()

@@ -1,4 +1,4 @@
-"""What has a name: scenarios, systems, ships, FMUs and examples of a user's project and of the package.
+"""What has a name: scenarios, studies, systems, ships, FMUs and examples of a user's project and of the package.
 
 `find` is the one look-up of names, for commands and Python: a path first, then a name in the project around, then one
 in what the package ships. `entries` lists them, `fmus` gives the folders of built FMUs.

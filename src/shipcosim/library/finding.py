@@ -13,6 +13,7 @@ SYSTEMS = (".ssp", ".ssd", ".xml")
 STRUCTURES = (SYSTEM_STRUCTURE, "OspSystemStructure.xml")
 WHAT = {
     "scenario": "scenario file",
+    "study": "study",
     "system": "system",
     "ship": "ship",
     "fmu": "FMU",
@@ -26,7 +27,7 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
     Parameters
     ----------
     kind : str
-        ``"scenario"``, ``"system"``, ``"ship"``, ``"fmu"`` or ``"example"``.
+        ``"scenario"``, ``"study"``, ``"system"``, ``"ship"``, ``"fmu"`` or ``"example"``.
     given : path or str
         A path, or a name in the project around or in what the package ships.
     option : str
@@ -50,7 +51,7 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
     _check_kind(kind, text)
     path, known = Path(text.partition("#")[0]), names(kind, near)
     is_plain = text in known and not _is_one(kind, path)
-    if path.exists() and not is_plain and (kind not in ("scenario", "fmu") or path.is_file()):
+    if path.exists() and not is_plain and (kind not in ("scenario", "study", "fmu") or path.is_file()):
         return Path(text)
     if text in known:
         return built_fmu(known[text], build) if kind == "fmu" else known[text]

@@ -9,7 +9,8 @@ from typing import NamedTuple
 from shipcosim.library.places import StrPath, roots, shipped
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
-KINDS = ("scenario", "system", "ship", "fmu", "example")
+KINDS = ("scenario", "study", "system", "ship", "fmu", "example")
+FOLDERS_OF = {"scenario": "scenarios", "study": "studies"}  # of kinds that are .toml files
 
 
 class Entry(NamedTuple):
@@ -62,6 +63,7 @@ def line_of(kind: str, path: Path) -> str:
     try:
         return {
             "scenario": _description_in_toml,
+            "study": _description_in_toml,
             "system": _description_in_ssd,
             "ship": _description_in_toml,
             "fmu": _description_in_python,
@@ -78,8 +80,8 @@ def fmu_sources(project: Path) -> dict[str, Path]:
 
 def _in_root(kind: str, root: Path) -> Iterator[tuple[str, Path]]:
     """Names of a kind in a project or in what is shipped, in their order."""
-    if kind == "scenario":
-        folder = root / "scenarios"
+    if kind in FOLDERS_OF:
+        folder = root / FOLDERS_OF[kind]
         yield from ((f.relative_to(folder).with_suffix("").as_posix(), f) for f in sorted(folder.rglob("*.toml")))
     elif kind == "system":
         yield from ((f.parent.name, f.parent) for f in sorted(root.glob(f"ssp/*/{SYSTEM_STRUCTURE}")))

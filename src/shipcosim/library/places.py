@@ -5,12 +5,12 @@ from pathlib import Path
 
 StrPath = str | os.PathLike[str]
 PACKAGE = Path(__file__).resolve().parents[1]
-FOLDERS = ("fmus", "ssp", "scenarios", "ships")  # each makes the folder around it a project
+FOLDERS = ("fmus", "ssp", "scenarios", "studies", "ships")  # each makes the folder around it a project
 CACHE = "SHIPCOSIM_CACHE"  # environment variable: folder of the cache, in place of the platform's
 
 
 def project_of(start: StrPath | None = None) -> Path | None:
-    """Nearest folder at or above a path that holds fmus/, ssp/, scenarios/ or ships/; None without one.
+    """Nearest folder at or above a path that holds fmus/, ssp/, scenarios/, studies/ or ships/; None without one.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario.amounts import unit_complaints, units_of
 from shipcosim.scenario.locations import problem_at
-from shipcosim.scenario.model import Scenario, Value
+from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
 from shipcosim.units import UnitError, amount, number_in
 
@@ -112,19 +112,38 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
     wrong_changes = [
         problem_at(scenario, ("events", number, verb, signal), *complaint)
         for number, event in enumerate(scenario.events)
-        for verb, signal, value in event.changes
-        if (complaint := _event_complaint(system, verb, signal, value))
+        for verb, signal, *complaint in event_complaints(event, system)
     ]
     problems += wrong_changes or odd_values(scenario, system)
     changed = {signal for event in scenario.events for _, signal, _ in event.changes}
     for number, expect in enumerate(scenario.expect):
-        keys = "expect", number
-        complaints = [c for signal in expect.signals if (c := _expect_complaint(system, signal, changed))]
-        problems += [problem_at(scenario, (*keys, "signal"), *complaint) for complaint in complaints]
-        if not complaints:
-            wrong = unit_complaints(expect, units_of(system))
-            problems += [problem_at(scenario, (*keys, key), *complaint) for key, *complaint in wrong]
+        complaints = expectation_complaints(expect, system, changed)
+        problems += [problem_at(scenario, ("expect", number, key), *complaint) for key, *complaint in complaints]
     return problems
+
+
+def expectation_complaints(
+    expect: Expectation, system: System, changed: Collection[str] = ()
+) -> list[tuple[str, str, str]]:
+    """What is wrong with an expectation of a system: (its key, what was found, what would be right).
+
+    Parameters
+    ----------
+    expect : Expectation
+    system : System
+        That runs.
+    changed : collection of str
+        Signals that events change.
+    """
+    complaints = [c for signal in expect.signals if (c := _expect_complaint(system, signal, changed))]
+    return [("signal", *complaint) for complaint in complaints] or list(unit_complaints(expect, units_of(system)))
+
+
+def event_complaints(event: Event, system: System) -> Iterator[tuple[str, str, str, str]]:
+    """What is wrong with an event of a system: (verb, signal, what was found, what would be right)."""
+    for verb, signal, value in event.changes:
+        if complaint := _event_complaint(system, verb, signal, value):
+            yield verb, signal, *complaint
 
 
 def _event_complaint(system: System, verb: str, signal: str, value: Value | None) -> tuple[str, str] | None:

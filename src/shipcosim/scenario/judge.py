@@ -95,25 +95,46 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     ]
     if wrong:
         raise ShipcosimError(wrong)
-    return [_verdict(table, expectation_in_numbers(expect, unit_of), unit_of) for expect in scenario.expect]
+    return [verdict_on(table, expectation_in_numbers(expect, unit_of), unit_of) for expect in scenario.expect]
 
 
-def _verdict(table: xarray.Dataset, expect: Expectation, unit_of: UnitOf) -> Verdict:
-    times = table["time"].values
-    start, end = expect.during or (-np.inf, np.inf)
-    tolerance = 1e-9 * max(1.0, abs(times[-1])) if len(times) else 0.0
-    rows = np.flatnonzero((times >= start - tolerance) & (times <= end + tolerance))
+def verdict_on(table: xarray.Dataset, expect: Expectation, unit_of: UnitOf) -> Verdict:
+    """Verdict on an expectation in plain numbers whose signals are all in the table; see `judge`."""
+    times, rows = table["time"].values, rows_of(table, expect)
     if len(rows) == 0:
         return Verdict(expect, False, np.nan, np.nan)
-    rows, values = _reduced(rows, _values(table, expect, rows, unit_of), expect.statistic)
+    rows, values = _reduced(rows, values_of(table, expect, rows, unit_of), expect.statistic)
     excess = _excess(values, expect)
     worst = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
     measure = values[worst, 0] if expect.near is None else np.linalg.norm(values[worst])
     return Verdict(expect, bool(excess[worst] <= 0.0), float(measure), float(times[rows[worst]]))
 
 
-def _values(table: xarray.Dataset, expect: Expectation, rows: np.ndarray, unit_of: UnitOf) -> np.ndarray:
-    """The signals, or their differences from `near` in the unit of the first; (n, signals)."""
+def rows_of(table: xarray.Dataset, expect: Expectation) -> np.ndarray:
+    """Rows of the window of an expectation, all where it has none."""
+    times = table["time"].values
+    start, end = expect.during or (-np.inf, np.inf)
+    tolerance = 1e-9 * max(1.0, abs(times[-1])) if len(times) else 0.0
+    return np.flatnonzero((times >= start - tolerance) & (times <= end + tolerance))
+
+
+def values_of(table: xarray.Dataset, expect: Expectation, rows: np.ndarray, unit_of: UnitOf) -> np.ndarray:
+    """The signals of an expectation in plain numbers, or their differences from `near` in the unit of the first.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        With all signals.
+    expect : Expectation
+    rows : (n,) array of int
+        Of the table.
+    unit_of : callable
+        Unit of a signal.
+
+    Returns
+    -------
+    (n, signals) array
+    """
     values = np.column_stack([table[s].values[rows].astype(float) for s in expect.signal])
     if expect.near is None:
         return values

@@ -9,6 +9,10 @@ from pathlib import Path
 from shipcosim.errors import Problem
 from shipcosim.scenario.model import Scenario
 
+_HEADER = re.compile(r"""\s*(\[\[?)\s*((?:[\w.\s-]|"[^"]*"|'[^']*')+?)\s*\]\]?\s*(?:#.*)?$""")
+_KEY = re.compile(r"""\s*((?:[\w.-]|"[^"]*"|'[^']*')+)\s*=""")
+_NAME = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
+
 
 def problem_at(
     scenario: Scenario, keys: Sequence[str | int], found: str, remedy: str = "", severity: str = "error"
@@ -46,12 +50,26 @@ def line_of(text: str, keys: Sequence[str | int]) -> int:
     section, counts, depth, found = (), {}, 0, 0
     for number, line in enumerate(text.splitlines(), 1):
         here = section
-        if header := re.match(r"\s*(\[\[?)\s*([\w.-]+)\s*\]", line):
-            name, repeated = header[2], header[1] == "[["
-            counts[name] = counts.get(name, -1) + 1
-            section = here = (name, counts[name]) if repeated else (name,)
-        elif key := re.match(r"""\s*(["']?)([\w.-]+)\1\s*=""", line):
-            here = (*section, key[2])
+        if header := _HEADER.match(line):
+            section = here = _section(_names(header[2]), header[1] == "[[", counts)
+        elif key := _KEY.match(line):
+            here = (*section, *_names(key[1]))
         if len(here) > depth and here == tuple(keys[: len(here)]):
             depth, found = len(here), number
     return found
+
+
+def _names(dotted: str) -> list[str]:
+    return [name.strip("\"'") for name in _NAME.findall(dotted)]
+
+
+def _section(names: Sequence[str], repeated: bool, counts: dict[tuple, int]) -> tuple[str | int, ...]:
+    """Keys to a table by its header; `counts` has the positions of the tables that stand in lists."""
+    path: tuple[str | int, ...] = ()
+    for number, name in enumerate(names, 1):
+        path = (*path, name)
+        if repeated and number == len(names):
+            counts[path] = counts.get(path, -1) + 1
+        if path in counts:
+            path = (*path, counts[path])
+    return path

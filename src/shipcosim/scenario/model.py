@@ -93,11 +93,13 @@ class _Made(type(BaseModel)):  # pyright: ignore[reportGeneralTypeIssues]  pydan
             raise ShipcosimError(problems_in(error, f"{cls.__name__}()")) from None
 
 
-class _Part(BaseModel, metaclass=_Made):
+class Part(BaseModel, metaclass=_Made):
+    """A record of a file: no other keys, nothing changes afterwards."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class Event(_Part):
+class Event(Part):
     """What changes at a time, in the words of OSP. An event at time t acts on the step that starts at t."""
 
     time: Seconds = Field(ge=0.0, description="s")
@@ -118,7 +120,7 @@ class Event(_Part):
         return changes + [("bias", *item) for item in self.bias.items()] + [("reset", s, None) for s in self.reset]
 
 
-class Expectation(_Part):
+class Expectation(Part):
     """What must hold of one signal, or of the distance that several span.
 
     Differences of signals in rad are taken the short way round.
@@ -192,7 +194,7 @@ def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
 
-class Scenario(_Part):
+class Scenario(Part):
     """What happens: a system, its start values, events, and what must hold.
 
     A change is a copy: ``scenario.model_copy(update={"step_size": 0.025})``.

@@ -8,14 +8,14 @@ import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args, get_origin
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario.check import check_times
 from shipcosim.scenario.locations import line_of, location_of
-from shipcosim.scenario.model import Event, Expectation, Scenario
+from shipcosim.scenario.model import Scenario
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -32,8 +32,6 @@ _REMEDIES = {
 }
 """What would be right, where pydantic's words would not help."""
 
-_PARTS = {"events": Event, "expect": Expectation}
-
 
 def read_scenario(path: str | os.PathLike) -> Scenario:
     """Read and check a scenario file.
@@ -44,11 +42,7 @@ def read_scenario(path: str | os.PathLike) -> Scenario:
         With every problem of the file: its line, what was found, what would be right.
     """
     path = Path(path)
-    text = _text(path)
-    try:
-        content = toml_of(text)
-    except ValueError as error:
-        raise ShipcosimError(_no_toml(path, str(error))) from error
+    text, content = read_toml(path)
     try:
         scenario = Scenario.model_validate(content)
     except ValidationError as error:
@@ -57,6 +51,27 @@ def read_scenario(path: str | os.PathLike) -> Scenario:
     if problems := [p for p in check_times(scenario) if p.severity == "error"]:
         raise ShipcosimError(problems)
     return scenario
+
+
+def read_toml(path: Path, kind: str = "Scenarios") -> tuple[str, dict[str, Any]]:
+    """Text and content of a TOML file.
+
+    Parameters
+    ----------
+    path : Path
+    kind : str
+        What such files are, as a message begins.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be read, or is not TOML.
+    """
+    text = _text(path)
+    try:
+        return text, toml_of(text)
+    except ValueError as error:
+        raise ShipcosimError(_no_toml(path, str(error), kind)) from error
 
 
 def toml_of(text: str) -> dict[str, Any]:
@@ -104,12 +119,12 @@ def _text(path: Path) -> str:
         raise ShipcosimError(Problem(f"{path}, line {line}", found, "Save the file in UTF-8.")) from error
 
 
-def _no_toml(path: Path, message: str) -> Problem:
+def _no_toml(path: Path, message: str, kind: str) -> Problem:
     """What the TOML reader says, with its line where all other messages have theirs."""
     line = re.search(r" \(at line (\d+), column \d+\)", message)
     where = f"{path}, line {line[1]}" if line else str(path)
     found = f"is no TOML: {message.replace(line[0], '') if line else message}."
-    return Problem(where, found, "Scenarios are text files in TOML: keys, =, values, texts in quotes.")
+    return Problem(where, found, f"{kind} are text files in TOML: keys, =, values, texts in quotes.")
 
 
 def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]:
@@ -117,24 +132,50 @@ def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]
     problems = {}
     for finding in error.errors():
         keys = finding["loc"]
-        where = line_of(text, keys), keys[: 3 if keys[0] in _PARTS else 2]
-        problems.setdefault(where, Problem(location_of(path, text, keys), *_found_and_remedy(finding)))
+        where = line_of(text, keys), keys[: 3 if keys[0] in ("events", "expect") else 2]
+        problems.setdefault(where, Problem(location_of(path, text, keys), *complaint_of(finding, Scenario)))
     return [problems[where] for where in sorted(problems, key=lambda where: where[0])]
 
 
-def _found_and_remedy(finding: ErrorDetails) -> tuple[str, str]:
-    keys, kind = finding["loc"], finding["type"]
-    part = _PARTS.get(str(keys[0]), Scenario) if len(keys) > 1 else Scenario
-    label = ".".join(str(k) for k in (keys if part is Scenario else keys[2:]))
-    last = str(keys[-1]) if keys else ""
+def complaint_of(finding: ErrorDetails, record: type[BaseModel]) -> tuple[str, str]:
+    """What was found and what would be right, of a finding of pydantic.
+
+    Parameters
+    ----------
+    finding : dict
+        One of ``ValidationError.errors()``.
+    record : type
+        Of the whole file.
+    """
+    part, keys = _part_at(record, finding["loc"])
+    kind, last = finding["type"], str(keys[-1]) if keys else ""
+    label = ".".join(map(str, keys))
     if kind == "extra_forbidden":
-        return f"unknown key '{last}'.", suggestion(last, part.model_fields)
+        return f"unknown key '{last}'.", suggestion(last, (field.alias or n for n, field in part.model_fields.items()))
     if kind == "missing":
         return f"'{last}' is missing.", ""
     if kind == "value_error":
         return str(finding.get("ctx", {})["error"]), ""
     remedy = _REMEDIES.get(kind) or finding["msg"].replace("Input", "It", 1) + "."
     return f"{label} = {_as_toml(finding['input'])}.", remedy
+
+
+def _part_at(record: type[BaseModel], keys: tuple[int | str, ...]) -> tuple[type[BaseModel], tuple[int | str, ...]]:
+    """The innermost record that keys lead to, and the keys within it."""
+    for number, key in enumerate(keys[:-1]):
+        field = next((field for name, field in record.model_fields.items() if key in (name, field.alias)), None)
+        kinds = list(_kinds_in(field.annotation)) if field else []
+        part = next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)), None)
+        if part is not None and len(rest := keys[number + 1 :]) > (is_many := list in kinds or dict in kinds):
+            return _part_at(part, rest[is_many:])
+    return record, keys
+
+
+def _kinds_in(annotation: Any) -> Iterator[Any]:
+    """All types that an annotation is made of."""
+    yield get_origin(annotation) or annotation
+    for inner in get_args(annotation):
+        yield from _kinds_in(inner)
 
 
 def _as_toml(value: Any) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from shipcosim import library
 
 Names = list[tuple[str, str]]
-LISTED = ("scenarios", "systems", "ships", "fmus", "examples", "causes", "engines")
+LISTED = ("scenarios", "studies", "systems", "ships", "fmus", "examples", "causes", "engines")
 ENGINES = ("fmpy", "native", "libcosim", "ecos")
 
 

@@ -1,0 +1,98 @@
+"""A study from the command line: what will be done, how far it is, how it went."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from shipcosim.cli.console import shown_path
+from shipcosim.cli.exits import FAILED, INTERRUPTED
+from shipcosim.sweep import Plan, Swept, run_study
+
+SHOWN = 20  # rows of the summary on the terminal
+
+
+def sweep_and_save(plan: Plan, out: Path, **options: Any) -> None:
+    """Run what is not done of a study and say how it went.
+
+    Parameters
+    ----------
+    plan : Plan
+    out : Path
+        Folder of the results.
+    **options
+        As of `shipcosim.sweep.run_study`.
+
+    Raises
+    ------
+    typer.Exit
+        If some runs failed, or it was interrupted.
+    """
+    with _progress(plan) as progress:
+        try:
+            swept = run_study(plan, out, progress=progress, **options)
+        except KeyboardInterrupt:
+            typer.echo(f"Interrupted. What is done is kept in {shown_path(out)}; the same command goes on.", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+    _say(swept)
+    if swept.about["runs"]["failed"]:
+        raise typer.Exit(FAILED)
+
+
+@contextmanager
+def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
+    """Progress bar with runs and simulated seconds a second, and the time that is left.
+
+    Where there is no terminal, a line at the start, when the first runs show how long all will take, and each tenth.
+    """
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True, highlight=False)
+    each = plan.duration / max(len(plan), 1)
+    columns = [TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[pace]}")]
+    columns.append(TimeRemainingColumn())
+    console.print(f"{plan.study.name}: {len(plan):,} runs of {each:,.0f} s.")
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task, first, said = bar.add_task("", total=len(plan), pace=""), [], []
+
+        def report(done: int, total: int) -> None:
+            elapsed = bar.tasks[0].elapsed or 0.0
+            first or first.append((done, elapsed))
+            rate = (done - first[0][0]) / (elapsed - first[0][1]) if elapsed > first[0][1] else 0.0
+            pace = f"{rate:.1f} runs/s, {rate * each:,.0f} ship-s/s" if rate else ""
+            bar.update(task, completed=done, total=total, pace=pace)
+            if rate and not said and elapsed - first[0][1] > 2.0 and done < total:
+                said.append(done)
+                left = total - done
+                console.print(f"{pace}: about {_time(left / rate)} for the {left:,} runs that are left.")
+
+        yield report
+
+
+def _time(seconds: float) -> str:
+    for unit, length in (("h", 3600.0), ("min", 60.0)):
+        if seconds > 1.5 * length:
+            return f"{seconds / length:.1f} {unit}"
+    return f"{seconds:.0f} s"
+
+
+def _say(swept: Swept) -> None:
+    """The summary, errors, and where the page is."""
+    console = Console(highlight=False, soft_wrap=True)
+    if 0 < len(swept.summary) <= SHOWN:
+        text = swept.summary.to_string(index=False, na_rep="", float_format=lambda value: f"{value:.4g}")
+        console.print(text, markup=False)
+    counts = swept.about["runs"]
+    errors = swept.runs.loc[swept.runs["error"] != "", "error"]
+    if len(errors):
+        console.print(Text(f"{counts['failed']} runs failed, the first with: {errors.iloc[0]}", style="bold red"))
+    left = counts["planned"] - counts["done"]
+    open_ = f"; {left:,} are left, which the same command does" if left else ""
+    console.print(f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False)
+    console.print(f"Results: {shown_path(swept.folder)}", markup=False)

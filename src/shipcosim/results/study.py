@@ -1,0 +1,53 @@
+"""A study: its table of runs, its summary, its page, and any of its runs again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.results.shown import Result
+from shipcosim.sweep import Swept
+
+if TYPE_CHECKING:
+    import pandas
+
+    from shipcosim.report.notebook.card import Card
+    from shipcosim.results.run import Run
+
+__all__ = ["StudyResult"]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class StudyResult(Result, Swept):
+    """What `shipcosim.sweep` gives back. To start with: ``.runs``, ``.summary``, ``.run(0)``."""
+
+    simulate: Callable[[int], Run] = field(kw_only=True)
+
+    def run(self, number: int) -> Run:
+        """A run of the table simulated again, with all its signals.
+
+        Parameters
+        ----------
+        number : int
+            As in the column `run`.
+
+        Raises
+        ------
+        ShipcosimError
+            If there is no such run, or it fails.
+        """
+        if not 0 <= number < len(self.plan):
+            remedy = f"Runs are numbered from 0 to {len(self.plan) - 1}."
+            raise ShipcosimError(Problem(self.plan.study.name, f"There is no run {number}.", remedy))
+        return self.simulate(number)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table of runs."""
+        return self.runs
+
+    def _card(self) -> Card:
+        from shipcosim.report.notebook.study_cards import study_card
+
+        return study_card(self.plan.study.name, self.about["runs"], self.summary)

@@ -1,0 +1,239 @@
+"""Levels of factors: what each value, case or seed of a factor changes in a run."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import floor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario import Event, units_of, whole_steps
+from shipcosim.scenario.check import event_complaints
+from shipcosim.scenario.model import Value
+from shipcosim.ssp import fitting_values, with_values
+from shipcosim.sweep.reader import problem_of
+from shipcosim.sweep.records import Case, Factor, Study
+from shipcosim.units import Unit, UnitError, amount, number_in
+
+if TYPE_CHECKING:
+    from shipcosim.scenario import Scenario
+    from shipcosim.ssp import System
+
+LARGEST_SEED = 2**31
+MOST_LEVELS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Level:
+    """One value of a factor.
+
+    Parameters
+    ----------
+    label : value
+        Of the column.
+    values : mapping of str to value
+        Start values by signal, in the units of the variables.
+    events : tuple of Event
+        That happen besides those of all runs.
+    components : mapping of str to str
+        FMUs that components run in place of their own.
+    stop_time : float or None
+        Where the run ends. [s]
+    """
+
+    label: Value
+    values: Mapping[str, Value] = field(default_factory=dict)
+    events: tuple[Event, ...] = ()
+    components: Mapping[str, str] = field(default_factory=dict)
+    stop_time: float | None = None
+
+
+class Levels:
+    """Makes the levels of a study's factors, and collects what is wrong with them.
+
+    Parameters
+    ----------
+    study : Study
+        With the factors.
+    scenario : Scenario
+        Of all runs.
+    system : System
+        Of all runs, with their start values.
+    """
+
+    def __init__(self, study: Study, scenario: Scenario, system: System):
+        self._study, self._scenario, self._system = study, scenario, system
+        self.problems: list[Problem] = []
+
+    def of(self, number: int) -> list[Level]:
+        """Levels of the factor with a number."""
+        factor = self._study.factor[number]
+        if factor.case is not None:
+            return [self._of_case(one, ("factor", number, "case", i)) for i, one in enumerate(factor.case)]
+        if factor.seeds is not None:
+            return self._of_seeds(factor, ("factor", number, "seeds"))
+        key = "values" if factor.values is not None else "from"
+        signals = self._expanded(factor.signal, ("factor", number, "signal"))
+        if not signals:
+            return []
+        values = factor.values or self._spaced(factor, signals[0], number)
+        if factor.at_fork:
+            return [self.at_fork(signals, value, ("factor", number, key)) for value in values]
+        found = (self.checked(dict.fromkeys(signals, value), ("factor", number, key)) for value in values)
+        return [Level(next(iter(one.values())), one) for one in found if one]
+
+    def checked(self, values: Mapping[str, Value], keys: Sequence[str | int]) -> dict[str, Value]:
+        """Start values in the units of their variables; none where one does not fit, which is said."""
+        where = problem_of(self._study, keys, "").where
+        try:
+            system = with_values(self._system, values, where)
+        except ShipcosimError as error:
+            self.problems += error.problems
+            return {}
+        return {signal: start_value(system, signal) for signal in values}
+
+    def at_fork(self, signals: Sequence[str], value: Value, keys: Sequence[str | int]) -> Level:
+        """Level of an event at the fork."""
+        event = Event(time=self._study.fork_at or 0.0, override=dict.fromkeys(signals, value))
+        for _, _, found, remedy in event_complaints(event, self._system):
+            self.problems.append(problem_of(self._study, keys, found, remedy))
+        number = value if self.problems else _number(value, units_of(self._system)(signals[0]))
+        return Level(number, events=(event,))
+
+    def expanded(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Values by signal, where names of the study stand for several components."""
+        return {signal: value for name, value in values.items() for signal in self.signals_of(name)}
+
+    def signals_of(self, name: str) -> list[str]:
+        """Signals that a name means: one, or that of several components."""
+        for group, components in self._study.names.items():
+            if name.startswith(f"{group}."):
+                return [component + name[len(group) :] for component in components]
+        return [name]
+
+    def _expanded(self, names: Iterable[str], keys: Sequence[str | int]) -> list[str]:
+        """Signals that names mean; none where one does not exist, which is said."""
+        signals = [signal for name in names for signal in self.signals_of(name)]
+        problems = []
+        for signal in signals:
+            try:
+                self._system.split(signal)
+            except ShipcosimError as error:
+                problems.append(problem_of(self._study, keys, error.problems[0].found, error.problems[0].remedy))
+        self.problems += problems
+        return [] if problems else signals
+
+    def _of_case(self, case: Case, keys: tuple[str | int, ...]) -> Level:
+        values: dict[str, Value] = {}
+        for name in case.parameters:
+            values |= self.fitting(name, (*keys, "parameters"))
+        values |= self.checked(self.expanded(case.set), (*keys, "set")) if case.set else {}
+        events = [self.event(event) for event in case.events]
+        self._check_events(events, (*keys, "events"))
+        self._check_time(case.stop_time, (*keys, "stop_time"))
+        return Level(case.label, values, tuple(events), case.components, case.stop_time)
+
+    def event(self, event: Event) -> Event:
+        """An event whose signals are those of components."""
+        reset = [signal for name in event.reset for signal in self.signals_of(name)]
+        return event.model_copy(
+            update={"override": self.expanded(event.override), "bias": self.expanded(event.bias), "reset": reset}
+        )
+
+    def fitting(self, name: str, keys: Sequence[str | int]) -> dict[str, Value]:
+        """Start values of a parameter set that fit the system."""
+        paths = [Path(self._scenario.system_path) / "resources" / f"{name}.ssv", self._study.folder / name]
+        path = next((one for one in paths if one.is_file()), None)
+        if path is None:
+            known = [file.stem for file in paths[0].parent.glob("*.ssv")]
+            found = f"There is no parameter set '{name}', in {paths[0].parent} or beside the study."
+            self.problems.append(problem_of(self._study, keys, found, suggestion(name, known)))
+            return {}
+        try:
+            return fitting_values(path, self._system)[0]
+        except ShipcosimError as error:
+            self.problems += error.problems
+            return {}
+
+    def _check_events(self, events: Iterable[Event], keys: tuple[str | int, ...]) -> None:
+        for number, event in enumerate(events):
+            for verb, signal, found, remedy in event_complaints(event, self._system):
+                self.problems.append(problem_of(self._study, (*keys, number, verb, signal), found, remedy))
+            self._check_time(event.time, (*keys, number, "time"), may_be_zero=True)
+
+    def _check_time(self, time: float | None, keys: Sequence[str | int], may_be_zero: bool = False) -> None:
+        step = self._scenario.step_size
+        if time is None:
+            return
+        count = whole_steps(time, step)
+        if count is None or (count == 0 and not may_be_zero):
+            found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
+            nearest = max(1, round(time / step)) * step
+            self.problems.append(problem_of(self._study, keys, found, f"The nearest would be {nearest:g} s."))
+
+    def _spaced(self, factor: Factor, signal: str, number: int) -> list[float]:
+        """Evenly spaced values of a factor, both ends included, in the unit of its signal."""
+        unit = units_of(self._system)(signal)
+        try:
+            first, last = (_number(value, unit) for value in (factor.start, factor.to))
+            step = None if factor.step is None else _number(factor.step, unit, difference=True)
+        except UnitError as error:
+            self.problems.append(problem_of(self._study, ("factor", number, "from"), error.found, error.remedy))
+            return []
+        if step is None:
+            return np.linspace(first, last, factor.count or 2).tolist()
+        if step == 0.0 or (last - first) / step < 0.0 or (last - first) / step > MOST_LEVELS:
+            found = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
+            self.problems.append(problem_of(self._study, ("factor", number, "step"), found, "Give another step."))
+            return []
+        return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
+
+    def _of_seeds(self, factor: Factor, keys: Sequence[str | int]) -> list[Level]:
+        """Levels of seeds: each signal gets its own number, drawn from the study's seed, the level and its name."""
+        signals = (
+            self._expanded(factor.signal, (*keys[:2], "signal")) if factor.signal else list(seeds_of(self._system))
+        )
+        if not signals and not self.problems:
+            found = "Nothing in the system has a seed: it has no parameter named seed."
+            self.problems.append(problem_of(self._study, keys, found, "Name the signals: signal = [...]."))
+        levels = []
+        for level in range(1, (factor.seeds or 0) + 1):
+            values = {signal: _drawn(self._study.seed, level, signal) for signal in signals}
+            levels.append(Level(level, values))
+        if levels:
+            self.checked(levels[0].values, keys)
+        return levels
+
+
+def start_value(system: System, signal: str) -> Value:
+    """Start value of a signal, in the unit of its variable."""
+    component, name = system.split(signal)
+    value = system.inputs[name].start if component is None else system.components[component].start_value(name)
+    assert value is not None
+    return value
+
+
+def seeds_of(system: System) -> Iterator[str]:
+    """Parameters that are seeds, by their name."""
+    for component in system.components.values():
+        for variable in component.fmu.variables.values():
+            is_seed = variable.name == "seed" or variable.name.endswith("_seed")
+            if is_seed and variable.causality == "parameter" and variable.kind == "Integer":
+                yield f"{component.name}.{variable.name}"
+
+
+def _drawn(seed: int, level: int, signal: str) -> int:
+    generator = np.random.default_rng([seed, level, zlib.crc32(signal.encode())])
+    return int(generator.integers(1, LARGEST_SEED))
+
+
+def _number(value: Any, unit: Unit | None, difference: bool = False) -> Any:
+    """A value with its unit converted; others as they are."""
+    if not isinstance(value, str) or amount(value) is None:
+        return value
+    return number_in(value, unit, difference=difference)

@@ -1,0 +1,153 @@
+"""Quantities: what a run is reduced to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim.errors import Problem
+from shipcosim.scenario import Event, Expectation, Scenario, units_of
+from shipcosim.scenario.amounts import expectation_in_numbers
+from shipcosim.scenario.check import expectation_complaints
+from shipcosim.scenario.judge import rows_of, values_of, verdict_on
+from shipcosim.sweep.reader import problem_of
+from shipcosim.sweep.records import Quantity, Study
+from shipcosim.units import Unit
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.ssp import System
+
+Reduction = Callable[[np.ndarray, np.ndarray, float], Any]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A quantity with its signals in the units of a system.
+
+    Parameters
+    ----------
+    name, description : str
+        Of its column.
+    unit : str or None
+        Of its values; None where it is true or false.
+    expect : tuple of Expectation
+        In plain numbers: what is judged, or the one whose signals and window are reduced.
+    units : mapping of str to Unit or None
+        Of all signals.
+    reduce : str
+        How; empty where it is true or false.
+    argument : float
+        Time, percentile or limit.
+    """
+
+    name: str
+    description: str
+    unit: str | None
+    expect: tuple[Expectation, ...]
+    units: Mapping[str, Unit | None]
+    reduce: str = ""
+    argument: float = np.nan
+
+    def of(self, table: xarray.Dataset) -> float | bool:
+        """The quantity of a run by its table; NaN where it has no row."""
+        if not self.reduce:
+            return all(verdict_on(table, one, self.units.__getitem__).passed for one in self.expect)
+        rows = rows_of(table, self.expect[0])
+        if len(rows) == 0:
+            return np.nan
+        values = values_of(table, self.expect[0], rows, self.units.__getitem__)
+        single: Any = values[:, 0] if values.shape[1] == 1 else np.linalg.norm(values, axis=1)
+        return float(REDUCED[self.reduce](table["time"].values[rows], single, self.argument))
+
+
+def _at(times: np.ndarray, values: np.ndarray, time: float) -> Any:
+    """Value of the last row that is not after a time."""
+    row = int(np.searchsorted(times, time + 1e-9 * max(1.0, abs(time)), side="right")) - 1
+    return values[row] if row >= 0 else np.nan
+
+
+def _time_beyond(times: np.ndarray, values: np.ndarray, limit: float) -> float:
+    beyond = np.flatnonzero(np.abs(values) > limit)
+    return times[beyond[0]] if len(beyond) else np.nan
+
+
+REDUCED: dict[str, Reduction] = {
+    "maximum": lambda times, values, _: values.max(),
+    "minimum": lambda times, values, _: values.min(),
+    "mean": lambda times, values, _: values.mean(),
+    "rms": lambda times, values, _: np.sqrt(np.mean(values**2)),
+    "final": lambda times, values, _: values[-1],
+    "at": _at,
+    "percentile": lambda times, values, percentile: np.percentile(values, percentile),
+    "time_beyond": _time_beyond,
+    "share_beyond": lambda times, values, limit: np.mean(np.abs(values) > limit),
+}
+"""Reductions of (times, values, argument)."""
+
+
+def measures_of(
+    study: Study, scenario: Scenario, system: System, events: Iterable[Event] = ()
+) -> tuple[tuple[Measure, ...], list[Problem]]:
+    """Quantities of a study in the units of a system, and what is wrong with them.
+
+    Parameters
+    ----------
+    study : Study
+    scenario : Scenario
+        Of all runs.
+    system : System
+        That runs.
+    events : iterable of Event
+        That some of the runs have.
+    """
+    changed = {signal for event in [*scenario.events, *events] for _, signal, _ in event.changes}
+    problems = [
+        problem_of(study, ("quantity", number, *((key,) if one.signal else ("expect", i, key))), found, remedy)
+        for number, one in enumerate(study.quantity)
+        for i, expect in enumerate(_claims(one, scenario))
+        for key, found, remedy in expectation_complaints(expect, system, changed)
+    ]
+    problems += _outside(study, scenario)
+    return () if problems else tuple(_measure(one, scenario, system) for one in study.quantity), problems
+
+
+def _claims(quantity: Quantity, scenario: Scenario) -> list[Expectation]:
+    if not quantity.judges:
+        return [quantity.claim]
+    within = [one for one in scenario.expect if not one.during or one.during[1] <= scenario.stop_time]
+    return [*quantity.expect, *(within if quantity.scenario_expectations else ())]
+
+
+def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
+    """Windows and times that no run reaches."""
+    ends = [case.stop_time or 0.0 for factor in study.factor for case in factor.case or ()]
+    end = max(scenario.stop_time, *ends, 0.0)
+    for number, one in enumerate(study.quantity):
+        starts = ("during", one.during[0] if one.during else None), ("time", one.time)
+        for key, time in starts:
+            if time is not None and time > end:
+                found = f"{key} lies beyond the end of the runs at {end:g} s."
+                yield problem_of(study, ("quantity", number, key), found, "Take a time within them.")
+        if one.scenario_expectations and len(_claims(one, scenario)) == len(one.expect):
+            found = f"The scenario {study.scenario} expects nothing within {scenario.stop_time:g} s."
+            keys = "quantity", number, "scenario_expectations"
+            yield problem_of(study, keys, found, "Write expect = [...] here.")
+
+
+def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
+    unit_of = units_of(system)
+    expect = tuple(expectation_in_numbers(one, unit_of) for one in _claims(quantity, scenario))
+    units = {signal: unit_of(signal) for one in expect for signal in one.signals}
+    if quantity.reduce is None:
+        return Measure(quantity.name, quantity.description, None, expect, units)
+    first = units[quantity.signal[0]]
+    unit = {"time_beyond": "s", "share_beyond": "1"}.get(quantity.reduce, first.name if first else "1")
+    limit = expect[0].within if quantity.near is not None else expect[0].at_most
+    argument = {"at": quantity.time, "percentile": quantity.percentile}.get(quantity.reduce, limit)
+    text = quantity.description or f"{quantity.reduce} of {expect[0].subject}"
+    return Measure(quantity.name, text, unit, expect, units, quantity.reduce, float(argument or 0.0))

@@ -1,0 +1,172 @@
+"""Reading a study file and those that it extends, with every mistake said at its line."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from shipcosim import library
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario.locations import line_of, location_of
+from shipcosim.scenario.reader import complaint_of, read_toml
+from shipcosim.sweep.records import Study
+
+LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title"}
+"""Lists of which a later study replaces what has the same name."""
+
+
+@dataclass
+class Source:
+    """What a study was read from.
+
+    Parameters
+    ----------
+    content : dict
+        All that was written, with what the study extends.
+    files : list of (Path, str)
+        Files and their texts, those that extend others first.
+    origins : dict of str to list of (int, int)
+        Of each item of a list the number of its file, and its position there.
+    """
+
+    content: dict[str, Any]
+    files: list[tuple[Path, str]]
+    origins: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
+
+    def location(self, keys: Sequence[str | int]) -> str:
+        """File and line of a key."""
+        first, rest = (str(keys[0]) if keys else ""), tuple(keys[1:])
+        if first in self.origins and rest and isinstance(rest[0], int) and rest[0] < len(self.origins[first]):
+            number, position = self.origins[first][rest[0]]
+            return location_of(*self.files[number], (first, position, *rest[1:]))
+        for length in range(len(keys), 0, -1):
+            for path, text in self.files:
+                if (line := line_of(text, keys[:length])) and (
+                    length == 1 or line != line_of(text, keys[: length - 1])
+                ):
+                    return f"{path}, line {line}"
+        return str(self.files[0][0])
+
+
+def read_study(path: str | os.PathLike[str]) -> Study:
+    """Read and check a study file in itself; `shipcosim.sweep.plan` checks it with its scenario.
+
+    Raises
+    ------
+    ShipcosimError
+        With every problem of the file: its line, what was found, what would be right.
+    """
+    return study_of(_read(Path(path), ()))
+
+
+def study_of(source: Source) -> Study:
+    """The study of what was read.
+
+    Raises
+    ------
+    ShipcosimError
+        With every problem: its line, what was found, what would be right.
+    """
+    try:
+        study = Study.model_validate(source.content)
+    except ValidationError as error:
+        problems = {}
+        for finding in error.errors():
+            keys = finding["loc"]
+            problems.setdefault(keys[:3], Problem(source.location(keys), *complaint_of(finding, Study)))
+        raise ShipcosimError(list(problems.values())) from None
+    study._path, study._source = source.files[0][0], source
+    if problems := [*_repeated(study)]:
+        raise ShipcosimError(problems)
+    return study
+
+
+def problem_of(study: Study, keys: Sequence[str | int], found: str, remedy: str = "") -> Problem:
+    """Problem at a key of a study, with its line where it was read from a file."""
+    return Problem(study._source.location(keys) if study._source else study.name, found, remedy)
+
+
+def _read(path: Path, before: tuple[Path, ...]) -> Source:
+    text, content = read_toml(path, "Studies")
+    source = Source(content, [(path, text)])
+    source.origins = {name: [(0, i) for i in range(len(content[name]))] for name in LISTS if _is_list(content, name)}
+    base = content.pop("extends", None)
+    if base is None:
+        return source
+    where, resolved = source.location(("extends",)), path.resolve()
+    if not isinstance(base, str):
+        raise ShipcosimError(Problem(where, f"extends = {base!r}.", "Give the name or path of a study, in quotes."))
+    beside = path.resolve().parent / base
+    try:
+        found = beside if beside.is_file() else library.find("study", base, near=path.resolve().parent)
+    except ShipcosimError as error:
+        raise ShipcosimError(Problem(where, f"There is no study '{base}'.", error.problems[0].remedy)) from None
+    if found.resolve() in (resolved, *before):
+        raise ShipcosimError(Problem(where, f"'{base}' extends this study in turn.", "Extend a study that does not."))
+    return _over(_read(found, (*before, resolved)), source)
+
+
+def _is_list(content: dict[str, Any], name: str) -> bool:
+    return isinstance(content.get(name), list) and all(isinstance(one, dict) for one in content[name])
+
+
+def _over(base: Source, own: Source) -> Source:
+    """What a study has over the one that it extends; of both where no list says otherwise."""
+    files = [*own.files, *base.files]
+    shift = len(own.files)
+    content, origins = _merged(_anchored(base), own.content), {}
+    for name in LISTS:
+        if not any(_is_list(one.content, name) for one in (base, own)):
+            continue
+        items = [(item, (n + shift, i)) for item, (n, i) in _items(base, name)]
+        for item, origin in _items(own, name):
+            label = item.get(LISTS[name])
+            same = next((i for i, (old, _) in enumerate(items) if label and old.get(LISTS[name]) == label), None)
+            if same is None:
+                items.append((item, origin))
+            else:
+                items[same] = item, origin
+        content[name], origins[name] = [item for item, _ in items], [origin for _, origin in items]
+    return Source(content, files, origins)
+
+
+def _items(source: Source, name: str) -> list[tuple[dict[str, Any], tuple[int, int]]]:
+    return list(zip(source.content.get(name, []), source.origins.get(name, []), strict=False))
+
+
+def _anchored(base: Source) -> dict[str, Any]:
+    """What the other study says, with the scenario that lies beside it by its path."""
+    scenario = base.content.get("scenario")
+    beside = base.files[0][0].resolve().parent / scenario if isinstance(scenario, str) else None
+    return base.content | ({"scenario": str(beside)} if beside is not None and beside.is_file() else {})
+
+
+def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
+    """Tables merged key by key; what is no table is that of `own`."""
+    both = {n: _merged(base[n], own[n]) for n in base.keys() & own.keys() if _are_tables(base[n], own[n])}
+    return {**base, **own, **both}
+
+
+def _are_tables(*values: Any) -> bool:
+    return all(isinstance(value, dict) for value in values)
+
+
+def _repeated(study: Study) -> list[Problem]:
+    """Columns of the same name."""
+    seen, problems = {}, []
+    of_sample = [] if study.sample is None else list(study.sample.of.items())
+    columns = [(("factor", i, "name"), one.name) for i, one in enumerate(study.factor)]
+    columns += [(("sample", "of", signal), one.name or signal) for signal, one in of_sample]
+    columns += [(("quantity", i, "name"), one.name) for i, one in enumerate(study.quantity)]
+    columns += [(("summary", i, "name"), one.name) for i, one in enumerate(study.summary)]
+    for keys, name in columns:
+        if name in seen:
+            found = f"'{name}' is a {seen[name]} already."
+            problems.append(problem_of(study, keys, found, "Give each column of the tables a name of its own."))
+        seen.setdefault(name, str(keys[0]))
+    return problems

@@ -1,0 +1,272 @@
+"""Records of a study: what varies over a scenario, what is kept of each run, and how the runs are summed up."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, ConfigDict, Field, PrivateAttr, model_validator
+
+from shipcosim import library
+from shipcosim.scenario import Event, Expectation
+from shipcosim.scenario.model import Amount, ListOfNames, Part, Seconds, Value
+from shipcosim.units import amount
+
+RESERVED = ("run", "error", "input", "sample")
+"""Columns that every table of runs has."""
+
+
+def _column(name: str) -> str:
+    if name in RESERVED:
+        raise ValueError(f"'{name}' is a column of every table of runs. Take another name.")
+    if not re.fullmatch(r"[A-Za-z_][\w.-]*", name):
+        raise ValueError(f"'{name}' cannot name a column. Use letters, digits, '_', '-' and '.'.")
+    return name
+
+
+Column = Annotated[str, AfterValidator(_column)]
+Count = Annotated[int, Field(ge=1)]
+
+
+class Case(Part):
+    """Several things that change together.
+
+    Values of `set` act from the start; events act at their times.
+    """
+
+    label: str | int | float
+    set: dict[str, Value] = {}
+    events: list[Event] = []
+    parameters: ListOfNames = []
+    components: dict[str, str] = {}
+    stop_time: Seconds | None = Field(default=None, gt=0.0)
+
+
+class Factor(Part):
+    """What varies, and its values: listed, evenly spaced, as cases, or as seeds."""
+
+    name: Column
+    signal: ListOfNames = Field(default=[], description="signals that get the value")
+    values: list[Value] | None = Field(default=None, min_length=1)
+    start: Amount | None = Field(default=None, alias="from")
+    to: Amount | None = None
+    count: Annotated[int, Field(ge=2)] | None = None
+    step: Amount | None = None
+    case: list[Case] | None = Field(default=None, min_length=1)
+    seeds: Count | None = None
+    at_fork: bool = Field(default=False, description="acts at fork_at, as an event that overrides")
+
+    @model_validator(mode="after")
+    def _has_values(self) -> Factor:
+        kinds = {"values": self.values, "from": self.start, "case": self.case, "seeds": self.seeds}
+        given = [name for name, value in kinds.items() if value is not None]
+        if len(given) != 1:
+            found = f"It has {' and '.join(given)}." if given else "It has no values."
+            raise ValueError(f"{found} A factor has one of values, from (with to and count or step), case, seeds.")
+        if self.start is None and (self.to, self.count, self.step) != (None, None, None):
+            raise ValueError("to, count and step belong to from. Give from, too.")
+        if self.start is not None and (self.to is None or (self.count is None) == (self.step is None)):
+            raise ValueError("from needs to, and either count or step.")
+        if given[0] in ("values", "from") and not self.signal:
+            raise ValueError("signal is missing. Name the signal that gets the values.")
+        if given[0] == "case" and (self.signal or self.at_fork):
+            raise ValueError("Cases say themselves what they set: signal and at_fork are not used with them.")
+        if self.case and len({one.label for one in self.case}) < len(self.case):
+            raise ValueError("Two cases have the same label. Give each its own.")
+        return self
+
+
+class Distribution(Part):
+    """Where samples of a signal come from: a distribution of scipy.stats, with its shape parameters, loc and scale."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, float] = Field(init=False)
+
+    distribution: str | None = None
+    tolerance: bool = Field(default=False, description="normal, with the tolerance that the parameter set states")
+    unit: str | None = Field(default=None, description="of the samples; that of the variable where it is not given")
+    name: Column | None = Field(default=None, description="column; the name of the signal where it is not given")
+    at_fork: bool = False
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Distribution:
+        if (self.distribution is None) == (not self.tolerance):
+            raise ValueError("It needs either distribution or tolerance = true.")
+        if self.tolerance and (self.shape or self.unit):
+            raise ValueError("tolerance = true takes its numbers from the parameter set: no others are given.")
+        return self
+
+    @property
+    def shape(self) -> dict[str, float]:
+        """Parameters of the distribution, loc and scale among them."""
+        return dict(self.__pydantic_extra__ or {})
+
+
+class Sample(Part):
+    """What is drawn at random or spread evenly over distributions."""
+
+    method: Literal["sobol", "latin_hypercube", "random", "saltelli"] = "sobol"
+    runs: Count
+    of: dict[str, Distribution] = Field(min_length=1)
+
+
+REDUCTIONS = (
+    "maximum",
+    "minimum",
+    "mean",
+    "rms",
+    "final",
+    "at",
+    "percentile",
+    "time_beyond",
+    "share_beyond",
+)
+_NEEDS = {"at": "time", "percentile": "percentile", "time_beyond": "limit", "share_beyond": "limit"}
+
+
+class Quantity(Part):
+    """One number, or true or false, that is kept of a run."""
+
+    name: Column
+    description: str = ""
+    signal: ListOfNames = []
+    near: list[float | str] | float | str | None = Field(default=None, description="amounts, or names of signals")
+    reduce: Literal[REDUCTIONS] | None = None  # pyright: ignore[reportInvalidTypeForm]
+    during: Annotated[list[Seconds], Field(min_length=2, max_length=2)] | None = None
+    time: Seconds | None = Field(default=None, ge=0.0)
+    percentile: Annotated[float, Field(gt=0.0, lt=100.0)] | None = None
+    limit: Amount | None = None
+    expect: list[Expectation] = []
+    scenario_expectations: bool = False
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Quantity:
+        if self.judges == bool(self.signal):
+            raise ValueError("A quantity has either signal and reduce, or expect or scenario_expectations = true.")
+        others = ("near", "reduce", "during", "time", "percentile", "limit")
+        if self.judges and (beside := [name for name in others if getattr(self, name) is not None]):
+            raise ValueError(f"{', '.join(beside)}: not used beside expect; an expectation has its own keys.")
+        if self.judges:
+            return self
+        if self.reduce is None:
+            raise ValueError(f"reduce is missing. It is one of {', '.join(REDUCTIONS)}.")
+        for name in dict.fromkeys(_NEEDS.values()):
+            is_needed = _NEEDS.get(self.reduce) == name
+            if is_needed != (getattr(self, name) is not None):
+                raise ValueError(f'reduce = "{self.reduce}" {"needs" if is_needed else "does not use"} {name}.')
+        if len(self.signal) > 1 and self.near is None:
+            raise ValueError("Several signals span a distance: near is missing. Give a value for each signal.")
+        self.claim  # noqa: B018  says what is wrong with near and during
+        return self
+
+    @property
+    def judges(self) -> bool:
+        """Whether it says if expectations hold."""
+        return bool(self.expect or self.scenario_expectations)
+
+    @property
+    def claim(self) -> Expectation:
+        """An expectation of the same signals, whose distance or value and whose window this quantity has."""
+        limit: dict[str, Any] = {"at_most": self.limit if self.limit is not None else 0.0}
+        if self.near is not None:
+            limit = {"near": self.near, "within": self.limit if self.limit is not None else 1.0}
+        return Expectation.model_validate({"signal": self.signal, "during": self.during, **limit})
+
+
+class Summary(Part):
+    """A number of all runs that are alike but for one factor."""
+
+    name: Column
+    quantity: str
+    over: ListOfNames = Field(min_length=1)
+    statistic: Literal["percentile", "mean", "std", "maximum", "minimum", "share", "last_held"]
+    description: str = ""
+    percentile: Annotated[float, Field(gt=0.0, lt=100.0)] | None = None
+    along: str | None = Field(default=None, description="factor whose cases come in the order of their weight")
+    share: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    none: float | str | None = Field(default=None, description="where not even the first case is held")
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Summary:
+        wanted = {"percentile": "percentile", "last_held": "along"}
+        for statistic, name in wanted.items():
+            if (self.statistic == statistic) != (getattr(self, name) is not None):
+                verb = "needs" if self.statistic == statistic else "does not use"
+                raise ValueError(f'statistic = "{self.statistic}" {verb} {name}.')
+        if self.statistic != "last_held" and (self.share, self.none) != (None, None):
+            raise ValueError('share and none belong to statistic = "last_held".')
+        return self
+
+
+class View(Part):
+    """How the page shows something; its keys depend on its kind."""
+
+    model_config = ConfigDict(extra="allow")
+
+    kind: Literal["polar", "curves", "tracks", "bars", "pareto", "scatter"]
+    title: str = ""
+
+
+class Tracks(Part):
+    """Signals that are kept of each run over time, thinned."""
+
+    signals: ListOfNames = Field(min_length=1)
+    interval: Seconds | None = Field(default=None, gt=0.0)
+
+
+class Study(Part):
+    """A study: a scenario, what varies over it, what is kept of each run."""
+
+    description: str = ""
+    scenario: str = Field(min_length=1)
+    seed: Annotated[int, Field(ge=0)] = 1
+    stop_time: Seconds | None = Field(default=None, gt=0.0)
+    step_size: Seconds | None = Field(default=None, gt=0.0)
+    output_interval: Seconds | None = Field(default=None, gt=0.0)
+    fork_at: Seconds | None = Field(default=None, gt=0.0)
+    parameters: ListOfNames = []
+    components: dict[str, str] = {}
+    set: dict[str, Value] = {}
+    events: list[Event] = []
+    names: dict[str, Annotated[list[str], Field(min_length=1)]] = {}
+    factor: list[Factor] = []
+    sample: Sample | None = None
+    quantity: list[Quantity] = Field(min_length=1)
+    summary: list[Summary] = []
+    view: list[View] = []
+    tracks: Tracks | None = None
+    _path: Path | None = PrivateAttr(None)
+    _source: Any = PrivateAttr(None)
+
+    @property
+    def path(self) -> Path | None:
+        """File that it was read from."""
+        return self._path
+
+    @property
+    def name(self) -> str:
+        """Name of the file, without its suffix."""
+        return self._path.stem if self._path else "study"
+
+    @property
+    def folder(self) -> Path:
+        """Folder in which files that it names are looked for first."""
+        return self._path.resolve().parent if self._path else Path.cwd()
+
+    @property
+    def scenario_path(self) -> Path:
+        """The scenario: a path beside the study, else what has this name.
+
+        Raises
+        ------
+        ShipcosimError
+            If there is none.
+        """
+        beside = self.folder / self.scenario
+        return beside if beside.is_file() else library.find("scenario", self.scenario, near=self.folder)
+
+
+def is_name(value: float | str) -> bool:
+    """Whether a value of `near` is a signal's name, not an amount."""
+    return isinstance(value, str) and amount(value) is None

@@ -1,0 +1,113 @@
+"""Runs of a plan on workers: chunks as long as is good for them, and ends of workers survived."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from itertools import islice
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.sweep.plan import Plan
+from shipcosim.sweep.work import Chunk, Row
+from shipcosim.sweep.workers import Workers
+
+AHEAD = 2
+"""Chunks that each worker has or waits for."""
+MOST_RUNS = 1000
+"""Of a chunk."""
+ENDS = 2
+"""How often a run that runs alone may end its worker before that counts as its error."""
+ENDED = "Its worker process ended, more than once: the run crashes it, or needs more memory than there is."
+
+
+def rows_of(plan: Plan, numbers: Iterator[int], workers: Workers) -> Iterator[list[Row]]:
+    """Rows of runs as they are done, in any order.
+
+    Parameters
+    ----------
+    plan : Plan
+    numbers : iterator of int
+        Of the runs.
+    workers : Workers
+        Who runs them.
+
+    Raises
+    ------
+    ShipcosimError
+        If workers end whatever they do, or something is wrong with all runs.
+    """
+    return _Dispatch(plan, numbers, workers).rows()
+
+
+class _Dispatch:
+    def __init__(self, plan: Plan, numbers: Iterator[int], workers: Workers):
+        self._plan, self._numbers, self._workers = plan, numbers, workers
+        self._in_flight: dict[Future[Chunk], tuple[list[int], bool]] = {}  # numbers, whether they run alone
+        self._suspects: deque[list[int]] = deque()
+        self._ends: Counter[int] = Counter()
+        self._size, self._n_done = 1, 0
+
+    def rows(self) -> Iterator[list[Row]]:
+        """See `rows_of`."""
+        while self._fill():
+            done, _ = wait(self._in_flight, return_when=FIRST_COMPLETED)
+            if any(self._is_lost(future) for future in done):
+                done, _ = wait(self._in_flight)  # where one process ends, those beside it do, too
+            lost = []
+            for future in done:
+                numbers, was_alone = self._in_flight.pop(future)
+                if self._is_lost(future):
+                    lost.append((numbers, was_alone))
+                else:
+                    yield self._taken(future.result())
+            if lost:
+                yield self._ended(lost)
+
+    def _is_lost(self, future: Future[Chunk]) -> bool:
+        error = CancelledError() if future.cancelled() else future.exception()
+        return error is not None and self._workers.is_lost(error)
+
+    def _fill(self) -> bool:
+        """Give workers something to do; whether anything is under way. Suspects run alone."""
+        if self._suspects:
+            if not self._in_flight:
+                self._submit(self._suspects.popleft(), alone=True)
+            return True
+        while len(self._in_flight) < AHEAD * self._workers.n and (chunk := self._next()):
+            self._submit(chunk)
+        return bool(self._in_flight)
+
+    def _next(self) -> list[int]:
+        return list(islice(self._numbers, self._size))
+
+    def _submit(self, numbers: list[int], alone: bool = False) -> None:
+        runs = [self._plan.run(number) for number in numbers]
+        self._in_flight[self._workers.submit(runs)] = numbers, alone
+
+    def _taken(self, chunk: Chunk) -> list[Row]:
+        """Rows of a chunk; how long it took says how large the next ones are."""
+        self._n_done += len(chunk.rows)
+        if self._n_done > self._workers.n:  # the first run of each worker loads and compiles
+            fitting = int(self._workers.chunk_time * len(chunk.rows) / max(chunk.seconds, 1e-6))
+            self._size = min(max(fitting, 1), 2 * self._size, MOST_RUNS)
+        return chunk.rows
+
+    def _ended(self, lost: list[tuple[list[int], bool]]) -> list[Row]:
+        """Rows of runs that end their workers again and again; the others are done again, one chunk at a time."""
+        self._workers.renew()
+        failed = []
+        for numbers, was_alone in lost:
+            if len(numbers) > 1:
+                half = len(numbers) // 2 if was_alone else len(numbers)
+                self._suspects.extend(part for part in (numbers[:half], numbers[half:]) if part)
+                continue
+            self._ends[numbers[0]] += was_alone
+            if self._ends[numbers[0]] < ENDS:
+                self._suspects.append(numbers)
+            else:
+                failed.append(Row(numbers[0], error=ENDED))
+        if not self._n_done and len(failed) and self._ends.total() >= 3 * ENDS:
+            remedy = "Run the scenario alone to see why: shipcosim run SCENARIO --engine native."
+            raise ShipcosimError(Problem("workers", "Each worker process ends in its first run.", remedy))
+        return failed

@@ -1,0 +1,282 @@
+"""What is done, on disk: parts while runs are done, then one table. The only part of a sweep that knows Parquet."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import platform
+import shutil
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim import __version__
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario.model import Value
+from shipcosim.series import write_file
+from shipcosim.staging import set_aside
+from shipcosim.sweep.plan import ColumnOf, Plan
+from shipcosim.sweep.work import Row
+
+if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+
+SCHEMA = "shipcosim-study/1"
+BETWEEN_PARTS, LARGEST_PART = 5.0, 10_000
+"""How long rows wait until they are written [s], and how many of them."""
+GROUP = 10_000
+"""Rows of the table that are made and written together."""
+FILES = ("runs.parquet", "runs.csv", "summary.csv", "study.json", "tracks.parquet", "report.html", "parts")
+
+
+def check_installed() -> None:
+    """Raise ShipcosimError where pyarrow is missing."""
+    try:
+        import pyarrow  # noqa: F401
+    except ImportError:
+        found, remedy = "The table of runs is a Parquet file, and pyarrow is missing.", "pip install 'shipcosim[sweep]'"
+        raise ShipcosimError(Problem("sweep", found, f"Install it: {remedy}.")) from None
+
+
+class Store:
+    """Folder of results of a study.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if needed. What is there of the same plan is kept, of another one set aside.
+    plan : Plan
+    engine : str
+    force : bool, optional
+        Whether what is there is replaced; commands leave it to `shipcosim.staging.REPLACING`.
+    again : bool
+        Whether runs that are done are done again.
+
+    Attributes
+    ----------
+    done : (runs,) array of bool
+        Which runs are done.
+    """
+
+    def __init__(self, folder: Path, plan: Plan, engine: str, force: bool | None = None, again: bool = False):
+        self.folder, self._plan, self._engine = Path(folder), plan, engine
+        self._digest = plan.digest(engine)
+        self._rows: list[Row] = []
+        self._written = monotonic()
+        self.done = np.zeros(len(plan), dtype=bool)
+        self.failed = 0
+        with _said(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+            about = self._about_there()
+            if about is not None and about.get("plan") == self._digest and not again:
+                self._take_up()
+            else:
+                set_aside(self.folder, FILES, force)
+                self._clear()
+                self._write_about()
+            self._parts.mkdir(exist_ok=True)
+
+    @property
+    def _parts(self) -> Path:
+        return self.folder / "parts"
+
+    def missing(self) -> Iterator[int]:
+        """Numbers of the runs that are not done, in order."""
+        yield from map(int, np.flatnonzero(~self.done))
+
+    def add(self, rows: Iterable[Row]) -> None:
+        """Keep rows; they are written soon."""
+        for row in rows:
+            self._rows.append(row)
+            self.done[row.number] = True
+            self.failed += bool(row.error)
+        if self._rows and (monotonic() - self._written > BETWEEN_PARTS or len(self._rows) >= LARGEST_PART):
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the rows that wait."""
+        if not self._rows:
+            return
+        import pyarrow.parquet as parquet
+
+        rows, self._rows = self._rows, []
+        name = f"{min(row.number for row in rows)}-{len(rows)}-{max(row.number for row in rows)}.parquet"
+        content = io.BytesIO()
+        parquet.write_table(self._part(rows), content)
+        write_file(self._parts / name, content.getvalue())
+        self._written = monotonic()
+
+    def finish(self) -> None:
+        """Write the table of the runs that are done; parts go where all are.
+
+        Raises
+        ------
+        ShipcosimError
+            If the disk is full: all that is done stays in the parts.
+        """
+        self.flush()
+        with _said(self.folder):
+            table = self._collected()
+            self._write_runs(table)
+            self._write_about()
+            if self.done.all():
+                shutil.rmtree(self._parts)
+
+    def runs(self) -> pandas.DataFrame:
+        """The table of runs."""
+        import pandas
+
+        return pandas.read_parquet(self.folder / "runs.parquet")
+
+    def about(self) -> dict[str, Any]:
+        """What study.json holds."""
+        columns = [asdict(one) for one in [*self._plan.columns, *_of_summaries(self._plan)]]
+        counts = {"planned": len(self._plan), "done": int(self.done.sum()), "failed": self.failed}
+        return {
+            "schema": SCHEMA,
+            "name": self._plan.study.name,
+            "study": self._plan.study.model_dump(mode="json", exclude_defaults=True, by_alias=True),
+            "columns": columns,
+            "runs": counts,
+            "plan": self._digest,
+            "engine": self._engine,
+            "seed": self._plan.study.seed,
+            "versions": {"shipcosim": __version__, "python": platform.python_version(), "numpy": np.__version__},
+        }
+
+    def _about_there(self) -> dict[str, Any] | None:
+        try:
+            found = json.loads((self.folder / "study.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        return found if isinstance(found, dict) else None
+
+    def _write_about(self) -> None:
+        text = json.dumps(self.about(), indent=1, ensure_ascii=False)
+        write_file(self.folder / "study.json", text.encode())
+
+    def _clear(self) -> None:
+        for name in FILES:
+            path = self.folder / name
+            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+
+    def _take_up(self) -> None:
+        """Note which runs are done already."""
+        table = self._collected()
+        self.done[table["run"].to_numpy()] = True
+        self.failed = sum(bool(error) for error in table["error"].to_pylist())
+
+    def _part(self, rows: list[Row]) -> pyarrow.Table:
+        import pyarrow
+
+        columns: dict[str, Any] = {
+            "run": pyarrow.array([row.number for row in rows], pyarrow.int64()),
+            "error": pyarrow.array([row.error for row in rows], pyarrow.string()),
+        }
+        for measure in self._plan.measures:
+            kind = pyarrow.float64() if measure.reduce else pyarrow.bool_()
+            columns[measure.name] = pyarrow.array([row.quantities.get(measure.name) for row in rows], kind)
+        return pyarrow.table(columns)
+
+    def _collected(self) -> pyarrow.Table:
+        """Rows of all parts and of the table that is there, each once, in the order of the plan."""
+        import pyarrow
+        import pyarrow.parquet as parquet
+
+        names = ["run", "error", *(measure.name for measure in self._plan.measures)]
+        tables = [self._part([])]
+        for path in [self.folder / "runs.parquet", *sorted(self._parts.glob("*.parquet"))]:
+            try:
+                tables.append(parquet.read_table(path, columns=names).select(names))
+            except (OSError, pyarrow.ArrowException, KeyError):
+                continue  # not there, or cut off: its runs are done again
+        table = pyarrow.concat_tables([one.select(names).cast(tables[0].select(names).schema) for one in tables])
+        _, first = np.unique(table["run"].to_numpy(), return_index=True)
+        return table.take(first)
+
+    def _write_runs(self, table: pyarrow.Table) -> None:
+        """runs.parquet and runs.csv, a group of rows at a time."""
+        import pyarrow.csv
+        import pyarrow.parquet as parquet
+
+        numbers = table["run"].to_numpy()
+        kinds = self._kinds()
+        new = {name: self.folder / f".{name}.unfinished" for name in ("runs.parquet", "runs.csv")}
+        try:
+            first = self._group(table.slice(0, 0), kinds)
+            with (
+                parquet.ParquetWriter(new["runs.parquet"], first.schema, compression="zstd") as whole,
+                pyarrow.csv.CSVWriter(new["runs.csv"], first.drop_columns(["input"]).schema) as plain,
+            ):
+                for start in range(0, len(numbers), GROUP):
+                    group = self._group(table.slice(start, GROUP), kinds)
+                    whole.write_table(group, GROUP)
+                    plain.write_table(group.drop_columns(["input"]))
+            for name, path in new.items():
+                os.replace(path, self.folder / name)
+        finally:
+            for path in new.values():
+                path.unlink(missing_ok=True)
+
+    def _kinds(self) -> dict[str, Any]:
+        """Types of the columns of factors."""
+        return {
+            factor.name: _kind([level.label for level in levels])
+            for factor, levels in zip(self._plan.study.factor, self._plan.levels, strict=True)
+        }
+
+    def _group(self, done: pyarrow.Table, kinds: dict[str, Any]) -> pyarrow.Table:
+        """Rows of the table of runs."""
+        import pyarrow
+
+        runs = [self._plan.run(number) for number in done["run"].to_pylist()]
+        inputs = [json.dumps(self._plan.input_of(run), ensure_ascii=False) for run in runs]
+        columns: dict[str, Any] = {"run": done["run"]}
+        for name, kind in kinds.items():
+            values = [run.columns[name] for run in runs]
+            columns[name] = pyarrow.array([str(v) for v in values] if kind == pyarrow.string() else values, kind)
+        columns |= {measure.name: done[measure.name] for measure in self._plan.measures}
+        columns |= {"error": done["error"], "input": pyarrow.array(inputs, pyarrow.string())}
+        return pyarrow.table(columns)
+
+
+class _said:
+    """Turns what the operating system says into one error."""
+
+    def __init__(self, folder: Path):
+        self._folder = folder
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: Any, error: BaseException | None, _: Any) -> None:
+        if isinstance(error, OSError):
+            found = f"Results cannot be written here: {error.strerror or error}."
+            remedy = "Make room and run the study again: it goes on from what is done."
+            raise ShipcosimError(Problem(str(self._folder), found, remedy)) from error
+
+
+def _kind(labels: list[Value]) -> Any:
+    """Arrow type of labels: numbers where all are, texts else."""
+    import pyarrow
+
+    if all(isinstance(label, bool) for label in labels):
+        return pyarrow.bool_()
+    if any(isinstance(label, (bool, str)) for label in labels):
+        return pyarrow.string()
+    return pyarrow.int64() if all(isinstance(label, int) for label in labels) else pyarrow.float64()
+
+
+def _of_summaries(plan: Plan) -> list[ColumnOf]:
+    units = {column.name: column.unit for column in plan.columns}
+    found = []
+    for one in plan.study.summary:
+        unit = {"share": "1", "last_held": None}.get(one.statistic, units.get(one.quantity))
+        found.append(ColumnOf(one.name, "summary", unit, one.description or f"{one.statistic} of {one.quantity}"))
+    return found

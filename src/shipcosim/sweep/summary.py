@@ -1,0 +1,166 @@
+"""Summaries: a number of all runs that are alike but for one factor, with its interval."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim.sweep.plan import Plan
+from shipcosim.sweep.records import Summary
+
+if TYPE_CHECKING:
+    import pandas
+
+CONFIDENCE = 0.95
+_NORMAL = 1.959963984540054  # quantile of the normal distribution at (1 + CONFIDENCE) / 2
+SHARE = 0.9
+"""Of the runs of a case that have to hold, where a summary does not say."""
+
+Interval = tuple[float, float, float]
+"""Value, lower and upper limit at CONFIDENCE; NaN where a limit cannot be given."""
+
+
+def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
+    """Summaries of a study: a row for each combination of the factors that remain.
+
+    Parameters
+    ----------
+    plan : Plan
+    runs : DataFrame
+        The table of runs; failed ones are left out, and counted in the columns `runs` and `failed`.
+
+    Returns
+    -------
+    DataFrame
+        Summaries over the same factors stand in the same rows; a factor that does not remain is empty.
+    """
+    import pandas
+
+    factors = [column.name for column in plan.columns if column.role == "factor"]
+    groups: dict[tuple[str, ...], list[Summary]] = {}
+    for one in plan.study.summary:
+        gone = {*one.over, one.along}
+        groups.setdefault(tuple(name for name in factors if name not in gone), []).append(one)
+    rows = [row for remaining, many in groups.items() for row in _rows(plan, runs, remaining, many)]
+    return pandas.DataFrame(rows, columns=list(dict.fromkeys(name for row in rows for name in row)))
+
+
+def _rows(plan: Plan, runs: Any, remaining: tuple[str, ...], summaries: list[Summary]) -> list[dict]:
+    grouped = runs.groupby(list(remaining), sort=False, dropna=False) if remaining else [((), runs)]
+    rows = []
+    for key, part in grouped:
+        row: dict[str, Any] = dict(zip(remaining, key, strict=True))
+        row |= {"runs": len(part), "failed": int((part["error"] != "").sum())}
+        for one in summaries:
+            row |= _summary(plan, one, part[part["error"] == ""])
+        rows.append(row)
+    return rows
+
+
+def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
+    if one.statistic == "last_held":
+        return {one.name: _last_held(plan, one, part)}
+    values = part[one.quantity].to_numpy(dtype=float)
+    value, low, high = STATISTICS[one.statistic](values[~np.isnan(values)], one)
+    limits = {f"{one.name}_low": low, f"{one.name}_high": high}
+    return {one.name: value} | (limits if one.statistic in WITH_LIMITS else {})
+
+
+def _last_held(plan: Plan, one: Summary, part: Any) -> Any:
+    """Label of the last case up to which all are held."""
+    factor = next(i for i, factor in enumerate(plan.study.factor) if factor.name == one.along)
+    found, share = one.none, one.share if one.share is not None else SHARE
+    for level in plan.levels[factor]:
+        held = part.loc[part[one.along].astype(str) == str(level.label), one.quantity].to_numpy(dtype=float)
+        if not len(held) or held.mean() < share - 1e-12:
+            break
+        found = level.label
+    return found
+
+
+def wilson(held: int, n: int) -> Interval:
+    """Share of `n` that holds, with its interval of Wilson.
+
+    References
+    ----------
+    Wilson, Probable inference, the law of succession, and statistical inference, J. Am. Stat. Assoc. 22, 1927.
+
+    Examples
+    --------
+    >>> [round(value, 3) for value in wilson(9, 10)]
+    [0.9, 0.596, 0.982]
+    """
+    if n == 0:
+        return np.nan, np.nan, np.nan
+    share, z2 = held / n, _NORMAL**2
+    middle, half = share + z2 / (2 * n), _NORMAL * sqrt(share * (1 - share) / n + z2 / (4 * n * n))
+    return share, max((middle - half) / (1 + z2 / n), 0.0), min((middle + half) / (1 + z2 / n), 1.0)
+
+
+def percentile(values: np.ndarray, percent: float) -> Interval:
+    """Percentile of a sample, with the order statistics between which that of the population lies.
+
+    Parameters
+    ----------
+    values : (n,) array
+    percent : float
+        0 to 100.
+
+    Returns
+    -------
+    Interval
+        A limit is NaN where the sample is too small for it.
+
+    References
+    ----------
+    David and Nagaraja, Order Statistics, 3rd ed., Wiley, 2003, ch. 7.1.
+
+    Examples
+    --------
+    >>> percentile(np.arange(1.0, 101.0), 50.0)
+    (50.5, 40.0, 61.0)
+    """
+    from scipy.stats import binom
+
+    n, ordered, each = len(values), np.sort(values), (1.0 - CONFIDENCE) / 2.0
+    if n == 0:
+        return np.nan, np.nan, np.nan
+    low = int(binom.ppf(each, n, percent / 100.0))
+    if binom.cdf(low, n, percent / 100.0) > each:
+        low -= 1
+    high = int(binom.ppf(1.0 - each, n, percent / 100.0)) + 1
+    limits = (float(ordered[low]) if low >= 0 else np.nan, float(ordered[high - 1]) if high <= n else np.nan)
+    return float(np.percentile(values, percent)), *limits
+
+
+def seeds_needed(percent: float) -> int:
+    """Least number of runs whose largest value is an upper limit of a percentile."""
+    return int(np.ceil(np.log((1.0 - CONFIDENCE) / 2.0) / np.log(percent / 100.0)))
+
+
+def _mean(values: np.ndarray) -> Interval:
+    from scipy.stats import t
+
+    if len(values) < 2:
+        return (float(values.mean()) if len(values) else np.nan), np.nan, np.nan
+    half = t.ppf((1.0 + CONFIDENCE) / 2.0, len(values) - 1) * values.std(ddof=1) / sqrt(len(values))
+    return float(values.mean()), float(values.mean() - half), float(values.mean() + half)
+
+
+def _plain(reduce: Any, least: int = 1) -> Any:
+    return lambda values, one: (float(reduce(values)) if len(values) >= least else np.nan, np.nan, np.nan)
+
+
+WITH_LIMITS = ("percentile", "mean", "share")
+STATISTICS: dict[str, Any] = {
+    "percentile": lambda values, one: percentile(values, one.percentile),
+    "mean": lambda values, one: _mean(values),
+    "std": _plain(lambda values: values.std(ddof=1), 2),
+    "maximum": _plain(np.max),
+    "minimum": _plain(np.min),
+    "share": lambda values, one: wilson(int(values.sum()), len(values)),
+}
+"""Statistics of (values, summary)."""

@@ -1,0 +1,214 @@
+"""What a worker process does: it gets a job once, then chunks of runs, and gives back a row a run."""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import pickle
+import tempfile
+import threading
+from collections import OrderedDict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from shipcosim.cosim import Variation
+from shipcosim.cosim.many import OneAfterAnother
+from shipcosim.errors import ShipcosimError
+from shipcosim.options import RunOptions
+from shipcosim.ssp import System
+from shipcosim.sweep.plan import Plan, PlannedRun, Swapped
+from shipcosim.sweep.quantities import Measure
+
+MOST_JOBS, MOST_SYSTEMS = 2, 4
+"""Jobs, and systems of each, that a worker keeps ready."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What is kept of a run.
+
+    Parameters
+    ----------
+    number : int
+        In the plan.
+    quantities : mapping of str to float or bool
+        By name; none where the run failed.
+    error : str
+        Why it failed; empty where it did not.
+    tracks : mapping of str to (n,) array
+        Time and signals that are kept over time.
+    """
+
+    number: int
+    quantities: Mapping[str, float | bool] = field(default_factory=dict)
+    error: str = ""
+    tracks: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Rows of some runs, and how long they took. [s]"""
+
+    rows: list[Row]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Job:
+    """All that a worker needs besides the package: plan, engine, FMUs.
+
+    Parameters
+    ----------
+    plan : Plan
+        Without what only the process that wrote it can use.
+    engine : str
+        ``"native"`` or ``"fmpy"``.
+    fmus : mapping of str to bytes
+        FMUs by their hash, for workers that do not have the files.
+    paths : mapping of str to str
+        Hash of each FMU's file.
+    """
+
+    plan: Plan
+    engine: str
+    fmus: Mapping[str, bytes]
+    paths: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class PackedJob:
+    """A job as bytes, with their hash, by which a worker knows that it has it."""
+
+    digest: str
+    content: bytes = field(repr=False)
+
+
+def pack(plan: Plan, engine: str, with_fmus: bool) -> PackedJob:
+    """A job as it travels.
+
+    Parameters
+    ----------
+    plan : Plan
+    engine : str
+    with_fmus : bool
+        Whether FMUs travel along: to workers on other machines.
+    """
+    systems = {key: replace(system, _packages=()) for key, system in plan.systems.items()}
+    files = {str(c.fmu.path): c.fmu.path for system in systems.values() for c in system.components.values()}
+    contents = {path: file.read_bytes() for path, file in files.items()}
+    paths = {path: hashlib.sha256(content).hexdigest() for path, content in contents.items()}
+    fmus = {paths[path]: content for path, content in contents.items()} if with_fmus else {}
+    content = pickle.dumps(Job(replace(plan, systems=systems), engine, fmus, paths), protocol=5)
+    return PackedJob(hashlib.sha256(content).hexdigest(), content)
+
+
+def run_chunk(job: PackedJob | str, runs: Sequence[PlannedRun]) -> Chunk:
+    """Run some runs of a job.
+
+    Parameters
+    ----------
+    job : PackedJob or str
+        The job, or the path of a file that holds it.
+    runs : sequence of PlannedRun
+
+    Returns
+    -------
+    Chunk
+    """
+    with _ONE_AT_A_TIME:
+        bench, began = _bench(job), perf_counter()
+        return Chunk([bench.row(run) for run in runs], perf_counter() - began)
+
+
+class _Bench:
+    """A job in a worker, with the systems that it has made ready."""
+
+    def __init__(self, packed: PackedJob):
+        job: Job = pickle.loads(packed.content)
+        self._job, self._plan = job, job.plan
+        self._folder = tempfile.TemporaryDirectory(prefix="shipcosim-fmus-", ignore_cleanup_errors=True)
+        self._at: dict[str, Path] = {}
+        self._ready: OrderedDict[Swapped, OneAfterAnother] = OrderedDict()
+        measures: Sequence[Measure] = job.plan.measures
+        self._signals = dict.fromkeys(name for m in measures for one in m.expect for name in one.signals)
+
+    def _ready_for(self, run: PlannedRun) -> OneAfterAnother:
+        """The system of a run, ready to go."""
+        key = run.swapped if run.swapped in self._plan.systems else ()
+        if key not in self._ready:
+            while len(self._ready) >= MOST_SYSTEMS:
+                self._ready.popitem(last=False)[1].close()
+            system, options = self._system(self._plan.systems[key]), RunOptions(engine=self._job.engine)
+            self._ready[key] = OneAfterAnother(system, options, self._chosen, self._reduced)
+        self._ready.move_to_end(key)
+        return self._ready[key]
+
+    def row(self, run: PlannedRun) -> Row:
+        """What is kept of a run; whatever goes wrong in it is its error."""
+        try:
+            done = self._ready_for(run).run(Variation(run.values, self._plan.scenario_of(run)))
+        except Exception as error:
+            return Row(run.number, error=str(error) if isinstance(error, ShipcosimError) else repr(error))
+        if done.error:
+            return Row(run.number, error=done.error)
+        return Row(run.number, {m.name: done.kept[m.name][1].item() for m in self._plan.measures})
+
+    def close(self) -> None:
+        """Free the FMUs and remove what was unpacked."""
+        for one in self._ready.values():
+            one.close()
+        self._folder.cleanup()
+
+    def _chosen(self, names: list[str]) -> list[str]:
+        return [name for name in names if name in self._signals]
+
+    def _reduced(self, table: Any) -> dict[str, Any]:
+        return {measure.name: measure.of(table) for measure in self._plan.measures}
+
+    def _system(self, system: System) -> System:
+        """The system with its FMUs where this worker has them."""
+        components = {
+            name: replace(component, fmu=replace(component.fmu, path=self._path(component.fmu.path)))
+            for name, component in system.components.items()
+        }
+        return replace(system, components=components)
+
+    def _path(self, path: Path) -> Path:
+        """Where an FMU is: at its own place, if that is the same file, else one of what came with the job."""
+        digest = self._job.paths[str(path)]
+        if digest not in self._at:
+            here = path
+            if not path.is_file() or hashlib.sha256(path.read_bytes()).hexdigest() != digest:
+                here = Path(self._folder.name) / digest / path.name
+                here.parent.mkdir(exist_ok=True)
+                here.write_bytes(self._job.fmus[digest])
+            self._at[digest] = here
+        return self._at[digest]
+
+
+_ONE_AT_A_TIME = threading.Lock()
+"""Loading and resetting FMUs concerns the whole process: a worker with several threads runs one chunk at a time."""
+_BENCHES: OrderedDict[str, _Bench] = OrderedDict()
+"""Jobs that this process has made ready."""
+
+
+def _bench(job: PackedJob | str) -> _Bench:
+    name = job if isinstance(job, str) else job.digest
+    if name not in _BENCHES:
+        while len(_BENCHES) >= MOST_JOBS:
+            _BENCHES.popitem(last=False)[1].close()
+        packed = pickle.loads(Path(job).read_bytes()) if isinstance(job, str) else job
+        _BENCHES[name] = _Bench(packed)
+    _BENCHES.move_to_end(name)
+    return _BENCHES[name]
+
+
+@atexit.register
+def _close_all() -> None:
+    while _BENCHES:
+        _BENCHES.popitem()[1].close()

@@ -1,0 +1,188 @@
+"""Who runs the chunks: processes of this machine or workers of a Dask cluster, by `concurrent.futures`."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import sys
+import tempfile
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.sweep.plan import Plan, PlannedRun
+from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
+
+
+class Workers(ABC):
+    """Workers that have a job and run chunks of it.
+
+    Attributes
+    ----------
+    n : int
+        How many run at a time.
+    chunk_time : float
+        How long a chunk should take. [s]
+    """
+
+    n: int
+    chunk_time: float
+    _executor: Executor
+
+    @abstractmethod
+    def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
+        """Have some runs run."""
+
+    @abstractmethod
+    def renew(self) -> None:
+        """Replace workers that have ended."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """End without waiting for what still runs."""
+
+    @abstractmethod
+    def is_lost(self, error: BaseException) -> bool:
+        """Whether an error says that a worker has ended, not that something is wrong with the job."""
+
+
+class Processes(Workers):
+    """Processes of this machine, each with the job in a file.
+
+    Parameters
+    ----------
+    plan : Plan
+    engine : str
+    n : int, optional
+        As many as there are cores where it is not given.
+    """
+
+    chunk_time = 2.0
+
+    def __init__(self, plan: Plan, engine: str, n: int | None = None):
+        self.n = n or cores()
+        self._folder = tempfile.TemporaryDirectory(prefix="shipcosim-sweep-")
+        self._job = Path(self._folder.name) / "job.pickle"
+        self._job.write_bytes(pickle.dumps(pack(plan, engine, with_fmus=False), protocol=5))
+        self._executor = self._new()
+
+    def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
+        """See `Workers`."""
+        with _without_main_module():
+            return self._executor.submit(run_chunk, str(self._job), runs)
+
+    def renew(self) -> None:
+        """See `Workers`."""
+        self._end()
+        self._executor = self._new()
+
+    def close(self) -> None:
+        """See `Workers`."""
+        self._end()
+        self._folder.cleanup()
+
+    def is_lost(self, error: BaseException) -> bool:
+        """See `Workers`."""
+        return isinstance(error, (BrokenExecutor, CancelledError))
+
+    def _new(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(self.n, mp_context=get_context("spawn"), initializer=_begin)
+
+    def _end(self) -> None:
+        processes = list((getattr(self._executor, "_processes", None) or {}).values())
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.join()
+
+
+class Cluster(Workers):
+    """Workers of a Dask cluster, which need the package alone: the job travels to them with its FMUs.
+
+    Parameters
+    ----------
+    plan : Plan
+    engine : str
+    address : str
+        Of the scheduler.
+
+    Raises
+    ------
+    ShipcosimError
+        If Dask is not installed, the scheduler does not answer, or it has no worker.
+    """
+
+    chunk_time = 5.0
+
+    def __init__(self, plan: Plan, engine: str, address: str):
+        try:
+            from distributed import Client
+        except ImportError:
+            found, remedy = "Dask is not installed.", "Install it: pip install 'shipcosim[cluster]'."
+            raise ShipcosimError(Problem("--scheduler", found, remedy)) from None
+        try:
+            self._client = Client(address, timeout=10, set_as_default=False)
+        except (OSError, ValueError, TimeoutError) as error:
+            remedy = "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
+            found = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
+            raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy)) from None
+        self.n = len(self._client.scheduler_info(n_workers=-1)["workers"])
+        if not self.n:
+            self._client.close()
+            found, remedy = "It has no worker.", f"Start some: dask worker {address} --nthreads 1."
+            raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy))
+        self._packed: PackedJob = pack(plan, engine, with_fmus=True)
+        self._executor = self._client.get_executor(pure=False, retries=2)
+        self._job: Any = self._client.scatter(self._packed, broadcast=True, hash=False)
+
+    def submit(self, runs: Sequence[PlannedRun]) -> Future[Chunk]:
+        """See `Workers`."""
+        return self._executor.submit(run_chunk, self._job, runs)
+
+    def renew(self) -> None:
+        """Send the job to the workers that there are now."""
+        self._job = self._client.scatter(self._packed, broadcast=True, hash=False)
+
+    def close(self) -> None:
+        """See `Workers`."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        self._client.close()
+
+    def is_lost(self, error: BaseException) -> bool:
+        """See `Workers`."""
+        from distributed import KilledWorker
+        from distributed.comm.core import CommClosedError
+
+        return isinstance(error, (KilledWorker, CommClosedError, CancelledError))
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _begin() -> None:
+    """A worker leaves Ctrl-C to the process that started it, and numerical libraries to one thread."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    from threadpoolctl import threadpool_limits
+
+    threadpool_limits(1)
+
+
+@contextmanager
+def _without_main_module() -> Iterator[None]:
+    """New processes import this package alone, not the script that calls it, which would start the study again."""
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
