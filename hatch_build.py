@@ -6,7 +6,7 @@ SHIPPED = ("fmus", "ssp", "scenarios", "studies", "docs/examples")
 
 
 class Shipped(BuildHookInterface):
-    """Puts ships, systems, scenarios, studies, FMU sources and examples into the wheel, where `shipcosim.library` finds them."""
+    """Puts ships, systems, scenarios, studies, FMUs and examples into the wheel, where `library` finds them."""
 
     def initialize(self, version, build_data):
         if version != "editable":

@@ -386,7 +386,9 @@ def sweep(
     def run_again(number: int) -> Run:
         return run(plan.alone(number), engine=engine)
 
-    return StudyResult(**parts_of(swept), simulate=run_again)
+    found = StudyResult(**parts_of(swept), simulate=run_again)
+    found.page().save(folder / "report.html")
+    return found
 
 
 def read(path: str | os.PathLike[str], *, fmus: Iterable[str | os.PathLike[str]] | None = None) -> SystemStructure:

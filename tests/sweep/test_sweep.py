@@ -30,6 +30,7 @@ def test_a_study_gives_a_row_a_run_in_the_order_of_its_factors(project):
     assert found.summary["share"].tolist() == [1.0, 1.0, 0.0]
     assert found.summary["mean"].tolist() == pytest.approx(found.runs.groupby("level")["highest"].mean().tolist())
     assert sorted(path.name for path in (project / "out").iterdir()) == [
+        "report.html",
         "runs.csv",
         "runs.parquet",
         "study.json",

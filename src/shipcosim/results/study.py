@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.results.shown import Result
+from shipcosim.results.shown import HtmlPage, Result, page_of
 from shipcosim.sweep import Swept
 
 if TYPE_CHECKING:
     import pandas
 
     from shipcosim.report.notebook.card import Card
+    from shipcosim.report.study import StudyTables
     from shipcosim.results.run import Run
 
 __all__ = ["StudyResult"]
@@ -47,7 +48,18 @@ class StudyResult(Result, Swept):
         """The table of runs."""
         return self.runs
 
-    def _card(self) -> Card:
-        from shipcosim.report.notebook.study_cards import study_card
+    def page(self) -> HtmlPage:
+        """The page of the study, as `shipcosim sweep` writes it."""
+        from shipcosim.report.study import write_study
 
-        return study_card(self.plan.study.name, self.about["runs"], self.summary)
+        return page_of(f"Study {self.plan.study.name}", lambda path: write_study(self._tables(), path))
+
+    def _card(self) -> Card:
+        from shipcosim.report.notebook.sweep_card import sweep_card
+
+        return sweep_card(self._tables())
+
+    def _tables(self) -> StudyTables:
+        from shipcosim.report.study import tables_of
+
+        return tables_of(self, f"shipcosim sweep {self.plan.study.name}")

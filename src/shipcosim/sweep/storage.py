@@ -77,7 +77,7 @@ class Store:
             if about is not None and about.get("plan") == self._digest and not again:
                 self._take_up()
             else:
-                set_aside(self.folder, FILES, force)
+                set_aside(self.folder, [*FILES, *self._pages()], force)
                 self._clear()
                 self._write_about()
             self._parts.mkdir(exist_ok=True)
@@ -161,8 +161,12 @@ class Store:
         text = json.dumps(self.about(), indent=1, ensure_ascii=False)
         write_file(self.folder / "study.json", text.encode())
 
+    def _pages(self) -> list[str]:
+        """Folders of runs that were simulated again."""
+        return [page.name for page in self.folder.glob("run-*") if page.is_dir()]
+
     def _clear(self) -> None:
-        for name in FILES:
+        for name in [*FILES, *self._pages()]:
             path = self.folder / name
             shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
 

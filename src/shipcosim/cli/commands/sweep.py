@@ -9,6 +9,37 @@ from shipcosim import library
 from shipcosim.cli.options import Debug, Force, Out, Settings
 from shipcosim.cli.start.completion import names_of, words_of
 
+Number = Annotated[
+    int | None,
+    typer.Option("--run", metavar="N", help="Simulate run N again, with its page in DIR/run-N, and nothing else."),
+]
+Serve = Annotated[
+    bool,
+    typer.Option("--serve", help="Then show the page on this machine: a click on a row simulates it."),
+]
+Port = Annotated[
+    int | None, typer.Option("--port", metavar="N", min=1, max=65535, help="Of --serve. Default: a free one.")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, such as tcp://10.0.0.5:8786."),
+]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", min=1, help="Processes here. Default: one a core.")
+]
+Engine = Annotated[
+    str,
+    typer.Option(
+        "--engine",
+        help="What runs the FMUs: native (models compiled) or fmpy.",
+        autocompletion=words_of("native", "fmpy"),
+    ),
+]
+AtMost = Annotated[
+    int | None,
+    typer.Option("--runs-at-most", metavar="N", min=0, help="Do at most so many runs now; others another time."),
+]
+
 
 def sweep(
     study: Annotated[
@@ -16,26 +47,14 @@ def sweep(
         typer.Argument(metavar="STUDY", help="A study: a file or a name.", autocompletion=names_of("study")),
     ],
     out: Out = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, such as tcp://10.0.0.5:8786."),
-    ] = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", metavar="N", min=1, help="Processes here. Default: one a core.")
-    ] = None,
-    engine: Annotated[
-        str,
-        typer.Option(
-            "--engine",
-            help="What runs the FMUs: native (models compiled) or fmpy.",
-            autocompletion=words_of("native", "fmpy"),
-        ),
-    ] = "native",
+    scheduler: Scheduler = None,
+    workers: Workers = None,
+    engine: Engine = "native",
     settings: Settings = None,
-    at_most: Annotated[
-        int | None,
-        typer.Option("--runs-at-most", metavar="N", min=0, help="Do at most so many runs now; others another time."),
-    ] = None,
+    at_most: AtMost = None,
+    number: Number = None,
+    serve: Serve = False,
+    port: Port = None,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -50,17 +69,23 @@ def sweep(
 
     Example: shipcosim sweep wind_limits --runs-at-most 8
     """
+    from shipcosim.cli.exits import FAILED
     from shipcosim.cli.requests import parsed_settings
-    from shipcosim.cli.sweeping import sweep_and_save
+    from shipcosim.cli.studies.runs import run_again
+    from shipcosim.cli.studies.runs import serve as show
+    from shipcosim.cli.studies.sweeping import command_of, sweep_and_save
     from shipcosim.sweep import plan_of, read_study
 
     plan = plan_of(read_study(library.find("study", study)), parsed_settings(settings or []))
-    sweep_and_save(
-        plan,
-        out or Path("results") / plan.study.name,
-        engine=engine,
-        scheduler=scheduler,
-        workers=workers,
-        at_most=at_most,
-        again=force,
-    )
+    folder = out or Path("results") / plan.study.name
+    command = command_of(study, out, engine, settings)
+    if number is not None:
+        if not run_again(plan, number, folder, engine, command):
+            raise typer.Exit(FAILED)
+        return
+    options = {"engine": engine, "scheduler": scheduler, "workers": workers, "at_most": at_most, "again": force}
+    swept = sweep_and_save(plan, folder, command, **options)
+    if serve:
+        show(swept, engine, port or 0)
+    if swept.about["runs"]["failed"]:
+        raise typer.Exit(FAILED)

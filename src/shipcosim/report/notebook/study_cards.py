@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 from shipcosim.capability import Capability
 from shipcosim.cosim.compare import OURS, Comparison
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -19,10 +16,7 @@ from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.sea_trials import words as sea_trials
 from shipcosim.report.theme.views import Fact, Outcome, Table
 
-__all__ = ["calibration_card", "capability_card", "comparison_card", "replay_card", "sea_trials_card", "study_card"]
-
-if TYPE_CHECKING:
-    import pandas
+__all__ = ["calibration_card", "capability_card", "comparison_card", "replay_card", "sea_trials_card"]
 
 MOST_ROWS = 12
 
@@ -136,16 +130,3 @@ def sea_trials_card(found: SeaTrialStudy, name: str) -> Card:
             Block("What to do next", lines=tuple(sea_trials.next_steps(found))),
         ),
     )
-
-
-def study_card(name: str, counts: Mapping[str, int], summary: pandas.DataFrame) -> Card:
-    """How many runs of a study are done, and its summary."""
-    done = f"{counts['done']:,} of {counts['planned']:,} runs are done"
-    outcome = Outcome("passed" if counts["done"] == counts["planned"] else "plain", "DONE", f"{done}.")
-    if counts["failed"]:
-        outcome = Outcome("failed", "FAILED", f"{done}, {counts['failed']:,} of them failed.")
-    shown = summary.head(MOST_ROWS)
-    cells = shown.itertuples(index=False)
-    rows = tuple(tuple(f"{v:.4g}" if isinstance(v, float) else str(v) for v in row) for row in cells)
-    table = Table(rows, tuple(map(str, summary.columns)))
-    return Card(f"Study {name}", (), outcome, (), (), (Block(f"Summary, {len(rows)} of {len(summary)} rows", table),))

@@ -15,6 +15,8 @@ from shipcosim.report.theme.display import READ_AS
 if TYPE_CHECKING:
     from pandas import DataFrame, Series
 
+    from shipcosim.sweep import Swept
+
 FACTOR, SAMPLE, QUANTITY, SUMMARY = "factor", "sample", "quantity", "summary"
 MOST_LEVELS = 40
 """Different numbers of a column that are still levels, which readers may choose from."""
@@ -61,6 +63,30 @@ class StudyTables:
     def name(self) -> str:
         """Name of the study."""
         return str(self.about.get("name") or "study")
+
+
+def tables_of(swept: Swept, command: str) -> StudyTables:
+    """What a study left, with the tables and pages of runs that lie in its folder.
+
+    Parameters
+    ----------
+    swept : Swept
+    command : str
+        What a user types to make this study.
+    """
+    import pandas
+
+    folder, tracks = swept.folder, swept.folder / "tracks.parquet"
+    found = (re.fullmatch(r"run-([0-9]+)", page.parent.name) for page in folder.glob("run-*/report.html"))
+    return StudyTables(
+        about=swept.about,
+        runs=swept.runs,
+        summary=swept.summary,
+        tracks=pandas.read_parquet(tracks) if tracks.is_file() else None,
+        tables={str(name): pandas.read_csv(folder / f"{name}.csv") for name in swept.about.get("tables") or ()},
+        pages=sorted(int(match[1]) for match in found if match),
+        command=command,
+    )
 
 
 @dataclass(frozen=True)

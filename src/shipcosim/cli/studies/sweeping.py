@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import shlex
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,13 @@ from rich.console import Console
 from rich.text import Text
 
 from shipcosim.cli.console import shown_path
-from shipcosim.cli.exits import FAILED, INTERRUPTED
+from shipcosim.cli.exits import INTERRUPTED
 from shipcosim.sweep import Plan, Swept, run_study
 
 SHOWN = 20  # rows of the summary on the terminal
 
 
-def sweep_and_save(plan: Plan, out: Path, **options: Any) -> None:
+def sweep_and_save(plan: Plan, out: Path, command: str, **options: Any) -> Swept:
     """Run what is not done of a study and say how it went.
 
     Parameters
@@ -26,13 +27,15 @@ def sweep_and_save(plan: Plan, out: Path, **options: Any) -> None:
     plan : Plan
     out : Path
         Folder of the results.
+    command : str
+        What the user typed, for the page.
     **options
         As of `shipcosim.sweep.run_study`.
 
     Raises
     ------
     typer.Exit
-        If some runs failed, or it was interrupted.
+        If it was interrupted.
     """
     with _progress(plan) as progress:
         try:
@@ -40,9 +43,30 @@ def sweep_and_save(plan: Plan, out: Path, **options: Any) -> None:
         except KeyboardInterrupt:
             typer.echo(f"Interrupted. What is done is kept in {shown_path(out)}; the same command goes on.", err=True)
             raise typer.Exit(INTERRUPTED) from None
+    write_page(swept, command)
     _say(swept)
-    if swept.about["runs"]["failed"]:
-        raise typer.Exit(FAILED)
+    return swept
+
+
+def command_of(study: str, out: Path | None, engine: str, settings: Sequence[str] | None) -> str:
+    """The command that makes a study, as one types it.
+
+    Examples
+    --------
+    >>> command_of("wind_limits", None, "native", ["environment.wind_speed=10 kn"])
+    "shipcosim sweep wind_limits --set 'environment.wind_speed=10 kn'"
+    """
+    words = ["shipcosim", "sweep", study]
+    words += ["--out", str(out)] if out else []
+    words += ["--engine", engine] if engine != "native" else []
+    return shlex.join([*words, *(word for one in settings or () for word in ("--set", one))])
+
+
+def write_page(swept: Swept, command: str) -> None:
+    """The page of a study, beside its tables."""
+    from shipcosim.report.study import tables_of, write_study
+
+    write_study(tables_of(swept, command), swept.folder / "report.html")
 
 
 @contextmanager
@@ -95,4 +119,4 @@ def _say(swept: Swept) -> None:
     left = counts["planned"] - counts["done"]
     open_ = f"; {left:,} are left, which the same command does" if left else ""
     console.print(f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False)
-    console.print(f"Results: {shown_path(swept.folder)}", markup=False)
+    console.print(f"Page: {shown_path(swept.folder / 'report.html')}", markup=False)

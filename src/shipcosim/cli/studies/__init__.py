@@ -1,0 +1,1 @@
+"""Studies from the command line: run, and from a row to the page of its run."""
