@@ -100,3 +100,54 @@ def test_native_engine_gives_the_same_table(project):
     plan = plan_of(read_study("studies/levels.toml"))
     native = run_study(plan, project / "native", engine="native", workers=1).runs
     assert native["highest"].tolist() == pytest.approx(swept().runs["highest"].tolist(), rel=1e-12)
+
+
+SAMPLED = """
+scenario = "filling"
+fork_at  = "1 s"
+
+[names]
+both = ["lag", "other"]
+
+[sample]
+method = "METHOD"
+runs   = 4
+
+[sample.of]
+"both.u"            = { distribution = "uniform", loc = 100.0, scale = 100.0, unit = "cm", name = "level" }
+"lag.time_constant" = { distribution = "truncnorm", a = -2.0, b = 2.0, loc = 1.0, scale = 0.2 }
+"other.noise"       = { distribution = "uniform", scale = 0.1 }
+
+[[quantity]]
+name   = "late"
+signal = "other.y"
+reduce = "time_beyond"
+limit  = "80 cm"
+
+[tracks]
+signals  = ["lag.y"]
+interval = "0.5 s"
+"""
+
+
+@pytest.mark.parametrize(("method", "runs"), [("sobol", 4), ("latin_hypercube", 4), ("random", 4), ("saltelli", 20)])
+def test_samples_lie_in_their_distributions_and_follow_from_the_seed(project, study, method, runs):
+    plan = plan_of(read_study(study(SAMPLED.replace("METHOD", method))))
+    planned = [plan.run(number) for number in range(len(plan))]
+    assert len(planned) == runs
+    for run in planned:
+        assert 1.0 <= run.values["lag.u"] == run.values["other.u"] == run.columns["level"] <= 2.0
+        assert 0.6 <= run.columns["lag.time_constant"] <= 1.4
+    other = plan_of(read_study(study("seed = 2\n" + SAMPLED.replace("METHOD", method))))
+    assert plan.run(0) == plan_of(read_study(study(SAMPLED.replace("METHOD", method)))).run(0) != other.run(0)
+
+
+def test_a_sampled_study_keeps_tracks_and_says_when_a_limit_is_passed(project, study):
+    found = swept(study(SAMPLED.replace("METHOD", "sobol")))
+    tracks = pandas.read_parquet("out/tracks.parquet")
+    assert tracks["run"].tolist() == [run for run in range(4) for _ in range(5)]
+    assert tracks["time"].tolist() == pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0] * 4)
+    alone = found.run(2)
+    assert tracks.loc[tracks["run"] == 2, "lag.y"].tolist() == alone["lag.y"].values[::5].tolist()
+    beyond = alone["time"].values[alone["other.y"].values > 0.8]
+    assert found.runs["late"][2] == beyond[0]

@@ -135,8 +135,10 @@ class _Runs:
 
     check_interrupt: Callable[[], None]
 
-    def __init__(self, system: System, options: RunOptions, choose: Choose, reduce: Reduce | None):
-        self._system, self._options, self._reduce = system, options, reduce
+    def __init__(
+        self, system: System, options: RunOptions, choose: Choose, reduce: Reduce | None, table: Callable = make_table
+    ):
+        self._system, self._options, self._reduce, self._table = system, options, reduce, table
         self._choose = lru_cache(maxsize=64)(lambda names: tuple(choose(list(names))))
         self._unit_of = units_of(system)
 
@@ -177,7 +179,7 @@ class _Runs:
                 name: (("time",), values, {"units": unit, "long_name": text}) for name, values, unit, text in columns
             }
         elif not error:
-            found = self._reduce(make_table(simulation.row_times, columns))
+            found = self._reduce(self._table(simulation.row_times, columns))
             parts = found if isinstance(found, Mapping) else {"reduced": found}
             arrays = {str(name): np.asarray(value) for name, value in parts.items()}
             done.kept = {
@@ -282,8 +284,8 @@ class OneAfterAnother:
     ----------
     system, options, choose, reduce
         As of `simulate_many`; what runs is checked before.
-    check_interrupt : callable
-        Raises KeyboardInterrupt where a run is to end.
+    table : callable
+        Makes what `reduce` gets from times and columns, where that is to be less than a Dataset.
     """
 
     def __init__(
@@ -291,11 +293,11 @@ class OneAfterAnother:
         system: System,
         options: RunOptions,
         choose: Choose,
-        reduce: Reduce,
-        check_interrupt: Callable[[], None] = lambda: None,
+        reduce: Callable[[Any], Any],
+        table: Callable = make_table,
     ):
-        self._runs, self._stack = _Runs(system, options, choose, reduce), ExitStack()
-        self._runs.check_interrupt = check_interrupt
+        self._runs, self._stack = _Runs(system, options, choose, reduce, table), ExitStack()
+        self._runs.check_interrupt = lambda: None
         self._source = self._stack.enter_context(_sources(1))[0]
 
     def run(self, variation: Variation) -> Done:

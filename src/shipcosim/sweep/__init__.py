@@ -8,7 +8,8 @@ that are not on disk yet. The room can be called: ``shipcosim.sweep(study)`` is 
 import sys
 
 from shipcosim import CallableRoom
-from shipcosim.sweep.plan import ColumnOf, Plan, PlannedRun, plan_of
+from shipcosim.sweep.layout import plan_of
+from shipcosim.sweep.plan import ColumnOf, Plan, PlannedRun
 from shipcosim.sweep.reader import read_study
 from shipcosim.sweep.records import Study
 from shipcosim.sweep.sweeping import Swept, run_study

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -15,16 +14,18 @@ from typing import Any
 import numpy as np
 
 from shipcosim import __version__, library
-from shipcosim.cosim import system_of
 from shipcosim.cosim.master.result import fingerprint, hashes, start_values
-from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario import Event, Scenario, check_files, check_scenario, check_times, read_scenario, units_of
+from shipcosim.scenario import (
+    Event,
+    Scenario,
+    units_of,
+)
 from shipcosim.scenario.model import Value
-from shipcosim.ssp import System, with_values
-from shipcosim.sweep.levels import Level, Levels
-from shipcosim.sweep.quantities import Measure, measures_of
-from shipcosim.sweep.reader import problem_of
+from shipcosim.ssp import System
+from shipcosim.sweep.levels import Level
+from shipcosim.sweep.quantities import Measure
 from shipcosim.sweep.records import Study
+from shipcosim.sweep.sampling import Samples
 
 Swapped = tuple[tuple[str, str], ...]
 """Components and the FMUs that they run in place of their own."""
@@ -84,21 +85,25 @@ class Plan:
         Of each factor.
     measures : tuple of Measure
         What is kept of each run.
+    samples : Samples or None
+        Crossed with the factors.
     """
 
     study: Study
     scenario: Scenario
     systems: Mapping[Swapped, System]
     levels: Sequence[Sequence[Level]]
-    measures: tuple[Measure, ...] = field(default=())
+    measures: tuple[Measure, ...] = ()
+    samples: Samples | None = None
 
     def __len__(self) -> int:
         return prod(self.shape)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many levels each factor has; the last one changes fastest."""
-        return tuple(len(levels) for levels in self.levels)
+        """How many levels each factor has, then how many samples there are; the last one changes fastest."""
+        sizes = tuple(len(levels) for levels in self.levels)
+        return sizes if self.samples is None else (*sizes, len(self.samples.numbers))
 
     @property
     def system(self) -> System:
@@ -107,20 +112,33 @@ class Plan:
 
     def run(self, number: int) -> PlannedRun:
         """The run with a number."""
-        places = np.unravel_index(number, self.shape) if self.shape else ()
+        places = [int(place) for place in np.unravel_index(number, self.shape)] if self.shape else []
         values: dict[str, Value] = {}
         columns: dict[str, Value] = {}
         events: list[Event] = []
         swapped: dict[str, str] = {}
         stop_time = None
-        for factor, levels, place in zip(self.study.factor, self.levels, places, strict=True):
-            level = levels[int(place)]
+        for factor, levels, place in zip(self.study.factor, self.levels, places, strict=False):
+            level = levels[place]
             columns[factor.name] = level.label
             values |= level.values
             events += level.events
             swapped |= level.components
             stop_time = level.stop_time if level.stop_time is not None else stop_time
+        if self.samples is not None:
+            columns["sample"] = places[-1]
+            self._take_sample(self.samples, places[-1], columns, values, events)
         return PlannedRun(number, columns, values, tuple(events), tuple(sorted(swapped.items())), stop_time)
+
+    def _take_sample(self, samples: Samples, number: int, columns: dict, values: dict, events: list[Event]) -> None:
+        """Add what a sample changes."""
+        at_fork = {}
+        for column, value in zip(samples.columns, samples.values(number), strict=True):
+            columns[column.name] = value
+            target = at_fork if column.at_fork else values
+            target.update(dict.fromkeys(column.signals, value))
+        if at_fork:
+            events.append(Event(time=self.study.fork_at or 0.0, override=at_fork))
 
     def scenario_of(self, run: PlannedRun) -> Scenario:
         """The scenario of a run, without its start values."""
@@ -164,6 +182,10 @@ class Plan:
             labels = [level.label for level in levels] if factor.case else None
             text = ", ".join(factor.signal)
             found.append(ColumnOf(factor.name, "factor", unit.name if unit else None, text, labels))
+        if self.samples is not None:
+            found.append(ColumnOf("sample", "sample", description="number of the sample"))
+            signals = [(one, ", ".join(one.signals)) for one in self.samples.columns]
+            found += [ColumnOf(one.name, "sample", one.unit, text) for one, text in signals]
         return found + [ColumnOf(one.name, "quantity", one.unit, one.description) for one in self.measures]
 
     @cached_property
@@ -176,7 +198,7 @@ class Plan:
                 ends = [one if one is not None else end for end in ends for one in own]
             else:
                 ends = [end for end in ends for _ in own]
-        return float(sum(ends))
+        return float(sum(ends)) * (1 if self.samples is None else len(self.samples.numbers))
 
     def digest(self, engine: str) -> str:
         """Hash of all that the table of runs follows from."""
@@ -191,10 +213,18 @@ class Plan:
             self.study.model_dump(exclude=ignored),
             self.scenario.model_dump(exclude={"description"}),
             [[level.__dict__ for level in levels] for levels in self.levels],
+            None if self.samples is None else self.samples.numbers.tolist(),
             of_systems,
             of_inputs,
         ]
         return hashlib.sha256(json.dumps(facts, default=_plain, sort_keys=True).encode()).hexdigest()
+
+    @property
+    def rows_per_track_row(self) -> int:
+        """How many rows of a run there are for one of its track."""
+        row = self.scenario.output_interval or self.scenario.step_size
+        tracks = self.study.tracks
+        return max(1, round(tracks.interval / row)) if tracks is not None and tracks.interval else 1
 
     @property
     def _named_system(self) -> str:
@@ -208,113 +238,12 @@ class Plan:
         return [name if path.parent == of_system else str(path.resolve()) for name, path in pairs]
 
 
-def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: bool = True) -> Plan:
-    """Lay out the runs of a study, checked with its system.
-
-    Parameters
-    ----------
-    study : Study
-    settings : mapping of str to value, optional
-        Start values over those that all runs have.
-    build : bool
-        Build FMUs that are missing or out of date, which runs their source.
-
-    Raises
-    ------
-    ShipcosimError
-        With everything that does not fit together.
-    """
-    scenario = _scenario(study)
-    read = system_of(scenario, build=build)
-    levels = Levels(study, scenario, read)
-    of_all = levels.expanded(study.set)
-    for name in study.parameters:
-        of_all = levels.fitting(name, ("parameters",)) | of_all
-    system = with_values(read, scenario.set, str(scenario.path))
-    levels = Levels(study, scenario, system)
-    values = levels.checked(of_all, ("set",)) | dict(settings or {})
-    events = [levels.event(event) for event in study.events]
-    scenario = scenario.model_copy(update={"set": scenario.set | values, "events": [*scenario.events, *events]})
-    system = with_values(system, values, "--set")
-    levels = Levels(study, scenario, system)
-    found = [levels.of(number) for number in range(len(study.factor))]
-    measures, problems = measures_of(
-        study, scenario, system, [e for one in found for level in one for e in level.events]
-    )
-    problems = [*levels.problems, *problems, *_of_summaries(study)]
-    problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
-    if problems:
-        raise ShipcosimError(problems)
-    systems = {swapped: _swapped(study, scenario, swapped, system, build) for swapped in _combinations(found)}
-    return Plan(study, scenario, systems, found, measures)
-
-
-def _scenario(study: Study) -> Scenario:
-    """What all runs have in common, but for start values and events of the study."""
-    try:
-        path = study.scenario_path
-    except ShipcosimError as error:
-        found = f"There is no scenario '{study.scenario}'."
-        raise ShipcosimError(problem_of(study, ("scenario",), found, error.problems[0].remedy)) from None
-    scenario = read_scenario(path)
-    times = {name: getattr(study, name) for name in ("stop_time", "step_size", "output_interval")}
-    changed = {name: time for name, time in times.items() if time is not None}
-    components = scenario.components | {name: _beside(study, fmu) for name, fmu in study.components.items()}
-    scenario = scenario.model_copy(update={**changed, "components": components})
-    if missing := check_files(scenario):
-        raise ShipcosimError(missing)
-    problems = [problem for problem in check_times(scenario) if problem.severity == "error"]
-    if problems:
-        keys = next(iter(changed), "scenario")
-        raise ShipcosimError([problem_of(study, (keys,), one.found, one.remedy) for one in problems])
-    return scenario
-
-
-def _swapped(study: Study, scenario: Scenario, swapped: Swapped, system: System, build: bool) -> System:
-    """The system with other FMUs in place of components' own."""
-    if not swapped:
-        return system
-    components = scenario.components | {name: _beside(study, fmu) for name, fmu in swapped}
-    scenario = scenario.model_copy(update={"components": components})
-    if missing := check_files(scenario):
-        raise ShipcosimError(missing)
-    return with_values(system_of(scenario, build=build), scenario.set, str(study.path))
-
-
-def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:
-    """Sets of swapped components that runs have, none where there is one without first."""
-    per_factor = [list({tuple(level.components.items()) for level in one}) for one in levels]
-    found = {tuple(sorted(dict(pair for part in parts for pair in part).items())) for parts in product(*per_factor)}
-    return sorted(found, key=lambda one: (len(one), one))
-
-
-def _beside(study: Study, fmu: str) -> str:
-    """An FMU by its path where it lies beside the study, else as it is named."""
-    path = study.folder / fmu
-    return str(path) if path.is_file() else fmu
-
-
 def _portable(scenario: Scenario, name: str, kind: str = "fmu", path: Path | None = None) -> str:
     """A name that is known anywhere in the project, else the absolute path."""
     if library.named(kind, name, scenario.project) is not None:
         return name
     found = path or Path(name)
     return str(found.resolve()) if found.exists() else name
-
-
-def _of_summaries(study: Study) -> Iterator[Problem]:
-    """Summaries that name what is not there."""
-    quantities = [one.name for one in study.quantity]
-    factors = [one.name for one in study.factor] + (["sample"] if study.sample else [])
-    for number, one in enumerate(study.summary):
-        if one.quantity not in quantities:
-            found = f"There is no quantity '{one.quantity}'."
-            yield problem_of(study, ("summary", number, "quantity"), found, suggestion(one.quantity, quantities))
-        for key, names in (("over", one.over), ("along", [one.along] if one.along else [])):
-            for name in names:
-                if name not in factors:
-                    found = f"There is no factor '{name}'."
-                    yield problem_of(study, ("summary", number, key), found, suggestion(name, factors))
 
 
 def _plain(value: Any) -> Any:

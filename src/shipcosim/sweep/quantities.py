@@ -71,7 +71,7 @@ def _at(times: np.ndarray, values: np.ndarray, time: float) -> Any:
     return values[row] if row >= 0 else np.nan
 
 
-def _time_beyond(times: np.ndarray, values: np.ndarray, limit: float) -> float:
+def _time_beyond(times: np.ndarray, values: np.ndarray, limit: float) -> Any:
     beyond = np.flatnonzero(np.abs(values) > limit)
     return times[beyond[0]] if len(beyond) else np.nan
 
@@ -112,6 +112,10 @@ def measures_of(
         for i, expect in enumerate(_claims(one, scenario))
         for key, found, remedy in expectation_complaints(expect, system, changed)
     ]
+    tracked = study.tracks.signals if study.tracks else []
+    for signal in tracked:
+        for _, found, remedy in expectation_complaints(Expectation(signal=[signal], at_most=0.0), system, changed):
+            problems.append(problem_of(study, ("tracks", "signals"), found, remedy))
     problems += _outside(study, scenario)
     return () if problems else tuple(_measure(one, scenario, system) for one in study.quantity), problems
 

@@ -107,9 +107,11 @@ class Store:
 
         rows, self._rows = self._rows, []
         name = f"{min(row.number for row in rows)}-{len(rows)}-{max(row.number for row in rows)}.parquet"
-        content = io.BytesIO()
-        parquet.write_table(self._part(rows), content)
-        write_file(self._parts / name, content.getvalue())
+        written = {f"tracks-{name}": self._tracks(rows)} if self._plan.study.tracks else {}
+        for file, table in (written | {f"runs-{name}": self._part(rows)}).items():
+            content = io.BytesIO()
+            parquet.write_table(table, content)
+            write_file(self._parts / file, content.getvalue())
         self._written = monotonic()
 
     def finish(self) -> None:
@@ -124,6 +126,7 @@ class Store:
         with _said(self.folder):
             table = self._collected()
             self._write_runs(table)
+            self._write_tracks()
             self._write_about()
             if self.done.all():
                 shutil.rmtree(self._parts)
@@ -188,6 +191,32 @@ class Store:
             columns[measure.name] = pyarrow.array([row.quantities.get(measure.name) for row in rows], kind)
         return pyarrow.table(columns)
 
+    def _tracks(self, rows: list[Row]) -> pyarrow.Table:
+        import pyarrow
+
+        signals = self._plan.study.tracks.signals if self._plan.study.tracks else []
+        kept = [row for row in rows if row.tracks]
+        numbers = np.repeat([row.number for row in kept], [len(row.tracks["time"]) for row in kept])
+        columns = {"run": pyarrow.array(numbers, pyarrow.int64())}
+        for name in ("time", *signals):
+            joined = np.concatenate([row.tracks[name] for row in kept]) if kept else np.empty(0)
+            columns[name] = pyarrow.array(joined.astype(float), pyarrow.float64())
+        return pyarrow.table(columns)
+
+    def _write_tracks(self) -> None:
+        """tracks.parquet, from the parts of runs that are done; it stays where there are no parts."""
+        import pyarrow
+        import pyarrow.parquet as parquet
+
+        rows = sorted(self._parts.glob("runs-*.parquet"))
+        parts = [path.with_name(path.name.replace("runs-", "tracks-", 1)) for path in rows]
+        if self._plan.study.tracks is None or not parts:
+            return
+        table = pyarrow.concat_tables([parquet.read_table(path) for path in parts])
+        content = io.BytesIO()
+        parquet.write_table(table.sort_by([("run", "ascending"), ("time", "ascending")]), content, compression="zstd")
+        write_file(self.folder / "tracks.parquet", content.getvalue())
+
     def _collected(self) -> pyarrow.Table:
         """Rows of all parts and of the table that is there, each once, in the order of the plan."""
         import pyarrow
@@ -195,7 +224,7 @@ class Store:
 
         names = ["run", "error", *(measure.name for measure in self._plan.measures)]
         tables = [self._part([])]
-        for path in [self.folder / "runs.parquet", *sorted(self._parts.glob("*.parquet"))]:
+        for path in [self.folder / "runs.parquet", *sorted(self._parts.glob("runs-*.parquet"))]:
             try:
                 tables.append(parquet.read_table(path, columns=names).select(names))
             except (OSError, pyarrow.ArrowException, KeyError):
@@ -229,11 +258,16 @@ class Store:
                 path.unlink(missing_ok=True)
 
     def _kinds(self) -> dict[str, Any]:
-        """Types of the columns of factors."""
-        return {
-            factor.name: _kind([level.label for level in levels])
-            for factor, levels in zip(self._plan.study.factor, self._plan.levels, strict=True)
-        }
+        """Types of the columns of factors and samples."""
+        import pyarrow
+
+        pairs = zip(self._plan.study.factor, self._plan.levels, strict=True)
+        found = {factor.name: _kind([level.label for level in levels]) for factor, levels in pairs}
+        if self._plan.samples is not None:
+            found["sample"] = pyarrow.int64()
+            whole = {one.name: one.is_whole for one in self._plan.samples.columns}
+            found |= {name: pyarrow.int64() if is_whole else pyarrow.float64() for name, is_whole in whole.items()}
+        return found
 
     def _group(self, done: pyarrow.Table, kinds: dict[str, Any]) -> pyarrow.Table:
         """Rows of the table of runs."""

@@ -39,7 +39,7 @@ def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
     """
     import pandas
 
-    factors = [column.name for column in plan.columns if column.role == "factor"]
+    factors = [one.name for one in plan.study.factor] + (["sample"] if plan.samples is not None else [])
     groups: dict[tuple[str, ...], list[Summary]] = {}
     for one in plan.study.summary:
         gone = {*one.over, one.along}

@@ -8,11 +8,11 @@ import pickle
 import tempfile
 import threading
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -107,6 +107,17 @@ def pack(plan: Plan, engine: str, with_fmus: bool) -> PackedJob:
     return PackedJob(hashlib.sha256(content).hexdigest(), content)
 
 
+class Column(NamedTuple):
+    """What is needed of a signal."""
+
+    values: np.ndarray
+
+
+def table_of(times: np.ndarray, columns: Iterable[tuple[str, np.ndarray, str, str]]) -> dict[str, Column]:
+    """Columns by name: what quantities need of a table."""
+    return {"time": Column(times)} | {name: Column(values) for name, values, *_ in columns}
+
+
 def run_chunk(job: PackedJob | str, runs: Sequence[PlannedRun]) -> Chunk:
     """Run some runs of a job.
 
@@ -135,7 +146,9 @@ class _Bench:
         self._at: dict[str, Path] = {}
         self._ready: OrderedDict[Swapped, OneAfterAnother] = OrderedDict()
         measures: Sequence[Measure] = job.plan.measures
-        self._signals = dict.fromkeys(name for m in measures for one in m.expect for name in one.signals)
+        self._tracked = tuple(job.plan.study.tracks.signals) if job.plan.study.tracks else ()
+        judged = [name for m in measures for one in m.expect for name in one.signals]
+        self._signals = frozenset([*judged, *self._tracked])
 
     def _ready_for(self, run: PlannedRun) -> OneAfterAnother:
         """The system of a run, ready to go."""
@@ -144,7 +157,7 @@ class _Bench:
             while len(self._ready) >= MOST_SYSTEMS:
                 self._ready.popitem(last=False)[1].close()
             system, options = self._system(self._plan.systems[key]), RunOptions(engine=self._job.engine)
-            self._ready[key] = OneAfterAnother(system, options, self._chosen, self._reduced)
+            self._ready[key] = OneAfterAnother(system, options, self._chosen, self._reduced, table_of)
         self._ready.move_to_end(key)
         return self._ready[key]
 
@@ -156,7 +169,8 @@ class _Bench:
             return Row(run.number, error=str(error) if isinstance(error, ShipcosimError) else repr(error))
         if done.error:
             return Row(run.number, error=done.error)
-        return Row(run.number, {m.name: done.kept[m.name][1].item() for m in self._plan.measures})
+        tracks = {name: done.kept[f"track {name}"][1] for name in ("time", *self._tracked) if self._tracked}
+        return Row(run.number, {m.name: done.kept[m.name][1].item() for m in self._plan.measures}, tracks=tracks)
 
     def close(self) -> None:
         """Free the FMUs and remove what was unpacked."""
@@ -168,7 +182,10 @@ class _Bench:
         return [name for name in names if name in self._signals]
 
     def _reduced(self, table: Any) -> dict[str, Any]:
-        return {measure.name: measure.of(table) for measure in self._plan.measures}
+        found = {measure.name: measure.of(table) for measure in self._plan.measures}
+        every = slice(None, None, self._plan.rows_per_track_row)
+        tracks = {f"track {name}": table[name].values[every] for name in ("time", *self._tracked) if self._tracked}
+        return found | tracks
 
     def _system(self, system: System) -> System:
         """The system with its FMUs where this worker has them."""

@@ -1,0 +1,135 @@
+"""From a study to its plan, checked with its scenario and system: what does not fit is said at its line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from typing import Any
+
+from shipcosim.cosim import system_of
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario import Scenario, check_files, check_scenario, check_times, read_scenario, whole_steps
+from shipcosim.ssp import System, with_values
+from shipcosim.sweep.levels import Level, Levels
+from shipcosim.sweep.plan import Plan, Swapped
+from shipcosim.sweep.quantities import measures_of
+from shipcosim.sweep.reader import problem_of
+from shipcosim.sweep.records import Study
+from shipcosim.sweep.sampling import samples_of
+
+
+def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: bool = True) -> Plan:
+    """Lay out the runs of a study, checked with its system.
+
+    Parameters
+    ----------
+    study : Study
+    settings : mapping of str to value, optional
+        Start values over those that all runs have.
+    build : bool
+        Build FMUs that are missing or out of date, which runs their source.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that does not fit together.
+    """
+    scenario = _scenario(study)
+    read = system_of(scenario, build=build)
+    levels = Levels(study, scenario, read)
+    of_all = levels.expanded(study.set)
+    for name in study.parameters:
+        of_all = levels.fitting(name, ("parameters",)) | of_all
+    system = with_values(read, scenario.set, str(scenario.path))
+    levels = Levels(study, scenario, system)
+    values = levels.checked(of_all, ("set",)) | dict(settings or {})
+    events = [levels.event(event) for event in study.events]
+    scenario = scenario.model_copy(update={"set": scenario.set | values, "events": [*scenario.events, *events]})
+    system = with_values(system, values, "--set")
+    levels = Levels(study, scenario, system)
+    found = [levels.of(number) for number in range(len(study.factor))]
+    samples = samples_of(study, levels, system)
+    happening = [event for one in found for level in one for event in level.events]
+    measures, problems = measures_of(study, scenario, system, happening)
+    problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
+    problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
+    if problems:
+        raise ShipcosimError(problems)
+    systems = {swapped: _swapped(study, scenario, swapped, system, build) for swapped in _combinations(found)}
+    return Plan(study, scenario, systems, found, measures, samples)
+
+
+def _scenario(study: Study) -> Scenario:
+    """What all runs have in common, but for start values and events of the study."""
+    try:
+        path = study.scenario_path
+    except ShipcosimError as error:
+        found = f"There is no scenario '{study.scenario}'."
+        raise ShipcosimError(problem_of(study, ("scenario",), found, error.problems[0].remedy)) from None
+    scenario = read_scenario(path)
+    times = {name: getattr(study, name) for name in ("stop_time", "step_size", "output_interval")}
+    changed = {name: time for name, time in times.items() if time is not None}
+    components = scenario.components | {name: _beside(study, fmu) for name, fmu in study.components.items()}
+    scenario = scenario.model_copy(update={**changed, "components": components})
+    if missing := check_files(scenario):
+        raise ShipcosimError(missing)
+    problems = [problem for problem in check_times(scenario) if problem.severity == "error"]
+    if problems:
+        keys = next(iter(changed), "scenario")
+        raise ShipcosimError([problem_of(study, (keys,), one.found, one.remedy) for one in problems])
+    return scenario
+
+
+def _swapped(study: Study, scenario: Scenario, swapped: Swapped, system: System, build: bool) -> System:
+    """The system with other FMUs in place of components' own."""
+    if not swapped:
+        return system
+    components = scenario.components | {name: _beside(study, fmu) for name, fmu in swapped}
+    scenario = scenario.model_copy(update={"components": components})
+    if missing := check_files(scenario):
+        raise ShipcosimError(missing)
+    return with_values(system_of(scenario, build=build), scenario.set, str(study.path))
+
+
+def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:
+    """Sets of swapped components that runs have, none where there is one without first."""
+    per_factor = [list({tuple(level.components.items()) for level in one}) for one in levels]
+    found = {tuple(sorted(dict(pair for part in parts for pair in part).items())) for parts in product(*per_factor)}
+    return sorted(found, key=lambda one: (len(one), one))
+
+
+def _beside(study: Study, fmu: str) -> str:
+    """An FMU by its path where it lies beside the study, else as it is named."""
+    path = study.folder / fmu
+    return str(path) if path.is_file() else fmu
+
+
+def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
+    """A fork that is missing, or at no time of a run."""
+    waiting = [("factor", i, "at_fork") for i, one in enumerate(study.factor) if one.at_fork]
+    sampled = study.sample.of if study.sample else {}
+    waiting += [("sample", "of", name, "at_fork") for name, one in sampled.items() if one.at_fork]
+    if study.fork_at is None:
+        for keys in waiting:
+            yield problem_of(study, keys, "The study has no fork.", 'Give its time: fork_at = "300 s".')
+        return
+    count = whole_steps(study.fork_at, scenario.step_size)
+    if count is None or study.fork_at >= scenario.stop_time:
+        step, stop = scenario.step_size, scenario.stop_time
+        remedy = f"It is a multiple of the step size, {step:g} s, before the end at {stop:g} s."
+        yield problem_of(study, ("fork_at",), f"fork_at = {study.fork_at:g} s.", remedy)
+
+
+def _of_summaries(study: Study) -> Iterator[Problem]:
+    """Summaries that name what is not there."""
+    quantities = [one.name for one in study.quantity]
+    factors = [one.name for one in study.factor] + (["sample"] if study.sample else [])
+    for number, one in enumerate(study.summary):
+        if one.quantity not in quantities:
+            found = f"There is no quantity '{one.quantity}'."
+            yield problem_of(study, ("summary", number, "quantity"), found, suggestion(one.quantity, quantities))
+        for key, names in (("over", one.over), ("along", [one.along] if one.along else [])):
+            for name in names:
+                if name not in factors:
+                    found = f"There is no factor '{name}'."
+                    yield problem_of(study, ("summary", number, key), found, suggestion(name, factors))
