@@ -14,6 +14,7 @@ from shipcosim.errors import Problem, ShipcosimError
 
 LATE, SMALLEST_STEP = 1e9, 1e-6  # s; beyond what any run has
 _OF_SHIP = re.compile(r"^\s*\[{0,2}(particulars|thrusters)\b", re.MULTILINE)
+_OF_STUDY = re.compile(r"^\s*(\[{1,2}\s*(factor|quantity|sample)\b|(extends|scenario)\s*=)", re.MULTILINE)
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 LOGS = (".txt", ".dat", ".tsv", ".log", ".xlsx", ".txt.gz", ".dat.gz", ".tsv.gz", ".log.gz")
@@ -25,7 +26,7 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
     Parameters
     ----------
     file : str
-        A scenario (.toml; of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a
+        A scenario or a study (.toml; scenarios of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a
         system (see `shipcosim.ssp.check_file`).
     channels : path, optional
         Channel file of tables that are measured data.
@@ -50,7 +51,7 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
         if _is_ship(path):
             return check_ship_file(path)
         if path.suffix == ".toml":
-            return check_scenario_file(path)
+            return check_study_file(path) if is_study(path) else check_scenario_file(path)
         if path.suffix.lower() in OSP_SCENARIOS:
             return check_osp_scenario(path)
         if path.name.lower().endswith(LOGS):
@@ -95,12 +96,28 @@ def _is_ship(path: Path) -> bool:
         return False
 
 
+def is_study(path: Path) -> bool:
+    """Whether a file is a study: a .toml that has quantities, factors or samples, or names or extends a scenario."""
+    try:
+        return path.suffix == ".toml" and _OF_STUDY.search(path.read_text(encoding="utf-8-sig")) is not None
+    except (OSError, ValueError):
+        return False
+
+
+def check_study_file(path: Path) -> list[Problem]:
+    """Problems of a study, in itself and with its scenario and system."""
+    from shipcosim.sweep import plan_of, read_study
+
+    plan_of(read_study(path), build=False)
+    return []
+
+
 def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem] | None:
     """What tools would make of a system, or of a scenario's with the FMUs that it swaps; None for other files."""
     from shipcosim.scenario import check_files, read_scenario
     from shipcosim.ssp.portability.check import check_for
 
-    if path.suffix.lower() not in (".toml", *library.SYSTEMS) and not path.is_dir():
+    if (path.suffix.lower() not in (".toml", *library.SYSTEMS) and not path.is_dir()) or is_study(path):
         return None
     system, swapped = file, {}
     if path.suffix == ".toml":

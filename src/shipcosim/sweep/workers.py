@@ -153,7 +153,7 @@ class Cluster(Workers):
 
     def close(self) -> None:
         """See `Workers`."""
-        self._executor.shutdown(wait=False, cancel_futures=True)
+        self._executor.shutdown(wait=False)
         self._client.close()
 
     def is_lost(self, error: BaseException) -> bool:

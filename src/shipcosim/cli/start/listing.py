@@ -42,7 +42,7 @@ def _section(kind: str) -> str:
     if kind == "engines":
         return _table("engines (--engine of `run` and `simulate`)", _engines())
     project, shipped = library.project_of(), library.shipped()
-    entries = library.entries(kind.removesuffix("s"))
+    entries = library.entries("study" if kind == "studies" else kind.removesuffix("s"))
     own = [e for e in entries if project not in (None, shipped) and e.path.is_relative_to(project)]
     others = [e for e in entries if e not in own]
     tables = [(f"{kind} of {project.name}", own)] if own and project else []

@@ -87,7 +87,8 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
 
         def report(done: int, total: int) -> None:
             elapsed = bar.tasks[0].elapsed or 0.0
-            first or first.append((done, elapsed))
+            if not first:
+                first.append((done, elapsed))
             rate = (done - first[0][0]) / (elapsed - first[0][1]) if elapsed > first[0][1] else 0.0
             pace = f"{rate:.1f} runs/s, {rate * each:,.0f} ship-s/s" if rate else ""
             bar.update(task, completed=done, total=total, pace=pace)

@@ -1,0 +1,57 @@
+"""A real Dask cluster of two worker processes: the same table as on this machine, also where a worker is killed."""
+
+import os
+import signal
+
+import pandas
+import pytest
+
+import shipcosim
+from shipcosim.errors import ShipcosimError
+
+
+@pytest.fixture
+def cluster():
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as found:
+        yield found
+
+
+SLOW = 'extends = "levels"\n[set]\n"lag.pause" = 0.4\n'
+
+
+def test_a_cluster_gives_the_same_table_also_where_a_worker_is_killed(project, study, cluster):
+    path, killed = study(SLOW), []
+    here = shipcosim.sweep(path, out="here", engine="fmpy", workers=2)
+
+    def kill_one(done, total):
+        if done >= 3 and not killed:
+            killed.append(next(worker.pid for worker in cluster.workers.values()))
+            os.kill(killed[0], signal.SIGKILL)
+
+    there = shipcosim.sweep(path, out="there", engine="fmpy", scheduler=cluster.scheduler_address, progress=kill_one)
+    assert killed
+    pandas.testing.assert_frame_equal(there.runs, here.runs)
+
+
+def test_a_killed_process_of_this_machine_costs_no_run(project, study):
+    path = study(SLOW)
+    whole = shipcosim.sweep(path, out="whole", engine="fmpy", workers=2)
+    killed = []
+
+    def kill_one(done, total):
+        if done >= 3 and not killed:
+            import multiprocessing
+
+            killed.append(multiprocessing.active_children()[0].pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    found = shipcosim.sweep(path, out="killed", engine="fmpy", workers=2, progress=kill_one)
+    assert killed
+    pandas.testing.assert_frame_equal(found.runs, whole.runs)
+
+
+def test_a_scheduler_that_is_not_there_is_said(project):
+    with pytest.raises(ShipcosimError, match="No scheduler of Dask answers"):
+        shipcosim.sweep("levels", out="out", engine="fmpy", scheduler="tcp://127.0.0.1:9")
