@@ -26,8 +26,8 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
     Parameters
     ----------
     file : str
-        A scenario or a study (.toml; scenarios of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a file of a
-        system (see `shipcosim.ssp.check_file`).
+        A scenario or a study (.toml; scenarios of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a
+        file of a system (see `shipcosim.ssp.check_file`).
     channels : path, optional
         Channel file of tables that are measured data.
     hosts : iterable of str
