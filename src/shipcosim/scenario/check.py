@@ -64,27 +64,34 @@ def whole_steps(duration: float, step_size: float) -> int | None:
 
 def check_times(scenario: Scenario) -> Iterator[Problem]:
     """Times of a scenario that do not fall on its steps, or lie after its end."""
+    for complaint in time_complaints(scenario):
+        yield problem_at(scenario, *complaint)
+
+
+def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...], str, str, str]]:
+    """What is wrong with the times of a scenario: (keys, what was found, what would be right, severity)."""
     step, stop = scenario.step_size, scenario.stop_time
     if stop / step > MOST_STEPS:
         found = f"stop_time = {stop:g} s takes {stop / step:.3g} steps of {step:g} s."
-        remedy = f"At most {MOST_STEPS:,.0f} are done: take larger steps or stop earlier."
-        yield problem_at(scenario, ("stop_time",), found, remedy)
+        yield ("stop_time",), found, f"At most {MOST_STEPS:,.0f} are done: take larger steps or stop earlier.", "error"
         return
-    times = [(("stop_time",), stop), (("output_interval",), scenario.output_interval or step)]
-    times += [(("events", number, "time"), event.time) for number, event in enumerate(scenario.events)]
+    times: list[tuple[tuple[str | int, ...], float]] = [
+        (("stop_time",), stop),
+        (("output_interval",), scenario.output_interval or step),
+        *((("events", number, "time"), event.time) for number, event in enumerate(scenario.events)),
+    ]
     for keys, time in times:
         count = whole_steps(time, step)
         if count is None or (count == 0 and keys[0] != "events"):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
             nearest = max(1, round(time / step)) * step
-            yield problem_at(scenario, keys, found, f"The nearest would be {nearest:g} s.")
+            yield keys, found, f"The nearest would be {nearest:g} s.", "error"
         elif keys[0] == "events" and time >= stop:
-            found = f"the event at {time:g} s never acts: the run ends at {stop:g} s."
-            yield problem_at(scenario, keys, found, severity="remark")
+            yield keys, f"the event at {time:g} s never acts: the run ends at {stop:g} s.", "", "remark"
     for number, expect in enumerate(scenario.expect):
         if expect.during and expect.during[1] > stop:
             found = f"during = {expect.during} reaches beyond the end of the run at {stop:g} s."
-            yield problem_at(scenario, ("expect", number, "during"), found, severity="remark")
+            yield ("expect", number, "during"), found, "", "remark"
 
 
 def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:

@@ -26,6 +26,8 @@ LONGEST_LINE = 20_000
 _REMEDIES = {
     "string_type": "It should be a text in quotes.",
     "float_type": 'It should be a number, without quotes and with a decimal point, or a text such as "2.5 m".',
+    "bool_type": "It should be true or false.",
+    "int_type": "It should be a whole number, without quotes.",
     "list_type": "It should be a list: [ , ].",
     "too_short": "It takes more values than that.",
     "too_long": "It takes fewer values than that.",

@@ -6,10 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any
 
+from shipcosim import library
 from shipcosim.cosim import system_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario import Scenario, check_files, check_scenario, check_times, read_scenario, whole_steps
+from shipcosim.scenario import Scenario, check_files, check_scenario, read_scenario, time_complaints, whole_steps
 from shipcosim.ssp import System, with_values
+from shipcosim.ssp.flatten.swapped import WHERE
 from shipcosim.sweep.levels import Level, Levels
 from shipcosim.sweep.plan import Plan, Swapped
 from shipcosim.sweep.quantities import measures_of
@@ -35,16 +37,20 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
         With everything that does not fit together.
     """
     scenario = _scenario(study)
-    read = system_of(scenario, build=build)
-    levels = Levels(study, scenario, read)
-    of_all = levels.expanded(study.set)
-    for name in study.parameters:
-        of_all = levels.fitting(name, ("parameters",)) | of_all
+    read = _system(study, scenario, study.components, {name: ("components", name) for name in study.components}, build)
+    components = scenario.components | {name: _beside(study, fmu) for name, fmu in study.components.items()}
     system = with_values(read, scenario.set, str(scenario.path))
     levels = Levels(study, scenario, system)
-    values = levels.checked(of_all, ("set",)) | dict(settings or {})
+    levels.check_names()
+    fitted = [levels.fitting(name, ("parameters",)) for name in study.parameters]
+    values = {signal: value for one in fitted for signal, value in one.items()}
+    values |= levels.checked(study.set, ("set",)) | dict(settings or {})
     events = [levels.event(event) for event in study.events]
-    scenario = scenario.model_copy(update={"set": scenario.set | values, "events": [*scenario.events, *events]})
+    levels.check_events(events, ("events",))
+    if levels.problems:
+        raise ShipcosimError(levels.problems)
+    changed = {"components": components, "set": scenario.set | values, "events": [*scenario.events, *events]}
+    scenario = scenario.model_copy(update=changed)
     system = with_values(system, values, "--set")
     levels = Levels(study, scenario, system)
     found = [levels.of(number) for number in range(len(study.factor))]
@@ -60,7 +66,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
 
 
 def _scenario(study: Study) -> Scenario:
-    """What all runs have in common, but for start values and events of the study."""
+    """What all runs have in common, but for what the study gives to its system."""
     try:
         path = study.scenario_path
     except ShipcosimError as error:
@@ -69,26 +75,54 @@ def _scenario(study: Study) -> Scenario:
     scenario = read_scenario(path)
     times = {name: getattr(study, name) for name in ("stop_time", "step_size", "output_interval")}
     changed = {name: time for name, time in times.items() if time is not None}
-    components = scenario.components | {name: _beside(study, fmu) for name, fmu in study.components.items()}
-    scenario = scenario.model_copy(update={**changed, "components": components})
+    scenario = scenario.model_copy(update=changed)
     if missing := check_files(scenario):
         raise ShipcosimError(missing)
-    problems = [problem for problem in check_times(scenario) if problem.severity == "error"]
-    if problems:
-        keys = next(iter(changed), "scenario")
-        raise ShipcosimError([problem_of(study, (keys,), one.found, one.remedy) for one in problems])
+    if wrong := [one for one in time_complaints(scenario) if one[-1] == "error"]:
+        keys = [keys if keys[0] in changed else tuple(changed)[:1] for keys, *_ in wrong]
+        raise ShipcosimError([problem_of(study, at, *one[1:3]) for at, one in zip(keys, wrong, strict=True)])
     return scenario
 
 
+def _system(
+    study: Study,
+    scenario: Scenario,
+    components: Mapping[str, str],
+    keys: Mapping[str, tuple[str | int, ...]],
+    build: bool,
+) -> System:
+    """The system of a scenario with other FMUs in place of components' own; `keys` say where the study names each."""
+    problems, paths = [], {}
+    for name, fmu in components.items():
+        path = study.folder / fmu
+        try:
+            paths[name] = path if path.is_file() else library.find("fmu", fmu, near=study.folder, build=build)
+        except ShipcosimError as error:
+            found = f"There is no FMU '{fmu}', by this name or beside the study."
+            problems.append(problem_of(study, keys[name], found, error.problems[0].remedy))
+    if problems:
+        raise ShipcosimError(problems)
+    try:
+        return system_of(scenario, components=paths, build=build)
+    except ShipcosimError as error:
+        at = {f"{WHERE}, {name}": place for name, place in keys.items()}
+        located = [problem_of(study, at[p.where], p.found, p.remedy) if p.where in at else p for p in error.problems]
+        raise ShipcosimError(located) from None
+
+
 def _swapped(study: Study, scenario: Scenario, swapped: Swapped, system: System, build: bool) -> System:
-    """The system with other FMUs in place of components' own."""
+    """The system with the FMUs that some runs have in place of components' own."""
     if not swapped:
         return system
-    components = scenario.components | {name: _beside(study, fmu) for name, fmu in swapped}
-    scenario = scenario.model_copy(update={"components": components})
-    if missing := check_files(scenario):
-        raise ShipcosimError(missing)
-    return with_values(system_of(scenario, build=build), scenario.set, str(study.path))
+    cases = [
+        (("factor", i, "case", j, "components"), case)
+        for i, factor in enumerate(study.factor)
+        for j, case in enumerate(factor.case or ())
+    ]
+    keys = {
+        name: (*place, name) for place, case in cases for name, fmu in case.components.items() if (name, fmu) in swapped
+    }
+    return with_values(_system(study, scenario, dict(swapped), keys, build), scenario.set, str(study.path))
 
 
 def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:

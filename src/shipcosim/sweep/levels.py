@@ -88,14 +88,44 @@ class Levels:
         return [Level(next(iter(one.values())), one) for one in found if one]
 
     def checked(self, values: Mapping[str, Value], keys: Sequence[str | int]) -> dict[str, Value]:
-        """Start values in the units of their variables; none where one does not fit, which is said."""
-        where = problem_of(self._study, keys, "").where
+        """Start values in the units of their variables; none where one does not fit, which is said.
+
+        Parameters
+        ----------
+        values : mapping of str to value
+            By signal, or by a name of the study for several.
+        keys : sequence of str and int
+            Where they stand in the study.
+        """
+        expanded = self.expanded(values)
         try:
-            system = with_values(self._system, values, where)
-        except ShipcosimError as error:
-            self.problems += error.problems
+            system = with_values(self._system, expanded, "")
+        except ShipcosimError:
+            for name, value in values.items():
+                self._check_value(name, value, keys)
             return {}
-        return {signal: start_value(system, signal) for signal in values}
+        return {signal: start_value(system, signal) for signal in expanded}
+
+    def _check_value(self, name: str, value: Value, keys: Sequence[str | int]) -> None:
+        where = problem_of(self._study, (*keys, name), "").where
+        for signal in self.signals_of(name):
+            try:
+                with_values(self._system, {signal: value}, where)
+            except ShipcosimError as error:
+                self.problems += error.problems
+                return
+
+    def check_names(self) -> None:
+        """Check that names of the study are of their own, and stand for components."""
+        components = list(self._system.components)
+        for name, group in self._study.names.items():
+            if name in components:
+                found = f"'{name}' is a component already."
+                self.problems.append(problem_of(self._study, ("names", name), found, "Give them another name."))
+            for one in group:
+                if one not in components:
+                    found, remedy = f"There is no component '{one}'.", suggestion(one, components)
+                    self.problems.append(problem_of(self._study, ("names", name), found, remedy))
 
     def at_fork(self, signals: Sequence[str], value: Value, keys: Sequence[str | int]) -> Level:
         """Level of an event at the fork."""
@@ -132,9 +162,9 @@ class Levels:
         values: dict[str, Value] = {}
         for name in case.parameters:
             values |= self.fitting(name, (*keys, "parameters"))
-        values |= self.checked(self.expanded(case.set), (*keys, "set")) if case.set else {}
+        values |= self.checked(case.set, (*keys, "set")) if case.set else {}
         events = [self.event(event) for event in case.events]
-        self._check_events(events, (*keys, "events"))
+        self.check_events(events, (*keys, "events"))
         self._check_time(case.stop_time, (*keys, "stop_time"))
         return Level(case.label, values, tuple(events), case.components, case.stop_time)
 
@@ -151,6 +181,7 @@ class Levels:
         path = next((one for one in paths if one.is_file()), None)
         if path is None:
             known = [file.stem for file in paths[0].parent.glob("*.ssv")]
+            known += [file.name for file in self._study.folder.glob("*.ssv")]
             found = f"There is no parameter set '{name}', in {paths[0].parent} or beside the study."
             self.problems.append(problem_of(self._study, keys, found, suggestion(name, known)))
             return {}
@@ -160,7 +191,8 @@ class Levels:
             self.problems += error.problems
             return {}
 
-    def _check_events(self, events: Iterable[Event], keys: tuple[str | int, ...]) -> None:
+    def check_events(self, events: Iterable[Event], keys: tuple[str | int, ...]) -> None:
+        """Check the signals, values and times of events, which keys of the study name."""
         for number, event in enumerate(events):
             for verb, signal, found, remedy in event_complaints(event, self._system):
                 self.problems.append(problem_of(self._study, (*keys, number, verb, signal), found, remedy))

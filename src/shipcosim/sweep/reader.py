@@ -157,7 +157,7 @@ def _are_tables(*values: Any) -> bool:
 
 
 def _repeated(study: Study) -> list[Problem]:
-    """Columns of the same name."""
+    """Columns of the same name, and cases of the same label."""
     seen, problems = {}, []
     of_sample = [] if study.sample is None else list(study.sample.of.items())
     columns = [(("factor", i, "name"), one.name) for i, one in enumerate(study.factor)]
@@ -169,4 +169,10 @@ def _repeated(study: Study) -> list[Problem]:
             found = f"'{name}' is a {seen[name]} already."
             problems.append(problem_of(study, keys, found, "Give each column of the tables a name of its own."))
         seen.setdefault(name, str(keys[0]))
+    for i, factor in enumerate(study.factor):
+        labels = [one.label for one in factor.case or ()]
+        for j, label in enumerate(labels):
+            if label in labels[:j]:
+                keys = ("factor", i, "case", j, "label")
+                problems.append(problem_of(study, keys, "Two cases have the same label.", "Give each its own."))
     return problems

@@ -6,7 +6,16 @@ import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    PrivateAttr,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
 
 from shipcosim import library
 from shipcosim.scenario import Event, Expectation
@@ -25,6 +34,17 @@ def _column(name: str) -> str:
     return name
 
 
+def _as_list(value: Any) -> Any:
+    return value if isinstance(value, list) or value is None else [value]
+
+
+def _label(value: Any) -> str | int | float:
+    if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+        raise PydanticCustomError("label_type", "It should be a number or a text in quotes")
+    return value
+
+
+Label = Annotated[str | int | float, PlainValidator(_label)]
 Column = Annotated[str, AfterValidator(_column)]
 Count = Annotated[int, Field(ge=1)]
 
@@ -35,7 +55,7 @@ class Case(Part):
     Values of `set` act from the start; events act at their times.
     """
 
-    label: str | int | float
+    label: Label
     set: dict[str, Value] = {}
     events: list[Event] = []
     parameters: ListOfNames = []
@@ -72,8 +92,6 @@ class Factor(Part):
             raise ValueError("signal is missing. Name the signal that gets the values.")
         if given[0] == "case" and (self.signal or self.at_fork):
             raise ValueError("Cases say themselves what they set: signal and at_fork are not used with them.")
-        if self.case and len({one.label for one in self.case}) < len(self.case):
-            raise ValueError("Two cases have the same label. Give each its own.")
         return self
 
 
@@ -131,7 +149,9 @@ class Quantity(Part):
     name: Column
     description: str = ""
     signal: ListOfNames = []
-    near: list[float | str] | float | str | None = Field(default=None, description="amounts, or names of signals")
+    near: Annotated[list[Label] | None, BeforeValidator(_as_list)] = Field(
+        default=None, description="amounts, or names of signals"
+    )
     reduce: Literal[REDUCTIONS] | None = None  # pyright: ignore[reportInvalidTypeForm]
     during: Annotated[list[Seconds], Field(min_length=2, max_length=2)] | None = None
     time: Seconds | None = Field(default=None, ge=0.0)
@@ -185,7 +205,7 @@ class Summary(Part):
     percentile: Annotated[float, Field(gt=0.0, lt=100.0)] | None = None
     along: str | None = Field(default=None, description="factor whose cases come in the order of their weight")
     share: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
-    none: float | str | None = Field(default=None, description="where not even the first case is held")
+    none: Label | None = Field(default=None, description="where not even the first case is held")
 
     @model_validator(mode="after")
     def _is_one(self) -> Summary:

@@ -1,0 +1,299 @@
+"""Mistakes in study files: each key's is said with file and line, what was found, and what would be right."""
+
+import re
+import types
+import typing
+
+import pytest
+from pydantic import BaseModel
+
+from shipcosim.errors import ShipcosimError
+from shipcosim.scenario import Event, Expectation
+from shipcosim.sweep import plan_of, read_study
+from shipcosim.sweep.records import Study
+
+WHOLE = """
+description     = "a study with every key"
+scenario        = "filling"
+seed            = 3
+stop_time       = "2 s"
+step_size       = "0.1 s"
+output_interval = "0.2 s"
+fork_at         = "1 s"
+parameters      = ["lags.ssv"]
+
+[components]
+other = "lag"
+
+[set]
+"lag.noise" = "1 cm"
+
+[names]
+both = ["lag", "other"]
+
+[[events]]
+time     = "0.5 s"
+override = { "other.u" = 2.0 }
+
+[[factor]]
+name   = "level"
+signal = "both.u"
+values = ["100 cm", 2.0]
+
+[[factor]]
+name   = "constant"
+signal = ["lag.time_constant"]
+from   = "1 s"
+to     = "2 s"
+count  = 2
+
+[[factor]]
+name     = "later"
+signal   = "lag.u"
+values   = [1.0, 2.0]
+at_fork  = true
+
+[[factor]]
+name   = "noise"
+signal = "other.noise"
+from   = 0.0
+to     = 0.2
+step   = 0.1
+
+[[factor]]
+name = "case"
+
+[[factor.case]]
+label      = "as she is"
+
+[[factor.case]]
+label      = "otherwise"
+set        = { "other.u" = 1.5 }
+events     = [{ time = 1.0, bias = { "other.u" = 0.1 } }]
+parameters = ["lags.ssv"]
+components = { other = "lag" }
+stop_time  = "1 s"
+
+[[factor]]
+name  = "seed"
+seeds = 2
+
+[sample]
+method = "sobol"
+runs   = 2
+
+[sample.of."other.time_constant"]
+distribution = "uniform"
+loc          = 100.0
+scale        = 50.0
+unit         = "ms"
+name         = "sampled"
+at_fork      = false
+
+[sample.of."other.noise"]
+distribution = "norm"
+tolerance    = false
+
+[[quantity]]
+name        = "highest"
+description = "the largest level"
+signal      = "lag.y"
+reduce      = "maximum"
+during      = ["0 s", "1 s"]
+
+[[quantity]]
+name   = "farthest"
+signal = ["lag.y", "other.y"]
+near   = [0.0, "10 cm"]
+reduce = "time_beyond"
+limit  = "1 m"
+
+[[quantity]]
+name   = "then"
+signal = "lag.y"
+reduce = "at"
+time   = "1 s"
+
+[[quantity]]
+name       = "usual"
+signal     = "lag.y"
+reduce     = "percentile"
+percentile = 90.0
+
+[[quantity]]
+name   = "held"
+expect = [{ signal = "lag.y", at_most = 2.5 }]
+
+[[quantity]]
+name                  = "expected"
+scenario_expectations = true
+
+[[summary]]
+name        = "p90"
+description = "over the seeds"
+quantity    = "highest"
+over        = "seed"
+statistic   = "percentile"
+percentile  = 90.0
+
+[[summary]]
+name      = "last"
+quantity  = "held"
+over      = ["seed"]
+statistic = "last_held"
+along     = "case"
+share     = 0.9
+none      = "none"
+
+[[view]]
+kind  = "scatter"
+title = "levels"
+
+[tracks]
+signals  = ["lag.y"]
+interval = "0.2 s"
+"""
+MISTAKES = [
+    # key, line of WHOLE, what stands in its place, what is found, what would be right
+    ("extends", "", 'extends = "levls"', "no study 'levls'", "levels"),
+    ("description", 'description     = "a study with every key"', "description = 3", "description = 3", "text"),
+    ("scenario", 'scenario        = "filling"', 'scenario = "fillin"', "no scenario 'fillin'", "filling"),
+    ("seed", "seed            = 3", "seed = -1", "seed = -1", "greater than or equal to 0"),
+    ("stop_time", 'stop_time       = "2 s"', 'stop_time = "2 m"', "'2 m' is in m", "in s"),
+    ("stop_time", 'stop_time       = "2 s"', 'stop_time = "2.05 s"', "no multiple of the step size", "2"),
+    ("step_size", 'step_size       = "0.1 s"', "step_size = 0.0", "step_size = 0.0", "greater than 0"),
+    ("output_interval", 'output_interval = "0.2 s"', 'output_interval = "0.25 s"', "no multiple", "0.2 s"),
+    ("fork_at", 'fork_at         = "1 s"', 'fork_at = "5 s"', "fork_at = 5 s", "before the end at 2 s"),
+    ("parameters", 'parameters      = ["lags.ssv"]', 'parameters = ["lag"]', "no parameter set 'lag'", "lags"),
+    ("components", 'other = "lag"', 'othr = "lag"', "no component 'othr'", "other"),
+    ("components", 'other = "lag"', 'other = "lagg"', "no FMU 'lagg'", "lag"),
+    ("set", '"lag.noise" = "1 cm"', '"lag.nois" = "1 cm"', "nois", "noise"),
+    ("set", '"lag.noise" = "1 cm"', '"lag.noise" = "1 s"', "'1 s'", "m"),
+    ("names", 'both = ["lag", "other"]', 'both = ["lag", "othr"]', "othr", "other"),
+    ("names", 'both = ["lag", "other"]', 'both = "lag"', 'both = "lag"', "list"),
+    ("events.time", 'time     = "0.5 s"', 'time = "0.55 s"', "0.55 s is no multiple of the step size", "0.1 s"),
+    ("events.override", 'override = { "other.u" = 2.0 }', 'override = { "other.v" = 2.0 }', "'v'", "u, y"),
+    ("events", 'override = { "other.u" = 2.0 }', 'overide = { "other.u" = 2.0 }', "'overide'", "override"),
+    ("factor", 'values = ["100 cm", 2.0]', 'value = ["100 cm", 2.0]', "unknown key 'value'", "values"),
+    ("factor.name", 'name   = "level"', 'name = "run"', "'run' is a column", "another name"),
+    ("factor.signal", 'signal = "both.u"', 'signal = "both.w"', "has no variable 'w'", "u, y"),
+    ("factor.values", 'values = ["100 cm", 2.0]', 'values = ["100 deg", 2.0]', "100 deg", "m"),
+    ("factor.from", 'from   = "1 s"', 'from = "1 m"', "1 m", "s"),
+    ("factor.from", 'from   = "1 s"', 'from = "0 s"', "0", "0.01"),
+    ("factor.to", 'to     = "2 s"', 'to = "two"', 'to = "two"', "number"),
+    ("factor.count", "count  = 2", "count = 1", "count = 1", "greater than or equal to 2"),
+    ("factor.step", "step   = 0.1", "step = -0.1", "Steps of -0.1 do not lead from 0.0 to 0.2", "another step"),
+    ("factor.at_fork", "at_fork  = true", 'at_fork = "yes"', 'at_fork = "yes"', "true or false"),
+    ("factor.case", 'name = "case"', 'name = "case"\nsignal = "lag.u"', "Cases say themselves", "not used"),
+    ("factor.seeds", "seeds = 2", "seeds = 0", "seeds = 0", "greater than or equal to 1"),
+    ("factor.case.label", 'label      = "otherwise"', "label = [1]", "label = [1]", "number or a text"),
+    ("factor.case.label", 'label      = "otherwise"', 'label = "as she is"', "the same label", "its own"),
+    ("factor.case.set", '{ "other.u" = 1.5 }', '{ "other.u" = "1.5 s" }', "1.5 s", "m"),
+    ("factor.case.events", "time = 1.0, bias", "time = 1.05, bias", "1.05 s is no multiple", "1"),
+    ("factor.case.events", '{ "other.u" = 0.1 }', '{ "other.q" = 0.1 }', "'q'", "u, y"),
+    ("factor.case.parameters", 'parameters = ["lags.ssv"]', 'parameters = ["legs"]', "'legs'", "lags"),
+    ("factor.case.components", 'components = { other = "lag" }', 'components = { other = "leg" }', "'leg'", "lag"),
+    ("factor.case.components", 'components = { other = "lag" }', 'components = { oter = "lag" }', "'oter'", "other"),
+    ("factor.case.stop_time", 'stop_time  = "1 s"', 'stop_time = "1.01 s"', "1.01 s is no multiple", "1 s"),
+    ("sample.method", 'method = "sobol"', 'method = "sobl"', 'method = "sobl"', "'sobol'"),
+    ("sample.runs", "runs   = 2", "runs = 0.5", "runs = 0.5", "whole number"),
+    ("sample.of", '[sample.of."other.time_constant"]', '[sample.of."other.constant"]', "constant", "time_constant"),
+    ("sample.of.distribution", '"uniform"', '"unifrm"', "no distribution 'unifrm'", "uniform"),
+    ("sample.of.scale", "scale        = 50.0", "scal = 50.0", "unknown key 'scal'", "scale"),
+    ("sample.of.scale", "scale        = 50.0", 'scale = "50 ms"', 'scale = "50 ms"', "number"),
+    ("sample.of.unit", 'unit         = "ms"', 'unit = "mm"', "mm", "s"),
+    ("sample.of.name", 'name         = "sampled"', 'name = "level"', "'level' is a factor already", "of its own"),
+    ("sample.of.at_fork", "at_fork      = false", "at_fork = 0", "at_fork = 0", "true or false"),
+    ("sample.of.tolerance", "tolerance    = false", "tolerance = true", "either distribution or tolerance", "true"),
+    (
+        "sample.of.tolerance",
+        'distribution = "norm"\ntolerance    = false',
+        "tolerance = true",
+        "No parameter set states a tolerance of other.noise",
+        "",
+    ),
+    ("quantity", 'reduce      = "maximum"', 'reduce = "maximum"\nlimt = 3', "unknown key 'limt'", "limit"),
+    ("quantity.name", 'name        = "highest"', 'name = "the highest"', "'the highest' cannot name a column", "Use"),
+    ("quantity.description", '"the largest level"', "true", "description = true", "text"),
+    ("quantity.signal", 'signal      = "lag.y"', 'signal = "leg.y"', "leg", "lag"),
+    ("quantity.near", 'near   = [0.0, "10 cm"]', 'near = [0.0, "10 s"]', "10 s", "m"),
+    ("quantity.reduce", '"maximum"', '"maximal"', 'reduce = "maximal"', "'maximum'"),
+    ("quantity.during", 'during      = ["0 s", "1 s"]', 'during = ["5 s", "9 s"]', "beyond the end", "within"),
+    ("quantity.time", 'time   = "1 s"', 'time = "3 s"', "beyond the end of the runs at 2 s", "within"),
+    ("quantity.percentile", "percentile = 90.0", "percentile = 100.0", "100.0", "less than"),
+    ("quantity.limit", 'limit  = "1 m"', 'limit = "1 kg"', "1 kg", "m"),
+    ("quantity.expect", "at_most = 2.5 }]", 'at_most = "2.5 kg" }]', "2.5 kg", "m"),
+    ("quantity.expect", 'expect = [{ signal = "lag.y"', 'expect = [{ signal = "lag.x"', "'x'", "u, y"),
+    ("quantity.scenario_expectations", "scenario_expectations = true", "scenario_expectations = 1", "= 1", "true or"),
+    ("summary.name", 'name        = "p90"', 'name = "highest"', "'highest' is a quantity already", "of its own"),
+    ("summary.quantity", 'quantity    = "highest"', 'quantity = "higest"', "no quantity 'higest'", "highest"),
+    ("summary.over", 'over        = "seed"', 'over = "seeds"', "no factor 'seeds'", "seed"),
+    ("summary.statistic", 'statistic   = "percentile"', 'statistic = "p90"', 'statistic = "p90"', "'percentile'"),
+    ("summary.description", '"over the seeds"', "1", "description = 1", "text"),
+    ("summary.percentile", "percentile  = 90.0", "percentile = 0.0", "percentile = 0.0", "greater than 0"),
+    ("summary.along", 'along     = "case"', 'along = "cases"', "no factor 'cases'", "case"),
+    ("summary.share", "share     = 0.9", "share = 90.0", "share = 90.0", "less than or equal to 1"),
+    ("summary.none", 'none      = "none"', "none = [1]", "none = [1]", "number or a text"),
+    ("view.kind", 'kind  = "scatter"', 'kind = "scater"', 'kind = "scater"', "'scatter'"),
+    ("view.title", 'title = "levels"', "title = 1", "title = 1", "text"),
+    ("tracks.signals", 'signals  = ["lag.y"]', 'signals = ["lag.z"]', "'z'", "u, y"),
+    ("tracks.interval", 'interval = "0.2 s"', "interval = 0.0", "interval = 0.0", "greater than 0"),
+]
+PARAMETER_SET = """<?xml version="1.0" encoding="UTF-8"?>
+<ssv:ParameterSet name="lags" version="1.0" xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">
+  <ssv:Parameters>
+    <ssv:Parameter name="lag.time_constant"><ssv:Real value="1.5" unit="s"/></ssv:Parameter>
+  </ssv:Parameters>
+</ssv:ParameterSet>
+"""
+
+
+@pytest.fixture
+def complaints(project, study):
+    (project / "studies/lags.ssv").write_text(PARAMETER_SET)
+
+    def of(text):
+        with pytest.raises(ShipcosimError) as caught:
+            plan_of(read_study(study(text)))
+        return caught.value.problems
+
+    return of
+
+
+@pytest.mark.parametrize(("key", "right", "wrong", "found", "remedy"), MISTAKES)
+def test_a_mistake_is_said_with_its_line(complaints, key, right, wrong, found, remedy):
+    assert WHOLE.count(right) >= 1
+    before, after = WHOLE.split(right, 1) if right else ("", WHOLE)
+    text = before + wrong + after
+    first = complaints(text)[0]
+    line = int(re.fullmatch(r"\S*own\.toml, line (\d+).*", first.where)[1])
+    own = (before + wrong).count("\n") + 1
+    head = max((n for n, one in enumerate(text.split("\n")[:own], 1) if one.startswith("[")), default=own)
+    assert line in (own, head), f"line {own} of {key}: {first}"
+    assert found in first.found, first
+    assert remedy in f"{first.found} {first.remedy}".split(found, 1)[1], first
+
+
+def test_the_study_without_a_mistake_is_laid_out(complaints, study):
+    assert len(plan_of(read_study(study(WHOLE)))) == 2 * 2 * 2 * 3 * 2 * 2 * 2
+
+
+def test_every_key_of_a_study_is_among_the_mistakes():
+    tried = {key for key, *_ in MISTAKES}
+    assert {key for key in keys_of(Study) if not any(one == key or one.startswith(f"{key}.") for one in tried)} == set()
+
+
+def keys_of(record: type[BaseModel], before: str = ""):
+    """Keys of a study file, of its tables too; events and expectations have tests of their own among scenarios."""
+    for name, field in record.model_fields.items():
+        key = before + (field.alias or name)
+        yield key
+        for part in parts_in(field.annotation):
+            if part not in (Event, Expectation):
+                yield from keys_of(part, f"{key}.")
+
+
+def parts_in(annotation):
+    if isinstance(annotation, type) and not isinstance(annotation, types.GenericAlias):
+        return [annotation] if issubclass(annotation, BaseModel) else []
+    return [part for inner in typing.get_args(annotation) for part in parts_in(inner)]
