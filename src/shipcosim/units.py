@@ -13,7 +13,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -156,6 +156,7 @@ def fmi_unit(spelling: str) -> Unit:
     return _read(spelling)
 
 
+@lru_cache(4096)
 def spelled_unit(spelling: str) -> Unit | None:
     """Unit of a spelling as files have it (``kg.m2/s``, ``N/(m.s)``, ``m/s^2``, ``kn``), or None if it makes no sense.
 

@@ -69,8 +69,12 @@ def test_every_figure_is_drawn_and_no_text_lies_over_another(shown_at, file, wid
     assert page.collisions() == [] and page.ask("return document.documentElement.scrollWidth") <= width
 
 
-def test_page_is_small_and_soon_there(file, shown_at):
+def test_page_is_small(file):
     assert file.stat().st_size < 1.5e6
+
+
+@pytest.mark.slow  # by the clock: not beside other work
+def test_page_is_soon_there(file, shown_at):
     assert any(max(shown_at(file, 1280).seconds()) < 1.0 for _ in range(3))
 
 

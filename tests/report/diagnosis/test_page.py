@@ -148,8 +148,12 @@ def test_page_draws_every_figure_without_error_network_or_sideways_overflow(show
     assert page.collisions() == []
 
 
-def test_page_is_small_and_soon_there(file, shown):
+def test_page_is_small(file):
     assert file.stat().st_size < 1.5e6
+
+
+@pytest.mark.slow  # by the clock: not beside other work
+def test_page_is_soon_there(shown):
     assert any(max(shown(1280, "light").seconds()) < 1.0 for _ in range(3))
 
 

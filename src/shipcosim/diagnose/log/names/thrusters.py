@@ -124,15 +124,18 @@ def _places() -> dict[str, str]:
     return {word: place for place, words in vocabulary()["thruster"]["places"].items() for word in words}
 
 
+@cache
+def _phrases() -> list[tuple[tuple[str, ...], str]]:
+    """Words that name a quantity of a thruster, those of many words first."""
+    told = vocabulary()["thruster"]
+    quantities = ("rpm", "azimuth", "thrust", "pwm", "percent")
+    phrases = sorted((words_of(phrase), quantity) for quantity in quantities for phrase in told[quantity])
+    return sorted(phrases, key=lambda pair: -len(pair[0]))
+
+
 def _quantity(words):
     """The quantity that some words name, the words for it, and those that are left."""
-    told = vocabulary()["thruster"]
-    phrases = sorted(
-        (tuple(words_of(p)), quantity)
-        for quantity in ("rpm", "azimuth", "thrust", "pwm", "percent")
-        for p in told[quantity]
-    )
-    for phrase, quantity in sorted(phrases, key=lambda pair: -len(pair[0])):
+    for phrase, quantity in _phrases():
         for start in range(len(words) - len(phrase), -1, -1):
             if tuple(words[start : start + len(phrase)]) == phrase:
                 rest = words[:start] + words[start + len(phrase) :]
