@@ -8,12 +8,13 @@ import pytest
 from shipcosim.library import build_stale
 from shipcosim.scenario import check_scenario, read_scenario
 from shipcosim.ssp import read_system
+from shipcosim.sweep import plan_of, read_study
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / name for name in ("README.md", "CHANGELOG.md")] + sorted((ROOT / "docs").glob("*.md"))
 PAGES += sorted((ROOT / "docs" / "generated").glob("*.md"))
 PAGES += sorted((ROOT / "fmus").glob("*/README.md"))
-USED = ("build", "docs", "fmus", "scenarios", "ssp")
+USED = ("build", "docs", "fmus", "scenarios", "ssp", "studies")
 
 
 def blocks(page, language):
@@ -47,7 +48,8 @@ def test_python_of_a_page_runs_from_top_to_bottom(page, like_the_root):
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "toml")], ids=name_of)
 def test_scenarios_of_a_page_fit_their_system(page, tmp_path, fmus):
-    for number, text in enumerate(text for text in blocks(page, "toml") if "stop_time" in text):
+    scenarios = [text for text in blocks(page, "toml") if "stop_time" in text and "[[quantity]]" not in text]
+    for number, text in enumerate(scenarios):
         path = tmp_path / f"scenario{number}.toml"
         path.write_text(
             text.replace('"gunnerus_dp"', f'"{(ROOT / "ssp" / "gunnerus_dp").as_posix()}"'), encoding="utf-8"
@@ -55,6 +57,16 @@ def test_scenarios_of_a_page_fit_their_system(page, tmp_path, fmus):
         scenario = read_scenario(path)
         system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[fmus])
         assert check_scenario(scenario, system) == []
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if any("[[quantity]]" in text for text in blocks(page, "toml"))], ids=name_of
+)
+def test_studies_of_a_page_can_be_laid_out(page, like_the_root):
+    for number, text in enumerate(text for text in blocks(page, "toml") if "[[quantity]]" in text):
+        path = Path(f"study{number}.toml")
+        path.write_text(text, encoding="utf-8")
+        assert len(plan_of(read_study(path))) > 1
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
@@ -68,7 +80,7 @@ def test_links_of_a_page_lead_to_files(page):
 @pytest.fixture(scope="session")
 def tracked():
     """Paths of all files of the project, from its root."""
-    folders = ("docs", "fmus", "scenarios", "src", "ssp", "tests")
+    folders = ("docs", "fmus", "scenarios", "src", "ssp", "studies", "tests")
     return [path.relative_to(ROOT).as_posix() for folder in folders for path in (ROOT / folder).rglob("*.*")]
 
 
