@@ -157,19 +157,33 @@ class Plan:
 
     def input_of(self, run: PlannedRun) -> dict[str, Any]:
         """The full input of a run, which is a scenario: ``shipcosim.run(Scenario(**input))`` runs it alone."""
-        scenario = self.scenario_of(run)
-        swapped = scenario.components | dict(run.swapped)
-        found = {
+        found = dict(self._common_input)
+        if run.swapped:
+            found["components"] = self._portable_components(dict(run.swapped))
+        found["set"] = {**self.scenario.set, **run.values}
+        if run.events:
+            found["events"] = [*found["events"], *(event.model_dump(exclude_defaults=True) for event in run.events)]
+        if run.stop_time is not None:
+            found["stop_time"] = run.stop_time
+        return {name: value for name, value in found.items() if value not in ({}, [], None)}
+
+    @cached_property
+    def _common_input(self) -> dict[str, Any]:
+        """What the inputs of all runs have in common."""
+        return {
             "system": self._named_system,
             "parameters": self._named_parameters,
-            "components": {name: _portable(self.scenario, fmu) for name, fmu in swapped.items()},
-            "set": {**scenario.set, **run.values},
-            "events": [event.model_dump(exclude_defaults=True) for event in scenario.events],
-            "stop_time": scenario.stop_time,
-            "step_size": scenario.step_size,
-            "output_interval": scenario.output_interval,
+            "components": self._portable_components({}),
+            "set": {},
+            "events": [event.model_dump(exclude_defaults=True) for event in self.scenario.events],
+            "stop_time": self.scenario.stop_time,
+            "step_size": self.scenario.step_size,
+            "output_interval": self.scenario.output_interval,
         }
-        return {name: value for name, value in found.items() if value not in ({}, [], None)}
+
+    def _portable_components(self, swapped: Mapping[str, str]) -> dict[str, str]:
+        together = self.scenario.components | dict(swapped)
+        return {name: _portable(self.scenario, fmu) for name, fmu in together.items()}
 
     @cached_property
     def columns(self) -> list[ColumnOf]:
