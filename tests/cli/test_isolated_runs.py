@@ -12,9 +12,9 @@ def test_results_are_the_same_and_the_exit_code_is_that_of_the_expectations(call
 
 
 def test_a_component_that_hangs_is_named_and_the_rows_before_it_are_kept(call, project):
-    failed = call("run", "fill", "--isolate", "--timeout", "1", "--set", "lag.pause=60.0")
+    failed = call("run", "fill", "--isolate", "--timeout", "5", "--set", "lag.pause=60.0")
     assert failed.code == 1
-    assert "error: lag:\nfailed in the step from t = 0 s. Its process gave no answer to DoStep within 1 s" in failed.err
+    assert "error: lag:\nfailed in the step from t = 0 s. Its process gave no answer to DoStep within 5 s" in failed.err
     assert "Traceback" not in failed.err and failed.out == ""
     folder = project / "results" / "fill"
     assert sorted(file.name for file in folder.iterdir()) == PARTIAL

@@ -139,18 +139,24 @@ class _Handler(BaseHTTPRequestHandler):
             )
             return
         try:
-            if not page.is_file():
-                self.server.simulate(run)
-            if not page.is_file():
-                raise ShipcosimError(Problem(f"run {run}", "Its simulation left no page.", ""))
-        except ShipcosimError as error:
-            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, "\n".join(map(str, error.problems)))
-        except Exception as error:  # a fault of ours is shown, and the server stays
-            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, f"run {run}: {type(error).__name__}: {error}")
+            wrong = self._without_page(run, page)
+        finally:
+            self.server.at_work.release()  # before it answers: whoever has the answer may ask again
+        if wrong:
+            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, wrong)
         else:
             self._answer(HTTPStatus.OK, {"page": page.relative_to(self.server.folder).as_posix()})
-        finally:
-            self.server.at_work.release()
+
+    def _without_page(self, run: int, page: Path) -> str:
+        """Simulate a run that has no page; why it has none afterwards."""
+        try:
+            if not page.is_file():
+                self.server.simulate(run)
+        except ShipcosimError as error:
+            return "\n".join(map(str, error.problems))
+        except Exception as error:  # a fault of ours is shown, and the server stays
+            return f"run {run}: {type(error).__name__}: {error}"
+        return "" if page.is_file() else f"run {run}: Its simulation left no page."
 
     def _origin(self) -> str:
         return f"http://{self.headers.get('Host')}"
