@@ -1,20 +1,31 @@
 """FMUs unpacked for a run, and the imports that Python FMUs leave behind in this process.
 
 PythonFMU puts each FMU's resources on the one `sys.path` and imports from there. Without care a second FMU with a
-module of the same name runs the first one's code.
+module of the same name runs the first one's code. FMUs of our own shell have names unique to their content and write
+nothing: they are unpacked once, in the cache, and imported once by a process.
 """
 
+import hashlib
 import os
+import re
+import shutil
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import Self
 
+from shipcosim.errors import ShipcosimError
+from shipcosim.library import cache
 from shipcosim.ssp import unpack
+from shipcosim.ssp.xml.archive import entries
+
+UNUSED = 30 * 86400.0
+"""After which an FMU leaves the cache. [s]"""
 
 
 class UnpackedFmus:
-    """A folder with FMUs, which a ``with`` statement removes in the end, together with the modules imported from it."""
+    """Folders of FMUs. What is not in the cache leaves at the end of a ``with`` statement, and so do its modules."""
 
     def __enter__(self) -> Self:
         self._temporary = tempfile.TemporaryDirectory(prefix="shipcosim-", ignore_cleanup_errors=True)
@@ -31,10 +42,15 @@ class UnpackedFmus:
     def folder(self, fmu: Path) -> Path:
         """Folder of an FMU, unpacked at the first call, its modules ready to be imported before all others."""
         if fmu not in self._folders:
-            self._folders[fmu] = self._root / str(len(self._folders))
-            unpack(fmu, self._folders[fmu])
-        self._forget_namesakes(self._folders[fmu])
+            self._folders[fmu] = _in_cache(fmu) or self._unpacked(fmu)
+        if self._root in self._folders[fmu].parents:
+            self._forget_namesakes(self._folders[fmu])
         return self._folders[fmu]
+
+    def _unpacked(self, fmu):
+        folder = self._root / str(len(self._folders))
+        unpack(fmu, folder)
+        return folder
 
     def _forget_namesakes(self, folder):
         """Forget modules of other FMUs that are named like one in this FMU; who has imported them keeps them."""
@@ -48,3 +64,43 @@ class UnpackedFmus:
         """Names of the modules that come from a folder."""
         files = {name: getattr(module, "__file__", None) or "" for name, module in list(sys.modules.items())}
         return {name for name, file in files.items() if file.startswith(f"{folder}{os.sep}")}
+
+
+def _in_cache(fmu: Path) -> Path | None:
+    """Folder in the cache of an FMU of our shell; None for others', and where the cache cannot be written."""
+    try:
+        digest = hashlib.sha256(fmu.read_bytes()).hexdigest()[:32]
+        folder = (cache() / "unpacked" / digest).resolve()
+        if not folder.is_dir():
+            if not _has_a_name_of_its_own(entries(fmu)):
+                return None
+            _unpack_into_cache(fmu, folder)
+        os.utime(folder)
+    except (OSError, ShipcosimError):
+        return None
+    return folder
+
+
+def _unpack_into_cache(fmu: Path, folder: Path) -> None:
+    """Unpack beside the folder and rename: it is there whole or not at all, whoever unpacks at the same time."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    for other in folder.parent.iterdir():
+        if time.time() - other.stat().st_mtime > UNUSED:
+            shutil.rmtree(other, ignore_errors=True)
+    temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".unpacking-"))
+    try:
+        unpack(fmu, temporary)
+        temporary.chmod(0o755)
+        temporary.rename(folder)
+    except OSError:
+        if not folder.is_dir():  # else another process was first
+            raise
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _has_a_name_of_its_own(names: list[str]) -> bool:
+    """Whether all code of an FMU goes by a name that follows from its content; see `fmi.export.bundle`."""
+    resources = {name.split("/")[1] for name in names if name.startswith("resources/") and not name.endswith("/")}
+    found = [name.removesuffix(".py") for name in resources if re.fullmatch(r"\w+_[0-9a-f]{16}\.py", name)]
+    return len(found) == 1 and resources == {f"{found[0]}.py", f"{found[0]}_code", "slavemodule.txt"}
