@@ -59,6 +59,29 @@ def test_a_group_is_made_of_the_values_set_before_the_start():
     assert ship.hull == Hull(mass=2e6)
 
 
+def test_the_start_is_computed_again_where_a_value_has_changed_and_only_there():
+    class Counting(Ship):
+        def start(self):
+            hulls.append(self.hull)
+            self.speed = self.force / self.hull.mass
+
+    hulls, ship = [], Counting()
+    ship.enter_initialization_mode()
+    for force, failed, mass in (
+        (1e6, False, 5e5),
+        (1e6, False, 5e5),
+        (2e6, False, 5e5),
+        (2e6, True, 5e5),
+        (2e6, True, 1e6),
+    ):
+        ship.set_boolean([1], [failed])
+        ship.real_setter((0,))([force])
+        ship.set_real([4], [mass])
+        assert ship.get_real([2]) == [force / mass]
+    ship.exit_initialization_mode()
+    assert [hull.mass for hull in hulls] == [5e5, 5e5, 5e5, 1e6] and hulls[0] is hulls[1] is hulls[2]
+
+
 def test_two_objects_share_no_value():
     one, other = Ship(), Ship()
     one.force = 3.0

@@ -104,9 +104,11 @@ class Fmu(Fmi2Slave):
 
 
 def _drop_groups(fmu: Fmu) -> None:
-    """Forget the dataclasses of parameters: the next access makes them of the present values."""
+    """Forget the dataclasses of parameters that are of other values: the next access makes them of the present ones."""
+    values = fmu.__dict__
     for group in fmu.groups:
-        fmu.__dict__.pop(group.name, None)
+        if group.name in values and not group.holds(values):
+            del values[group.name]
 
 
 def _with_fresh_groups(start: Callable[[Any], None]) -> Any:

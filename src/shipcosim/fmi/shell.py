@@ -178,8 +178,9 @@ class Fmi2Slave:
                 refuse_not_finite_inputs(self.variables, names, values)
             if fixed and self._initialised:
                 self._refuse(found)
+            if self._initialising:
+                self._stale = self._stale or self._changes(found, values)
             put(zip(names, values, strict=True))
-            self._stale = self._initialising
 
         return set_values
 
@@ -204,8 +205,12 @@ class Fmi2Slave:
     def _set(self, found: Found, values: Sequence) -> None:
         if found.fixed and self._initialised:
             self._refuse(found)
+        self._stale = self._initialising and (self._stale or self._changes(found, values))
         self.__dict__.update(zip(found.names, values, strict=True))
-        self._stale = self._initialising
+
+    def _changes(self, found: Found, values: Sequence) -> bool:
+        """Whether values differ from those that are there: `start` follows from the variables alone."""
+        return found.values(self.__dict__) != tuple(values)
 
     def _refuse(self, found: Found) -> None:
         raise FmuError(f"parameter '{found.fixed}' is fixed, it can only be set before the run")

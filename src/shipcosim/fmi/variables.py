@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.models.core.parameters import LEFT_OUT, left_out
@@ -137,6 +137,10 @@ class Parameter(Variable):
     causality = "parameter"
 
 
+PLAIN = (float, int, bool, str)
+"""Types of values that are compared; what stands in their place when a start is recorded is not."""
+
+
 class Parameters:
     """A frozen dataclass of parameters, each field an FMU parameter: ``model = Parameters(HullParameters)``.
 
@@ -170,6 +174,12 @@ class Parameters:
         group = self.kind(**{variable.name[start:]: values[variable.name] for variable in self.variables})
         values[self.name] = group
         return group
+
+    def holds(self, values: Mapping[str, Any]) -> bool:
+        """Whether the dataclass among the values of an instance is the one that they make."""
+        made, start = values[self.name], len(self.prefix)
+        pairs = ((getattr(made, variable.name[start:]), values[variable.name]) for variable in self.variables)
+        return all(one is other or (type(one) is type(other) in PLAIN and one == other) for one, other in pairs)
 
     def _variable(self, field: dataclasses.Field) -> "Parameter":
         about = field.metadata

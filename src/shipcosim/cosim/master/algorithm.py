@@ -99,6 +99,7 @@ class Master:
         """Iterate over the components in initialisation mode until no input changes any more."""
         self._transfer(0)
         inputs, moving = {}, {}
+        feeding = [component for component in self._components if component.feeds]  # the others change no input
         for iteration in range(MOST_ITERATIONS + len(self._components)):
             last, inputs = inputs, self._inputs()
             changed = [_transferred(connection) for connection in self._parameter_connections]
@@ -107,7 +108,7 @@ class Master:
             if iteration >= MOST_ITERATIONS:
                 moving |= {name: abs(value - last[name]) for name, value in inputs.items() if value != last[name]}
             self._check_interrupt()
-            for component in self._components:
+            for component in feeding:
                 with _failing(component, "at the start"):
                     component.write()
                     component.read()

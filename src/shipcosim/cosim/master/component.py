@@ -48,6 +48,8 @@ class ComponentInstance:
     fixed_step : float, optional
         What it is told as its step, for an FMU that can take no other: the difference of two times is not always the
         same number. [s]
+    feeds : bool
+        Whether a connection leads from it to a component.
     input_rows, output_rows : dict of str to Rows
         First row and variables of its inputs and outputs, by kind.
     """
@@ -56,6 +58,7 @@ class ComponentInstance:
     slave: Slave
     multiple: int
     fixed_step: float | None = None
+    feeds: bool = True
     input_rows: dict[str, Rows] = field(default_factory=dict)
     output_rows: dict[str, Rows] = field(default_factory=dict)
     _set_reals: Callable[[], int] | None = None

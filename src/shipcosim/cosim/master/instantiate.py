@@ -73,6 +73,7 @@ def make_components(
         If an FMU cannot be instantiated or does not take its start values.
     """
     instances = {}
+    feeding = {connection.source[0] for connection in plan.system.connections if connection.target[0] is not None}
     for component in plan.system.components.values():
         check_interrupt()
         fmu, name, multiple = component.fmu, component.name, plan.multiples[component.name]
@@ -83,7 +84,9 @@ def make_components(
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
-        instances[name] = ComponentInstance(name, slave, multiple, _fixed_step(component, base_step * multiple))
+        instances[name] = ComponentInstance(
+            name, slave, multiple, _fixed_step(component, base_step * multiple), name in feeding
+        )
         for kind, exchange in exchanges.items():
             instances[name].prepare(kind, exchange, *plan.rows(kind, name))
     return instances
