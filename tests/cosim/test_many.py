@@ -10,11 +10,13 @@ import xarray
 
 import shipcosim
 from shipcosim.cosim import RunOptions, Variation, simulate, simulate_many
+from shipcosim.cosim import many as many_module
 from shipcosim.cosim.master import compiled
+from shipcosim.cosim.master.run import Simulation
 from shipcosim.cosim.systems import system_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.native import component
-from shipcosim.scenario import read_scenario
+from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import with_values
 
 NATIVE = RunOptions(engine="native")
@@ -46,6 +48,24 @@ def test_each_variation_is_its_run_alone_bit_for_bit_in_any_number_of_threads(dp
     assert not many[0]["vessel.x"][0].equals(many[0]["vessel.x"][1])
     assert many[0]["environment.seed"].values.tolist() == [3, 8, 21, 22, 23]
     assert json.loads(many[0].attrs["remarks"]) == []
+
+
+@pytest.mark.parametrize("engine", ["native", "fmpy"])
+def test_a_run_goes_in_the_arrays_of_the_one_before_where_numbers_alone_differ(dp, monkeypatch, engine):
+    system, scenario = dp
+    scenario = scenario.model_copy(update={"stop_time": 3.0, "events": [Event(time=1.0, bias={"port.thrust_cmd": 500.0})]})
+    made, options = [], RunOptions(engine=engine)
+    monkeypatch.setattr(
+        many_module, "Simulation", lambda *all, **more: made.append(Simulation(*all, **more)) or made[-1]
+    )
+    values = [SEEDS[0], SEEDS[1], SEEDS[0] | {"vessel.mass": 5.1e5, "reference.x_set": 2.0}, SEEDS[0]]
+    runs = simulate_many(system, scenario, [Variation(one, scenario) for one in values], options, workers=1)
+    assert len(made) == 1
+    for number, one in enumerate(values):
+        alone = simulate(system, scenario.model_copy(update={"set": one}), options)
+        for name, column in alone.items():
+            assert runs[name][number].values.tobytes() == column.values.tobytes(), name
+    assert not np.array_equal(runs["vessel.x"][0], runs["vessel.x"][2])
 
 
 def test_what_differs_in_numbers_alone_is_compiled_once(dp, monkeypatch):

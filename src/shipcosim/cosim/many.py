@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.cosim.master.instantiate import SlaveSource
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.result import attributes_of
 from shipcosim.cosim.master.run import RunError, Simulation
@@ -151,13 +150,15 @@ class _Runs:
             raise ShipcosimError(errors)
         time_grid_of(variation.scenario, self._options.start_time)
 
-    def run(self, variation: Variation, slaves: SlaveSource) -> Done:
+    def run(self, variation: Variation, slaves: _Source) -> Done:
         """One run; an error of it is part of the result."""
-        simulation, error = None, ""
+        simulation, error = slaves.last, ""
+        slaves.last = None
         try:
             system, scenario = self._varied(variation)
-            grid = time_grid_of(scenario, self._options.start_time)
-            simulation = Simulation(system, scenario, grid, self._options)
+            if simulation is None or not simulation.rewind(system, scenario):
+                grid = time_grid_of(scenario, self._options.start_time)
+                simulation = Simulation(system, scenario, grid, self._options, repeated=True)
             simulation.run(slaves, self.check_interrupt)
             simulation.terminate()
         except RunError as failed:
@@ -165,6 +166,7 @@ class _Runs:
         except ShipcosimError as failed:
             return Done(str(failed))
         assert simulation is not None
+        slaves.last = None if error else simulation
         return self._kept(simulation, error)
 
     def _varied(self, variation):
@@ -190,7 +192,15 @@ class _Runs:
 
 
 class _Source:
-    """Instances of one worker. Loading and resetting FMUs concerns the whole process: one worker at a time does it."""
+    """Instances of one worker. Loading and resetting FMUs concerns the whole process: one worker at a time does it.
+
+    Attributes
+    ----------
+    last : Simulation or None
+        The run before, in whose arrays the next one goes where start values alone differ.
+    """
+
+    last: Simulation | None = None
 
     def __init__(self, instances: Instances, lock: threading.Lock):
         self._instances, self._lock = instances, lock

@@ -68,6 +68,20 @@ class CompiledStep:
             raise Untraceable(f"its state changes its shape: {self._shape.flat.difference(shape.flat)}")
         self.memory[:-2] = shape.numbers
 
+    def take_anew(self, time: float, step_size: float) -> bool:
+        """Take the numbers of the Python object after another start; whether the code is the same for them."""
+        try:
+            shape = shape_of(self.fmu)
+        except Untraceable:
+            return False
+        if not shape.flat.same_shape(self._shape.flat):
+            return False
+        if kept_record(key_of(self.fmu, shape), [*shape.numbers, time, step_size]) is not self._record:
+            return False
+        self.memory[:-2] = shape.numbers
+        self.kept[:] = np.nan
+        return True
+
     def give_back(self) -> None:
         """Give the numbers to the Python object."""
         values, shape = vars(self.fmu), self._shape

@@ -119,9 +119,42 @@ def numbers_of(values: dict[str, Any], constant: Set[str], unchanging: Set[str])
         rest.append(name)
         if name in constant:
             rest += (type(value), value)
+        elif name in unchanging:
+            _take_once(value, numbers, rest)
         else:
-            _take(value, name in unchanging, numbers, rest)
+            _take(value, False, numbers, rest)
     return numbers, tuple(rest)
+
+
+def _take_once(value, numbers, rest):
+    """`_take` of what does not change: a frozen dataclass of parameters, tuples of floats. It is taken apart once."""
+    known = _TAKEN.get(id(value))
+    if known is None or known[0] is not value:
+        taken, others = [], []
+        if isinstance(value, tuple):
+            for part in value:
+                _take(part, False, taken, others)
+        else:
+            _take(value, True, taken, others)
+        if len(_TAKEN) >= MOST_TAKEN:
+            _TAKEN.clear()
+        known = _TAKEN[id(value)] = value, taken, tuple(others)
+    numbers += known[1]
+    rest.append(known[2])
+
+
+_TAKEN: dict[int, tuple[Any, list, tuple]] = {}
+MOST_TAKEN = 500
+"""Objects that are remembered: of components in a process, as a rule."""
+LONG = 16
+"""Parts of a tuple from which on it is worth remembering."""
+
+
+def _is_table(value):
+    """Whether an object is a long tuple of tuples of floats, which nobody can change."""
+    if type(value) is not tuple or len(value) < LONG:
+        return False
+    return all(type(row) is tuple and set(map(type, row)) == {float} for row in value)
 
 
 def _take(value, fixed, numbers, rest):
@@ -134,6 +167,8 @@ def _take(value, fixed, numbers, rest):
         if set(map(type, value)) == {float}:
             numbers += value
             rest.append("d")
+        elif id(value) in _TAKEN or _is_table(value):
+            _take_once(value, numbers, rest)
         else:
             for part in value:
                 _take(part, fixed, numbers, rest)

@@ -97,8 +97,14 @@ static void transfer(System *s, Exchange *e, int64_t count) {
         int64_t row = e->output_row[i];
         put(e, e->modified, row, e->output_scale[i] * get(e, e->modified, row) + e->output_shift[i]);
     }
+    int64_t period = 0;
+    int due = 0;
     for (int64_t i = 0; i < e->n_connections; i++) {
-        if (count % e->period[i]) continue;
+        if (e->period[i] != period) {
+            period = e->period[i];
+            due = count % period == 0;
+        }
+        if (!due) continue;
         double value = get(e, e->modified, e->source[i]);
         if (e->mapped[i] >= 0)
             for (int64_t j = e->mapping_first[e->mapped[i]]; j < e->mapping_first[e->mapped[i] + 1]; j++)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from shipcosim.native.leaves import Flat, attributes_like, numbers_of, text_of
@@ -65,7 +65,7 @@ def shape_of(fmu: Any) -> Shape:
     Untraceable
         It keeps what is no plain data.
     """
-    whole, constant, unchanging = _structure_of(fmu)
+    whole, constant, unchanging = _structure_of(type(fmu))
     for group in fmu.groups:
         remember(getattr(fmu, group.name))
     numbers, rest = numbers_of(vars(fmu), constant, unchanging)
@@ -87,13 +87,14 @@ MOST_SHAPES = 200
 """Shapes that are remembered: components in a process, as a rule."""
 
 
-def _structure_of(fmu):
+@lru_cache(maxsize=200)
+def _structure_of(cls):
     """Names of parameters that are whole numbers, of what belongs to the structure, of dataclasses of parameters."""
-    parameters = [variable for variable in fmu.variables if variable.causality == "parameter"]
+    parameters = [variable for variable in cls.variables if variable.causality == "parameter"]
     whole = frozenset(variable.name for variable in parameters if variable.type == "Integer")
-    constant = frozenset(variable.name for variable in fmu.variables if variable.type == "String")
+    constant = frozenset(variable.name for variable in cls.variables if variable.type == "String")
     constant |= {variable.name for variable in parameters if variable.type == "Boolean"}
-    return whole, constant, frozenset(group.name for group in fmu.groups)
+    return whole, constant, frozenset(group.name for group in cls.groups)
 
 
 def trace(

@@ -102,7 +102,8 @@ class CompiledMaster(Master):
             self.reasons = {"all components": why}
             super().run(grid, actions, external, recorders, progress)
             return
-        loop = _Loop(self, grid, external, recorders)
+        if (loop := self._loop) is None or not loop.take_anew(external):
+            loop = _Loop(self, grid, external, recorders)
         k, first, last, steps, report_at = grid.first, grid.first, grid.last, 16, perf_counter()
         due = sorted(step for step in actions if step > first)
         try:
@@ -149,12 +150,12 @@ class _Loop:
         self._master, self._clock, self._recorders = master, np.ascontiguousarray(grid.times, dtype=float), recorders
         self._components, self._exchanges = master._components, list(master._exchanges.items())
         self._kept: list[Any] = []  # arrays that the structures point to
+        self._kept_for_now: dict[str, list[Any]] = {}
         self._library = libraries([files("shipcosim.native").joinpath("loop.c").read_text(encoding="utf-8")])[0]
         self._steps = self._compiled(grid)
         self._error: BaseException | None = None
-        over_time = {id(target): values for target, values in external}
         self._c_exchanges = (_Exchange * len(self._exchanges))(
-            *(self._exchange(kind, exchange, over_time) for kind, exchange in self._exchanges)
+            *(self._exchange(kind, exchange) for kind, exchange in self._exchanges)
         )
         self._c_components = (_Component * len(self._components))(*map(self._component, self._components))
         kinds = [kind for kind, _ in self._exchanges]
@@ -172,7 +173,18 @@ class _Loop:
             kinds.index("Real") if "Real" in kinds else -1,
             0,
         )
+        self._take_external(external)
         self.take_modifiers()
+
+    def take_anew(self, external) -> bool:
+        """Begin again in the same arrays, with the components' numbers after another start; whether that can be."""
+        time, step_size = self._first_step
+        if self._reasons or not all(step.take_anew(time, step_size) for step in self._steps.values()):
+            return False
+        self._error, self._system.stop = None, 0
+        self._take_external(external)
+        self.take_modifiers()
+        return True
 
     def run(self, k: int, end: int) -> int:
         """Steps k to end; the step that comes next. Raises Failure."""
@@ -194,15 +206,24 @@ class _Loop:
 
     def take_modifiers(self) -> None:
         """Take overrides and biases as they are now."""
+        kept = self._kept_for_now["modifiers"] = []
         for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
             for name, modifiers in (("output", exchange.output_modifiers), ("input", exchange.input_modifiers)):
                 active = modifiers.active
                 setattr(structure, f"n_{name}_modifiers", len(active))
-                setattr(structure, f"{name}_row", self._pointer(np.array(list(active), dtype=np.int64)))
+                setattr(structure, f"{name}_row", self._pointer(np.array(list(active), dtype=np.int64), kept))
                 for column, part in enumerate(("scale", "shift")):
                     values = np.array([modifier[column] for modifier in active.values()], dtype=float)
-                    setattr(structure, f"{name}_{part}", self._pointer(values))
+                    setattr(structure, f"{name}_{part}", self._pointer(values, kept))
             structure.version = exchange.version
+
+    def _take_external(self, external) -> None:
+        """Take the external values over time."""
+        kept = self._kept_for_now["external"] = []
+        over_time = {id(target): np.ascontiguousarray(values) for target, values in external}
+        for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
+            if (values := over_time.get(id(exchange.external))) is not None:
+                structure.external = self._pointer(values, kept)
 
     @property
     def reasons(self) -> dict[str, str]:
@@ -212,15 +233,14 @@ class _Loop:
     def _compiled(self, grid) -> dict[str, CompiledStep]:
         objects = {component.name: component.slave.python_object for component in self._components}
         ours = {name: fmu for name, fmu in objects.items() if fmu is not None}
-        step_size = float(grid.times[grid.first + 1] - grid.times[grid.first])
-        found = dict(
-            zip(ours, compiled_steps(list(ours.values()), float(grid.times[grid.first]), step_size), strict=True)
-        )
+        time = float(grid.times[grid.first])
+        self._first_step = time, float(grid.times[grid.first + 1]) - time
+        found = dict(zip(ours, compiled_steps(list(ours.values()), *self._first_step), strict=True))
         self._reasons: dict[str, object] = {name: "its code is not ours" for name in objects if name not in ours}
         self._reasons |= {name: step for name, step in found.items() if isinstance(step, Untraceable)}
         return {name: step for name, step in found.items() if isinstance(step, CompiledStep)}
 
-    def _exchange(self, kind: str, exchange: Exchange, over_time) -> _Exchange:
+    def _exchange(self, kind: str, exchange: Exchange) -> _Exchange:
         single, sums, _ = exchange.numbered
         due = sorted(single, key=lambda pair: pair[1].period)
         mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
@@ -228,7 +248,6 @@ class _Loop:
         numbers = iter(range(len(mappings)))
         recorder = self._recorders.by_kind[kind]
         kinds = [id(other) for _, other in self._exchanges]
-        external = over_time.get(id(exchange.external))
         return _Exchange(
             int(kind == "Real"),
             len(exchange.sources),
@@ -254,7 +273,6 @@ class _Loop:
             self._whole(row for row, _, _ in exchange.type_changes),
             self._whole(kinds.index(id(other)) for _, other, _ in exchange.type_changes),
             self._whole(source for _, _, source in exchange.type_changes),
-            external=None if external is None else self._pointer(np.ascontiguousarray(external)),
             rows=self._pointer(recorder.rows),
             n_columns=recorder.rows.shape[1],
             n_external_columns=len(recorder.external),
@@ -322,8 +340,8 @@ class _Loop:
             del self._steps[component.name]
             self._c_components[self._components.index(component)].step = None
 
-    def _pointer(self, array):
-        self._kept.append(array)
+    def _pointer(self, array, kept=None):
+        (self._kept if kept is None else kept).append(array)
         return array.ctypes.data_as(P)
 
     def _whole(self, numbers):

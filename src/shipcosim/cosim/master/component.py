@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -111,6 +112,13 @@ class ComponentInstance:
     def restore(self, state: bytes) -> None:
         """Bring the FMU into a state. All discrete inputs are set again in the next step."""
         self.slave.restore(state)
+        for discrete in self._discrete:
+            discrete.version = -1
+
+    def rewind(self, state: Any, values: Sequence[tuple[Variable, object]]) -> None:
+        """Bring the FMU, one of our shell, into its state before the start, but for some start values."""
+        self.slave.rewind(state)
+        set_start_values(self.slave, values)
         for discrete in self._discrete:
             discrete.version = -1
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.cosim.master.again import can_rewind, changed_values, with_numbers
 from shipcosim.cosim.master.algorithm import Failure, Master
 from shipcosim.cosim.master.compiled import CompiledMaster
 from shipcosim.cosim.master.events import event_actions, external_values
@@ -31,6 +32,7 @@ from shipcosim.cosim.master.snapshot import Snapshot, opened, writer
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
@@ -90,6 +92,8 @@ class Simulation:
         Order of the exchange, and the table that feeds inputs of the system.
     resume : Snapshot, optional
         Where the run continues from; checked.
+    repeated : bool
+        Whether it is to be run again with other start values.
 
     Raises
     ------
@@ -98,17 +102,24 @@ class Simulation:
     """
 
     def __init__(
-        self, system: System, scenario: Scenario, grid: TimeGrid, options: RunOptions, resume: Snapshot | None = None
+        self,
+        system: System,
+        scenario: Scenario,
+        grid: TimeGrid,
+        options: RunOptions,
+        resume: Snapshot | None = None,
+        repeated: bool = False,
     ):
         order, inputs, self._engine = options.order, options.inputs, options.engine
         if order not in ORDERS:
             raise ShipcosimError(f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}")
         self._scenario, self._grid, self._order, self._inputs, self._resume = scenario, grid, order, inputs, resume
-        fed = input_values(inputs, system, grid.run_times) if inputs is not None else {}
+        self._fed = fed = input_values(inputs, system, grid.run_times) if inputs is not None else {}
         self._active = resume.changes if resume else {}
         self._plan = make_plan(system, scenario, fed, self._active, grid.start_time)
         self._exchanges = make_exchanges(self._plan)
-        self._external = self._external_over_time(fed)
+        self._external = self._external_over_time()
+        self._repeated, self._fresh = repeated, None
         self._components: Components = {}
         self._together: list[set[str]] = []
         self._remarks: list[str] = []
@@ -142,27 +153,64 @@ class Simulation:
         RunError, Interrupted
             With the table so far.
         """
-        plan, exchanges, grid = self._plan, self._exchanges, self._grid
+        exchanges, grid = self._exchanges, self._grid
         try:
-            apart = "" if isinstance(slaves, Instances) else "isolated, each has a process and a solver of its own"
-            apart = apart if self._order == "jacobi" else "one after the other, each steps with a solver of its own"
-            inner, step_size = [] if apart else inner_connections(plan), self._scenario.step_size
-            self._remarks = exchanged_at_steps(plan, inner, apart, step_size)
-            self._components = make_components(plan, exchanges, slaves, step_size, check_interrupt, inner)
-            couple(plan, self._components, stepping_order(plan, self._order), inner)
-            self._together = groups_of(inner)
-            strings = make_string_connections(plan, self._components)
-            self._master = master = self._new_master(strings, check_interrupt)
+            if self._master is None:
+                self._instantiate(slaves, check_interrupt)
+            master = self._master
+            assert master is not None
             master.initialise(grid.start_time, grid.stop_time)
             if self._resume is not None:
-                restore_snapshot(self._resume, plan, exchanges, strings, self._components)
+                restore_snapshot(self._resume, self._plan, exchanges, self._strings, self._components)
                 master.resume(grid.first)
-            actions = event_actions(self._scenario, plan, exchanges, grid)
+            actions = event_actions(self._scenario, self._plan, exchanges, grid)
             master.run(grid, actions, self._external, self._recorders, progress)
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=False)) from failure
         except KeyboardInterrupt:
             raise Interrupted(self.table(complete=False)) from None
+
+    def _instantiate(self, slaves, check_interrupt):
+        """Instantiate the FMUs and wire them."""
+        plan, exchanges, step_size = self._plan, self._exchanges, self._scenario.step_size
+        apart = "" if isinstance(slaves, Instances) else "isolated, each has a process and a solver of its own"
+        apart = apart if self._order == "jacobi" else "one after the other, each steps with a solver of its own"
+        inner = [] if apart else inner_connections(plan)
+        self._remarks = exchanged_at_steps(plan, inner, apart, step_size)
+        self._components = make_components(plan, exchanges, slaves, step_size, check_interrupt, inner)
+        couple(plan, self._components, stepping_order(plan, self._order), inner)
+        if self._repeated and can_rewind(plan, self._components):
+            states = {name: one.slave.python_object._get_fmu_state() for name, one in self._components.items()}
+            self._fresh = plan.system, states
+        self._together = groups_of(inner)
+        self._strings = make_string_connections(plan, self._components)
+        self._master = self._new_master(self._strings, check_interrupt)
+
+    def rewind(self, system: System, scenario: Scenario) -> bool:
+        """Go back to before the start, for another run in the same arrays; whether that can be.
+
+        Parameters
+        ----------
+        system : System
+            Made from the same system as before by `with_values`.
+        scenario : Scenario
+            Has to be that of before.
+        """
+        if self._fresh is None or scenario != self._scenario:
+            return False
+        before, states = self._fresh
+        if (changed := changed_values(before, system)) is None:
+            return False
+        self._plan = with_numbers(self._plan, system)
+        for kind, exchange in self._exchanges.items():
+            exchange.reset(np.array(list(self._plan.layouts[kind].external.values()), dtype=exchange.sources.dtype))
+        self._external, self._recorders.n_rows = self._external_over_time(), 0
+        try:
+            for name, component in self._components.items():
+                component.rewind(states[name], changed[name])
+        except SlaveError:
+            return False  # which says the run that begins anew
+        return True
 
     def snapshot(self) -> Snapshot:
         """State of the whole system at the end of the time grid. Raises RunError if an FMU does not give its state."""
@@ -191,7 +239,7 @@ class Simulation:
         recorded = {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
         columns = columns_of(self._plan, n, recorded)
         chosen = frozenset(choose([name for name, *_ in columns]))
-        return [(c[0], np.ascontiguousarray(c[1]), c[2], c[3]) for c in columns if c[0] in chosen]
+        return [(c[0], np.array(c[1]), c[2], c[3]) for c in columns if c[0] in chosen]
 
     def attributes(self, complete: bool) -> dict[str, object]:
         """What is known about the run. `complete` is 1 or 0 among them, since NetCDF knows no truth values."""
@@ -218,11 +266,11 @@ class Simulation:
         """Table of the rows so far."""
         return make_table(self.row_times, self.columns(), self.attributes(complete))
 
-    def _external_over_time(self, fed):
+    def _external_over_time(self):
         """External values of each exchange that change, and what they are at each step of the time grid."""
         changing = []
         for kind, exchange in self._exchanges.items():
-            values = external_values(self._scenario, self._plan, kind, self._grid, fed, self._active)
+            values = external_values(self._scenario, self._plan, kind, self._grid, self._fed, self._active)
             if values is not None:
                 exchange.external[:] = values[0]
                 changing.append((exchange.external, values))

@@ -165,6 +165,15 @@ class Exchange:
         self._may_rest = self._counts_versions and periods in ([], [1])
         self._passed_on = ()
 
+    def reset(self, external: np.ndarray) -> None:
+        """Begin again from (m,) other start values of what comes from outside, in the same arrays."""
+        for array in (self.outputs, self.transferred, self.inputs):
+            array[:] = 0
+        self.external[:] = external
+        self.modified_sources[:] = self.sources
+        self.output_modifiers, self.input_modifiers = Modifiers(), Modifiers()
+        self.version, self._passed_on = 0, ()
+
     def transfer(self, count: int) -> None:
         """Pass on what is due after `count` base steps, transformed and with overrides and biases.
 

@@ -105,6 +105,20 @@ class LibrarySlave(Slave):
         self._messages.clear()
         self._find_python_object()
 
+    def rewind(self, state: Any) -> None:
+        """Bring the instance, one of our own shell, into a state of its object from before the start.
+
+        Unlike after `reset` the object is the same, so prepared calls stay. It keeps its dataclasses of parameters, and
+        makes those anew at the start whose values have changed.
+        """
+        target = self.python_object
+        values = vars(target)
+        groups = {group.name: values[group.name] for group in target.groups if group.name in values}
+        target._set_fmu_state(state)
+        values.update(groups)
+        target.messages.clear()
+        self._messages.clear()
+
     def state(self) -> bytes:
         """The whole state, which `restore` of any instance of this FMU takes, in another process too."""
         names, state, size = self._state_calls, c_void_p(), c_size_t()

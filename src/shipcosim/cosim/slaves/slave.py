@@ -94,6 +94,10 @@ class Slave:
         """Bring the instance into a state from `state`."""
         raise NotImplementedError
 
+    def rewind(self, state: Any) -> None:
+        """Bring the instance, one of our own shell, into a state of its object from before the start."""
+        raise NotImplementedError
+
     def terminate(self) -> None:
         """End the simulation. That an FMU fails to is no matter any more."""
         raise NotImplementedError
