@@ -53,7 +53,8 @@ def test_each_variation_is_its_run_alone_bit_for_bit_in_any_number_of_threads(dp
 @pytest.mark.parametrize("engine", ["native", "fmpy"])
 def test_a_run_goes_in_the_arrays_of_the_one_before_where_numbers_alone_differ(dp, monkeypatch, engine):
     system, scenario = dp
-    scenario = scenario.model_copy(update={"stop_time": 3.0, "events": [Event(time=1.0, bias={"port.thrust_cmd": 500.0})]})
+    events = [Event(time=1.0, bias={"port.thrust_cmd": 500.0})]
+    scenario = scenario.model_copy(update={"stop_time": 3.0, "events": events})
     made, options = [], RunOptions(engine=engine)
     monkeypatch.setattr(
         many_module, "Simulation", lambda *all, **more: made.append(Simulation(*all, **more)) or made[-1]
