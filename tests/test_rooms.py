@@ -22,9 +22,9 @@ MAY_IMPORT = {
     "native": {"library", "fmi", "errors"},
     "cosim": {"library", "series", "ssp", "scenario", "fmi", "errors", "options", "units", "native"},
     "diagnose": {"library", "errors", "angles", "options", "units", "models", "series", "ssp", "scenario", "cosim"},
-    "sweep": {"library", "errors", "options", "staging", "units", "series", "ssp", "scenario", "cosim"},
     "ships": {"errors", "units", "models", "ssp"},
     "capability": {"library", "errors", "angles", "models", "ships", "ssp"},
+    "sweep": {"library", "errors", "options", "staging", "units", "series", "ssp", "scenario", "cosim", "capability"},
     "checks": {"library", "errors", "series", "ssp", "ships", "scenario", "cosim", "diagnose", "sweep"},
     "report": {
         "errors",

@@ -73,8 +73,10 @@ class Levels:
     def of(self, number: int) -> list[Level]:
         """Levels of the factor with a number."""
         factor = self._study.factor[number]
-        if factor.case is not None:
-            return [self._of_case(one, ("factor", number, "case", i)) for i, one in enumerate(factor.case)]
+        if cases := factor.cases:
+            made_by = "directions" if factor.directions else "conditions"
+            keys = [("case", i) if factor.case else (made_by,) for i in range(len(cases))]
+            return [self._of_case(one, ("factor", number, *key)) for one, key in zip(cases, keys, strict=True)]
         if factor.seeds is not None:
             return self._of_seeds(factor, ("factor", number, "seeds"))
         key = "values" if factor.values is not None else "from"

@@ -192,10 +192,10 @@ class Plan:
         found = []
         for factor, levels in zip(self.study.factor, self.levels, strict=True):
             signals = list(levels[0].values) or [name for event in levels[0].events for name in event.override]
-            unit = None if factor.case or factor.seeds else unit_of(signals[0])
-            labels = [level.label for level in levels] if factor.case else None
-            text = ", ".join(factor.signal)
-            found.append(ColumnOf(factor.name, "factor", unit.name if unit else None, text, labels))
+            unit = None if factor.cases or factor.seeds else unit_of(signals[0])
+            labels = [level.label for level in levels] if factor.cases else None
+            name = "deg" if factor.directions else unit.name if unit else None
+            found.append(ColumnOf(factor.name, "factor", name, ", ".join(factor.signal), labels))
         if self.samples is not None:
             found.append(ColumnOf("sample", "sample", description="number of the sample"))
             signals = [(one, ", ".join(one.signals)) for one in self.samples.columns]

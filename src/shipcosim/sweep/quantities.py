@@ -43,6 +43,8 @@ class Measure:
         How; empty where it is true or false.
     argument : float
         Time, percentile or limit.
+    since : float
+        Where the run's time begins to count. [s]
     """
 
     name: str
@@ -52,17 +54,25 @@ class Measure:
     units: Mapping[str, Unit | None]
     reduce: str = ""
     argument: float = np.nan
+    since: float = 0.0
+
+    @property
+    def may_never_be(self) -> bool:
+        """Whether NaN says that a run never gets there, which is later than any time."""
+        return self.reduce == "time_beyond"
 
     def of(self, table: xarray.Dataset) -> float | bool:
-        """The quantity of a run by its table; NaN where it has no row."""
+        """The quantity of a run by its table; NaN where it has no row, or never gets there."""
         if not self.reduce:
             return all(verdict_on(table, one, self.units.__getitem__).passed for one in self.expect)
         rows = rows_of(table, self.expect[0])
+        rows = rows[table["time"].values[rows] >= self.since - 1e-9] if self.since else rows
         if len(rows) == 0:
             return np.nan
         values = values_of(table, self.expect[0], rows, self.units.__getitem__)
-        single: Any = values[:, 0] if values.shape[1] == 1 else np.linalg.norm(values, axis=1)
-        return float(REDUCED[self.reduce](table["time"].values[rows], single, self.argument))
+        single: Any = values[:, 0] if self.expect[0].near is None else np.linalg.norm(values, axis=1)
+        value = float(REDUCED[self.reduce](table["time"].values[rows], single, self.argument))
+        return value - self.since if self.since else value
 
 
 def _at(times: np.ndarray, values: np.ndarray, time: float) -> Any:
@@ -132,7 +142,7 @@ def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
     ends = [case.stop_time or 0.0 for factor in study.factor for case in factor.case or ()]
     end = max(scenario.stop_time, *ends, 0.0)
     for number, one in enumerate(study.quantity):
-        starts = ("during", one.during[0] if one.during else None), ("time", one.time)
+        starts = ("during", one.during[0] if one.during else None), ("time", one.time), ("since", one.since)
         for key, time in starts:
             if time is not None and time > end:
                 found = f"{key} lies beyond the end of the runs at {end:g} s."
@@ -154,4 +164,5 @@ def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
     limit = expect[0].within if quantity.near is not None else expect[0].at_most
     argument = {"at": quantity.time, "percentile": quantity.percentile}.get(quantity.reduce, limit)
     text = quantity.description or f"{quantity.reduce} of {expect[0].subject}"
-    return Measure(quantity.name, text, unit, expect, units, quantity.reduce, float(argument or 0.0))
+    since = quantity.since or 0.0
+    return Measure(quantity.name, text, unit, expect, units, quantity.reduce, float(argument or 0.0), since)

@@ -20,6 +20,7 @@ from pydantic_core import PydanticCustomError
 from shipcosim import library
 from shipcosim.scenario import Event, Expectation
 from shipcosim.scenario.model import Amount, ListOfNames, Part, Seconds, Value
+from shipcosim.sweep import weather
 from shipcosim.units import amount
 
 RESERVED = ("run", "error", "input", "sample")
@@ -47,6 +48,7 @@ def _label(value: Any) -> str | int | float:
 Label = Annotated[str | int | float, PlainValidator(_label)]
 Column = Annotated[str, AfterValidator(_column)]
 Count = Annotated[int, Field(ge=1)]
+KINDS = "values", "from (with to and count or step)", "case", "directions", "conditions", "seeds"
 
 
 class Case(Part):
@@ -64,7 +66,7 @@ class Case(Part):
 
 
 class Factor(Part):
-    """What varies, and its values: listed, evenly spaced, as cases, or as seeds."""
+    """What varies, and its values: listed, evenly spaced, as cases, as weather by direction or number, or as seeds."""
 
     name: Column
     signal: ListOfNames = Field(default=[], description="signals that get the value")
@@ -74,25 +76,39 @@ class Factor(Part):
     count: Annotated[int, Field(ge=2)] | None = None
     step: Amount | None = None
     case: list[Case] | None = Field(default=None, min_length=1)
+    directions: Annotated[int, Field(ge=2)] | None = Field(
+        default=None, description="how many, that wind, waves and current come from"
+    )
+    conditions: list[Literal[weather.NUMBERS]] | None = Field(  # pyright: ignore[reportInvalidTypeForm]
+        default=None, min_length=1, description="DP capability numbers whose wind, waves and current are set"
+    )
     seeds: Count | None = None
     at_fork: bool = Field(default=False, description="acts at fork_at, as an event that overrides")
 
     @model_validator(mode="after")
     def _has_values(self) -> Factor:
-        kinds = {"values": self.values, "from": self.start, "case": self.case, "seeds": self.seeds}
+        kinds = {"values": self.values, "from": self.start, "case": self.case, "directions": self.directions}
+        kinds |= {"conditions": self.conditions, "seeds": self.seeds}
         given = [name for name, value in kinds.items() if value is not None]
         if len(given) != 1:
             found = f"It has {' and '.join(given)}." if given else "It has no values."
-            raise ValueError(f"{found} A factor has one of values, from (with to and count or step), case, seeds.")
+            raise ValueError(f"{found} A factor has one of {', '.join(KINDS)}.")
         if self.start is None and (self.to, self.count, self.step) != (None, None, None):
             raise ValueError("to, count and step belong to from. Give from, too.")
         if self.start is not None and (self.to is None or (self.count is None) == (self.step is None)):
             raise ValueError("from needs to, and either count or step.")
         if given[0] in ("values", "from") and not self.signal:
             raise ValueError("signal is missing. Name the signal that gets the values.")
-        if given[0] == "case" and (self.signal or self.at_fork):
-            raise ValueError("Cases say themselves what they set: signal and at_fork are not used with them.")
+        if self.cases and (self.signal or self.at_fork):
+            which = "Cases" if self.case else given[0].capitalize()
+            raise ValueError(f"{which} say themselves what they set: signal and at_fork are not used with them.")
         return self
+
+    @property
+    def cases(self) -> list[Case]:
+        """Cases that are listed, or that directions and conditions stand for; empty where it has none."""
+        made = weather.directions(self.directions) if self.directions else weather.conditions(self.conditions or ())
+        return self.case or [Case(label=label, set=dict(values)) for label, values in made.items()]
 
 
 class Distribution(Part):
@@ -157,6 +173,7 @@ class Quantity(Part):
     time: Seconds | None = Field(default=None, ge=0.0)
     percentile: Annotated[float, Field(gt=0.0, lt=100.0)] | None = None
     limit: Amount | None = None
+    since: Seconds | None = Field(default=None, ge=0.0, description="from which the time beyond a limit is counted")
     expect: list[Expectation] = []
     scenario_expectations: bool = False
 
@@ -164,7 +181,7 @@ class Quantity(Part):
     def _is_one(self) -> Quantity:
         if self.judges == bool(self.signal):
             raise ValueError("A quantity has either signal and reduce, or expect or scenario_expectations = true.")
-        others = ("near", "reduce", "during", "time", "percentile", "limit")
+        others = ("near", "reduce", "during", "time", "percentile", "limit", "since")
         if self.judges and (beside := [name for name in others if getattr(self, name) is not None]):
             raise ValueError(f"{', '.join(beside)}: not used beside expect; an expectation has its own keys.")
         if self.judges:
@@ -175,6 +192,8 @@ class Quantity(Part):
             is_needed = _NEEDS.get(self.reduce) == name
             if is_needed != (getattr(self, name) is not None):
                 raise ValueError(f'reduce = "{self.reduce}" {"needs" if is_needed else "does not use"} {name}.')
+        if self.since is not None and (self.reduce != "time_beyond" or self.during):
+            raise ValueError('since belongs to reduce = "time_beyond", without during.')
         if len(self.signal) > 1 and self.near is None:
             raise ValueError("Several signals span a distance: near is missing. Give a value for each signal.")
         self.claim  # noqa: B018  says what is wrong with near and during

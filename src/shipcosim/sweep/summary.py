@@ -64,6 +64,8 @@ def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
     if one.statistic == "last_held":
         return {one.name: _last_held(plan, one, part)}
     values = part[one.quantity].to_numpy(dtype=float)
+    if any(measure.name == one.quantity and measure.may_never_be for measure in plan.measures):
+        values = np.where(np.isnan(values), np.inf, values)
     value, low, high = STATISTICS[one.statistic](values[~np.isnan(values)], one)
     limits = {f"{one.name}_low": low, f"{one.name}_high": high}
     return {one.name: value} | (limits if one.statistic in WITH_LIMITS else {})
@@ -106,6 +108,7 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
     Parameters
     ----------
     values : (n,) array
+        What never happens is infinite, and so is a percentile that lies among such values.
     percent : float
         0 to 100.
 
@@ -122,6 +125,8 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
     --------
     >>> percentile(np.arange(1.0, 101.0), 50.0)
     (50.5, 40.0, 61.0)
+    >>> percentile(np.array([1.0, 2.0, np.inf]), 90.0)[0]
+    inf
     """
     from scipy.stats import binom
 
@@ -133,7 +138,8 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
         low -= 1
     high = int(binom.ppf(1.0 - each, n, percent / 100.0)) + 1
     limits = (float(ordered[low]) if low >= 0 else np.nan, float(ordered[high - 1]) if high <= n else np.nan)
-    return float(np.percentile(values, percent)), *limits
+    after = ordered[int(np.ceil(percent / 100.0 * (n - 1) - 1e-9))]
+    return float(np.percentile(values, percent) if np.isfinite(after) else after), *limits
 
 
 def seeds_needed(percent: float) -> int:

@@ -19,13 +19,14 @@ from shipcosim.report.study.frames import (
     left_out,
     series_of,
 )
+from shipcosim.report.study.static import NAMES, bases_of
 from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import line, rounded
 from shipcosim.report.theme.views import Figure
 
-TALL, POLAR = 380, 420  # px
+TALL, POLAR, BAR = 380, 420, 18  # px
 MOST_LETTERS = 40
 """Letters of the names of all bars that fit below them."""
 MOST_DOTS = 2500
@@ -45,7 +46,7 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         points = np.array([gathered(frame, radius, rows) for rows in alike]).reshape(-1, 3)
         groups += alike
         traces += _around(one, degrees, points, with_band=len(series) <= 3, fill=0.14 if k == 0 else None)
-    traces += _beside(tables, radius, size, series)
+    traces += _beside(tables, view, series)
     note = "Bow up; angle: where the weather comes from, 90° from starboard."
     notes = [str(view.get("note") or note), how_gathered(frame, radius, groups), left_out(frame, series)]
     title = f"{size.name} by direction"
@@ -74,20 +75,22 @@ def _around(
     return [curve, *(ends | {"r": rounded([*points[:, k], *points[end, k]])} | look for k in (1, 2))]
 
 
-def _beside(tables: StudyTables, radius: str, size: Column, series: Sequence[SeriesOfRows]) -> list[dict[str, Any]]:
-    """Curves from elsewhere for the same quantity, dashed, as `about` brings them."""
-    colours = {one.label: one.colour for one in series}
+def _beside(tables: StudyTables, view: Mapping[str, Any], series: Sequence[SeriesOfRows]) -> list[dict[str, Any]]:
+    """Curves from elsewhere for the same quantity and the series that are drawn, as `about` brings them."""
+    colours, bases = {one.label: one.colour for one in series}, bases_of(view)
+    if unknown := {*bases} - {*NAMES}:
+        raise Lacking(f"static: '{unknown.pop()}' is none of {', '.join(NAMES)}.")
     found = []
     for one in tables.about.get("beside") or ():
-        if one.get("radius") == radius:
+        is_asked = one.get("radius") == view.get("radius") and ("basis" not in one or one["basis"] in bases)
+        if is_asked and str(one["series"]) in colours:
             degrees = np.degrees(np.asarray(one["angle"], float))
-            colour = colours.get(str(one.get("series")), palette.INK)
             found.append(
                 {
                     **{"type": "scatterpolar", "mode": "lines", "name": str(one["name"])},
                     **{"theta": rounded([*degrees, degrees[0]]), "hovertemplate": "%{r:.3~g} from %{theta}"},
                     **{"r": rounded([*one["radius_values"], one["radius_values"][0]])},
-                    "line": {"color": colour, "width": 2, "dash": "dash"},
+                    "line": {"color": colours[str(one["series"])], "width": 2, "dash": one.get("dash", "dash")},
                 }
             )
     return found
@@ -171,7 +174,8 @@ def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     unit = frame.column(values[0]).unit if values else ""
     notes = [str(view.get("note") or ""), how_gathered(frame, values[0], groups), left_out(frame, series)]
     title = f"{', '.join(values)} by {by}"
-    return _figure(view, title, unit, traces, _bar_axes(is_upright), notes, TALL)
+    height = TALL if is_upright else max(TALL, BAR * len(levels) * len(traces))
+    return _figure(view, title, unit, traces, _bar_axes(is_upright), notes, height)
 
 
 def _bar_axes(is_upright: bool) -> dict[str, Any]:
@@ -188,7 +192,8 @@ def _bar(name: str, categories: Sequence[str], points: NDArray, colour: str, is_
     made |= {"orientation": "v" if is_upright else "h"}
     if not np.isfinite(points[:, 1:]).any():
         return made
-    up, down = points[:, 2] - points[:, 0], points[:, 0] - points[:, 1]
+    with np.errstate(invalid="ignore"):  # what never happens is infinite, and has no bar
+        up, down = points[:, 2] - points[:, 0], points[:, 0] - points[:, 1]
     ends = {"type": "data", "symmetric": False, "array": rounded(up), "arrayminus": rounded(down)}
     return made | {f"error_{along}": ends | {"color": palette.INK, "thickness": 1.4, "width": 4}}
 

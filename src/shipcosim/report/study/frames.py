@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shipcosim.report.study.statistics import mean_interval, wilson
-from shipcosim.report.study.tables import FACTOR, Column, StudyTables, columns_of
+from shipcosim.report.study.tables import FACTOR, Column, StudyTables, columns_of, label
 from shipcosim.report.theme import palette
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 RUNS = "the runs"
 MOST_SERIES = 8
@@ -64,6 +67,32 @@ class SeriesOfRows:
     label: str
     colour: str
     rows: NDArray
+
+
+def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
+    """Tables with the rows that a view shows: all, or those whose columns have the values of its `only`.
+
+    Raises
+    ------
+    Lacking
+        If no table has such a column, or none such a value.
+    """
+    asked = (view.get("only") or {}).items()
+    only = {str(name): value if isinstance(value, list) else [value] for name, value in asked}
+    runs, summary, others = tables.runs, tables.summary, dict(tables.tables)
+    for name, values in only.items():
+        if name not in runs:
+            raise Lacking(f"only: there is no column '{name}'. There is: {', '.join(map(str, runs.columns))}.")
+        wanted = {label(value) for value in values}
+        if missing := wanted - {label(value) for value in runs[name]}:
+            raise Lacking(f"only: no run has {name} = {', '.join(sorted(missing))}.")
+        runs, summary = (_with(table, name, wanted) for table in (runs, summary))
+        others = {key: _with(table, name, wanted) for key, table in others.items()}
+    return replace(tables, runs=runs, summary=summary, tables=others) if only else tables
+
+
+def _with(table: DataFrame, name: str, wanted: set[str]) -> DataFrame:
+    return cast("DataFrame", table[[label(value) in wanted for value in table[name]]]) if name in table else table
 
 
 def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]) -> Frame:

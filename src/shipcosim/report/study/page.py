@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shipcosim.report.study import figures, words
-from shipcosim.report.study.frames import Lacking
+from shipcosim.report.study.frames import Lacking, narrowed
 from shipcosim.report.study.tables import Column, StudyTables, columns_of, signed
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
@@ -147,10 +147,11 @@ def _views(tables: StudyTables) -> tuple[tuple[TracksView, ...], tuple[Figure, .
     for view in tables.study.get("view") or ():
         kind = str(view.get("kind"))
         try:
+            shown = narrowed(tables, view)
             if kind == "tracks":
-                tracks.append(tracks_view(tables, view))
+                tracks.append(tracks_view(shown, view))
             elif kind in VIEWS:
-                plots.append(VIEWS[kind](tables, view))
+                plots.append(VIEWS[kind](shown, view))
             else:
                 raise Lacking(f"There is no such kind. There is: {', '.join([*VIEWS, 'tracks'])}.")
         except Lacking as lack:
@@ -256,7 +257,9 @@ def _with_interval(columns: Mapping[str, Column], column: Column, row: int) -> s
     """A cell of the summary, with its interval where it has one."""
     cell = _cell(column, column.values[row])
     ends = [columns[f"{column.name}_{end}"].values[row] for end in ("low", "high") if f"{column.name}_{end}" in columns]
-    return f"{cell} ({' to '.join(signed(end, 3) for end in ends)})" if len(ends) == 2 else cell
+    if len(ends) < 2 or np.isnan(ends).all():
+        return cell
+    return f"{cell} ({' to '.join(signed(e, 3) if np.isfinite(e) else column.text(e) for e in ends)})"
 
 
 MOST_SUMMARY = 400

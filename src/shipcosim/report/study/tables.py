@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from shipcosim.report.study.static import static_curves
 from shipcosim.report.theme.display import READ_AS
 
 if TYPE_CHECKING:
@@ -77,9 +78,11 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     import pandas
 
     folder, tracks = swept.folder, swept.folder / "tracks.parquet"
+    scenario, views = swept.plan.scenario, swept.about["study"].get("view", ())
+    beside, remarks = static_curves(views, scenario.system_path, scenario.parameter_paths)
     found = (re.fullmatch(r"run-([0-9]+)", page.parent.name) for page in folder.glob("run-*/report.html"))
     return StudyTables(
-        about=swept.about,
+        about={**swept.about, "beside": beside, "remarks": remarks, "ship": _ship(swept)},
         runs=swept.runs,
         summary=swept.summary,
         tracks=pandas.read_parquet(tracks) if tracks.is_file() else None,
@@ -87,6 +90,16 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
         pages=sorted(int(match[1]) for match in found if match),
         command=command,
     )
+
+
+def _ship(swept: Swept) -> dict[str, float]:
+    """Length and breadth of the ship whose tracks are kept; empty where they are not known. [m]"""
+    tracks, system = swept.plan.study.tracks, swept.plan.system
+    name = system.split(tracks.signals[0])[0] if tracks is not None else None
+    if name is None or not system.components[name].fmu.variables.keys() >= {"length", "breadth"}:
+        return {}
+    sizes = {size: system.components[name].start_value(size) for size in ("length", "breadth")}
+    return {size: float(value) for size, value in sizes.items() if value is not None}
 
 
 @dataclass(frozen=True)
@@ -148,7 +161,7 @@ class Column:
         'wind 7.5 m/s'
         """
         if not np.isfinite(value):
-            return "–"
+            return "never" if value == np.inf else "–"
         if self.labels:
             return self.labels[int(value)]
         if self.is_truth:
@@ -202,10 +215,10 @@ def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
     if values.dtype.kind in "iuf" or not len(known):
         shown, unit = readable(_numbers(values), said.get("unit"))
         return replace(made, values=shown, unit=unit)
-    texts = [_label(value) for value in values]
+    texts = [label(value) for value in values]
     if all(map(_is_number, filter(None, texts))):
-        return column_of(name, values.map(lambda value: float(_label(value) or "nan")), said)
-    order = [_label(value) for value in said.get("labels") or ()]
+        return column_of(name, values.map(lambda value: float(label(value) or "nan")), said)
+    order = [label(value) for value in said.get("labels") or ()]
     labels = tuple(dict.fromkeys([*(one for one in order if one in set(texts)), *(one for one in texts if one)]))
     place = {label: float(k) for k, label in enumerate(labels)}
     return replace(made, values=np.array([place.get(text, np.nan) for text in texts]), labels=labels)
@@ -237,7 +250,7 @@ def _is_number(text: str) -> bool:
     return bool(re.fullmatch(r"[-+]?\d+(\.\d*)?", text, re.ASCII))
 
 
-def _label(value: object) -> str:
+def label(value: object) -> str:
     """A value of a column of labels as text; a number as 2, not 2.0."""
     if value is None or value != value:
         return ""

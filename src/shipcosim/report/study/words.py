@@ -89,7 +89,7 @@ def key_figures(
     """Runs, and what the first quantities and summaries come to."""
     found = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
     for column in [*summary.values(), *runs.values()]:
-        known = column.values[np.isfinite(column.values)]
+        known = column.values[~np.isnan(column.values) if column.role == SUMMARY else np.isfinite(column.values)]
         if not len(known) or column.labels or (column.role not in (QUANTITY, SUMMARY)):
             continue
         if column.name.endswith(("_low", "_high")):
@@ -105,7 +105,8 @@ def _key_figure(column: Column, known: NDArray) -> KeyFigure:
         return KeyFigure(percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}")
     if column.role == SUMMARY:
         low, high = column.text(known.min()), column.text(known.max())
-        return KeyFigure(low if low == high else f"{signed(known.min(), 3)} to {high}", name)
+        unitless = signed(known.min(), 3) if np.isfinite(known.max()) else low
+        return KeyFigure(low if low == high else f"{unitless} to {high}", name)
     return KeyFigure(column.text(np.quantile(known, 0.9)), f"{name}: nine of ten runs are below")
 
 
@@ -179,6 +180,8 @@ def _signals(factor: Mapping[str, Any]) -> str:
         names = dict.fromkeys(name for case in cases for name in case.get("set") or {})
         events = ["events"] if any(case.get("events") for case in cases) else []
         return ", ".join([*names, *events]) or "cases"
+    if "directions" in factor or "conditions" in factor:
+        return "where wind, waves and current come from" if "directions" in factor else "wind, waves and current"
     signals = factor.get("signal") or factor.get("signals")
     if "seeds" in factor and not signals:
         return "every parameter named seed"
@@ -190,6 +193,10 @@ def _values(factor: Mapping[str, Any]) -> str:
         return f"{factor['seeds']} seeds, drawn from the study's seed"
     if cases := factor.get("case"):
         return _listed([str(case.get("label", "")) for case in cases])
+    if "directions" in factor:
+        return f"{factor['directions']} directions, evenly spaced"
+    if "conditions" in factor:
+        return f"DP capability numbers {_listed([str(number) for number in factor['conditions']])}"
     if "values" in factor:
         return _listed([str(value) for value in factor["values"]])
     stretch = f"{factor.get('from', 0)} to {factor.get('to', 0)}"

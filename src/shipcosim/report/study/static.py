@@ -1,0 +1,59 @@
+"""The static capability of the ship of a study, drawn beside what the study found, where a view asks for it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from shipcosim.capability import capability_of, vessel_of
+from shipcosim.capability.conditions import DIRECTIONS
+from shipcosim.capability.result import LEVEL_1, SIMULATOR
+from shipcosim.errors import ShipcosimError
+
+NAMES = {SIMULATOR: "static, simulator's models", LEVEL_1: "static, Level 1"}
+DASHES = {SIMULATOR: "dash", LEVEL_1: "dot"}
+
+
+def bases_of(view: Mapping[str, Any]) -> list[str]:
+    """What the static numbers that a view asks for are made by."""
+    asked = view.get("static") or []
+    return [str(one) for one in asked] if isinstance(asked, list) else [str(asked)]
+
+
+def static_curves(
+    views: Sequence[Mapping[str, Any]], system: os.PathLike[str], parameters: Sequence[os.PathLike[str]]
+) -> tuple[list[dict[str, Any]], list[str]]:
+    """Static DP capability numbers around the ship, for the polar views that ask for them.
+
+    Parameters
+    ----------
+    views : sequence of mapping
+        `static`: ``"simulator"``, ``"level 1"`` or both.
+    system : path
+    parameters : sequence of path
+        Parameter sets, the last of which names the ship.
+
+    Returns
+    -------
+    (list of dict, list of str)
+        Curves as `StudyTables.about` has them under `beside`, and why there are none.
+    """
+    asking = [view for view in views if view.get("kind") == "polar" and {*NAMES} & {*bases_of(view)}]
+    if not asking:
+        return [], []
+    try:
+        capability = capability_of(vessel_of(system, parameters))
+    except ShipcosimError as error:
+        return [], [f"The static capability is not drawn. {error}"]
+    curves = [
+        {
+            **{"radius": radius, "basis": basis, "dash": DASHES[basis], "series": case.name},
+            **{"name": f"{case.name}: {NAMES[basis]}", "angle": DIRECTIONS.tolist()},
+            "radius_values": numbers.tolist(),
+        }
+        for radius in dict.fromkeys(str(view.get("radius")) for view in asking)
+        for basis in NAMES
+        for case, numbers in zip(capability.cases, capability.numbers(basis), strict=True)
+    ]
+    return curves, []
